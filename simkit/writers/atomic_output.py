@@ -30,7 +30,7 @@ def check_file(path: Path, *, overwrite: bool) -> None:
 
 
 def write_obstacle(path: Path) -> str:
-    """Return the reason why a path cannot be created; empty if it can. Missing parent folders are no obstacle."""
+    """Return the reason reason a path cannot be created; empty if it can. Missing parent folders are no obstacle."""
     parent = path.absolute().parent
     while not parent.exists():
         parent = parent.parent
@@ -46,11 +46,11 @@ def check_folder(path: Path) -> None:
         InputError: SK-CLI-016 the path is not a folder, or is not writable.
     """
     try:
-        why = "it is not a folder" if path.exists() and not path.is_dir() else write_obstacle(path / "file")
+        reason = "it is not a folder" if path.exists() and not path.is_dir() else write_obstacle(path / "file")
     except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or str(error)
-    if why:
-        raise InputError(f"SK-CLI-016 cannot write to {path}: {why}", "SK-CLI-016")
+        reason = getattr(error, "strerror", None) or str(error)
+    if reason:
+        raise InputError(f"SK-CLI-016 cannot write to {path}: {reason}", "SK-CLI-016")
 
 
 def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
@@ -63,9 +63,9 @@ def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
     if not absolute.parent.is_dir():
         raise InputError(f"SK-CLI-016 folder {absolute.parent} does not exist", "SK-CLI-016")
     check_file(path, overwrite=overwrite)
-    beside = path.with_name(folder)
-    if beside.exists() and not overwrite:
-        raise _report_existing(beside)
+    asset_folder = path.with_name(folder)
+    if asset_folder.exists() and not overwrite:
+        raise _report_existing(asset_folder)
 
 
 def _report_existing(path: Path) -> InputError:
@@ -89,14 +89,14 @@ class AtomicOutput:
 
     def __init__(self, path: Path, folder: str, *, overwrite: bool = False) -> None:
         check_target(path, folder, overwrite=overwrite)
-        self._path, self._beside = path.absolute(), path.absolute().with_name(folder)
+        self._path, self._asset_folder = path.absolute(), path.absolute().with_name(folder)
 
     def __enter__(self) -> AtomicOutput:
         try:
             self._stage = Path(tempfile.mkdtemp(prefix=f".{self._path.stem}.", dir=self._path.parent))
         except OSError as error:
             raise self._failed(error) from None
-        self.file, self.folder = self._stage / self._path.name, self._stage / self._beside.name
+        self.file, self.folder = self._stage / self._path.name, self._stage / self._asset_folder.name
         return self
 
     def __exit__(
@@ -115,16 +115,16 @@ class AtomicOutput:
     def _move(self) -> None:
         """Move the folder first, because the file refers to it."""
         old = self._stage / "old"
-        if self._beside.exists():
-            self._beside.rename(old)
+        if self._asset_folder.exists():
+            self._asset_folder.rename(old)
         try:
             if self.folder.exists():
-                self.folder.rename(self._beside)
+                self.folder.rename(self._asset_folder)
             os.replace(self.file, self._path)  # noqa: PTH105 - atomic on every platform
         except OSError:
             if old.exists():
-                shutil.rmtree(self._beside, ignore_errors=True)
-                old.rename(self._beside)
+                shutil.rmtree(self._asset_folder, ignore_errors=True)
+                old.rename(self._asset_folder)
             raise
 
     def _failed(self, error: OSError) -> InputError:
@@ -188,11 +188,11 @@ def check_writable(path: str | os.PathLike[str] | None) -> None:
         return
     target = Path(path)
     try:
-        why = "it is a folder" if target.is_dir() else "" if target.exists() else write_obstacle(target)
+        reason = "it is a folder" if target.is_dir() else "" if target.exists() else write_obstacle(target)
     except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or str(error)
-    if why:
-        raise InputError(f"SK-CLI-016 cannot write {path}: {why}", "SK-CLI-016")
+        reason = getattr(error, "strerror", None) or str(error)
+    if reason:
+        raise InputError(f"SK-CLI-016 cannot write {path}: {reason}", "SK-CLI-016")
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:

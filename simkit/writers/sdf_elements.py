@@ -50,7 +50,7 @@ def inertial(value: Inertial) -> Params | None:
 
 
 def geometry(shape: shapes.Geometry, uri_of: UriOf) -> Params:
-    """`<geometry>`."""
+    """Return `<geometry>`."""
     if isinstance(shape, shapes.Polyline):
         height = text_element("height", shape.height)
         outlines = ([*(text_element("point", point) for point in outline), height] for outline in shape.outlines)
@@ -61,7 +61,7 @@ def geometry(shape: shapes.Geometry, uri_of: UriOf) -> Params:
         uri = text_element("uri", uri_of(shape.file, shape.uri))
         size, position = text_element("size", shape.size), text_element("pos", shape.position)
         return element("geometry", [element("heightmap", [uri, size, position])])
-    names = [field.name for field in fields(shape)]  # those of a primitive are SDF's own
+    names = [field.name for field in fields(shape)]  # field names of primitives equal SDF's names
     return element("geometry", [element(type(shape).__name__.lower(), field_elements(shape, *names))])
 
 
@@ -78,7 +78,7 @@ def _mesh(shape: Mesh, uri_of: UriOf) -> Params:
 
 
 def collision(value: SceneCollision, uri_of: UriOf) -> Params:
-    """`<collision>`."""
+    """Return `<collision>`."""
     shape, retro = geometry(value.geometry, uri_of), changed_elements(value, "laser_retro")
     return element("collision", [pose(value.pose_link), shape, surface(value.surface), *retro], name=value.name)
 
@@ -137,13 +137,13 @@ def visual(value: SceneVisual, uri_of: UriOf) -> Params:
         *changed_elements(value, "transparency", "cast_shadows"),
         flags,
         *changed_elements(value, "laser_retro"),
-        *(_of_visual(plugin(p), uri_of) for p in value.plugins),
+        *(_visual_plugin(plugin(p), uri_of) for p in value.plugins),
     ]
     return element("visual", children, name=value.name)
 
 
-def _of_visual(written: Params, uri_of: UriOf) -> Params:
-    """A visual's plugin with the picture of its temperatures with its URI as the new file needs it."""
+def _visual_plugin(written: Params, uri_of: UriOf) -> Params:
+    """Adapt the URI of the temperature image in a visual's plugin to the new file."""
     for i, child in enumerate(written.children):
         if child.name == "heat_signature" and child.where.file and child.value:
             uri = uri_of(Path(child.where.file).parent / child.value, child.value)
@@ -152,7 +152,7 @@ def _of_visual(written: Params, uri_of: UriOf) -> Params:
 
 
 def material(value: Material, uri_of: UriOf) -> Params:
-    """`<material>`, with every colour written out so that no script is needed for them."""
+    """Return `<material>` with all colours, so that no script is needed for them."""
     texture = None if value.texture is None else text_element("albedo_map", uri_of(value.texture, value.texture.name))
     metal = group_element("metal", [texture, *changed_elements(value, "roughness")])
     children = [
@@ -184,7 +184,7 @@ def light(value: SceneLight, at: Pose) -> Params:
 
 
 def axis(value: Axis, name: str, kind: str, leader: str) -> Params:
-    """`<axis>` or `<axis2>`; `leader` is the joint that it mimics, seen from its model."""
+    """Return `<axis>` or `<axis2>`; `leader` is the joint that it mimics, by its name in the model."""
     bounds = ("effort", "velocity") if kind == "continuous" else ("lower", "upper", "effort", "velocity")
     limit = [
         *field_elements(value, *(bound for bound in bounds if math.isfinite(getattr(value, bound)))),
@@ -211,7 +211,7 @@ def _mimic(value: Mimic, leader: str) -> Params:
 
 
 def sensor(value: SceneSensor, at: Pose) -> Params:
-    """`<sensor>` as it was written, with its own pose; `at` is in the frame of its link or joint."""
+    """Return `<sensor>` as it was written, with its own pose; `at` is in the frame of its link or joint."""
     kept = [c for c in value.params.children if c.name not in ("pose", "plugin")]
     children = [c for c in (pose(at), *kept, *(plugin(p) for p in value.plugins)) if c is not None]
     return Params("sensor", value.params.value, {**value.params.attributes, "name": value.name}, children)

@@ -227,7 +227,7 @@ class _Writer:
 
 
 def _actor(actor: SceneActor) -> Params:
-    """An actor with its script; its files are named as they were."""
+    """Return an actor with its script; its files keep their names."""
     skin = [text_element("filename", actor.skin), text_element("scale", actor.skin_scale)]
     script = [*field_elements(actor, "loop", "delay_start", "auto_start"), *map(_trajectory, actor.trajectories)]
     children = [
@@ -256,7 +256,7 @@ def _animation(move: Animation) -> Params:
 
 
 def _world_joint(model: SceneModel, canonical: str) -> Params:
-    """The joint that holds a model to the world that was asked to stand still."""
+    """Return the joint that fixes a model with a fixed base to the world."""
     ends = [text_element("parent", _WORLD), text_element("child", canonical)]
     used_names = {j.name for j in model.joints} | {link.name for link in model.links}
     name = "fixed_to_world"
@@ -271,7 +271,7 @@ def _name_inside(scoped: str, model: str) -> str:
 
 
 def _person_element(look: PersonLook) -> Params:
-    """The looks of a person of our own."""
+    """Return the appearance of a person model of simkit."""
     children = [changed_element("height", look.height, None), *(text_element(k, v) for k, v in look.colours.items())]
     return element(written_name("person", "actor"), children)
 

@@ -11,7 +11,7 @@ from simkit.writers.xml_text import changed_element, changed_elements, element, 
 
 
 def physics_element(world: SceneWorld) -> Params:
-    """`<physics>`."""
+    """Return `<physics>`."""
     children = [
         *field_elements(world.physics, "max_step_size", "real_time_factor"),
         changed_element("simkit:contact_law", world.physics.contact_law, "simkit"),
@@ -21,7 +21,7 @@ def physics_element(world: SceneWorld) -> Params:
 
 
 def scene_element(world: SceneWorld) -> Params:
-    """`<scene>`."""
+    """Return `<scene>`."""
     around = world.surroundings
     children = [
         *field_elements(around, "ambient", "background", "shadows", "grid"),
@@ -37,13 +37,13 @@ def _fog(fog: Fog) -> Params:
 
 
 def atmosphere_element(air: Atmosphere) -> Params:
-    """`<atmosphere>`."""
+    """Return `<atmosphere>`."""
     children = field_elements(air, "temperature", "temperature_gradient", "pressure")
     return element("atmosphere", children, type="adiabatic")
 
 
 def spherical_coordinates_element(place: SphericalCoordinates | None) -> Params | None:
-    """`<spherical_coordinates>`."""
+    """Return `<spherical_coordinates>`; None without coordinates."""
     if place is None:
         return None
     custom = place.surface == "CUSTOM_SURFACE"

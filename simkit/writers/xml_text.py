@@ -25,14 +25,14 @@ _ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
 def element(name: str, content: str | Iterable[Params | None] = "", /, **attributes: str) -> Params:
-    """An element with a text, or with children; those that are None are left out."""
+    """Make an element with a text or with children; children that are None are left out."""
     if isinstance(content, str):
         return Params(name, content, attributes)
     return Params(name, "", attributes, [c for c in content if c is not None])
 
 
 def text_element(name: str, value: str | float | bool | tuple[float, ...]) -> Params:
-    """An element with a value."""
+    """Make an element with a value."""
     if isinstance(value, bool):
         return element(name, str(value).lower())
     if isinstance(value, tuple):
@@ -41,25 +41,25 @@ def text_element(name: str, value: str | float | bool | tuple[float, ...]) -> Pa
 
 
 def field_elements(value: DataclassInstance, *names: str) -> list[Params]:
-    """An element for each of these fields, with the field's name and value."""
+    """Make an element for each of some fields, with the field's name and value."""
     return [text_element(name, getattr(value, name)) for name in names]
 
 
 def changed_elements(value: DataclassInstance, *names: str) -> list[Params]:
-    """The elements of those of these fields whose values are not the format's own, which are the fields' defaults."""
-    usual = {field.name: field.default for field in fields(value)}
-    return field_elements(value, *(name for name in names if getattr(value, name) != usual[name]))
+    """Make elements for the fields whose values differ from their defaults, which are the format's defaults."""
+    defaults = {field.name: field.default for field in fields(value)}
+    return field_elements(value, *(name for name in names if getattr(value, name) != defaults[name]))
 
 
-def changed_element(name: str, value: str | float | None, usual: object) -> Params | None:
-    """An element for a value that is not the format's own."""
-    return None if value is None or value == usual else text_element(name, value)
+def changed_element(name: str, value: str | float | None, default: object) -> Params | None:
+    """Make an element for a value that differs from the format's default; None for the default."""
+    return None if value is None or value == default else text_element(name, value)
 
 
 def group_element(name: str, children: Iterable[Params | None], /, **attributes: str) -> Params | None:
-    """An element for children; None where all of them are None."""
-    held = [child for child in children if child is not None]
-    return element(name, held, **attributes) if held else None
+    """Make an element for children; None if all of them are None."""
+    present = [child for child in children if child is not None]
+    return element(name, present, **attributes) if present else None
 
 
 def number(value: float) -> str:
@@ -75,7 +75,7 @@ def numbers(values: Iterable[float]) -> str:
 
 
 def pose(value: Pose) -> Params | None:
-    """`<pose>`, or None for none at all.
+    """Make `<pose>`; None for the identity.
 
     The rotation is written as angles if they are exact to 1e-12, else as a quaternion.
     """

@@ -1,8 +1,8 @@
-"""Gazebo's Python over simkit: what systems and scripts written for `gz.sim`, `gz.math`, `sdformat`, … import.
+"""Gazebo's Python modules on top of simkit: systems and scripts import `gz.sim`, `gz.math`, `sdformat`, … from here.
 
-What enters: an import of one of Gazebo's modules, in any version and spelling. What leaves: the module of simkit with
-the same names. It never goes before a real installation of Gazebo unless it is told to shadow it. A world's
-`PythonSystemLoader` needs nothing else. A script says first:
+The input is an import of one of Gazebo's modules, in any version and spelling. The result is the module of simkit with
+the same names. A real installation of Gazebo has priority unless `shadow` is set. A world's `PythonSystemLoader` needs
+no further setup. A script begins with:
 
     import simkit.plugins.gz_python
 
@@ -21,13 +21,13 @@ _is_installed = False
 
 
 def install(shadow: bool = False) -> dict[str, str]:
-    """Lets `gz.…`, `ignition.…` and `sdformat…` be imported from simkit for the rest of the program.
+    """Make `gz.…`, `ignition.…` and `sdformat…` importable from simkit for the rest of the program.
 
     Args:
-        shadow: also where the real ones are installed.
+        shadow: import simkit's modules even if real ones are installed.
 
     Returns:
-        What is really installed, which goes first unless shadowed: name -> where it lies.
+        Location of each really installed module by name; these modules have priority unless shadowed.
     """
     global _is_installed
     found = installed()
@@ -38,7 +38,7 @@ def install(shadow: bool = False) -> dict[str, str]:
 
 
 def uninstall() -> None:
-    """Takes the names away again; what was imported stays with whoever has it."""
+    """Remove the names again; modules that were imported keep working."""
     global _is_installed
     if _is_installed:
         import_hook.leave()

@@ -1,4 +1,4 @@
-"""gz-common's Python: only its verbosity, which here is the level of simkit's log."""
+"""gz-common's Python: only its verbosity, which sets the level of simkit's log."""
 
 from __future__ import annotations
 
@@ -14,13 +14,14 @@ __all__ = ["set_verbosity", "verbosity"]
 
 
 def set_verbosity(level: int) -> None:
-    """0: nothing but what ends a run, 1: errors, 2: warnings, 3: messages, 4: everything."""
+    """Set the verbosity: 0 for critical errors only, 1 errors, 2 warnings, 3 messages, 4 everything."""
     global _level
     _level = max(0, min(4, int(level)))
     logging.getLogger("simkit").setLevel(_LEVELS[_level])
 
 
 def verbosity() -> int:
+    """Return the verbosity, from 0 to 4."""
     return _level
 
 

@@ -1,8 +1,8 @@
-"""Import hook that finds Gazebo's modules in simkit, by every version and spelling of their names.
+"""Import hook that maps Gazebo's module names, in every version and spelling, to modules of simkit.
 
-Every version and both spellings mean one implementation: `gz.sim8`, `gz.sim`, `ignition.gazebo6` are
-`simkit.plugins.gz_python.sim`. They can be imported only between `enter` and `leave`, or after `install`, and
-what is really installed under such a name goes first unless it is to be shadowed.
+All versions and both spellings have one implementation: `gz.sim8`, `gz.sim` and `ignition.gazebo6` are
+`simkit.plugins.gz_python.sim`. The names can be imported only between `enter` and `leave`, or after `install`. A really
+installed module has priority unless it is to be shadowed.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ _FAMILIES: Final = {
     "msgs": "msgs",
     "sdformat": "sdformat",
 }
-"""Module of Gazebo, without its version -> ours."""
+"""simkit's module for each module of Gazebo, without its version."""
 
 _PACKAGE: Final = __name__.rpartition(".")[0]
-_BESIDE: Final = {f"{_PACKAGE}.sim": "simkit.testing.gz_fixture"}
-"""Our module -> a module of a higher room whose names are offered with it: `TestFixture` loads worlds."""
+_EXTRA_MODULES: Final = {f"{_PACKAGE}.sim": "simkit.testing.gz_fixture"}
+"""Module of a higher layer whose names are added to a module: `TestFixture` loads worlds."""
 
 _UNSUPPORTED_MODULES: Final = frozenset(
     ("gui", "rendering", "sensors", "physics", "launch", "plugin", "utils", "fuel_tools", "common_av")
@@ -43,7 +43,7 @@ _OURS: Final = "__simkit_shim__"
 
 
 def module_behind(name: str) -> str | None:
-    """The module of ours behind a name of Gazebo's: empty for a bare `gz` or `ignition`; None for other names."""
+    """Return simkit's module for a name of Gazebo: empty for a bare `gz` or `ignition`; None for other names."""
     match = _GAZEBO_NAME.match(name)
     if match is None:
         return None
@@ -62,12 +62,12 @@ def module_behind(name: str) -> str | None:
 
 
 class ShimFinder(MetaPathFinder):
-    """Finds Gazebo's modules in this package.
+    """Import finder for Gazebo's modules in this package.
 
     Attributes:
-        modules: modules of simkit under Gazebo's names, whether they can be imported now or not.
-        imported_names: the names of those that Python knows now.
-        depth: how many times `enter` was called without its `leave`.
+        modules: modules of simkit under Gazebo's names, importable at the moment or not.
+        imported_names: names of these modules in `sys.modules`.
+        depth: number of calls of `enter` without their `leave`.
     """
 
     def __init__(self) -> None:
@@ -80,16 +80,16 @@ class ShimFinder(MetaPathFinder):
     ) -> ModuleSpec | None:
         found = module_behind(name)
         if found is None:
-            self._refuse(name)
+            self._raise_if_unsupported(name)
             return None
         return ModuleSpec(name, _ShimLoader(found, self), is_package=True)
 
     @staticmethod
-    def _refuse(name: str) -> None:
-        """Says of a module of Gazebo that simkit has none, where Python would only say that it is not there."""
+    def _raise_if_unsupported(name: str) -> None:
+        """Raise an error for an unsupported module or name of Gazebo; Python's own error would have no advice."""
         parent, _, leaf = name.rpartition(".")
         known = module_behind(parent) if parent else None
-        if known and not leaf.startswith("_"):  # `from gz.sim import leaf`: Python's own words would not say more
+        if known and not leaf.startswith("_"):  # `from gz.sim import leaf`: Python's own message has no advice
             try:
                 getattr(sys.modules.get(parent) or importlib.import_module(known), leaf)
             except AttributeError as error:
@@ -102,7 +102,7 @@ class ShimFinder(MetaPathFinder):
 
 
 class _ShimLoader(Loader):
-    """Fills a module under Gazebo's name with what ours offers; once made it is the same for good."""
+    """Loader that fills a module under Gazebo's name with the names of simkit's module, once for the whole program."""
 
     def __init__(self, target: str, finder: ShimFinder) -> None:
         self._target, self._finder = target, finder
@@ -129,25 +129,25 @@ class _ShimLoader(Loader):
         real = importlib.import_module(self._target)
         own.update({name: value for name, value in vars(real).items() if not name.startswith("__")})
         own.update({name: vars(real)[name] for name in ("__doc__", "__all__", "__getattr__") if name in vars(real)})
-        if self._target in _BESIDE:
-            other = importlib.import_module(_BESIDE[self._target])
-            own.update({name: vars(other)[name] for name in other.__all__})
-            own["__all__"] = sorted([*own["__all__"], *other.__all__])
+        if self._target in _EXTRA_MODULES:
+            extra = importlib.import_module(_EXTRA_MODULES[self._target])
+            own.update({name: vars(extra)[name] for name in extra.__all__})
+            own["__all__"] = sorted([*own["__all__"], *extra.__all__])
 
 
 _finder: Final = ShimFinder()
 
 
 def is_shim(module: types.ModuleType) -> bool:
-    """Check whether a module is one of ours under Gazebo's name."""
+    """Check whether a module is simkit's module under Gazebo's name."""
     return _OURS in getattr(module, "__dict__", {})
 
 
 def enter(shadow: bool = False) -> None:
-    """Lets Gazebo's modules be imported from now on; to be matched by `leave`.
+    """Make Gazebo's modules importable; every call needs a matching `leave`.
 
     Args:
-        shadow: ours go before installed ones.
+        shadow: give simkit's modules priority over installed ones.
     """
     _finder.depth += 1
     if _finder.depth == 1:
@@ -158,7 +158,7 @@ def enter(shadow: bool = False) -> None:
 
 
 def leave() -> None:
-    """Takes Gazebo's names away again, once as often as `enter`; what was imported stays with whoever has it."""
+    """Remove Gazebo's names after the last matching call; modules that were imported keep working."""
     _finder.depth -= 1
     if _finder.depth:
         return
@@ -171,7 +171,7 @@ def leave() -> None:
 
 @contextmanager
 def importable(shadow: bool = False) -> Iterator[None]:
-    """Gazebo's modules can be imported within; looks anew for what is really installed."""
+    """Make Gazebo's modules importable within a `with` block; look again for really installed modules."""
     if not _finder.depth and not shadow:
         _forget_shims_of_installed()
     enter(shadow)
@@ -182,7 +182,7 @@ def importable(shadow: bool = False) -> Iterator[None]:
 
 
 def _forget_shims_of_installed() -> None:
-    """Lets go of our modules where the real ones have been installed, or found, since."""
+    """Forget simkit's modules for which real ones have been installed in the meantime."""
     modules = _finder.modules
     for root in {name.partition(".")[0] for name in modules}:
         if _real_location(root):
@@ -191,7 +191,7 @@ def _forget_shims_of_installed() -> None:
 
 
 def installed() -> dict[str, str]:
-    """Find what is really installed under Gazebo's names and would be imported: name -> location."""
+    """Return the location of each really installed Gazebo module that would be imported, by name."""
     sims, maths = (f"gz.sim{v}" for v in range(7, 12)), (f"gz.math{v}" for v in range(6, 11))
     older = "ignition.gazebo", "ignition.math", "sdformat", *(f"sdformat{v}" for v in range(12, 18))
     names = "gz.sim", *sims, "gz.math", *maths, *older
@@ -199,7 +199,7 @@ def installed() -> dict[str, str]:
 
 
 def _real_location(name: str) -> str:
-    """Return the location of a module; empty where there is none, or only simkit's."""
+    """Return the location of a real module; empty if there is none, or only simkit's."""
     module = sys.modules.get(name)
     if module is not None:
         return "" if is_shim(module) else str(getattr(module, "__file__", None) or "a package")

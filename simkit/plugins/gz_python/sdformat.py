@@ -1,6 +1,7 @@
-"""sdformat's types as far as systems of gz-sim meet them: `sdformat14`, `sdformat`, … are this module.
+"""The subset of sdformat's types that systems of gz-sim use: `sdformat14`, `sdformat`, … are this module.
 
-`Element` shows a block of a world file. What is read of it counts as used, as with any plugin's parameters.
+`Element` gives access to a block of a world file. An element or attribute that is read counts as used, as with the
+parameters of any plugin.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ class JointType(enum.IntEnum):
 
 
 class Param:
-    """The text of an element or of an attribute."""
+    """Text of an element or of an attribute."""
 
     def __init__(self, key: str, text: str) -> None:
         self._key, self._text = key, text
@@ -67,11 +68,11 @@ class Param:
 
 
 class Element:
-    """An element of a file, or one made by hand.
+    """Element of a file, or a newly created one.
 
-    `get_double("force")` reads a child or an attribute and is 0 where there is neither; `get_double("force", 2.0)`
-    gives the value, or 2.0, and whether it was found. Without a name they read the element's own text. A text that is
-    no number is an error of the file (SK-PARAM-002).
+    `get_double("force")` reads a child or an attribute, and returns 0 if neither exists. `get_double("force", 2.0)`
+    returns the value or 2.0, and a flag that is true if the value exists. Without a name these methods read the
+    element's own text. A text that is not a number is an error of the file (SK-PARAM-002).
     """
 
     def __init__(self, params: Params | None = None, parent: Element | None = None) -> None:
@@ -87,42 +88,42 @@ class Element:
         self._params.name = name
 
     def get_parent(self) -> Element | None:
-        """None at the top: what a plugin hangs on is asked of the entity."""
+        """Return the parent element; None for the top element, whose model is accessible through the entity."""
         return self._parent
 
     def has_element(self, name: str) -> bool:
         return self._params.has(name)
 
     def find_element(self, name: str) -> Element | None:
-        """The first child of that name, or None."""
+        """Return the first child with a name, or None."""
         child = self._params.child(name)
         return Element(child, self) if child is not None else None
 
     def get_first_element(self) -> Element | None:
-        """The first child, or None."""
+        """Return the first child, or None."""
         children = self._params.children
         return self.find_element(children[0].name) if children else None
 
     def get_next_element(self, name: str = "") -> Element | None:
-        """The next sibling, of a name where one is given, or None."""
+        """Return the next sibling (with a name, if one is given), or None."""
         if self._parent is None:
             return None
         siblings = self._parent._params.children
-        place = next(i for i, child in enumerate(siblings) if child is self._params)
-        for child in siblings[place + 1 :]:
+        index = next(i for i, child in enumerate(siblings) if child is self._params)
+        for child in siblings[index + 1 :]:
             if not name or child.name == name:
                 self._parent._params.all(child.name)
                 return Element(child, self._parent)
         return None
 
     def add_element(self, name: str) -> Element:
-        """A new child at the end."""
+        """Append a new child."""
         child = Params(name, where=self._params.where, diagnostics=self._params.diagnostics)
         self._params.children.append(child)
         return Element(child, self)
 
     def insert_element(self, element: Element, set_parent: bool = False) -> None:
-        """Adds an element that is there already."""
+        """Append an existing element."""
         self._params.children.append(element._params)
         if set_parent:
             element._parent = self
@@ -138,7 +139,7 @@ class Element:
     get_attribute_set = has_attribute
 
     def get_attribute(self, name: str | int) -> Param | None:
-        """By name or by place."""
+        """Return an attribute by name or by index."""
         if isinstance(name, int):
             name = next(iter(list(self._params.attributes)[name : name + 1]), "")
         if name not in self._params.attributes:
@@ -152,7 +153,7 @@ class Element:
         return len(self._params.attributes)
 
     def get_value(self) -> Param | None:
-        """The element's own text; None where it has none."""
+        """Return the element's own text; None if it is empty."""
         return Param(self._params.name, self._params.value) if self._params.value else None
 
     def file_path(self) -> str:
@@ -162,7 +163,7 @@ class Element:
         return self._params.where.line
 
     def to_string(self, prefix: str = "", *_: object) -> str:
-        """The element as XML text."""
+        """Return the element as XML text."""
         p = self._params
         attributes = "".join(f" {k}='{_escape_xml(v)}'" for k, v in p.attributes.items())
         if not p.children:
@@ -213,7 +214,7 @@ class Element:
     get_float = get_double
 
     def get_angle(self, key: str = "", *default: Angle) -> Angle | tuple[Angle, bool]:
-        """An angle [rad]."""
+        """Read an angle [rad]."""
         return self._read(key, default, Angle(), lambda p, name: Angle(p.number(name)))
 
     def get_vector2d(self, key: str = "", *default: Vector2d) -> Vector2d | tuple[Vector2d, bool]:
@@ -258,18 +259,18 @@ def _escape_xml(text: str) -> str:
 
 
 def _axis_reader(name: str, default: float) -> Callable[[JointAxis], float]:
-    """Make a method that reads a property of an axis, the default where there is no axis."""
+    """Create a method that reads a property of an axis, with a default for a joint without axis."""
     return lambda self: default if self._axis is None else float(getattr(self._axis, name))
 
 
 class JointAxis:
-    """One degree of freedom of a joint; limits are infinite where there are none."""
+    """Degree of freedom of a joint; its limits are infinite without limits in the file."""
 
     def __init__(self, axis: SceneAxis | None = None) -> None:
         self._axis = axis
 
     def xyz(self) -> Vector3d:
-        """Unit axis in the joint frame; z where nothing says it."""
+        """Return the unit axis in the joint frame; z if the file has none."""
         return Vector3d(0, 0, 1) if self._axis is None else Vector3d(*self._axis.xyz_joint)
 
     lower, upper = _axis_reader("lower", -1e16), _axis_reader("upper", 1e16)
@@ -279,7 +280,7 @@ class JointAxis:
 
 
 class Atmosphere:
-    """The air at sea level."""
+    """Air at sea level."""
 
     def __init__(self, temperature: float = 288.15, gradient: float = -0.0065, pressure: float = 101325.0) -> None:
         self._temperature, self._gradient, self._pressure = Temperature(temperature), gradient, pressure
@@ -291,14 +292,14 @@ class Atmosphere:
         self._temperature = Temperature(value)
 
     def temperature_gradient(self) -> float:
-        """[K/m]"""
+        """Return the temperature gradient [K/m]."""
         return self._gradient
 
     def set_temperature_gradient(self, value: float) -> None:
         self._gradient = float(value)
 
     def pressure(self) -> float:
-        """[Pa]"""
+        """Return the pressure [Pa]."""
         return self._pressure
 
     def set_pressure(self, value: float) -> None:

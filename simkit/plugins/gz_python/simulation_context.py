@@ -1,4 +1,4 @@
-"""The simulation whose plugin code runs now: a Node of gz-transport belongs to it without being told."""
+"""Simulation whose plugin code runs at the moment, for Nodes of gz-transport, which have no such argument."""
 
 from __future__ import annotations
 
@@ -10,29 +10,29 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 Running: TypeAlias = "tuple[Simulation, Plugin | None]"
-"""A simulation, and the plugin whose code runs in it."""
+"""Simulation, and the plugin whose code runs in it."""
 
 _current: Running | None = None
 _latest: weakref.ref[Simulation] | None = None
 
 
 def enter_simulation(sim: Simulation, owner: Plugin | None) -> Running | None:
-    """Says whose code runs now; gives what is to be handed to `leave_simulation`."""
+    """Set the simulation and the plugin whose code runs; return the value for `leave_simulation`."""
     global _current, _latest
-    before, _current = _current, (sim, owner)
+    previous, _current = _current, (sim, owner)
     if _latest is None or _latest() is not sim:
         _latest = weakref.ref(sim)
-    return before
+    return previous
 
 
-def leave_simulation(before: Running | None) -> None:
-    """Back to what `enter_simulation` gave."""
+def leave_simulation(previous: Running | None) -> None:
+    """Restore the simulation from before `enter_simulation`."""
     global _current
-    _current = before
+    _current = previous
 
 
 def current_simulation() -> Running | None:
-    """The simulation and the plugin whose code runs; outside of hooks the last simulation that ran one, and None."""
+    """Return the current simulation and plugin; outside of hooks the last simulation, and None as the plugin."""
     if _current is not None:
         return _current
     sim = _latest() if _latest is not None else None

@@ -1,7 +1,7 @@
-"""gz-transport's Python over the topics and services of the simulation: nothing leaves the process.
+"""gz-transport's Python on the topics and services of the simulation; nothing leaves the process.
 
-Messages go as the ROS types that the bridge between Gazebo and ROS makes of them, so what a system publishes is read by
-`sim.subscribe` and recorded like all else. Callbacks run between two steps, in order.
+Messages are published as the ROS types that the bridge between Gazebo and ROS uses. `sim.subscribe` can read the
+messages of a system, and a recording contains them. Callbacks run between two steps, in order.
 """
 
 from __future__ import annotations
@@ -26,20 +26,18 @@ if TYPE_CHECKING:
 
 __all__ = ["AdvertiseMessageOptions", "AdvertiseServiceOptions", "Node", "Publisher", "SubscribeOptions"]
 
-_NO_SIMULATION: Final = (
-    "no simulation is there yet that this Node could belong to; use it in a hook, or after the TestFixture is made"
-)
+_NO_SIMULATION: Final = "this Node has no simulation yet; use it in a hook, or after the TestFixture is created"
 _SCENE_POSES: Final = ("/pose/info", "/dynamic_pose/info")
-"""Topics whose poses have names without those of what they are in: of gz's scene broadcaster."""
+"""Topics of gz's scene broadcaster, whose poses have names without the names of their parents."""
 
 Handler = Callable[[Message], None]
 
 _early_nodes: list[Node] = []
-"""Nodes that topics were asked of before there was a simulation: a script may make them first."""
+"""Nodes with publishers or subscriptions older than the first simulation, as scripts may create them first."""
 
 
 def adopt_early_nodes(sim: Simulation) -> None:
-    """Opens on a new simulation what nodes were asked for before it was there."""
+    """Connect the publishers and subscriptions of earlier nodes to a new simulation."""
     waiting, _early_nodes[:] = list(_early_nodes), []
     for node in waiting:
         node._connect(sim)
@@ -49,7 +47,7 @@ class _Options:
     """Options of gz-transport.
 
     Attributes:
-        msgs_per_sec: has no effect here, and a warning (SK-PLUGIN-086) says so: every message arrives.
+        msgs_per_sec: no effect, with a warning (SK-PLUGIN-086): every message is delivered.
     """
 
     def __init__(self, *_: object, **__: object) -> None:
@@ -77,11 +75,11 @@ class SubscribeOptions(_Options):
 
 
 class Publisher(SharedByCopies):
-    """Publishes messages of one class on one topic."""
+    """Publisher of messages of one class on one topic."""
 
     def __init__(self, topic: str, kind: type[Message], options: _Options | None = None) -> None:
         self._topic, self._kind, self._options = topic, kind, options
-        self._publisher: TopicPublisher | None = None  # until there is a simulation
+        self._publisher: TopicPublisher | None = None  # None until a simulation exists
         self._ros = ""
 
     def _connect(self, sim: Simulation, owner: Plugin | None) -> None:
@@ -92,16 +90,16 @@ class Publisher(SharedByCopies):
             self._publisher = sim.communication.bus.advertise(self._topic, self._ros)
 
     def publish(self, message: Message) -> bool:
-        """Sends a message.
+        """Publish a message.
 
         Raises:
-            MessageError: it is of another class than was advertised.
+            MessageError: the message has another class than the advertised one.
         """
         if not isinstance(message, self._kind):
             got = type(message).__name__
             raise MessageError(f"{self._topic!r} was advertised for gz.msgs.{self._kind.__name__}, got {got}")
         if self._publisher is None:
-            return True  # nobody could hear it
+            return True  # without a simulation there is no subscriber
         if self._publisher.wanted:
             self._publisher.publish(to_ros(message, self._ros))
         return True
@@ -110,7 +108,7 @@ class Publisher(SharedByCopies):
         return True
 
     def has_connections(self) -> bool:
-        """Check whether somebody reads now."""
+        """Check whether the topic has a subscriber."""
         return self._publisher is not None and bool(self._publisher.wanted)
 
     def __bool__(self) -> bool:
@@ -121,7 +119,8 @@ class _Subscription:
     """Subscription of a node to a topic.
 
     Attributes:
-        end: the listener; None until there is a simulation.
+        topic: absolute topic name.
+        listener: subscriber of the simulation; None until a simulation exists.
     """
 
     def __init__(self, topic: str, kind: type[Message], callback: Handler, options: _Options | None = None) -> None:
@@ -129,27 +128,27 @@ class _Subscription:
         self.listener: Listener | None = None
 
     def _on_message(self, message: object) -> None:
-        heard = from_ros(self._kind, message)
+        received = from_ros(self._kind, message)
         if self._kind is MESSAGE_CLASSES["Pose_V"] and self.topic.endswith(_SCENE_POSES):
-            for pose in heard.pose:
+            for pose in received.pose:
                 pose.name = pose.name.rpartition("::")[2]
-        self._callback(heard)
+        self._callback(received)
 
     def _connect(self, sim: Simulation, owner: Plugin | None) -> None:
         _warn_of_rate(sim, owner, self.topic, self._options)
         known, twins = sim.topics().get(self.topic), [twin.ros for twin in twins_of(self._kind)]
-        types = sorted(twins, key=lambda ros: ros != known)  # what is published there is listed first
+        types = sorted(twins, key=lambda ros: ros != known)  # a type that is already published comes first
         called = self._on_message if owner is None else _call_as_owner(sim, owner, self.topic, self._on_message)
         with sim.communication.bus.owned_by(owner):
             self.listener = sim.communication.bus.listen(self.topic, types, called)
 
 
 class Node(SharedByCopies):
-    """An end of the simulation's topics and services."""
+    """Node for the simulation's topics and services."""
 
     def __init__(self, *_: object) -> None:
         found = simulation_context.current_simulation()
-        # made outside of a hook it may have been before its simulation: whose it is shows when it is first used
+        # a Node made outside of a hook may be older than its simulation, so the simulation is found at its first use
         is_known = found is not None and found[1] is not None
         self._sim = weakref.ref(found[0]) if is_known and found is not None else None
         self._owner = found[1] if is_known and found is not None else None
@@ -158,7 +157,7 @@ class Node(SharedByCopies):
         self._waiting: list[Publisher | _Subscription] = []
 
     def _find_simulation(self) -> Simulation | None:
-        """The simulation it belongs to; None where there is none yet."""
+        """Return the simulation of the node; None if there is none yet."""
         if self._sim is None:
             found = simulation_context.current_simulation()
             if found is None:
@@ -166,7 +165,7 @@ class Node(SharedByCopies):
             self._sim, self._owner = weakref.ref(found[0]), found[1]
         sim = self._sim()
         if sim is None:
-            raise RuntimeError("the simulation that this Node belonged to is gone")
+            raise RuntimeError("the simulation of this Node no longer exists")
         return sim
 
     def _simulation(self) -> Simulation:
@@ -175,32 +174,32 @@ class Node(SharedByCopies):
             raise RuntimeError(_NO_SIMULATION)
         return sim
 
-    def _open(self, end: Publisher | _Subscription) -> None:
-        """Opens an end now, or as soon as there is a simulation."""
+    def _open(self, endpoint: Publisher | _Subscription) -> None:
+        """Connect a publisher or subscription now, or as soon as a simulation exists."""
         sim = self._find_simulation()
         if sim is not None:
-            end._connect(sim, self._owner)
+            endpoint._connect(sim, self._owner)
             return
-        self._waiting.append(end)
+        self._waiting.append(endpoint)
         if self not in _early_nodes:
             _early_nodes.append(self)
 
     def _connect(self, sim: Simulation) -> None:
         self._sim, waiting = weakref.ref(sim), list(self._waiting)
         self._waiting.clear()
-        for end in waiting:
-            end._connect(sim, None)
+        for endpoint in waiting:
+            endpoint._connect(sim, None)
 
     def advertise(self, topic: str, kind: type[Message], options: _Options | None = None) -> Publisher:
-        """Opens a topic for messages of a class."""
-        twins_of(kind)  # said now, not when there is a simulation
+        """Create a publisher of messages of a class on a topic."""
+        twins_of(kind)  # raises an error now, not when a simulation exists
         publisher = Publisher(_absolute_topic(topic), kind, options)
         self._advertised.append(publisher._topic)
         self._open(publisher)
         return publisher
 
     def subscribe(self, kind: Any, topic: Any, callback: Handler, options: _Options | None = None) -> bool:
-        """Calls `callback(message)` between two steps for each message of a class on a topic."""
+        """Call `callback(message)` between two steps for each message of a class on a topic."""
         if isinstance(kind, str):  # older bindings had the topic first
             kind, topic = topic, kind
         twins_of(kind)
@@ -210,21 +209,25 @@ class Node(SharedByCopies):
         return True
 
     def unsubscribe(self, topic: str) -> bool:
-        """Ends the subscriptions of this node to a topic; whether there were any."""
-        ends = self._subscriptions.pop(_absolute_topic(topic), [])
-        for end in ends:
-            if end in self._waiting:
-                self._waiting.remove(end)
-            elif end.listener is not None:
-                self._simulation().communication.bus.close(end.listener)
-        return bool(ends)
+        """Close the subscriptions of this node to a topic; return true if there were any."""
+        subscriptions = self._subscriptions.pop(_absolute_topic(topic), [])
+        for subscription in subscriptions:
+            if subscription in self._waiting:
+                self._waiting.remove(subscription)
+            elif subscription.listener is not None:
+                self._simulation().communication.bus.close(subscription.listener)
+        return bool(subscriptions)
 
     def request(
         self, service: str, request: Message, request_kind: type[Message], response_kind: type[Message], timeout: int
     ) -> tuple[bool, Message]:
-        """Calls a service of the simulation: (whether it is there and took it, the response).
+        """Call a service of the simulation.
 
-        Known are those of a world that take a WorldControl, an EntityFactory, an Entity or a Pose and give a Boolean.
+        Supported are the services of a world that take a WorldControl, an EntityFactory, an Entity or a Pose, and
+        return a Boolean.
+
+        Returns:
+            True if the service exists and accepted the request, and the response.
         """
         return call_service(self._simulation(), _absolute_topic(service), request, response_kind)
 
@@ -245,14 +248,14 @@ class Node(SharedByCopies):
 
 
 def _call_as_owner(sim: Simulation, owner: Plugin | None, topic: str, callback: Handler) -> Handler:
-    """Guard a plugin's callback: what it raises is the plugin's fault, and what it opens is the plugin's."""
+    """Wrap a plugin's callback so that the plugin owns its errors and everything that it opens."""
 
     def run(message: Message) -> None:
-        before = simulation_context.enter_simulation(sim, owner)
+        previous = simulation_context.enter_simulation(sim, owner)
         try:
             callback(message)
         finally:
-            simulation_context.leave_simulation(before)
+            simulation_context.leave_simulation(previous)
 
     found: Handler = sim.engine.faults.guard(owner, f"its callback for {topic!r}", run)
     return found
@@ -260,7 +263,7 @@ def _call_as_owner(sim: Simulation, owner: Plugin | None, topic: str, callback: 
 
 def _absolute_topic(topic: str) -> str:
     if not topic or any(c.isspace() for c in topic) or "//" in topic or "@" in topic:
-        raise MessageError(f"{topic!r} is no topic's name")
+        raise MessageError(f"{topic!r} is not a valid topic name")
     return topic if topic.startswith("/") else f"/{topic}"
 
 

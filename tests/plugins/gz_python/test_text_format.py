@@ -43,7 +43,7 @@ def test_texts_truths_enumerations_and_lists() -> None:
     ("name", "text", "said"),
     [
         ("Twist", "linaer: {x: 1}", "did you mean 'linear'"),
-        ("Twist", "linear: {x: 1", "ends too soon"),
+        ("Twist", "linear: {x: 1", "ends before the message is complete"),
         ("Twist", "linear: 1", "allowed is {"),
         ("Twist", "linear {x 1}", "without a colon"),
         ("Twist", "linear {x: one}", "allowed is a number"),
@@ -52,7 +52,7 @@ def test_texts_truths_enumerations_and_lists() -> None:
         ("StringMsg", "data: hello", "in quotes"),
         ("Entity", "type: ROBOT", "MODEL"),
         ("Float_V", "data: [1 2]", "comma"),
-        ("Twist", "linear: {x: 1} ?", "no part"),
+        ("Twist", "linear: {x: 1} ?", "not valid in a message"),
         ("Header", "stamp {sec: 3} data {key: 3}", "in quotes"),
     ],
 )

@@ -185,7 +185,7 @@ def test_a_node_without_a_simulation_says_so(monkeypatch: pytest.MonkeyPatch) ->
     from simkit.plugins.gz_python import simulation_context
 
     monkeypatch.setattr(simulation_context, "_latest", None)
-    with pytest.raises(RuntimeError, match="no simulation is there yet"):
+    with pytest.raises(RuntimeError, match="this Node has no simulation yet"):
         Node().topic_list()
 
 

@@ -380,7 +380,7 @@ def test_all_that_is_wrong_is_said_at_once() -> None:
         ("SK-PARAM-002", "<wheel_radius>-1"),
         ("SK-PARAM-001", "<wheel_separation>"),
         ("SK-CONTROL-042", "has_velocity_limits is true, but max_velocity [m/s or rad/s] is missing"),
-        ("SK-CONTROL-042", "there is min_acceleration, but there is no max_acceleration"),
+        ("SK-CONTROL-042", "min_acceleration is set, but max_acceleration [m/s² or rad/s²] is missing"),
         ("SK-PARAM-002", "<max_jerk>-3"),
         ("SK-PARAM-002", "found 2 numbers in 'pose_covariance_diagonal', allowed are 6"),
         ("SK-PARAM-002", "<cmd_vel_timeout>soon"),

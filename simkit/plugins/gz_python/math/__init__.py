@@ -1,7 +1,7 @@
-"""gz-math's types in Python, for modules written for it: `gz.math7`, `gz.math`, `ignition.math6`, … are this package.
+"""gz-math's types in Python: `gz.math7`, `gz.math`, `ignition.math6`, … are this package.
 
-What enters and leaves: numbers, vectors, poses and masses with the names and tolerances of gz-math. Nothing here knows
-a simulation.
+The package has numbers, vectors, poses and masses with the names and tolerances of gz-math. It does not depend on a
+simulation.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ from simkit.plugins.gz_python.math.vectors import (
     Vector4i,
 )
 
-# the single-precision twins of what has no twin of its own
+# single-precision names of types that have double precision only
 Quaternionf, Pose3f, Matrix3f, Matrix4f = Quaterniond, Pose3d, Matrix3d, Matrix4d
 MassMatrix3f, Inertialf = MassMatrix3d, Inertiald
 

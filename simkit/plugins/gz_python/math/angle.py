@@ -9,7 +9,7 @@ from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE
 
 
 class Angle(Scalar):
-    """An angle; `==` and the order are those of gz-math: within 1e-3 is the same."""
+    """Angle; `==` and the order are those of gz-math: a difference up to 1e-3 counts as equal."""
 
     ZERO = ClassConstant(0.0)
     PI = ClassConstant(math.pi)
@@ -20,27 +20,27 @@ class Angle(Scalar):
         self._value = float(radian)
 
     def radian(self, *value: float) -> float:
-        """[rad]; with an argument, sets it."""
+        """Return the angle [rad]; with an argument, set it."""
         if not value:
             return self._value
         self._value = float(value[0])
-        return None  # type: ignore[return-value]  # who sets it takes nothing
+        return None  # type: ignore[return-value]  # a setter call has no result
 
     def set_radian(self, value: float) -> None:
         self._value = float(value)
 
     def degree(self, *value: float) -> float:
-        """[°]; with an argument, sets it."""
+        """Return the angle [°]; with an argument, set it."""
         if not value:
             return math.degrees(self._value)
         self._value = math.radians(value[0])
-        return None  # type: ignore[return-value]  # who sets it takes nothing
+        return None  # type: ignore[return-value]  # a setter call has no result
 
     def set_degree(self, value: float) -> None:
         self._value = math.radians(value)
 
     def normalize(self) -> None:
-        """Brings it between -π and π."""
+        """Wrap the angle to the range from -π to π."""
         self._value = math.atan2(math.sin(self._value), math.cos(self._value))
 
     def normalized(self) -> Angle:
@@ -50,7 +50,7 @@ class Angle(Scalar):
 
     def _number_of(self, other: Angle | float) -> float:
         if not isinstance(other, Angle):
-            raise TypeError(f"an angle is needed, got {other!r}")
+            raise TypeError(f"expected an Angle, got {other!r}")
         return other._value
 
     def __mul__(self, other: Angle) -> Angle:

@@ -1,4 +1,4 @@
-"""Boxes of gz-math whose sides lie along the axes."""
+"""Axis-aligned boxes of gz-math."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _LARGEST: Final = sys.float_info.max
 
 
 class AxisAlignedBox:
-    """A box along the axes: `()` is empty; two corners, or six numbers."""
+    """Axis-aligned box: `()` is empty; else two corners, or six numbers."""
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -63,15 +63,15 @@ class AxisAlignedBox:
         return all(a <= d and c <= b for a, b, c, d in zip(self._min, self._max, other._min, other._max, strict=True))
 
     def merge(self, other: AxisAlignedBox) -> None:
-        """Grows to hold the other box too."""
+        """Extend the box to contain another box."""
         self._min.min(other._min)
         self._max.max(other._max)
 
     def __add__(self, other: AxisAlignedBox) -> AxisAlignedBox:
-        both = AxisAlignedBox()
-        both.merge(self)
-        both.merge(other)
-        return both
+        merged = AxisAlignedBox()
+        merged.merge(self)
+        merged.merge(other)
+        return merged
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, AxisAlignedBox):

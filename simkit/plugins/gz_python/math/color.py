@@ -13,7 +13,7 @@ _KELVIN: Final = 273.15
 
 
 class Color(Components):
-    """Red, green, blue and alpha from 0 to 1; what is beyond is cut off. `c.r()` reads, `c.r(0.5)` sets."""
+    """Colour with red, green, blue and alpha, clamped to 0 to 1. `c.r()` reads, `c.r(0.5)` sets."""
 
     WHITE = ClassConstant(1, 1, 1)
     BLACK = ClassConstant(0, 0, 0)
@@ -37,23 +37,23 @@ class Color(Components):
     def reset(self) -> None:
         self._v = [0.0, 0.0, 0.0, 1.0]
 
-    def _one(self, index: int, value: tuple[float, ...]) -> float:
+    def _component(self, index: int, value: tuple[float, ...]) -> float:
         if not value:
             return self._v[index]
         self._v[index] = clamp(float(value[0]), 0.0, 1.0)
-        return None  # type: ignore[return-value]  # who sets a component takes nothing
+        return None  # type: ignore[return-value]  # a setter call has no result
 
     def r(self, *value: float) -> float:
-        return self._one(0, value)
+        return self._component(0, value)
 
     def g(self, *value: float) -> float:
-        return self._one(1, value)
+        return self._component(1, value)
 
     def b(self, *value: float) -> float:
-        return self._one(2, value)
+        return self._component(2, value)
 
     def a(self, *value: float) -> float:
-        return self._one(3, value)
+        return self._component(3, value)
 
     def __getitem__(self, index: int) -> float:
         return self._v[index]
@@ -69,7 +69,7 @@ class Color(Components):
 
 
 class Temperature(Scalar):
-    """A temperature; without an argument 0 K."""
+    """Temperature; 0 K without an argument."""
 
     def __init__(self, kelvin: Temperature | float = 0.0) -> None:
         self._value = float(kelvin)

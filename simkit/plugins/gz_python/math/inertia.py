@@ -16,7 +16,7 @@ from simkit.plugins.gz_python.math.value_base import CppArgument, Value, compone
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
 
 TOLERANCE: Final = 10.0
-"""In units of what rounding does, as gz-math's default."""
+"""Tolerance in multiples of the rounding error; gz-math's default."""
 
 
 def _moment_setter(attribute: str, index: int) -> Callable[[MassMatrix3d, float], bool]:
@@ -28,15 +28,15 @@ def _moment_setter(attribute: str, index: int) -> Callable[[MassMatrix3d, float]
 
 
 class MassMatrix3d(Value):
-    """A mass [kg] and the moments of inertia about its centre [kg·m²]: (mass, (ixx, iyy, izz), (ixy, ixz, iyz))."""
+    """Mass [kg] and moments of inertia about its centre [kg·m²]: (mass, (ixx, iyy, izz), (ixy, ixz, iyz))."""
 
     def __init__(self, *values: CppArgument) -> None:
-        self._mass, self._diagonal, self._rest = 0.0, Vector3d(), Vector3d()
+        self._mass, self._diagonal, self._off_diagonal = 0.0, Vector3d(), Vector3d()
         if len(values) == 1:
             values = (values[0].mass(), values[0].diagonal_moments(), values[0].off_diagonal_moments())
         if values:
             self._mass = float(values[0])
-            self._diagonal, self._rest = Vector3d(values[1]), Vector3d(values[2])
+            self._diagonal, self._off_diagonal = Vector3d(values[1]), Vector3d(values[2])
 
     def mass(self) -> float:
         return self._mass
@@ -53,41 +53,41 @@ class MassMatrix3d(Value):
         return self.is_valid()
 
     def off_diagonal_moments(self) -> Vector3d:
-        return Vector3d(self._rest)
+        return Vector3d(self._off_diagonal)
 
     def set_off_diagonal_moments(self, moments: VectorLike) -> bool:
-        self._rest = Vector3d(moments)
+        self._off_diagonal = Vector3d(moments)
         return self.is_valid()
 
     ixx, set_ixx = component_getter("_diagonal", 0), _moment_setter("_diagonal", 0)
     iyy, set_iyy = component_getter("_diagonal", 1), _moment_setter("_diagonal", 1)
     izz, set_izz = component_getter("_diagonal", 2), _moment_setter("_diagonal", 2)
-    ixy, set_ixy = component_getter("_rest", 0), _moment_setter("_rest", 0)
-    ixz, set_ixz = component_getter("_rest", 1), _moment_setter("_rest", 1)
-    iyz, set_iyz = component_getter("_rest", 2), _moment_setter("_rest", 2)
+    ixy, set_ixy = component_getter("_off_diagonal", 0), _moment_setter("_off_diagonal", 0)
+    ixz, set_ixz = component_getter("_off_diagonal", 1), _moment_setter("_off_diagonal", 1)
+    iyz, set_iyz = component_getter("_off_diagonal", 2), _moment_setter("_off_diagonal", 2)
 
     def moi(self) -> Matrix3d:
-        """The moments as a matrix."""
-        (xx, yy, zz), (xy, xz, yz) = self._diagonal, self._rest
+        """Return the moments as a matrix."""
+        (xx, yy, zz), (xy, xz, yz) = self._diagonal, self._off_diagonal
         return Matrix3d(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 
     def set_moi(self, moi: Matrix3d) -> bool:
-        """From a matrix; of what should be the same on both sides the mean."""
+        """Set the moments from a matrix; off-diagonal moments are the mean of both sides."""
         self._diagonal = Vector3d(moi(0, 0), moi(1, 1), moi(2, 2))
-        self._rest = Vector3d(*(0.5 * (moi(i, j) + moi(j, i)) for i, j in ((0, 1), (0, 2), (1, 2))))
+        self._off_diagonal = Vector3d(*(0.5 * (moi(i, j) + moi(j, i)) for i, j in ((0, 1), (0, 2), (1, 2))))
         return self.is_valid()
 
     def set_inertia_matrix(self, ixx: float, iyy: float, izz: float, ixy: float, ixz: float, iyz: float) -> bool:
-        self._diagonal, self._rest = Vector3d(ixx, iyy, izz), Vector3d(ixy, ixz, iyz)
+        self._diagonal, self._off_diagonal = Vector3d(ixx, iyy, izz), Vector3d(ixy, ixz, iyz)
         return self.is_valid()
 
-    # ------------------------------------------------------------------ of bodies
+    # ------------------------------------------------------------------ uniform shapes
 
     def set_from_box(self, *values: CppArgument) -> bool:
-        """Set the moments of a box: ([mass], size [m], [rotation]); without a mass the present one."""
+        """Set the moments of a box: ([mass], size [m], [rotation]); without a mass the current one."""
         mass, (size, *rest) = self._leading_mass(values)
         x, y, z = (v * v for v in components_of(size, 3))
-        return self._set_turned(mass, (mass / 12 * (y + z), mass / 12 * (z + x), mass / 12 * (x + y)), rest)
+        return self._set_rotated(mass, (mass / 12 * (y + z), mass / 12 * (z + x), mass / 12 * (x + y)), rest)
 
     def set_from_cylinder_z(self, *values: CppArgument) -> bool:
         """Set the moments of a cylinder along z: (mass, length [m], radius [m], [rotation]), or without the mass."""
@@ -97,20 +97,20 @@ class MassMatrix3d(Value):
         mass = float(numbers[0]) if len(numbers) == 3 else self._mass
         length, radius = numbers[-2:]
         across = mass / 12 * (3 * radius**2 + length**2)
-        return self._set_turned(mass, (across, across, mass / 2 * radius**2), rest)
+        return self._set_rotated(mass, (across, across, mass / 2 * radius**2), rest)
 
     def set_from_sphere(self, *values: float) -> bool:
         """Set the moments of a sphere: ([mass], radius [m])."""
         mass = float(values[0]) if len(values) == 2 else self._mass
         moment = 0.4 * mass * float(values[-1]) ** 2
-        return self._set_turned(mass, (moment, moment, moment), [])
+        return self._set_rotated(mass, (moment, moment, moment), [])
 
     def _leading_mass(self, values: tuple[CppArgument, ...]) -> tuple[float, tuple[CppArgument, ...]]:
         if isinstance(values[0], (int, float)):
             return float(values[0]), values[1:]
         return self._mass, values
 
-    def _set_turned(self, mass: float, moments: tuple[float, float, float], rotation: list[CppArgument]) -> bool:
+    def _set_rotated(self, mass: float, moments: tuple[float, float, float], rotation: list[CppArgument]) -> bool:
         self._mass = mass
         turn = Matrix3d(rotation[0]).array() if rotation else np.eye(3)
         return self.set_moi(Matrix3d.of(turn @ np.diag(moments) @ turn.T))
@@ -118,14 +118,14 @@ class MassMatrix3d(Value):
     # ------------------------------------------------------------------ principal axes
 
     def principal_moments(self, tolerance: float = DEFAULT_TOLERANCE) -> Vector3d:
-        """From the smallest to the largest; those of a diagonal matrix in its own order."""
-        if max(abs(v) for v in self._rest) <= abs(tolerance):
+        """Return the principal moments in increasing order; those of a diagonal matrix in its own order."""
+        if max(abs(v) for v in self._off_diagonal) <= abs(tolerance):
             return Vector3d(self._diagonal)
         return Vector3d(*np.linalg.eigvalsh(self.moi().array()).tolist())
 
     def principal_axes_offset(self, tolerance: float = DEFAULT_TOLERANCE) -> Quaterniond:
-        """Rotation R with R · diag(principal moments) · Rᵀ = moments."""
-        if max(abs(v) for v in self._rest) <= abs(tolerance):
+        """Return the rotation R with R · diag(principal moments) · Rᵀ = moments."""
+        if max(abs(v) for v in self._off_diagonal) <= abs(tolerance):
             return Quaterniond()
         _, axes = np.linalg.eigh(self.moi().array())
         if np.linalg.det(axes) < 0.0:
@@ -135,7 +135,7 @@ class MassMatrix3d(Value):
     def equivalent_box(
         self, size: Vector3d | None = None, rotation: Quaterniond | None = None, tolerance: float = DEFAULT_TOLERANCE
     ) -> bool:
-        """Size [m] and rotation of the uniform box with this mass and these moments, written into the arguments."""
+        """Compute size [m] and rotation of the uniform box with these moments, into the arguments."""
         if not self.is_positive(0):
             return False
         x, y, z = self.principal_moments(tolerance)
@@ -148,7 +148,7 @@ class MassMatrix3d(Value):
             rotation.set(*self.principal_axes_offset(tolerance)._v)
         return True
 
-    # ------------------------------------------------------------------ soundness
+    # ------------------------------------------------------------------ validity
 
     @staticmethod
     def epsilon(moments: VectorLike, tolerance: float = TOLERANCE) -> float:
@@ -166,13 +166,13 @@ class MassMatrix3d(Value):
 
     def _is_definite(self, tolerance: float, strict: bool) -> bool:
         slack = self.epsilon(self._diagonal, tolerance)
-        (xx, yy, _), (xy, _, _) = self._diagonal, self._rest
+        (xx, yy, _), (xy, _, _) = self._diagonal, self._off_diagonal
         minors = (self._mass, xx, xx * yy - xy * xy, self.moi().determinant())
         least = slack if strict else -slack
         return all(m > least if strict else m >= least for m in minors)
 
     def is_valid(self, tolerance: float = TOLERANCE) -> bool:
-        """Check whether a body can have it: semidefinite, no principal moment larger than the other two together."""
+        """Check whether a real body can have these moments: semidefinite, no principal moment above the others' sum."""
         return self.is_near_positive(tolerance) and self.valid_moments(self.principal_moments(), tolerance)
 
     @classmethod
@@ -185,11 +185,11 @@ class MassMatrix3d(Value):
         if not isinstance(other, MassMatrix3d):
             return NotImplemented
         is_same = abs(self._mass - other._mass) <= DEFAULT_TOLERANCE
-        return is_same and self._diagonal == other._diagonal and self._rest == other._rest
+        return is_same and self._diagonal == other._diagonal and self._off_diagonal == other._off_diagonal
 
 
 class Inertiald(Value):
-    """A mass matrix at a pose: of the centre of mass, with the moments in that pose's axes."""
+    """Mass matrix at a pose: the pose of the centre of mass, with the moments in the axes of that pose."""
 
     def __init__(self, *values: CppArgument) -> None:
         self._matrix, self._pose = MassMatrix3d(), Pose3d()
@@ -213,36 +213,36 @@ class Inertiald(Value):
         return self._matrix.is_valid()
 
     def moi(self) -> Matrix3d:
-        """About the centre of mass, in the axes that the pose is given in."""
+        """Return the moments about the centre of mass, in the axes in which the pose is given."""
         turn = Matrix3d(self._pose.rot()).array()
         return Matrix3d.of(turn @ self._matrix.moi().array() @ turn.T)
 
     def set_inertial_rotation(self, rotation: Quaterniond) -> bool:
-        """Turns the pose's axes; what `moi` gives stays."""
+        """Rotate the axes of the pose, without a change of `moi`."""
         moi = self.moi().array()
         self._pose = Pose3d(self._pose.pos(), rotation)
         turn = Matrix3d(rotation).array()
         return self._matrix.set_moi(Matrix3d.of(turn.T @ moi @ turn))
 
     def set_mass_matrix_rotation(self, rotation: Quaterniond, tolerance: float = DEFAULT_TOLERANCE) -> bool:
-        """Turns the principal axes within the pose's; what `moi` gives stays."""
+        """Rotate the principal axes within the axes of the pose, without a change of `moi`."""
         moments, offset = self._matrix.principal_moments(tolerance), self._matrix.principal_axes_offset(tolerance)
         self._pose = Pose3d(self._pose.pos(), self._pose.rot() * offset * rotation.inverse())
         turn = Matrix3d(rotation).array()
         return self._matrix.set_moi(Matrix3d.of(turn @ np.diag(list(moments)) @ turn.T))
 
     def __add__(self, other: Inertiald) -> Inertiald:
-        """Both bodies as one; the pose has the axes that both are given in."""
+        """Return both bodies as one; the pose has the axes in which both poses are given."""
         mass = self._matrix.mass() + other._matrix.mass()
         if not mass > 0.0:
             return Inertiald(self)
-        centres = [np.array(list(one._pose.pos())) for one in (self, other)]
-        masses = [one._matrix.mass() for one in (self, other)]
+        centres = [np.array(list(body._pose.pos())) for body in (self, other)]
+        masses = [body._matrix.mass() for body in (self, other)]
         centre = (masses[0] * centres[0] + masses[1] * centres[1]) / mass
         moi = np.zeros((3, 3))
-        for one, own, at in zip((self, other), masses, centres, strict=True):
-            arm = at - centre
-            moi += one.moi().array() + own * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        for body, body_mass, position in zip((self, other), masses, centres, strict=True):
+            arm = position - centre
+            moi += body.moi().array() + body_mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
         matrix = MassMatrix3d(mass, Vector3d(), Vector3d())
         matrix.set_moi(Matrix3d.of(moi))
         return Inertiald(matrix, Pose3d(Vector3d(*centre.tolist()), Quaterniond()))

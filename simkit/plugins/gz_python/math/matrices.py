@@ -1,4 +1,4 @@
-"""Matrices of gz-math; `==` means within 1e-6 for each element."""
+"""Matrices of gz-math; `==` allows a difference of 1e-6 for each element."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ M = TypeVar("M", bound="_SquareMatrix")
 
 
 class _SquareMatrix(Value):
-    """Base of matrices; `m(row, column)` reads a number.
+    """Base of matrices; `m(row, column)` reads an element.
 
     Attributes:
-        SIZE: how many rows and columns.
+        SIZE: number of rows and columns.
     """
 
     SIZE: ClassVar[int]
@@ -29,7 +29,7 @@ class _SquareMatrix(Value):
 
     @classmethod
     def of(cls: type[M], rows: npt.ArrayLike) -> M:
-        """From an array of rows."""
+        """Create a matrix from an array of rows."""
         return cls(*np.asarray(rows, dtype=float).reshape(-1).tolist())
 
     def _index(self, row: int, column: int) -> tuple[int, int]:
@@ -60,7 +60,7 @@ class _SquareMatrix(Value):
 
 
 class Matrix3d(_SquareMatrix):
-    """Three by three numbers: `Matrix3d()`, nine numbers row by row, or of a rotation; `m(row, column)` reads one."""
+    """3 × 3 matrix: `Matrix3d()`, nine numbers row by row, or a rotation; `m(row, column)` reads an element."""
 
     SIZE = 3
     IDENTITY = ClassConstant(1, 0, 0, 0, 1, 0, 0, 0, 1)
@@ -75,24 +75,26 @@ class Matrix3d(_SquareMatrix):
         elif len(values) == 1 and callable(values[0]):
             self._m[:] = [[values[0](i, j) for j in range(3)] for i in range(3)]
         elif values:
-            raise TypeError(f"a 3 x 3 matrix takes nothing, nine numbers, a rotation or a matrix, got {values!r}")
+            raise TypeError(
+                f"expected no value, nine numbers, a rotation or a matrix for a 3 x 3 matrix, got {values!r}"
+            )
 
     def array(self) -> Rows:
-        """A copy as NumPy's array, shape (3, 3)."""
+        """Return a copy as a NumPy array, shape (3, 3)."""
         return self._m.copy()
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> Rows:
         return np.array(self._m, dtype=dtype)
 
     def set(self, *values: float) -> None:
-        """Nine numbers row by row, or (row, column, number)."""
+        """Set nine numbers row by row, or (row, column, number)."""
         if len(values) == 9:
             self._m[:] = np.reshape([float(v) for v in values], (3, 3))
         else:
             self._m[self._index(int(values[0]), int(values[1]))] = values[2]
 
     def set_axes(self, x: VectorLike, y: VectorLike, z: VectorLike) -> None:
-        """One axis for each column."""
+        """Set one axis for each column."""
         for column, axis in enumerate((x, y, z)):
             self.set_col(column, axis)
 
@@ -131,7 +133,7 @@ class Matrix3d(_SquareMatrix):
 
 
 class Matrix4d(_SquareMatrix):
-    """Four by four numbers, mostly a homogeneous transform: nothing, 16 numbers, a rotation or a pose."""
+    """4 × 4 matrix, usually a homogeneous transform: no value, 16 numbers, a rotation or a pose."""
 
     SIZE = 4
     IDENTITY = ClassConstant(*np.eye(4).reshape(16).tolist())
@@ -160,7 +162,7 @@ class Matrix4d(_SquareMatrix):
         return Quaterniond(Matrix3d.of(self._m[:3, :3]))
 
     def pose(self) -> Pose3d:
-        """The transform as a pose."""
+        """Return the transform as a pose."""
         return Pose3d(self.translation(), self.rotation())
 
     def __mul__(self, other: CppArgument) -> Any:

@@ -1,4 +1,4 @@
-"""Errors for names of Gazebo's Python that simkit does not have, with what to use instead."""
+"""Errors for names of Gazebo's Python that simkit does not have, with a replacement."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from typing import Final
 
 from simkit.diagnostics import did_you_mean
 
-PAGE: Final = "docs/gazebo_python.md lists what there is"
+PAGE: Final = "docs/gazebo_python.md lists the supported names"
 
 
 def missing_name_error(owner: str, name: str, offered: Iterable[str]) -> AttributeError:
-    """The error for a name that an owner (`gz.sim`, `Link`, …) lacks.
+    """Make the error for a name that an owner (`gz.sim`, `Link`, …) does not have.
 
     Args:
-        owner: the module or class, as Gazebo calls it.
-        name: what was asked for.
-        offered: the public names it has, to find a near one.
+        owner: module or class, by Gazebo's name.
+        name: missing name.
+        offered: public names of the owner, for a suggestion.
     """
     if name.startswith("__"):
         return AttributeError(f"{owner!r} has no attribute {name!r}", name=name)
-    instead = _advice().get(owner, {})
+    replacements = _replacements().get(owner, {})
     near = did_you_mean(name, [n for n in offered if not n.startswith("_")])
-    advice = instead.get(name) or near or instead.get("*", PAGE)
+    advice = replacements.get(name) or near or replacements.get("*", PAGE)
     return AttributeError(f"simkit's {owner} has no {name}; {advice}", name=name)
 
 
 @cache
-def _advice() -> Mapping[str, Mapping[str, str]]:
-    """What to use instead of a name, by owner."""
+def _replacements() -> Mapping[str, Mapping[str, str]]:
+    """Read the replacement of each missing name, by owner."""
     return tomllib.loads(Path(__file__).with_name("missing_names.toml").read_text(encoding="utf-8"))

@@ -25,9 +25,9 @@ def _setter(attribute: str) -> Callable[[PID, float], None]:
 
 
 class PID:
-    """gz-math's controller of an error measured − wanted: `cmd = offset − p·e − ∫i·e − d·e'`.
+    """gz-math's controller of an error measured − desired: `cmd = offset − p·e − ∫i·e − d·e'`.
 
-    The integral's part and the output are bounded where the upper bound is not below the lower one.
+    The integral part and the output are clamped if the upper bound is not below the lower one.
     """
 
     def __init__(
@@ -57,22 +57,22 @@ class PID:
         _cmdMin: float = 0.0,  # noqa: N803
         _cmdOffset: float = 0.0,  # noqa: N803
     ) -> None:
-        """Sets gains and bounds, and forgets what was."""
+        """Set gains and bounds, and reset the controller."""
         self._p, self._i, self._d = float(_p), float(_i), float(_d)
         self._i_max, self._i_min = float(_imax), float(_imin)
         self._cmd_max, self._cmd_min, self._offset = float(_cmdMax), float(_cmdMin), float(_cmdOffset)
         self.reset()
 
     def reset(self) -> None:
-        """Forgets errors and command."""
+        """Reset errors and command to 0."""
         self._last = self._error = self._integral = self._rate = self._cmd = 0.0
 
     def update(self, error: float, *rate_and_time: CppArgument) -> float:
-        """The command for an error now: `update(error, dt)` or `update(error, rate, dt)`.
+        """Return the command for an error: `update(error, dt)` or `update(error, rate, dt)`.
 
         Args:
-            error: measured − wanted.
-            rate_and_time: where known the error's rate [1/s], then the time since the last call, a `timedelta` or [s].
+            error: measured − desired.
+            rate_and_time: optional rate of the error [1/s], then the time since the last call, a `timedelta` or [s].
         """
         *rates, elapsed = rate_and_time
         dt = elapsed.total_seconds() if isinstance(elapsed, timedelta) else float(elapsed)
@@ -84,8 +84,8 @@ class PID:
             self._rate, self._last = (error - self._last) / dt, float(error)
         self._error = float(error)
         self._integral = _clamp_if_ordered(self._integral + self._i * dt * error, self._i_min, self._i_max)
-        wanted = self._offset - self._p * error - self._integral - self._d * self._rate
-        self._cmd = _clamp_if_ordered(wanted, self._cmd_min, self._cmd_max)
+        command = self._offset - self._p * error - self._integral - self._d * self._rate
+        self._cmd = _clamp_if_ordered(command, self._cmd_min, self._cmd_max)
         return self._cmd
 
     p_gain, set_p_gain = _getter("_p"), _setter("_p")
@@ -98,19 +98,19 @@ class PID:
     cmd_offset, set_cmd_offset = _getter("_offset"), _setter("_offset")
 
     def cmd(self) -> float:
-        """The last command."""
+        """Return the last command."""
         return self._cmd
 
     def set_cmd(self, value: float) -> None:
         self._cmd = float(value)
 
     def errors(self) -> tuple[float, float, float]:
-        """Error, integral's part and rate of the error."""
+        """Return the error, its integral part and its rate."""
         return self._error, self._integral, self._rate
 
 
 class RollingMean:
-    """The mean of the last values."""
+    """Mean of the last values."""
 
     def __init__(self, window_size: int = 10) -> None:
         self._values: deque[float] = deque(maxlen=max(1, int(window_size)))
@@ -119,7 +119,7 @@ class RollingMean:
         self._values.append(float(value))
 
     def mean(self) -> float:
-        """NaN while there is no value."""
+        """Return the mean; NaN without a value."""
         return math.fsum(self._values) / len(self._values) if self._values else math.nan
 
     def count(self) -> int:
@@ -129,7 +129,7 @@ class RollingMean:
         self._values.clear()
 
     def set_window_size(self, size: int) -> None:
-        """Forgets the values, as gz-math does."""
+        """Set the size and clear the values, as gz-math does."""
         if size > 0:
             self._values = deque(maxlen=int(size))
 

@@ -1,4 +1,4 @@
-"""Poses of gz-math: `a * b` is b's frame seen through a's, as `a @ b` of simkit's own poses."""
+"""Poses of gz-math: `a * b` composes the poses, like `a @ b` of simkit's own poses."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from simkit.plugins.gz_python.math.vectors import Vector3d
 
 
 class Pose3d(Value):
-    """A position [m] and a rotation.
+    """Position [m] and rotation.
 
-    `Pose3d()`, `(x, y, z, roll, pitch, yaw)`, `(x, y, z, qw, qx, qy, qz)`, `(position, rotation)` or `(pose)`.
-    `pos()` and `rot()` give the very objects, so changing them changes the pose.
+    `Pose3d()`, `(x, y, z, roll, pitch, yaw)`, `(x, y, z, qw, qx, qy, qz)`, `(position, rotation)` or `(pose)`. `pos()`
+    and `rot()` return the pose's own objects, so a change of them changes the pose.
     """
 
     ZERO = ClassConstant()
@@ -33,7 +33,7 @@ class Pose3d(Value):
             self.set(*values)
 
     def set(self, *values: CppArgument) -> None:
-        """From six numbers, or a position and either a rotation or roll, pitch, yaw."""
+        """Set six numbers, or a position and either a rotation or roll, pitch, yaw."""
         if len(values) == 6:
             self._p.set(*values[:3])
             self._q.set_from_euler(*values[3:])
@@ -41,9 +41,9 @@ class Pose3d(Value):
             self._p = Vector3d(values[0])
             self._q = Quaterniond(values[1])
         else:
-            raise TypeError(f"a pose takes 0, 1, 2, 6 or 7 values, got {len(values)}")
+            raise TypeError(f"expected 0, 1, 2, 6 or 7 values for a pose, got {len(values)}")
 
-    # ------------------------------------------------------------------ parts
+    # ------------------------------------------------------------------ components
 
     def pos(self) -> Vector3d:
         return self._p
@@ -67,38 +67,38 @@ class Pose3d(Value):
     # ------------------------------------------------------------------ algebra
 
     def inverse(self) -> Pose3d:
-        back = self._q.inverse()
-        return Pose3d(back.rotate_vector(-self._p), back)
+        inverse = self._q.inverse()
+        return Pose3d(inverse.rotate_vector(-self._p), inverse)
 
     def __mul__(self, other: Pose3d) -> Pose3d:
         return Pose3d(self._p + self._q.rotate_vector(other.pos()), self._q * other.rot())
 
     def __imul__(self, other: Pose3d) -> Pose3d:
-        return self._take(self * other)
+        return self._assign(self * other)
 
     def __add__(self, other: Pose3d) -> Pose3d:
-        """`b * a`: gz-math's older way of composing; it is gone from gz-math 8."""
+        """Return `b * a`, gz-math's older composition, which gz-math 8 has removed."""
         return Pose3d(self.coord_position_add(other), self.coord_rotation_add(other.rot()))
 
     def __iadd__(self, other: Pose3d) -> Pose3d:
-        return self._take(self + other)
+        return self._assign(self + other)
 
     def __sub__(self, other: Pose3d) -> Pose3d:
-        """`b⁻¹ * a`: this pose seen from the other."""
+        """Return `b⁻¹ * a`: this pose relative to the other pose."""
         return Pose3d(self.coord_position_sub(other), self.coord_rotation_sub(other.rot()))
 
     def __isub__(self, other: Pose3d) -> Pose3d:
-        return self._take(self - other)
+        return self._assign(self - other)
 
     def __neg__(self) -> Pose3d:
         return self.inverse()
 
-    def _take(self, other: Pose3d) -> Pose3d:
+    def _assign(self, other: Pose3d) -> Pose3d:
         self._p, self._q = other._p, other._q
         return self
 
     def coord_position_add(self, other: CppArgument) -> Vector3d:
-        """Return a point in the frame that this pose is given in; of a pose, the position of `other * self`."""
+        """Transform a point to the parent frame of this pose; for a pose, return the position of `other * self`."""
         if callable(getattr(other, "pos", None)):
             moved: Vector3d = other.rot().rotate_vector(self._p) + other.pos()
             return moved
@@ -116,14 +116,14 @@ class Pose3d(Value):
         return found.normalized()
 
     def coord_pose_solve(self, other: Pose3d) -> Pose3d:
-        """gz-math's formula for the a of `other = self + a`; it is exact where the two rotations share an axis."""
+        """Return gz-math's solution a of `other = self + a`; exact if both rotations have the same axis."""
         rotation: Quaterniond = self._q.inverse() * other.rot()
         return Pose3d(other.pos() - rotation.rotate_vector(self._p), rotation)
 
     def rotate_position_about_origin(self, rotation: Quaterniond) -> Pose3d:
         return Pose3d(rotation.rotate_vector(self._p), self._q)
 
-    # ------------------------------------------------------------------ the rest
+    # ------------------------------------------------------------------ checks and rounding
 
     def reset(self) -> None:
         self._p, self._q = Vector3d(), Quaterniond()

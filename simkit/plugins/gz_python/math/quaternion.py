@@ -21,13 +21,13 @@ _NEARLY_ONE_AXIS: Final = 1e-3
 
 
 class RotationMatrix(Protocol):
-    """A rotation matrix that gives its elements: `Matrix3d`, or another library's of the same kind."""
+    """Rotation matrix with callable element access: `Matrix3d`, or a similar type of another library."""
 
     def __call__(self, row: int, column: int) -> float: ...
 
 
 class Quaterniond(Components):
-    """A rotation.
+    """Rotation as a quaternion.
 
     `Quaterniond()`, `(w, x, y, z)`, `(roll, pitch, yaw)`, `(axis, angle)`, `(rpy vector)`, `(rotation matrix)` or
     `(quaternion)`.
@@ -45,11 +45,11 @@ class Quaterniond(Components):
         elif len(values) == 2:
             self.set_from_axis_angle(*values)
         elif len(values) == 1:
-            self._take(values[0])
+            self._assign(values[0])
         elif values:
-            raise TypeError(f"a quaternion takes 0 to 4 values, got {len(values)}")
+            raise TypeError(f"expected 0 to 4 values for a quaternion, got {len(values)}")
 
-    def _take(self, value: CppArgument) -> None:
+    def _assign(self, value: CppArgument) -> None:
         if callable(getattr(value, "w", None)):
             self.set(value.w(), value.x(), value.y(), value.z())
         elif callable(getattr(value, "determinant", None)):
@@ -70,7 +70,7 @@ class Quaterniond(Components):
     # ------------------------------------------------------------------ from and to other forms
 
     def set_from_axis_angle(self, *values: CppArgument) -> None:
-        """From (axis, angle) or (x, y, z, angle) [rad]; an axis of no length is no rotation."""
+        """Set the rotation from (axis, angle) or (x, y, z, angle) [rad]; a zero axis gives the identity."""
         x, y, z = components_of(values[0], 3) if len(values) == 2 else values[:3]
         square = x * x + y * y + z * z
         if square <= DEFAULT_TOLERANCE:
@@ -82,7 +82,7 @@ class Quaterniond(Components):
         self.normalize()
 
     def set_from_euler(self, *values: CppArgument) -> None:
-        """From roll, pitch, yaw [rad]: Rz(yaw)·Ry(pitch)·Rx(roll)."""
+        """Set the rotation from roll, pitch, yaw [rad]: Rz(yaw)·Ry(pitch)·Rx(roll)."""
         roll, pitch, yaw = components_of(values[0], 3) if len(values) == 1 else values
         cr, sr = math.cos(roll / 2), math.sin(roll / 2)
         cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
@@ -97,20 +97,20 @@ class Quaterniond(Components):
 
     @staticmethod
     def euler_to_quaternion(*values: CppArgument) -> Quaterniond:
-        """Make a rotation of roll, pitch, yaw [rad]."""
+        """Create a rotation from roll, pitch, yaw [rad]."""
         found = Quaterniond()
         found.set_from_euler(*values)
         return found
 
     def euler(self) -> Vector3d:
-        """Roll, pitch, yaw [rad]; at a pitch of ±π/2, where only their sum is known, the yaw is 0."""
+        """Return roll, pitch, yaw [rad]; yaw is 0 at a pitch of ±π/2, where only the sum of roll and yaw is defined."""
         w, x, y, z = self.normalized()._v
         ww, xx, yy, zz = w * w, x * x, y * y, z * z
         sine = -2.0 * (x * z - w * y) / (ww + xx + yy + zz)
         pitch = math.asin(max(-1.0, min(1.0, sine)))
         if abs(abs(sine) - 1.0) < _POLE:
-            both = math.copysign(2.0, sine) * (x * y - z * w)
-            return Vector3d(math.atan2(both, ww - xx + yy - zz), pitch, 0.0)
+            sum_sine = math.copysign(2.0, sine) * (x * y - z * w)
+            return Vector3d(math.atan2(sum_sine, ww - xx + yy - zz), pitch, 0.0)
         roll = math.atan2(2.0 * (y * z + w * x), ww - xx - yy + zz)
         return Vector3d(roll, pitch, math.atan2(2.0 * (x * y + w * z), ww + xx - yy - zz))
 
@@ -124,7 +124,7 @@ class Quaterniond(Components):
         return float(self.euler().z())
 
     def axis_angle(self) -> tuple[Vector3d, float]:
-        """Unit axis and angle [rad]; of no rotation, x and 0."""
+        """Return the unit axis and the angle [rad]; x and 0 for the identity."""
         w, x, y, z = self._v
         square = x * x + y * y + z * z
         if square <= DEFAULT_TOLERANCE**2:
@@ -132,7 +132,7 @@ class Quaterniond(Components):
         return Vector3d(x, y, z) / math.sqrt(square), 2.0 * math.acos(max(-1.0, min(1.0, w)))
 
     def set_from_matrix(self, matrix: RotationMatrix) -> None:
-        """From a rotation matrix."""
+        """Set the rotation from a rotation matrix."""
         m = [[float(matrix(i, j)) for j in range(3)] for i in range(3)]
         trace = m[0][0] + m[1][1] + m[2][2]
         if trace > 0.0:
@@ -149,7 +149,7 @@ class Quaterniond(Components):
         self._v = [(m[k][j] - m[j][k]) * s, *vector]
 
     def set_from_2_axes(self, first: VectorLike, second: VectorLike) -> None:
-        """The shortest rotation that turns the first vector's direction into the second's."""
+        """Set the shortest rotation from the direction of the first vector to that of the second."""
         a, b = Vector3d(first).normalized(), Vector3d(second).normalized()
         cosine = a.dot(b)
         if cosine < -1.0 + DEFAULT_TOLERANCE:
@@ -161,7 +161,7 @@ class Quaterniond(Components):
     # ------------------------------------------------------------------ algebra
 
     def inverse(self) -> Quaterniond:
-        """The opposite rotation; of a quaternion without length, none."""
+        """Return the inverse rotation; the identity for a zero quaternion."""
         w, x, y, z = self._v
         square = w * w + x * x + y * y + z * z
         if square <= DEFAULT_TOLERANCE**2:
@@ -172,7 +172,7 @@ class Quaterniond(Components):
         self._v = self.normalized().inverse()._v
 
     def normalize(self) -> None:
-        """Makes its length 1; without a length it becomes no rotation."""
+        """Scale to length 1; a zero quaternion becomes the identity."""
         length = math.sqrt(sum(v * v for v in self._v))
         if length <= DEFAULT_TOLERANCE:
             self._v = [1.0, 0.0, 0.0, 0.0]
@@ -196,7 +196,7 @@ class Quaterniond(Components):
         return Quaterniond(0.0, x * scale, y * scale, z * scale)
 
     def exp(self) -> Quaterniond:
-        """The inverse of `log`."""
+        """Return the inverse of `log`."""
         _, x, y, z = self._v
         angle = math.sqrt(x * x + y * y + z * z)
         sine = math.sin(angle)
@@ -204,7 +204,7 @@ class Quaterniond(Components):
         return Quaterniond(math.cos(angle), x * scale, y * scale, z * scale)
 
     def scale(self, factor: float) -> None:
-        """Turns `factor` times as far about the same axis."""
+        """Multiply the angle by a factor, about the same axis."""
         axis, angle = self.axis_angle()
         self.set_from_axis_angle(axis, angle * factor)
 
@@ -212,13 +212,13 @@ class Quaterniond(Components):
         return sum(a * b for a, b in zip(self._v, other._v, strict=True))
 
     def rotate_vector(self, vector: VectorLike) -> Vector3d:
-        """The vector turned by this rotation."""
+        """Rotate a vector."""
         x, y, z = components_of(vector, 3)
         product = self * Quaterniond(0.0, x, y, z) * self.inverse()
         return Vector3d(*product._v[1:])
 
     def rotate_vector_reverse(self, vector: VectorLike) -> Vector3d:
-        """The vector turned by the opposite rotation."""
+        """Rotate a vector by the inverse rotation."""
         return self.inverse().rotate_vector(vector)
 
     def x_axis(self) -> Vector3d:
@@ -231,7 +231,7 @@ class Quaterniond(Components):
         return self.rotate_vector((0.0, 0.0, 1.0))
 
     def integrate(self, angular_velocity: VectorLike, dt: float) -> Quaterniond:
-        """After turning at a constant angular velocity [rad/s], in fixed axes, for `dt` [s]."""
+        """Return the rotation after a constant angular velocity [rad/s], in fixed axes, for `dt` [s]."""
         half = Vector3d(angular_velocity) * (dt * 0.5)
         angle = half.length()
         sinc = math.sin(angle) / angle if angle > 1e-8 else 1.0 - angle * angle / 6.0
@@ -240,7 +240,7 @@ class Quaterniond(Components):
 
     @staticmethod
     def slerp(t: float, first: Quaterniond, second: Quaterniond, shortest_path: bool = False) -> Quaterniond:
-        """Interpolate between two rotations at an even pace, `t` from 0 to 1."""
+        """Interpolate between two rotations at constant speed, with `t` from 0 to 1."""
         cosine, target = first.dot(second), second
         if cosine < 0.0 and shortest_path:
             cosine, target = -cosine, -second
@@ -257,9 +257,9 @@ class Quaterniond(Components):
     def squad(
         t: float, first: Quaterniond, a: Quaterniond, b: Quaterniond, second: Quaterniond, shortest_path: bool = False
     ) -> Quaterniond:
-        """Along a spline through the two rotations with the control rotations a and b."""
-        ends = Quaterniond.slerp(t, first, second, shortest_path)
-        return Quaterniond.slerp(2.0 * t * (1.0 - t), ends, Quaterniond.slerp(t, a, b))
+        """Interpolate along a spline through the two rotations with the control rotations a and b."""
+        outer = Quaterniond.slerp(t, first, second, shortest_path)
+        return Quaterniond.slerp(2.0 * t * (1.0 - t), outer, Quaterniond.slerp(t, a, b))
 
     # ------------------------------------------------------------------ operators
 
@@ -297,7 +297,7 @@ class Quaterniond(Components):
         return all(map(math.isfinite, self._v))
 
     def correct(self) -> None:
-        """Makes it no rotation where a component is not finite."""
+        """Replace a rotation with a NaN or infinite component by the identity."""
         if not self.is_finite():
             self._v = [1.0, 0.0, 0.0, 0.0]
 

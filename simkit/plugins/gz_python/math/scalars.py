@@ -7,33 +7,36 @@ from collections.abc import Sequence
 from typing import Final
 
 DEFAULT_TOLERANCE: Final = 1e-6
-"""How far two numbers may be apart that gz-math calls equal."""
+"""Largest difference of two numbers that gz-math calls equal."""
 
 
 def clamp(value: float, minimum: float, maximum: float) -> float:
-    """The value within its limits."""
+    """Clamp a value to its limits."""
     return max(min(value, maximum), minimum)
 
 
 def isnan(value: float) -> bool:
+    """Check whether a number is NaN."""
     return math.isnan(value)
 
 
 def fixnan(value: float) -> float:
-    """The value, or 0 where it is not finite."""
+    """Return the value, or 0 if it is NaN or infinite."""
     return value if math.isfinite(value) else 0.0
 
 
 def is_even(value: int) -> bool:
+    """Check whether an integer is even."""
     return value % 2 == 0
 
 
 def is_odd(value: int) -> bool:
+    """Check whether an integer is odd."""
     return value % 2 != 0
 
 
 def sgn(value: float) -> int:
-    """-1, 0 or 1."""
+    """Return the sign: -1, 0 or 1."""
     return (value > 0) - (value < 0)
 
 
@@ -41,11 +44,12 @@ signum = sgn
 
 
 def mean(values: Sequence[float]) -> float:
+    """Return the mean of the values."""
     return math.fsum(values) / len(values)
 
 
 def variance(values: Sequence[float]) -> float:
-    """The mean square of what the values differ from their mean."""
+    """Return the mean squared difference of the values from their mean."""
     middle = mean(values)
     return math.fsum((v - middle) ** 2 for v in values) / len(values)
 
@@ -56,15 +60,17 @@ def equal(a: float, b: float, epsilon: float = DEFAULT_TOLERANCE) -> bool:
 
 
 def less_or_near_equal(a: float, b: float, epsilon: float = DEFAULT_TOLERANCE) -> bool:
+    """Check whether a is less than b + `epsilon`."""
     return a < b + epsilon
 
 
 def greater_or_near_equal(a: float, b: float, epsilon: float = DEFAULT_TOLERANCE) -> bool:
+    """Check whether a is greater than b - `epsilon`."""
     return a > b - epsilon
 
 
 def precision(value: float, digits: int) -> float:
-    """The value rounded to that many decimal places."""
+    """Round a value to a number of decimal places."""
     if not math.isfinite(value):
         return value
     power = 10.0**digits
@@ -72,35 +78,38 @@ def precision(value: float, digits: int) -> float:
 
 
 def round_half_away(value: float) -> float:
-    """To the nearest whole number, halves away from zero, as C++ rounds."""
+    """Round to the nearest integer, with halves away from zero, as C++ does."""
     return math.copysign(math.floor(abs(value) + 0.5), value) if math.isfinite(value) else value
 
 
 def sort2(a: float, b: float) -> tuple[float, float]:
+    """Return two numbers in increasing order."""
     return (a, b) if a <= b else (b, a)
 
 
 def sort3(a: float, b: float, c: float) -> tuple[float, float, float]:
+    """Return three numbers in increasing order."""
     first, second, third = sorted((a, b, c))
     return first, second, third
 
 
 def is_power_of_two(value: int) -> bool:
+    """Check whether an integer is a power of two."""
     return value != 0 and value & (value - 1) == 0
 
 
 def round_up_power_of_two(value: int) -> int:
-    """The smallest power of two that is not smaller."""
+    """Return the smallest power of two that is not smaller than the value."""
     return 1 if value <= 1 else 1 << (value - 1).bit_length()
 
 
 def round_up_multiple(value: int, multiple: int) -> int:
-    """The nearest multiple that is not smaller; of a negative one the one nearer to zero."""
+    """Round up to a multiple; a negative value is rounded towards zero."""
     return value if multiple == 0 else -(-value // multiple) * multiple
 
 
 def parse_int(text: str) -> int:
-    """The whole number that a text starts with; gz-math's mark for none is 0."""
+    """Parse an integer; 0 for an invalid text, as in gz-math."""
     try:
         return int(text)
     except ValueError:
@@ -108,7 +117,7 @@ def parse_int(text: str) -> int:
 
 
 def parse_float(text: str) -> float:
-    """The number a text holds; NaN where it holds none."""
+    """Parse a number; NaN for an invalid text."""
     try:
         return float(text)
     except ValueError:
@@ -116,5 +125,5 @@ def parse_float(text: str) -> float:
 
 
 def format_number(value: float) -> str:
-    """A number as C++ streams print it: six digits, and no sign on zero."""
+    """Format a number as a C++ stream does: six digits, and zero without a sign."""
     return f"{value:.6g}" if value else "0"

@@ -11,7 +11,7 @@ from simkit.pose import Pose, Vector
 
 
 class QuaternionLike(Protocol):
-    """A quaternion of gz-math's kind."""
+    """Quaternion with the methods of gz-math's quaternions."""
 
     def w(self) -> float: ...
 
@@ -23,7 +23,7 @@ class QuaternionLike(Protocol):
 
 
 class PoseLike(Protocol):
-    """A pose of gz-math's kind, of simkit's or of another library."""
+    """Pose with the methods of gz-math's poses, of simkit or of another library."""
 
     def pos(self) -> VectorLike: ...
 
@@ -31,27 +31,29 @@ class PoseLike(Protocol):
 
 
 def simkit_pose(value: PoseLike) -> Pose:
-    """simkit's pose of one of gz-math's kind."""
+    """Convert a pose with gz-math's methods to simkit's pose."""
     rotation = value.rot()
     return Pose(three_numbers(value.pos()), (rotation.w(), rotation.x(), rotation.y(), rotation.z()))
 
 
 def gz_pose(pose: Pose) -> Pose3d:
+    """Convert simkit's pose to gz-math's pose."""
     return Pose3d(*pose.position.tolist(), *pose.quaternion.tolist())
 
 
 def three_numbers(value: VectorLike) -> tuple[float, float, float]:
-    """Three numbers of a vector of gz-math's kind or a sequence."""
+    """Return the three components of a vector with gz-math's methods, or of a sequence."""
     x, y, z = components_of(value, 3)
     return x, y, z
 
 
 def gz_vector(values: Sequence[float] | Vector) -> Vector3d:
+    """Convert three numbers to gz-math's vector."""
     return Vector3d(*(float(v) for v in values))
 
 
 def cross_product(a: Sequence[float], b: Sequence[float]) -> tuple[float, float, float]:
-    """The vector product, in plain numbers: several times faster than NumPy's for one pair."""
+    """Return the cross product in plain numbers, several times faster than NumPy for a single pair."""
     ax, ay, az = a
     bx, by, bz = b
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx

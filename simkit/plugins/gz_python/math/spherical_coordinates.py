@@ -1,4 +1,4 @@
-"""Location of a world on a planet, as gz-math has it."""
+"""Location of a world on a planet, with the interface of gz-math."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, componen
 from simkit.scene import SphericalCoordinates as Place
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 
-MEAN_EARTH_RADIUS: Final = 6371000.0  # [m], of distances between points
+MEAN_EARTH_RADIUS: Final = 6371000.0  # [m], for distances between points
 
 
 class Surface(enum.IntEnum):
@@ -42,10 +42,10 @@ _RADIUS: Final = {Surface.EARTH_WGS84: MEAN_EARTH_RADIUS, Surface.MOON_SCS: 1737
 
 
 class SphericalCoordinates(Value):
-    """The world's origin on a planet; its x axis is turned from east by the heading, counter-clockwise.
+    """Location of the world's origin on a planet; the heading is the counter-clockwise angle from east to the x axis.
 
-    `()`, `(coordinates)`, `(surface)`, `(surface, equatorial, polar)` [m] or
-    `(surface, latitude, longitude, elevation, heading)` with `Angle`s.
+    `()`, `(coordinates)`, `(surface)`, `(surface, equatorial, polar)` [m] or `(surface, latitude, longitude, elevation,
+    heading)` with `Angle`s.
     """
 
     SurfaceType: ClassVar = Surface
@@ -67,11 +67,11 @@ class SphericalCoordinates(Value):
             self._latitude, self._longitude, self._heading = Angle(values[1]), Angle(values[2]), Angle(values[4])
             self._elevation = float(values[3])
         elif values:
-            raise TypeError(f"spherical coordinates take 0, 1, 3 or 5 values, got {len(values)}")
+            raise TypeError(f"expected 0, 1, 3 or 5 values for spherical coordinates, got {len(values)}")
 
     @staticmethod
     def convert(value: CppArgument) -> Any:
-        """A surface's name of a surface, and the other way round; an unknown name is the Earth's."""
+        """Convert a surface to its name, and a name to its surface; an unknown name gives the Earth."""
         if isinstance(value, Surface):
             return value.name
         return Surface.__members__.get(value, Surface.EARTH_WGS84)
@@ -82,7 +82,7 @@ class SphericalCoordinates(Value):
         return self._surface
 
     def set_surface(self, surface: Surface, equatorial: float = 0.0, polar: float = 0.0) -> None:
-        """One of the planets; of one of its own, the semi-axes [m]."""
+        """Set one of the planets, or a custom surface with its semi-axes [m]."""
         self._surface = Surface(surface)
         if self._surface in _AXES:
             self._equatorial, self._polar = _AXES[self._surface]
@@ -90,7 +90,7 @@ class SphericalCoordinates(Value):
             self._equatorial, self._polar = float(equatorial), float(polar)
 
     def surface_radius(self) -> float:
-        """The mean radius [m], for distances."""
+        """Return the mean radius [m], for distances."""
         return _RADIUS.get(self._surface, (2.0 * self._equatorial + self._polar) / 3.0)
 
     def surface_axis_equatorial(self) -> float:
@@ -102,7 +102,7 @@ class SphericalCoordinates(Value):
     def surface_flattening(self) -> float:
         return (self._equatorial - self._polar) / self._equatorial
 
-    # ------------------------------------------------------------------ the place
+    # ------------------------------------------------------------------ the location
 
     def latitude_reference(self) -> Angle:
         return Angle(self._latitude)
@@ -117,7 +117,7 @@ class SphericalCoordinates(Value):
         self._longitude = Angle(angle)
 
     def elevation_reference(self) -> float:
-        """[m]"""
+        """Return the elevation [m]."""
         return self._elevation
 
     def set_elevation_reference(self, elevation: float) -> None:
@@ -130,7 +130,7 @@ class SphericalCoordinates(Value):
         self._heading = Angle(angle)
 
     def update_transformation_matrix(self) -> None:
-        """Nothing is kept that would have to be renewed."""
+        """Do nothing: no matrix is cached."""
 
     # ------------------------------------------------------------------ conversions
 
@@ -148,22 +148,22 @@ class SphericalCoordinates(Value):
         )
 
     def spherical_from_local_position(self, position: VectorLike) -> Vector3d:
-        """Latitude [°], longitude [°] and height [m] of a position in the world [m]."""
+        """Convert a position in the world [m] to latitude [°], longitude [°] and height [m]."""
         latitude, longitude, height = self.position_transform(position, Coordinates.LOCAL, Coordinates.SPHERICAL)
         return Vector3d(math.degrees(latitude), math.degrees(longitude), height)
 
     def local_from_spherical_position(self, position: VectorLike) -> Vector3d:
-        """Position in the world [m] of latitude [°], longitude [°] and height [m]."""
+        """Convert latitude [°], longitude [°] and height [m] to a position in the world [m]."""
         latitude, longitude, height = components_of(position, 3)
         spherical = Vector3d(math.radians(latitude), math.radians(longitude), height)
         return self.position_transform(spherical, Coordinates.SPHERICAL, Coordinates.LOCAL)
 
     def global_from_local_velocity(self, velocity: VectorLike) -> Vector3d:
-        """East, north, up [m/s] of a velocity in the world."""
+        """Convert a velocity in the world to east, north and up [m/s]."""
         return self.velocity_transform(velocity, Coordinates.LOCAL, Coordinates.GLOBAL)
 
     def local_from_global_velocity(self, velocity: VectorLike) -> Vector3d:
-        """In the world, of a velocity east, north, up [m/s]."""
+        """Convert a velocity east, north and up [m/s] to one in the world."""
         return self.velocity_transform(velocity, Coordinates.GLOBAL, Coordinates.LOCAL)
 
     def position_transform(self, position: VectorLike, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
@@ -186,7 +186,7 @@ class SphericalCoordinates(Value):
         """Transform between the planet's axes, east-north-up and the world's axes [m/s].
 
         Raises:
-            ValueError: one of the two is spherical, which velocities have none in.
+            ValueError: one of the two systems is spherical, which has no velocities.
         """
         if Coordinates.SPHERICAL in (from_type, to_type):
             raise ValueError("a velocity has no spherical coordinates; use ECEF, GLOBAL or LOCAL")
@@ -196,17 +196,17 @@ class SphericalCoordinates(Value):
         return Vector3d(*(turned @ np.array(components_of(velocity, 3))).tolist())
 
     def _level(self, place: Any) -> Any:
-        """East, north and up at the origin as columns in the planet's axes, shape (3, 3)."""
+        """Return east, north and up at the origin as columns in the planet's axes, shape (3, 3)."""
         sine, cosine = math.sin(float(self._heading)), math.cos(float(self._heading))
         return place.axes @ np.array(((cosine, sine, 0.0), (-sine, cosine, 0.0), (0.0, 0.0, 1.0)))
 
     @staticmethod
     def distance_WGS84(lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:  # noqa: N802 - gz-math's name
-        """Along a sphere of the Earth's mean radius [m]."""
+        """Return the distance along a sphere with the Earth's mean radius [m]."""
         return _along_sphere(MEAN_EARTH_RADIUS, lat_a, lon_a, lat_b, lon_b)
 
     def distance_between_points(self, lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:
-        """Along a sphere of this surface's mean radius [m]."""
+        """Return the distance along a sphere with this surface's mean radius [m]."""
         return _along_sphere(self.surface_radius(), lat_a, lon_a, lat_b, lon_b)
 
     def __eq__(self, other: object) -> bool:
@@ -214,7 +214,7 @@ class SphericalCoordinates(Value):
 
 
 def _along_sphere(radius: float, lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:
-    """The haversine formula."""
+    """Return the distance by the haversine formula."""
     across = math.sin((float(lat_b) - float(lat_a)) / 2) ** 2
     along = math.sin((float(lon_b) - float(lon_a)) / 2) ** 2 * math.cos(float(lat_a)) * math.cos(float(lat_b))
     return 2.0 * radius * math.atan2(math.sqrt(across + along), math.sqrt(1.0 - across - along))

@@ -1,4 +1,4 @@
-"""Bases of gz-math's values: how they are copied and compared, and the constants of their classes."""
+"""Base classes of gz-math's values: copying, comparison, arithmetic, and constants of their classes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CppArgument = Any
 
 
 class ClassConstant:
-    """Constant of a class that is an instance of the class it is read from, such as `Vector3d.ZERO`; made once each.
+    """Constant of a class that is an instance of that class, such as `Vector3d.ZERO`; created once for each class.
 
     Args:
         values: arguments of the instance.
@@ -39,7 +39,7 @@ class ClassConstant:
 
 
 def component_getter(attribute: str, index: int) -> Callable[[object], float]:
-    """Make a method that reads one number of a value's part."""
+    """Create a method that reads one number of an attribute."""
 
     def read(self: object) -> float:
         return float(getattr(self, attribute)[index])
@@ -48,7 +48,7 @@ def component_getter(attribute: str, index: int) -> Callable[[object], float]:
 
 
 def component_setter(attribute: str, index: int) -> Callable[[object, float], None]:
-    """Make a method that sets one number of a value's part."""
+    """Create a method that sets one number of an attribute."""
 
     def write(self: object, value: float) -> None:
         getattr(self, attribute)[index] = float(value)
@@ -57,12 +57,12 @@ def component_setter(attribute: str, index: int) -> Callable[[object, float], No
 
 
 class Value:
-    """Base of values that can be changed: equality is within a tolerance, so there is no hash."""
+    """Base of mutable values: equality has a tolerance, so there is no hash."""
 
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: CppArgument) -> None:
-        """A value of its parts, or the copy of another one."""
+        """Create a value from its components, or as a copy of another value."""
 
     def __copy__(self: V) -> V:
         return type(self)(self)
@@ -72,7 +72,7 @@ class Value:
 
 
 class HasComponents(Protocol):
-    """A vector of another library of gz-math's kind."""
+    """Vector of another library with gz-math's methods."""
 
     def x(self) -> float: ...
 
@@ -83,19 +83,19 @@ Operand: TypeAlias = "Components | HasComponents | Sequence[float] | npt.NDArray
 
 
 class Components(Value):
-    """Base of values of a few numbers, with arithmetic number by number."""
+    """Base of values of a few numbers, with arithmetic by component."""
 
     _v: list[float]
 
     def _numbers_of(self, other: Operand) -> Iterable[float] | None:
-        """The numbers that another operand puts beside these; None where it is no operand."""
+        """Return the numbers of another operand; None if it is not a valid operand."""
         raise NotImplementedError
 
     def _with(self: C, other: Operand, operation: Callable[[float, float], float]) -> C:
         others = self._numbers_of(other)
         if others is None:
-            refused: C = NotImplemented
-            return refused
+            unsupported: C = NotImplemented
+            return unsupported
         return type(self)(*map(operation, self._v, others))
 
     def __add__(self: C, other: Operand) -> C:
@@ -120,7 +120,7 @@ class Scalar(Value):
     _value: float
 
     def _number_of(self: S, other: S | float) -> float:
-        """The number of another operand."""
+        """Return the number of another operand."""
         return float(other)
 
     def __call__(self) -> float:

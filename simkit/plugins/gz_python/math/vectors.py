@@ -1,4 +1,4 @@
-"""Vectors of gz-math. Arithmetic is by components; `==` means within 1e-3, as in gz-math."""
+"""Vectors of gz-math. Arithmetic is by component; `==` allows a difference of 1e-3, as in gz-math."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from simkit.plugins.gz_python.math.value_base import ClassConstant, Components, 
 
 V = TypeVar("V", bound="Vector")
 EQUALITY_TOLERANCE: Final = 1e-3
-"""How far components may be apart of vectors, quaternions and angles that `==` calls equal."""
+"""Largest difference of components of vectors, quaternions and angles that `==` calls equal."""
 
 
 VectorLike: TypeAlias = "Vector | HasComponents | Sequence[float] | npt.NDArray[np.float64]"
-"""What functions of gz-math take for a vector."""
+"""Types that functions of gz-math accept as a vector."""
 
 
 def components_of(value: VectorLike, size: int) -> tuple[float, ...]:
-    """The components of a vector of ours, of another library's `x()`, `y()`, … kind, or of a sequence.
+    """Return the components of a vector of this module, of an object with `x()`, `y()`, …, or of a sequence.
 
     Raises:
-        TypeError: it is none of these.
+        TypeError: the value is none of these, or has another size.
     """
     if isinstance(value, Vector):
         found = tuple(value._v)
@@ -35,7 +35,7 @@ def components_of(value: VectorLike, size: int) -> tuple[float, ...]:
     else:
         found = tuple(float(v) for v in value)  # type: ignore[union-attr]
     if len(found) != size:
-        raise TypeError(f"a vector of {size} numbers is needed, got {value!r}")
+        raise TypeError(f"expected a vector of {size} numbers, got {value!r}")
     return found
 
 
@@ -43,8 +43,8 @@ class Vector(Components):
     """Base of vectors of two, three and four numbers.
 
     Attributes:
-        SIZE: how many numbers.
-        NUMBER: what a component is made with, `float` or `int`.
+        SIZE: number of components.
+        NUMBER: type of a component, `float` or `int`.
     """
 
     SIZE: ClassVar[int]
@@ -54,7 +54,7 @@ class Vector(Components):
         if len(values) == 1:
             values = components_of(values[0], self.SIZE)
         if values and len(values) != self.SIZE:
-            raise TypeError(f"{type(self).__name__} takes {self.SIZE} numbers, got {len(values)}")
+            raise TypeError(f"expected {self.SIZE} numbers for {type(self).__name__}, got {len(values)}")
         number = type(self).NUMBER
         self._v: list[float] = [number(v) for v in values] if values else [number(0)] * self.SIZE
 
@@ -63,15 +63,15 @@ class Vector(Components):
     def _component(self, index: int, value: tuple[float, ...]) -> float:
         if value:
             self._v[index] = type(self).NUMBER(value[0])
-            return None  # type: ignore[return-value]  # who sets a component takes nothing
+            return None  # type: ignore[return-value]  # a setter call has no result
         return self._v[index]
 
     def x(self, *value: float) -> float:
-        """The first component; with an argument, sets it."""
+        """Return the first component; with an argument, set it."""
         return self._component(0, value)
 
     def y(self, *value: float) -> float:
-        """The second component; with an argument, sets it."""
+        """Return the second component; with an argument, set it."""
         return self._component(1, value)
 
     def set_x(self, value: float) -> None:
@@ -81,7 +81,7 @@ class Vector(Components):
         self._component(1, (value,))
 
     def set(self, *values: float) -> None:
-        """Sets every component; those left out become 0."""
+        """Set all components; missing ones become 0."""
         padded = [*values, *[0] * (self.SIZE - len(values))]
         self._v[:] = [type(self).NUMBER(v) for v in padded]
 
@@ -101,7 +101,7 @@ class Vector(Components):
     def __len__(self) -> int:
         return self.SIZE
 
-    # ------------------------------------------------------------------ arithmetic, by components
+    # ------------------------------------------------------------------ arithmetic by component
 
     def _numbers_of(self, other: Operand) -> Sequence[float] | None:
         if isinstance(other, (int, float)):
@@ -116,16 +116,16 @@ class Vector(Components):
         return self._with(other, _divide)
 
     def __iadd__(self: V, other: Operand) -> V:
-        return self._take(self + other)
+        return self._assign(self + other)
 
     def __isub__(self: V, other: Operand) -> V:
-        return self._take(self - other)
+        return self._assign(self - other)
 
     def __imul__(self: V, other: Operand) -> V:
-        return self._take(self * other)
+        return self._assign(self * other)
 
     def __itruediv__(self: V, other: Operand) -> V:
-        return self._take(self / other)
+        return self._assign(self / other)
 
     __rmul__ = __mul__
     __radd__ = Components.__add__
@@ -133,8 +133,8 @@ class Vector(Components):
     def __neg__(self: V) -> V:
         return type(self)(*(-a for a in self._v))
 
-    def _take(self: V, other: V) -> V:
-        """These components in this very object: `+=` changes what others hold too, as in C++."""
+    def _assign(self: V, other: V) -> V:
+        """Assign components in place: `+=` also changes the vector for other references, as in C++."""
         self._v[:] = other._v
         return self
 
@@ -147,7 +147,7 @@ class Vector(Components):
         return sum(a * b for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
     def abs_dot(self, other: VectorLike) -> float:
-        """The sum of the products' magnitudes."""
+        """Return the sum of the absolute products."""
         return sum(abs(a * b) for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
     def squared_length(self) -> float:
@@ -157,14 +157,14 @@ class Vector(Components):
         return math.sqrt(self.squared_length())
 
     def distance(self, *other: VectorLike | float) -> float:
-        """To another point, given as a vector or by its components."""
+        """Return the distance to another point, given as a vector or by its components."""
         return (self - type(self)(*other)).length()
 
     def normalize(self: V) -> V:
-        """Makes the length 1, unless it is below 1e-6; gives a copy of the outcome."""
+        """Scale the length to 1, unless it is below 1e-6; return a copy of the result."""
         length = self.length()
         if length > DEFAULT_TOLERANCE:
-            self._take(self / length)
+            self._assign(self / length)
         return type(self)(*self._v)
 
     def normalized(self: V) -> V:
@@ -174,7 +174,7 @@ class Vector(Components):
         return type(self)(*(abs(a) for a in self._v))
 
     def round(self: V, digits: int | None = None) -> V | None:
-        """To whole numbers, or to decimal places."""
+        """Round to integers, or to a number of decimal places."""
         power = 10.0 ** (digits or 0)
         self._v[:] = [type(self).NUMBER(round_half_away(a * power) / power) for a in self._v]
         return type(self)(*self._v) if digits is None else None
@@ -185,14 +185,14 @@ class Vector(Components):
         return copy
 
     def max(self, *other: VectorLike) -> float | None:
-        """The largest component; with a vector, takes the larger of each pair."""
+        """Return the largest component; with a vector, take the larger one of each pair."""
         if not other:
             return max(self._v)
         self._v[:] = [max(a, b) for a, b in zip(self._v, components_of(other[0], self.SIZE), strict=True)]
         return None
 
     def min(self, *other: VectorLike) -> float | None:
-        """The smallest component; with a vector, takes the smaller of each pair."""
+        """Return the smallest component; with a vector, take the smaller one of each pair."""
         if not other:
             return min(self._v)
         self._v[:] = [min(a, b) for a, b in zip(self._v, components_of(other[0], self.SIZE), strict=True)]
@@ -202,7 +202,7 @@ class Vector(Components):
         return all(map(math.isfinite, self._v))
 
     def correct(self) -> None:
-        """Makes what is not finite 0."""
+        """Replace NaN and infinite components by 0."""
         self._v[:] = [a if math.isfinite(a) else type(self).NUMBER(0) for a in self._v]
 
     # ------------------------------------------------------------------ equality and text
@@ -224,7 +224,7 @@ def _divide(a: float, b: float) -> float:
 
 
 class Vector2d(Vector):
-    """Two numbers."""
+    """Vector of two numbers."""
 
     SIZE = 2
     ZERO = ClassConstant(0, 0)
@@ -233,7 +233,7 @@ class Vector2d(Vector):
 
 
 class Vector3d(Vector):
-    """Three numbers."""
+    """Vector of three numbers."""
 
     SIZE = 3
     ZERO = ClassConstant(0, 0, 0)
@@ -244,7 +244,7 @@ class Vector3d(Vector):
     NAN = ClassConstant(math.nan, math.nan, math.nan)
 
     def z(self, *value: float) -> float:
-        """The third component; with an argument, sets it."""
+        """Return the third component; with an argument, set it."""
         return self._component(2, value)
 
     def set_z(self, value: float) -> None:
@@ -256,25 +256,25 @@ class Vector3d(Vector):
         return type(self)(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
 
     def perpendicular(self: V) -> V:
-        """Some vector at right angles to this one, not normalised: across the x axis, or else the y axis."""
+        """Return a perpendicular vector, not normalised: the product with the x axis, or else with the y axis."""
         found = Vector3d.cross(self, (1.0, 0.0, 0.0))
         return found if found.squared_length() >= DEFAULT_TOLERANCE**2 else Vector3d.cross(self, (0.0, 1.0, 0.0))
 
     @classmethod
     def normal(cls, a: VectorLike, b: VectorLike, c: VectorLike) -> Vector3d:
-        """The unit normal of a triangle, by the right hand."""
+        """Return the unit normal of a triangle, by the right-hand rule."""
         first, second, third = cls(a), cls(b), cls(c)
         return (second - first).cross(third - first).normalize()
 
     def dist_to_line(self, a: VectorLike, b: VectorLike) -> float:
-        """To the endless line through two points."""
+        """Return the distance to the infinite line through two points."""
         first, second = Vector3d(a), Vector3d(b)
-        here = Vector3d(*self._v)
-        return (here - first).cross(here - second).length() / (second - first).length()
+        point = Vector3d(*self._v)
+        return (point - first).cross(point - second).length() / (second - first).length()
 
 
 class Vector4d(Vector):
-    """Four numbers."""
+    """Vector of four numbers."""
 
     SIZE = 4
     ZERO = ClassConstant(0, 0, 0, 0)
@@ -282,42 +282,42 @@ class Vector4d(Vector):
     NAN = ClassConstant(math.nan, math.nan, math.nan, math.nan)
 
     def z(self, *value: float) -> float:
-        """The third component; with an argument, sets it."""
+        """Return the third component; with an argument, set it."""
         return self._component(2, value)
 
     def w(self, *value: float) -> float:
-        """The fourth component; with an argument, sets it."""
+        """Return the fourth component; with an argument, set it."""
         return self._component(3, value)
 
 
 class Vector2f(Vector2d):
-    """The same; numbers have double precision here."""
+    """Vector of two numbers, also in double precision."""
 
 
 class Vector3f(Vector3d):
-    """The same; numbers have double precision here."""
+    """Vector of three numbers, also in double precision."""
 
 
 class Vector4f(Vector4d):
-    """The same; numbers have double precision here."""
+    """Vector of four numbers, also in double precision."""
 
 
 class Vector2i(Vector2d):
-    """Two whole numbers."""
+    """Vector of two integers."""
 
     NUMBER = int
-    NAN = Vector2d.NAN  # type: ignore[assignment]  # whole numbers have none
+    NAN = Vector2d.NAN  # type: ignore[assignment]  # integers have no NaN
 
 
 class Vector3i(Vector3d):
-    """Three whole numbers."""
+    """Vector of three integers."""
 
     NUMBER = int
-    NAN = Vector3d.NAN  # type: ignore[assignment]  # whole numbers have none
+    NAN = Vector3d.NAN  # type: ignore[assignment]  # integers have no NaN
 
 
 class Vector4i(Vector4d):
-    """Four whole numbers."""
+    """Vector of four integers."""
 
     NUMBER = int
-    NAN = Vector4d.NAN  # type: ignore[assignment]  # whole numbers have none
+    NAN = Vector4d.NAN  # type: ignore[assignment]  # integers have no NaN

@@ -1,7 +1,7 @@
-"""gz.msgs as far as simkit's topics carry it: `from gz.msgs10.twist_pb2 import Twist` and the like.
+"""The subset of gz.msgs that simkit's topics carry: `from gz.msgs10.twist_pb2 import Twist` and the like.
 
-What enters: messages of gz as Python objects or in protobuf's text format. What leaves: the ROS messages of simkit's
-topics, and back. Nothing here is serialised as protobuf, and nothing leaves the process.
+Messages of gz are Python objects, or text in protobuf's text format. The package converts them to the ROS messages of
+simkit's topics, and back. It does not serialise them as protobuf, and nothing leaves the process.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ _ONE_WORD: Final = ("LaserScan", "NavSat", "StringMsg")
 
 
 def _file_of(name: str) -> str:
-    apart = name if name in _ONE_WORD else re.sub("(?<=[a-z])(?=[A-Z])", "_", name)
-    return f"{apart.lower()}_pb2"
+    separated = name if name in _ONE_WORD else re.sub("(?<=[a-z])(?=[A-Z])", "_", name)
+    return f"{separated.lower()}_pb2"
 
 
 _FILES: Final = {_file_of(name): name for name in MESSAGE_CLASSES if name != "Map"}
-"""Module of gz.msgs -> the message it holds."""
+"""Message of each module of gz.msgs."""
 
 
 def message_class(name: str) -> type[Message]:
-    """A message class by name."""
+    """Return a message class by name."""
     return MESSAGE_CLASSES[name]
 
 
@@ -33,7 +33,7 @@ def contents_of(module: str) -> dict[str, object]:
     """Return the contents of a module such as `twist_pb2`.
 
     Raises:
-        ModuleNotFoundError: it is none that simkit has.
+        ModuleNotFoundError: simkit does not have this module.
     """
     name = _FILES.get(module)
     if name is None:

@@ -1,4 +1,4 @@
-"""Messages of gz.msgs as Python has them from protobuf: fields that are there from the start, nested ones too."""
+"""Messages of gz.msgs with the interface of protobuf's Python classes: all fields, also nested ones, exist at once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from simkit.diagnostics import did_you_mean
 
 M = TypeVar("M", bound="Message")
 PLAIN_DEFAULTS: Final[Mapping[str, object]] = {"f": 0.0, "i": 0, "s": "", "b": False, "y": b""}
-"""Letter of a kind of field -> its value at the start: number, whole number, text, truth, bytes."""
+"""Default value for each letter of a field's kind: number, integer, text, boolean, bytes."""
 
 
 # Value of a field: a number, a text, bytes, a message, or a `Repeated` of such.
@@ -20,17 +20,17 @@ FieldValue = Any
 
 
 class Repeated(list[FieldValue]):
-    """A field that may be there many times; of messages `add()` makes one more."""
+    """Repeated field; `add()` appends a message."""
 
     def __init__(self, kind: str, values: Iterable[object] = ()) -> None:
         super().__init__(values)
         self._kind = kind
 
     def add(self, **fields: object) -> Message:
-        """One more message, with these fields."""
-        made = MESSAGE_CLASSES[self._kind](**fields)
-        self.append(made)
-        return made
+        """Append a new message with these fields and return it."""
+        message = MESSAGE_CLASSES[self._kind](**fields)
+        self.append(message)
+        return message
 
     def CopyFrom(self, other: Iterable[object]) -> None:  # noqa: N802 - protobuf's names
         self[:] = copy.deepcopy(list(other))
@@ -40,7 +40,7 @@ class Repeated(list[FieldValue]):
 
 
 class Descriptor(NamedTuple):
-    """Names of a class of messages, as protobuf has them."""
+    """Names of a message class, with the interface of protobuf."""
 
     name: str
     full_name: str
@@ -50,8 +50,8 @@ class Message:
     """Base of all messages.
 
     Attributes:
-        DESCRIPTOR: its names.
-        FIELDS: name -> letter of a plain kind or a message's name, with `[]` after it where repeated.
+        DESCRIPTOR: names of the class.
+        FIELDS: kind of each field: a letter for a plain value or the name of a message, with `[]` for a repeated field.
     """
 
     DESCRIPTOR: ClassVar[Descriptor]
@@ -106,12 +106,12 @@ class Message:
         elif isinstance(start, float):
             value = float(value)
         elif not isinstance(value, type(start)):
-            wanted = type(start).__name__
-            raise TypeError(f"{name} of gz.msgs.{type(self).__name__} is a {wanted}, got {value!r}")
+            expected = type(start).__name__
+            raise TypeError(f"{name} of gz.msgs.{type(self).__name__} is a {expected}, got {value!r}")
         self._values[name] = value
 
     def CopyFrom(self, other: Message) -> None:  # noqa: N802 - protobuf's names
-        """Becomes the same."""
+        """Copy all fields from another message."""
         self._values.clear()
         self._values.update(copy.deepcopy(other._values))
 
@@ -119,12 +119,12 @@ class Message:
         self._values.clear()
 
     def HasField(self, name: str) -> bool:  # noqa: N802
-        """Check whether a nested message was ever looked into, or a plain field set."""
+        """Check whether a nested message was accessed, or a plain field set."""
         type(self)._kind_of(name)
         return name in self._values
 
     def ListFields(self) -> list[tuple[str, object]]:  # noqa: N802
-        """Names and values of what is not as at the start."""
+        """Return names and values of all fields that differ from their defaults."""
         return [(name, getattr(self, name)) for name in self.FIELDS if not _is_empty(self._values.get(name))]
 
     def __eq__(self, other: object) -> bool:
@@ -135,9 +135,9 @@ class Message:
     __hash__ = None  # type: ignore[assignment]
 
     def __deepcopy__(self: M, memo: dict[int, object]) -> M:
-        made = type(self)()
-        made._values.update({name: copy.deepcopy(value, memo) for name, value in self._values.items()})
-        return made
+        copied = type(self)()
+        copied._values.update({name: copy.deepcopy(value, memo) for name, value in self._values.items()})
+        return copied
 
     def __reduce__(self) -> tuple[object, ...]:
         return (_unpickle_message, (type(self).__name__, dict(self._values)))
@@ -147,9 +147,9 @@ class Message:
 
 
 def _unpickle_message(name: str, values: dict[str, object]) -> Message:
-    made = MESSAGE_CLASSES[name]()
-    made._values.update(values)
-    return made
+    message = MESSAGE_CLASSES[name]()
+    message._values.update(values)
+    return message
 
 
 def _is_empty(value: object) -> bool:
@@ -159,28 +159,28 @@ def _is_empty(value: object) -> bool:
 def _format_message(message: Message, indent: str) -> str:
     lines = []
     for name, value in message.ListFields():
-        for one in value if isinstance(value, list) else [value]:
-            if isinstance(one, Message):
-                lines.append(f"{indent}{name} {{\n{_format_message(one, indent + '  ')}{indent}}}\n")
+        for item in value if isinstance(value, list) else [value]:
+            if isinstance(item, Message):
+                lines.append(f"{indent}{name} {{\n{_format_message(item, indent + '  ')}{indent}}}\n")
             else:
-                shown = f'"{one}"' if isinstance(one, str) else one
+                shown = f'"{item}"' if isinstance(item, str) else item
                 lines.append(f"{indent}{name}: {shown}\n")
     return "".join(lines)
 
 
 def _read_classes(text: str) -> Iterator[type[Message]]:
-    """Make a message class of each line; `gz_messages.txt` says how a line is written."""
+    """Create a message class for each line; `gz_messages.txt` describes the format of a line."""
     for line in text.splitlines():
         if not line.startswith("#"):
-            name, *rest = line.split()
-            fields = dict(one.split(":") for one in rest if ":" in one)
-            constants = {key: int(number) for key, number in (one.split("=") for one in rest if "=" in one)}
+            name, *words = line.split()
+            fields = dict(word.split(":") for word in words if ":" in word)
+            constants = {key: int(number) for key, number in (word.split("=") for word in words if "=" in word)}
             own = {"DESCRIPTOR": Descriptor(name, f"gz.msgs.{name}"), "FIELDS": fields, "__slots__": (), **constants}
             yield type(name, (Message,), {**own, "__module__": __name__})
 
 
 _DEFINITIONS: Final = Path(__file__).with_name("gz_messages.txt").read_text(encoding="utf-8")
 MESSAGE_CLASSES: Final[Mapping[str, type[Message]]] = MappingProxyType(
-    {one.__name__: one for one in _read_classes(_DEFINITIONS)}
+    {cls.__name__: cls for cls in _read_classes(_DEFINITIONS)}
 )
 """Message classes by name."""

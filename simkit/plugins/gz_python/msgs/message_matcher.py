@@ -1,7 +1,6 @@
-"""Match messages of gz against a pattern, as gz's TriggeredPublisher does with each message.
+"""Matching of gz messages against a pattern, with the rules of gz's TriggeredPublisher.
 
-Numbers are compared as protobuf's `MessageDifferencer` does it with a margin, fields that are not set as their value at
-the start.
+Numbers are compared like in protobuf's `MessageDifferencer` with a margin. Fields that are not set have their defaults.
 """
 
 from __future__ import annotations
@@ -25,18 +24,18 @@ _SINGLE_PRECISION_MESSAGES: Final = frozenset(
 
 
 class MessageMatcher:
-    """Pattern of a message.
+    """Pattern for messages.
 
     Args:
-        kind: its class.
-        text: the whole message, or the value of the field, in protobuf's text form.
-        field: path of a field with dots; empty for the whole message. Of a repeated field the values have to be among
-            those of the message, in any order; else the field has to be the same.
-        tolerance: by how much numbers that are not whole may differ.
-        is_positive: False for one that is met by every message which is not so.
+        kind: message class.
+        text: complete message, or value of the field, in protobuf's text format.
+        field: path of a field with dots; empty for the complete message. The values of a repeated field must be among
+            those of the message, in any order; another field must be equal.
+        tolerance: largest difference of numbers that are not integers.
+        is_positive: false to invert the pattern.
 
     Raises:
-        MessageError: the text is none of that message or field, or there is no such field.
+        MessageError: the text does not describe the message or field, or the field does not exist.
     """
 
     def __init__(
@@ -46,17 +45,17 @@ class MessageMatcher:
         self._path: tuple[str, ...] = tuple(field.split(".")) if field else ()
         self._owner = kind.__name__
         self._kind = ""
-        self._wanted: FieldValue
+        self._expected: FieldValue
         if not self._path:
-            self._wanted = parse_message(kind, text)
+            self._expected = parse_message(kind, text)
             return
         self._owner, self._kind = _find_field(kind, self._path)
-        self._wanted = parse_value(self._kind, text)
-        if isinstance(self._wanted, str) and self._kind in ("i", "i[]"):
-            self._wanted = int(getattr(MESSAGE_CLASSES[self._owner], self._wanted, -1))
+        self._expected = parse_value(self._kind, text)
+        if isinstance(self._expected, str) and self._kind in ("i", "i[]"):
+            self._expected = int(getattr(MESSAGE_CLASSES[self._owner], self._expected, -1))
 
     def meets(self, message: Message) -> bool:
-        """Check whether a message is as it is to be."""
+        """Check whether a message fulfils the pattern."""
         return self._is_same(message) == self._is_positive
 
     def _is_same(self, message: Message) -> bool:
@@ -66,49 +65,54 @@ class MessageMatcher:
         single = self._owner in _SINGLE_PRECISION_MESSAGES
         if self._kind.endswith("[]"):
             return all(
-                any(_values_match(want, one, self._tolerance, single, True) for one in found) for want in self._wanted
+                any(_values_match(expected, item, self._tolerance, single, True) for item in found)
+                for expected in self._expected
             )
-        return _values_match(self._wanted, found, self._tolerance, single, False)
+        return _values_match(self._expected, found, self._tolerance, single, False)
 
 
 def _find_field(kind: type[Message], path: Sequence[str]) -> tuple[str, str]:
-    """The class that has the last field of a path, and the field's kind."""
+    """Return the class that has the last field of a path, and the kind of the field."""
     owner, found = kind.__name__, ""
-    for place, name in enumerate(path):
+    for position, name in enumerate(path):
         fields = MESSAGE_CLASSES[owner].FIELDS
         if name not in fields:
             hint = did_you_mean(name, fields) or f"its fields are {', '.join(fields)}"
             raise MessageError(f"gz.msgs.{owner} has no field {name!r}; {hint}")
         found = fields[name]
-        if place < len(path) - 1:
+        if position < len(path) - 1:
             if found.endswith("[]"):
-                raise MessageError(f"{name!r} of gz.msgs.{owner} is repeated: what is in it has no path of its own")
+                raise MessageError(
+                    f"{name!r} of gz.msgs.{owner} is repeated; a path cannot go through a repeated field"
+                )
             if found in PLAIN_DEFAULTS:
-                raise MessageError(f"{name!r} of gz.msgs.{owner} is a plain value and has no field {path[place + 1]!r}")
+                raise MessageError(
+                    f"{name!r} of gz.msgs.{owner} is a plain value and has no field {path[position + 1]!r}"
+                )
             owner = found
     return owner, found
 
 
-def _values_match(want: object, found: FieldValue, tolerance: float, single: bool, is_partial: bool) -> bool:
-    """Check whether a value is the wanted one; `is_partial`: fields that are not set in it do not count."""
-    if isinstance(want, Message):
-        single = type(want).__name__ in _SINGLE_PRECISION_MESSAGES
-        names = [name for name, _ in want.ListFields()] if is_partial else list(want.FIELDS)
-        return all(_values_match(getattr(want, n), getattr(found, n), tolerance, single, is_partial) for n in names)
-    if isinstance(want, list):
+def _values_match(expected: object, found: FieldValue, tolerance: float, single: bool, is_partial: bool) -> bool:
+    """Check whether a value equals the expected one; with `is_partial`, unset expected fields are ignored."""
+    if isinstance(expected, Message):
+        single = type(expected).__name__ in _SINGLE_PRECISION_MESSAGES
+        names = [name for name, _ in expected.ListFields()] if is_partial else list(expected.FIELDS)
+        return all(_values_match(getattr(expected, n), getattr(found, n), tolerance, single, is_partial) for n in names)
+    if isinstance(expected, list):
         if is_partial:
-            return all(any(_values_match(w, one, tolerance, single, True) for one in found) for w in want)
-        return len(want) == len(found) and all(
-            _values_match(w, one, tolerance, single, False) for w, one in zip(want, found, strict=True)
+            return all(any(_values_match(e, item, tolerance, single, True) for item in found) for e in expected)
+        return len(expected) == len(found) and all(
+            _values_match(e, item, tolerance, single, False) for e, item in zip(expected, found, strict=True)
         )
-    if isinstance(want, float):
-        return _numbers_match(want, float(found), tolerance, single)
-    return bool(want == found)
+    if isinstance(expected, float):
+        return _numbers_match(expected, float(found), tolerance, single)
+    return bool(expected == found)
 
 
-def _numbers_match(one: float, other: float, tolerance: float, single: bool) -> bool:
+def _numbers_match(a: float, b: float, tolerance: float, single: bool) -> bool:
     if single:
-        one, other = float(np.float32(one)), float(np.float32(other))
-    if one == other:  # infinite ones too
+        a, b = float(np.float32(a)), float(np.float32(b))
+    if a == b:  # also if both are infinite
         return True
-    return math.isfinite(one) and math.isfinite(other) and abs(one - other) <= tolerance
+    return math.isfinite(a) and math.isfinite(b) and abs(a - b) <= tolerance

@@ -1,4 +1,4 @@
-"""Conversion between gz.msgs and ROS messages, and calls of the simulation's services by messages of gz."""
+"""Conversion between gz.msgs and ROS messages, and calls of the simulation's services with gz messages."""
 
 from __future__ import annotations
 
@@ -25,13 +25,14 @@ RosFields: TypeAlias = dict[str, FieldValue]
 
 @dataclass(frozen=True, slots=True)
 class RosTwin:
-    """A ROS type that a message of gz is.
+    """ROS type that corresponds to a message of gz.
 
     Attributes:
-        ros: its name.
-        to_ros: fields for `simkit.msgs.make` of a message of gz.
-        from_ros: fills a message of gz from one of ROS.
-        is_wrapped: whether it is the message with more around it, and so not what it is within others.
+        ros: name of the ROS type.
+        to_ros: function from a gz message to the fields for `simkit.msgs.make`.
+        from_ros: function that fills a gz message from a ROS message.
+        is_wrapped: true if the ROS type contains the message and further fields, so that it is not used inside other
+            messages.
     """
 
     ros: str
@@ -40,43 +41,43 @@ class RosTwin:
     is_wrapped: bool = False
 
 
-# ---------------------------------------------------------------------- field by field
+# ---------------------------------------------------------------------- conversion by field
 
 
 def _twin_by_fields(name: str, ros: str, fields: list[str]) -> RosTwin:
-    """The twin of a line of the table."""
+    """Create the ROS type of a line of the table."""
     pairs = []
     for field in fields:
-        ours, _, theirs = field.replace("<", "=").partition("=")
-        kind = name if ours == "." else MESSAGE_CLASSES[name].FIELDS[ours]
-        pairs.append((ours, tuple((theirs or ours).split(".")), kind, "<" in field))
+        gz_name, _, ros_name = field.replace("<", "=").partition("=")
+        kind = name if gz_name == "." else MESSAGE_CLASSES[name].FIELDS[gz_name]
+        pairs.append((gz_name, tuple((ros_name or gz_name).split(".")), kind, "<" in field))
 
     def to_ros(gz: Message) -> RosFields:
         found: RosFields = {}
-        for ours, (*outer, last), kind, is_read_only in pairs:
+        for gz_name, (*outer, last), kind, is_read_only in pairs:
             if not is_read_only:
-                place = found
+                target = found
                 for part in outer:
-                    place = place.setdefault(part, {})
-                place[last] = _value_to_ros(kind, gz if ours == "." else getattr(gz, ours))
+                    target = target.setdefault(part, {})
+                target[last] = _value_to_ros(kind, gz if gz_name == "." else getattr(gz, gz_name))
         return found
 
     def from_ros(gz: Message, message: object) -> None:
-        for ours, path, kind, _ in pairs:
+        for gz_name, path, kind, _ in pairs:
             value = message
             for part in path:
                 value = getattr(value, part)
-            if ours == ".":
+            if gz_name == ".":
                 _twin_of_field(kind).from_ros(gz, value)
             else:
-                _value_from_ros(gz, ours, kind, value)
+                _value_from_ros(gz, gz_name, kind, value)
 
-    return RosTwin(ros, to_ros, from_ros, is_wrapped="." in (ours for ours, *_ in pairs))
+    return RosTwin(ros, to_ros, from_ros, is_wrapped="." in (gz_name for gz_name, *_ in pairs))
 
 
 @cache
 def _twin_of_field(kind: str) -> RosTwin:
-    """Return the twin of a message within other messages."""
+    """Return the ROS type of a message inside other messages."""
     return next(twin for twin in _all_twins()[kind] if not twin.is_wrapped)
 
 
@@ -85,26 +86,26 @@ def _value_to_ros(kind: str, value: FieldValue) -> object:
         return value
     if not kind.endswith("[]"):
         return _twin_of_field(kind).to_ros(value)
-    return list(value) if kind[:-2] in PLAIN_DEFAULTS else [_value_to_ros(kind[:-2], one) for one in value]
+    return list(value) if kind[:-2] in PLAIN_DEFAULTS else [_value_to_ros(kind[:-2], item) for item in value]
 
 
-def _value_from_ros(gz: Message, ours: str, kind: str, value: FieldValue) -> None:
+def _value_from_ros(gz: Message, gz_name: str, kind: str, value: FieldValue) -> None:
     if kind in PLAIN_DEFAULTS:
-        setattr(gz, ours, value)
+        setattr(gz, gz_name, value)
     elif not kind.endswith("[]"):
-        _twin_of_field(kind).from_ros(getattr(gz, ours), value)
+        _twin_of_field(kind).from_ros(getattr(gz, gz_name), value)
     elif kind[:-2] in PLAIN_DEFAULTS:
-        getattr(gz, ours).extend(np.asarray(value).tolist())
+        getattr(gz, gz_name).extend(np.asarray(value).tolist())
     else:
-        for one in value:
-            _twin_of_field(kind[:-2]).from_ros(getattr(gz, ours).add(), one)
+        for item in value:
+            _twin_of_field(kind[:-2]).from_ros(getattr(gz, gz_name).add(), item)
 
 
-# ---------------------------------------------------------------------- what is put another way
+# ---------------------------------------------------------------------- conversion by function
 
 
 def _header_entry(header: Message, key: str) -> str:
-    """Return an entry that gz keeps beside the stamp, such as the name of the frame."""
+    """Return an entry beside the stamp, such as the name of the frame."""
     return next((str(entry.value[0]) for entry in header.data if entry.key == key and entry.value), "")
 
 
@@ -119,7 +120,7 @@ def _header_from(gz: Message, ros: Header) -> None:
 
 
 def _quaternion_to(gz: Message) -> RosFields:
-    """One of zeros, which is what a new message has, means no rotation."""
+    """Convert a quaternion; zeros, the default of a new message, mean no rotation."""
     values = {axis: getattr(gz, axis) for axis in "xyzw"}
     return values if any(values.values()) else {**values, "w": 1.0}
 
@@ -144,29 +145,32 @@ def _scan_from(gz: Message, ros: LaserScan) -> None:
 
 
 _AXIS: Final = {"position": "position", "velocity": "velocity", "force": "effort"}
-"""What gz has of a joint's axis -> field of a JointState."""
+"""Field of a JointState for each field of a joint's axis in gz."""
 
 
 def _joints_to(gz: Message) -> RosFields:
-    columns = {theirs: [getattr(joint.axis1, ours) for joint in gz.joint] for ours, theirs in _AXIS.items()}
+    columns = {ros_name: [getattr(joint.axis1, gz_name) for joint in gz.joint] for gz_name, ros_name in _AXIS.items()}
     return {"header": _header_to(gz.header), "name": [joint.name for joint in gz.joint], **columns}
 
 
 def _joints_from(gz: Message, ros: JointState) -> None:
     _header_from(gz.header, ros.header)
-    for place, name in enumerate(ros.name):
+    for index, name in enumerate(ros.name):
         axis = gz.joint.add(name=name).axis1
-        for ours, theirs in _AXIS.items():
-            column = getattr(ros, theirs)
-            setattr(axis, ours, float(column[place]) if place < len(column) else math.nan)
+        for gz_name, ros_name in _AXIS.items():
+            column = getattr(ros, ros_name)
+            setattr(axis, gz_name, float(column[index]) if index < len(column) else math.nan)
 
 
 def _frames_to(gz: Message) -> RosFields:
     transforms = []
     for pose in gz.pose:
         header = _header_to(pose.header if pose.HasField("header") else gz.header)
-        turn = {"translation": _value_to_ros("Vector3d", pose.position), "rotation": _quaternion_to(pose.orientation)}
-        transforms.append({"header": header, "child_frame_id": pose.name, "transform": turn})
+        transform = {
+            "translation": _value_to_ros("Vector3d", pose.position),
+            "rotation": _quaternion_to(pose.orientation),
+        }
+        transforms.append({"header": header, "child_frame_id": pose.name, "transform": transform})
     return {"transforms": transforms}
 
 
@@ -181,7 +185,7 @@ def _frames_from(gz: Message, ros: TFMessage) -> None:
 
 
 _PIXELS: Final = {"mono8": 1, "mono16": 2, "rgb8": 3, "rgba8": 4, "bgra8": 5, "rgb16": 6, "bgr8": 8, "32FC1": 13}
-"""Encoding of ROS -> number of gz's pixel format."""
+"""Number of gz's pixel format for each encoding of ROS."""
 
 
 def _image_to(gz: Message) -> RosFields:
@@ -229,43 +233,47 @@ def _all_twins() -> dict[str, tuple[RosTwin, ...]]:
 
 
 def twins_of(kind: type[Message]) -> tuple[RosTwin, ...]:
-    """The ROS types of a message class.
+    """Return the ROS types of a message class.
 
     Raises:
-        MessageError: it has none.
+        MessageError: the class has none.
     """
     found = _all_twins().get(kind.__name__)
     if found is None:
         listed = ", ".join(sorted(_all_twins()))
-        raise MessageError(f"gz.msgs.{kind.__name__} has no ROS type to go on a topic as; those that have: {listed}")
+        raise MessageError(f"gz.msgs.{kind.__name__} has no ROS type for topics; messages with one: {listed}")
     return found
 
 
 def fields_of(message: Message) -> RosFields:
-    """The fields of the ROS message that it is within others."""
+    """Return the fields of the ROS message that represents a message inside other messages."""
     return _twin_of_field(type(message).__name__).to_ros(message)
 
 
 def to_ros(message: Message, ros: str) -> object:
-    """A message of a ROS type."""
+    """Convert a gz message to a ROS type."""
     twin = next(twin for twin in twins_of(type(message)) if twin.ros == ros)
     return msgs.make(ros, **twin.to_ros(message))
 
 
 def from_ros(kind: type[Message], message: object) -> Message:
-    """A message of gz of one of ROS, whose type must be a twin of it."""
-    name, made = msgs.type_name(message), MESSAGE_CLASSES[kind.__name__]()
+    """Convert a ROS message to a gz message; its type must be a ROS type of the message class."""
+    name, gz = msgs.type_name(message), MESSAGE_CLASSES[kind.__name__]()
     twin = next(twin for twin in twins_of(kind) if twin.ros == name)
-    twin.from_ros(made, message)
-    return made
+    twin.from_ros(gz, message)
+    return gz
 
 
 SERVICE_REQUEST_TYPES: Final = ("WorldControl", "EntityFactory", "Entity", "Pose", "Boolean", "Empty")
-"""Messages that are known as requests."""
+"""Message classes that are supported as requests."""
 
 
 def call_service(sim: Simulation, service: str, request: Message, response_kind: type[Message]) -> tuple[bool, Message]:
-    """Calls a service: whether it is there and was understood, and the response (of Boolean: whether it succeeded)."""
+    """Call a service.
+
+    Returns:
+        True if the service exists and accepted the request, and the response; a Boolean response holds the success.
+    """
     response = response_kind()
     if service not in sim.communication.services.names():
         return False, response
@@ -280,10 +288,10 @@ def call_service(sim: Simulation, service: str, request: Message, response_kind:
 
 
 def _request_fields(request: Message) -> RosFields:
-    """The fields of the ROS service that does the same.
+    """Return the fields of the ROS service with the same function.
 
     Raises:
-        InputError: simkit has none.
+        InputError: simkit has no such service.
     """
     kind = type(request).__name__
     if kind == "WorldControl":
@@ -303,4 +311,4 @@ def _request_fields(request: Message) -> RosFields:
         return {"data": request.data}
     if kind == "Empty":
         return {}
-    raise InputError(f"simkit has no service that takes gz.msgs.{kind}")
+    raise InputError(f"simkit has no service for requests of type gz.msgs.{kind}")

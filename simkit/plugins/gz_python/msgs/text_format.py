@@ -1,4 +1,4 @@
-"""Protobuf's text form, in which people write messages of gz: `linear: {x: 0.2}, header { stamp { sec: 3 } }`."""
+"""Protobuf's text format for messages of gz: `linear: {x: 0.2}, header { stamp { sec: 3 } }`."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ _DEEPEST: Final = 50
 
 
 def parse_message(kind: type[Message], text: str) -> Message:
-    """The message that a text describes; of an empty one all is as at the start.
+    """Parse a message; an empty text gives the defaults.
 
     Raises:
-        MessageError: it is no such text, or names what the message does not have.
+        MessageError: the text is invalid, or names a field that the message does not have.
     """
     reader = _TextReader(text)
     message = MESSAGE_CLASSES[kind.__name__]()
@@ -42,14 +42,15 @@ def parse_message(kind: type[Message], text: str) -> Message:
 
 
 def parse_value(kind: str, text: str) -> object:
-    """The value of one field; of a repeated one a list of what is in `[…]`, or of the one value.
+    """Parse the value of one field; the result for a repeated field is a list, of `[…]` or of a single value.
 
     Args:
-        kind: as `Message.FIELDS` has it: a letter of `PLAIN_DEFAULTS` or a message's name, with `[]` where repeated.
-        text: as after `name:`.
+        kind: kind as in `Message.FIELDS`: a letter of `PLAIN_DEFAULTS` or a message's name, with `[]` for a repeated
+            field.
+        text: text as after `name:`.
 
     Raises:
-        MessageError: it is none.
+        MessageError: the text is not such a value.
     """
     reader = _TextReader(text)
     values = reader.read_values(kind.removesuffix("[]"), is_repeated=kind.endswith("[]"))
@@ -58,32 +59,32 @@ def parse_value(kind: str, text: str) -> object:
 
 
 class _TextReader:
-    """Walks through the tokens of a text."""
+    """Reader of the tokens of a text."""
 
     def __init__(self, text: str) -> None:
-        self._text, self._at, self._depth = text, 0, 0
-        self._ahead: str | None = None
+        self._text, self._position, self._depth = text, 0, 0
+        self._next_token: str | None = None
 
     def _peek(self) -> str:
-        """The next token; empty at the end."""
-        if self._ahead is None:
-            between = _BETWEEN.match(self._text, self._at)
-            start = between.end() if between else self._at
+        """Return the next token without consuming it; empty at the end."""
+        if self._next_token is None:
+            between = _BETWEEN.match(self._text, self._position)
+            start = between.end() if between else self._position
             found = _TOKEN.match(self._text, start)
             if found is None and start < len(self._text):
-                raise MessageError(f"found {_shorten(self._text[start:])}, which is no part of a message's text")
-            self._ahead, self._at = (found[0], found.end()) if found else ("", start)
-        return self._ahead
+                raise MessageError(f"found {_shorten(self._text[start:])}, which is not valid in a message's text")
+            self._next_token, self._position = (found[0], found.end()) if found else ("", start)
+        return self._next_token
 
     def _next(self) -> str:
-        token, self._ahead = self._peek(), None
+        token, self._next_token = self._peek(), None
         if not token:
-            raise MessageError("the text ends too soon")
+            raise MessageError("the text ends before the message is complete")
         return token
 
     def _skip(self, *tokens: str) -> bool:
         if self._peek() in tokens and self._peek():
-            self._ahead = None
+            self._next_token = None
             return True
         return False
 
@@ -92,24 +93,24 @@ class _TextReader:
             raise MessageError(f"found {_shorten(self._peek())} after the value, allowed is one value")
 
     def read_fields(self, message: Message, end: str) -> None:
-        """Fields up to the token `end`."""
+        """Read fields up to the token `end`."""
         self._depth += 1
         if self._depth > _DEEPEST:
-            raise MessageError(f"the text is nested more than {_DEEPEST} deep")
+            raise MessageError(f"the text has more than {_DEEPEST} nested levels")
         while self._peek() != end:
             name = self._next()
             kind = _kind_of(message, name)
             has_colon = self._skip(":")
-            is_repeated, one = kind.endswith("[]"), kind.removesuffix("[]")
-            if not has_colon and one in PLAIN_DEFAULTS:
+            is_repeated, item_kind = kind.endswith("[]"), kind.removesuffix("[]")
+            if not has_colon and item_kind in PLAIN_DEFAULTS:
                 raise MessageError(f"found {name!r} without a colon, allowed is {name}: value")
-            for value in self.read_values(one, is_repeated=is_repeated):
+            for value in self.read_values(item_kind, is_repeated=is_repeated):
                 _set_field(message, name, value, is_repeated=is_repeated)
             self._skip(",", ";")
         self._depth -= 1
 
     def read_values(self, kind: str, *, is_repeated: bool) -> list[object]:
-        """One value, or those of a list."""
+        """Read one value, or the values of a list."""
         if not (is_repeated and self._skip("[")):
             return [self._read_value(kind)]
         values: list[object] = []
@@ -158,7 +159,7 @@ def _set_field(message: Message, name: str, value: object, *, is_repeated: bool)
 
 
 class _EnumWord(str):
-    """A value that is a name, of an enumeration."""
+    """Name of a value of an enumeration."""
 
 
 def _number_of_word(kind: type[Message], word: str) -> int:
@@ -205,13 +206,13 @@ def _unquote(token: str) -> str:
     if token[:1] not in ('"', "'"):
         raise MessageError(f"found {_shorten(token)}, allowed is a text in quotes")
 
-    def one(found: re.Match[str]) -> str:
+    def unescape(found: re.Match[str]) -> str:
         code = found[1]
         if code[0] == "x" and len(code) > 1:
             return chr(int(code[1:], 16))
         return chr(int(code, 8) & 0xFF) if code[0] in "01234567" else _ESCAPES.get(code, code)
 
-    return _ESCAPE.sub(one, token[1:-1])
+    return _ESCAPE.sub(unescape, token[1:-1])
 
 
 def _shorten(text: str) -> str:

@@ -1,8 +1,8 @@
-"""gz-sim's Python over a simulation of simkit: `gz.sim8`, `gz.sim`, `ignition.gazebo6`, … are this package.
+"""gz-sim's Python interface to a simulation of simkit: `gz.sim8`, `gz.sim`, `ignition.gazebo6`, … are this package.
 
-What enters: calls of a user's system with entities and components. What leaves: readings of the simulation, and
-commands that take effect before the next step by the rules of gz-sim's physics system. It never steps the simulation;
-`TestFixture` and `Server`, which do, lie in `simkit.testing.gz_fixture`.
+A user's system calls it with entities and components. The calls read the simulation, or give commands that take effect
+before the next step, with the rules of gz-sim's physics system. The package never steps the simulation. `TestFixture`
+and `Server`, which do, are in `simkit.testing.gz_fixture`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ __all__ += ["UpdateInfo", "components"]
 
 
 _IN_FIXTURE: Final = ("Server", "ServerConfig", "TestFixture")
-"""Names that `gz.sim` has from `simkit.testing.gz_fixture`."""
+"""Names of `gz.sim` that come from `simkit.testing.gz_fixture`."""
 
 
 def __getattr__(name: str) -> NoReturn:

@@ -1,4 +1,4 @@
-"""Components of gz-sim: of those that simkit has a twin of, by name; any number of others made by hand."""
+"""Components of gz-sim: the ones that simkit supports by name, and any number of custom ones."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from simkit.plugins.shared_by_copies import SharedByCopies
 
 
 class ComponentState(IntEnum):
-    """Kinds of changes of a component; nothing is sent of components here."""
+    """Kinds of changes of a component; they have no effect in simkit."""
 
     NoChange = 0
     PeriodicChange = 1
@@ -31,11 +31,11 @@ class ComponentState(IntEnum):
 
 
 class ComponentProxy(SharedByCopies):
-    """Stands for a kind of component.
+    """Kind of component.
 
     Attributes:
-        name: as in gz-sim.
-        type_id: a number of its own, the same in every run.
+        name: name in gz-sim.
+        type_id: unique number, the same in every run.
     """
 
     __slots__ = ("name", "type_id")
@@ -54,7 +54,7 @@ class ComponentProxy(SharedByCopies):
 
 
 def _hash64(text: str) -> int:
-    """FNV-1a with 64 bits."""
+    """Return the 64-bit FNV-1a hash."""
     found = 0xCBF29CE484222325
     for byte in text.encode():
         found = ((found ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
@@ -62,7 +62,7 @@ def _hash64(text: str) -> int:
 
 
 def register_custom_component(name: str) -> ComponentProxy:
-    """A kind of component of one's own; its data may be anything that can be copied."""
+    """Create a custom kind of component; its data may be anything that can be copied."""
     return ComponentProxy(name)
 
 
@@ -71,7 +71,7 @@ _Reader = Callable[[EntityView, EntityRecord], object]
 
 
 def _kind_reader(kinds: str, read: _Reader) -> _Reader:
-    """Make a reader of entities of some kinds, of which there are several with spaces between."""
+    """Create a reader for entities of some kinds, given with spaces between them."""
     return lambda ecm, record: read(ecm, record) if record.kind in kinds.split() else None
 
 
@@ -79,12 +79,12 @@ _HANDLES: Final = {"model": _Model, "link": _Link, "joint": _Joint, "sensor": _S
 
 
 def _handle_reader(kind: str, method: Callable[[Any, EntityView], object]) -> _Reader:
-    """Make a reader that calls a method of the handle."""
+    """Create a reader that calls a method of the handle."""
     return _kind_reader(kind, lambda ecm, record: method(_HANDLES[kind](record.entity), ecm))
 
 
 def _local_pose(ecm: EntityView, record: EntityRecord) -> _Pose3d | None:
-    """In the frame of the entity it is in."""
+    """Return the pose in the frame of the parent entity."""
     if record.kind == "joint":
         return _Joint(record.entity).pose(ecm)
     own = world_pose(record.entity, ecm)
@@ -154,7 +154,7 @@ _ENABLING_COMPONENTS: Final = {
     "JointVelocity": "velocity",
     "JointTransmittedWrench": "wrench",
 }
-"""Component -> reading that its making turns on."""
+"""Reading that the creation of a component enables."""
 
 
 def _numbers(data: Iterable[float]) -> tuple[float, ...]:
@@ -170,24 +170,24 @@ _COMMANDS: Final[dict[str, tuple[tuple[str, ...], str, Callable[[Any], Any]]]] =
     "LinearVelocityCmd": (("model", "link"), "linear", three_numbers),
     "AngularVelocityCmd": (("model", "link"), "angular", three_numbers),
 }
-"""Component -> who takes it, where among the commands it waits, what its data becomes."""
+"""Kinds of entities, attribute of the commands, and conversion of the data, by component."""
 
 COMPONENT_NAMES: Final = (*_READERS, *_TAG_READERS, *_COMMANDS)
-"""Components of gz-sim that are known here."""
+"""Supported components of gz-sim."""
 
 
 def _check_component(kind: ComponentProxy) -> ComponentProxy:
     if not isinstance(kind, ComponentProxy):
-        raise TypeError(f"a component such as components.Pose is needed, got {kind!r}")
+        raise TypeError(f"expected a component such as components.Pose, got {kind!r}")
     return kind
 
 
 def read_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> object:
-    """The data of a component; of a tag the tag itself; None where the entity has none."""
+    """Return the data of a component, a tag itself for a tag, or None if the entity does not have it."""
     proxy = _check_component(kind)
-    kept = ecm.custom.get(proxy.name, {})
-    if entity in kept:
-        return kept[entity]
+    custom = ecm.custom.get(proxy.name, {})
+    if entity in custom:
+        return custom[entity]
     record = ecm.record(entity)
     if record is None or not record.kind:
         return None
@@ -200,12 +200,12 @@ def read_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> object
 
 
 def write_component(ecm: EntityView, entity: int, kind: ComponentProxy, *data: Any) -> None:
-    """Gives a component, or a command where it is one.
+    """Set a component, or give a command if the component is a command.
 
     Raises:
-        KeyError: no such entity.
-        TypeError: data for a tag, none for another, or some that do not fit.
-        NotImplementedError: something that the simulation says and nobody else.
+        KeyError: the entity does not exist.
+        TypeError: a tag with data, another component without data, or data of a wrong type.
+        NotImplementedError: the component is read-only.
     """
     proxy = _check_component(kind)
     record = ecm.record(entity)
@@ -219,7 +219,7 @@ def write_component(ecm: EntityView, entity: int, kind: ComponentProxy, *data: A
             raise TypeError(f"{proxy.name} needs data")
         ecm.custom.setdefault(proxy.name, {})[entity] = proxy if is_tag else data[0]
     elif proxy.name in _COMMANDS:
-        kinds, waiting, convert = _COMMANDS[proxy.name]
+        kinds, attribute, convert = _COMMANDS[proxy.name]
         if record.kind not in kinds:
             raise TypeError(f"{proxy.name} is for a {' or a '.join(kinds)}, entity {entity} is a {record.kind}")
         if not data or data[0] is None:
@@ -227,7 +227,7 @@ def write_component(ecm: EntityView, entity: int, kind: ComponentProxy, *data: A
         if proxy.name == "WorldPoseCmd":
             _Model(entity).set_world_pose_cmd(ecm, data[0])  # warns of nested models
         else:
-            getattr(ecm.commands, waiting)[entity] = convert(data[0])
+            getattr(ecm.commands, attribute)[entity] = convert(data[0])
     elif proxy.name in _ENABLING_COMPONENTS:
         ecm.enable(entity, _ENABLING_COMPONENTS[proxy.name], True)
     elif proxy.name == "Pose" and record.kind == "light":
@@ -237,15 +237,15 @@ def write_component(ecm: EntityView, entity: int, kind: ComponentProxy, *data: A
 
 
 def _read_only_error(proxy: ComponentProxy, record: EntityRecord) -> NotImplementedError:
-    what = f"{proxy.name} of {record.kind} {record.name!r}"
-    return NotImplementedError(f"{what} is what the simulation says; use a command such as WorldPoseCmd")
+    component = f"{proxy.name} of {record.kind} {record.name!r}"
+    return NotImplementedError(f"{component} is read-only; use a command such as WorldPoseCmd")
 
 
 def mark_changed(ecm: EntityView, entity: int, kind: ComponentProxy) -> None:
-    """Takes note that data was changed in place, which is all where it was given from here.
+    """Mark data as changed in place; nothing else is needed for custom data.
 
     Raises:
-        NotImplementedError: the simulation says what it is, so the change has no effect.
+        NotImplementedError: the component is read-only, so the change has no effect.
     """
     proxy, record = _check_component(kind), ecm.record(entity)
     if record is not None and record.kind and proxy.name in _READERS and entity not in ecm.custom.get(proxy.name, {}):
@@ -253,7 +253,7 @@ def mark_changed(ecm: EntityView, entity: int, kind: ComponentProxy) -> None:
 
 
 def remove_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> bool:
-    """Takes away a component that was given; whether it was there."""
+    """Remove a component that was set before; return true if it existed."""
     proxy = _check_component(kind)
     if proxy.name in _COMMANDS and getattr(ecm.commands, _COMMANDS[proxy.name][1]).pop(entity, None) is not None:
         return True
@@ -266,23 +266,23 @@ def remove_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> bool
 
 
 class ComponentCursor:
-    """An entity on the way through those that have some components.
+    """Current entity of an iteration over entities with some components.
 
     Attributes:
-        entity: its number.
-        components: the data, in the order the kinds were asked for.
+        entity: number of the entity.
+        components: data of the components, in the requested order.
     """
 
     entity = 0
     components: list[object]
 
     def __iter__(self) -> Iterator[object]:
-        """`for entity, (pose, name) in ecm.each([Pose, Name])`"""
+        """Iterate for `for entity, (pose, name) in ecm.each([Pose, Name])`."""
         return iter((self.entity, tuple(self.components)))
 
 
 def each_entity(ecm: EntityView, kinds: list[ComponentProxy]) -> Iterator[ComponentCursor]:
-    """Every entity that has them all, by number; the same cursor each time."""
+    """Yield every entity that has all the components, by number; always the same cursor."""
     proxies, cursor = [_check_component(kind) for kind in kinds], ComponentCursor()
     for record in list(ecm.sync()):
         found = [read_component(ecm, record.entity, proxy) for proxy in proxies]

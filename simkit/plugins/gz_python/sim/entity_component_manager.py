@@ -1,4 +1,4 @@
-"""The entity component manager: what systems of gz-sim see of a simulation."""
+"""Entity component manager: the interface of gz-sim's systems to a simulation."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 
 class EntityComponentManager(EntityView):
-    """Entities by number and their components, as gz-sim's Python offers them.
+    """Entities by number and their components, with the interface of gz-sim's Python.
 
-    Of a simulation it is a view: components of gz-sim that simkit has a twin of are read from the simulation and
-    commands among them go to it. Made by itself it holds only what is put into it.
+    For a simulation it is a view: supported components of gz-sim are read from the simulation, and commands go to it.
+    Without a simulation it holds only custom entities and data.
     """
 
     def create_entity(self) -> int:
-        """A new entity that nothing of the simulation knows."""
+        """Create an entity that is not part of the simulation."""
         self.sync()
         return self.table.make().entity
 
@@ -33,38 +33,40 @@ class EntityComponentManager(EntityView):
         return len(self.sync().records)
 
     def parent_entity(self, entity: int) -> int:
-        """0 of the world and of what has no parent."""
+        """Return the parent; 0 for the world and for entities without a parent."""
         record = self.record(entity)
         return record.parent if record is not None else 0
 
     def set_parent_entity(self, child: int, parent: int) -> bool:
-        """Hangs an entity made by hand below another one.
+        """Set the parent of a custom entity.
 
         Raises:
-            NotImplementedError: the child is of the world's file.
+            NotImplementedError: the child comes from the world file.
         """
         record = self.record(child)
         if record is None or (parent and self.record(parent) is None):
             return False
         if record.kind:
-            raise NotImplementedError(f"{record.kind} {record.name!r} is of the file; its parent stays what it is")
+            raise NotImplementedError(
+                f"the parent of {record.kind} {record.name!r} is set by the world file and cannot change"
+            )
         record.parent = parent
         return True
 
     def component(self, entity: int, kind: components.ComponentProxy) -> Any:
-        """The data of a component; None where the entity has none."""
+        """Return the data of a component; None if the entity does not have it."""
         return components.read_component(self, entity, kind)
 
     component_data = component  # its name in later versions
 
     def create_component(self, entity: int, kind: components.ComponentProxy, *data: object) -> None:
-        """Gives an entity a component, or other data to the one it has."""
+        """Set a component of an entity, or replace its data."""
         components.write_component(self, entity, kind, *data)
 
     def set_component_data(
         self, entity: int, kind: components.ComponentProxy, data: object, compare: bool = True
     ) -> bool:
-        """Other data for a component; False where it had the same and `compare`."""
+        """Replace the data of a component; return false if it is unchanged and `compare` is set."""
         if compare and self.component(entity, kind) == data:
             return False
         self.create_component(entity, kind, data)
@@ -74,23 +76,23 @@ class EntityComponentManager(EntityView):
         return self.component(entity, kind) is not None
 
     def remove_component(self, entity: int, kind: components.ComponentProxy) -> bool:
-        """Takes a component away that was given from here; whether it was there."""
+        """Remove a component that was set before; return true if it existed."""
         return components.remove_component(self, entity, kind)
 
     def set_changed(self, entity: int, kind: components.ComponentProxy, state: object = None) -> None:
-        """Says that the data of a component was changed in place.
+        """Mark the data of a component as changed in place.
 
         Raises:
-            NotImplementedError: of something that the simulation says, which then stays as it is.
+            NotImplementedError: the component is read-only, and keeps its value.
         """
         components.mark_changed(self, entity, kind)
 
     def each(self, kinds: Iterable[components.ComponentProxy]) -> Iterator[components.ComponentCursor]:
-        """Entities that have every one of some components: `.entity`, `.components`; one object moves along."""
+        """Yield entities with all the components, as one cursor with `.entity` and `.components`."""
         return components.each_entity(self, list(kinds))
 
     def each_data(self, *kinds: components.ComponentProxy) -> list[tuple[object, ...]]:
-        """The same as a list, as later versions have it: (entity, data, data, …)."""
+        """Return the same as a list, as in later versions: (entity, data, data, …)."""
         return [(item.entity, *item.components) for item in self.each(kinds)]
 
     def __getattr__(self, name: str) -> NoReturn:
@@ -101,7 +103,7 @@ _managers: weakref.WeakKeyDictionary[Simulation, EntityComponentManager] = weakr
 
 
 def manager_of(sim: Simulation) -> EntityComponentManager:
-    """Return the one manager of a simulation."""
+    """Return the manager of a simulation; every simulation has one."""
     found = _managers.get(sim)
     if found is None:
         found = _managers[sim] = EntityComponentManager(sim)

@@ -13,10 +13,10 @@ E = TypeVar("E", bound="EntityHandle")
 
 
 class EntityHandle:
-    """A number with the questions that can be asked of it.
+    """Number of an entity, with methods for its data.
 
     Attributes:
-        KIND: what it must be the number of.
+        KIND: required kind of the entity.
     """
 
     KIND: ClassVar[str]
@@ -28,15 +28,15 @@ class EntityHandle:
         return self._entity
 
     def reset_entity(self, new_entity: int) -> None:
-        """Makes it a handle of another entity."""
+        """Change the entity of the handle."""
         self._entity = int(new_entity)
 
     def valid(self, ecm: EntityView) -> bool:
-        """Check whether the entity is there and of this kind."""
+        """Check whether the entity exists and has this kind."""
         return self._record(ecm) is not None
 
     def name(self, ecm: EntityView) -> str | None:
-        """Its own name, without those it is in; None where it is not there."""
+        """Return the plain name of the entity; None if it does not exist."""
         record = ecm.record(self._entity)
         return record.name if record is not None else None
 
@@ -47,7 +47,7 @@ class EntityHandle:
         return ecm.handle(self._entity, self.KIND)
 
     def _scene(self, ecm: EntityView) -> SceneObject:
-        """What the file says of it; None where it is not there."""
+        """Return the scene object of the entity; None if it does not exist."""
         record = self._record(ecm)
         return record.scene if record is not None else None
 
@@ -55,10 +55,10 @@ class EntityHandle:
         record = self._record(ecm)
         return record.parent if record is not None else None
 
-    def _enable(self, ecm: EntityView, what: str, enable: bool) -> None:
-        """Turns a reading on or off, where the entity is there."""
+    def _enable(self, ecm: EntityView, reading: str, enable: bool) -> None:
+        """Enable or disable a reading, if the entity exists."""
         if self.valid(ecm):
-            ecm.enable(self._entity, what, enable)
+            ecm.enable(self._entity, reading, enable)
 
     def _reading(self, ecm: EntityView, what: str) -> bool | None:
         return ecm.is_enabled(self._entity, what)
@@ -88,7 +88,7 @@ CountChildren = Callable[[EntityHandle, EntityView], int]
 
 
 def child_methods(kind: str) -> tuple[ListChildren, FindChild, CountChildren]:
-    """Make the methods for an entity's children of a kind: their list, the one of a name (0 for none), their number."""
+    """Create the methods for children of a kind: their list, the child with a name (0 for none), their number."""
 
     def children(self: EntityHandle, ecm: EntityView) -> list[int]:
         return ecm.sync().below(self._entity, kind)

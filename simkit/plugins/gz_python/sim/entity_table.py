@@ -1,7 +1,7 @@
-"""Entities: whole numbers for what is in a simulation, the same from the load to the end of the run.
+"""Entities: integers for everything in a simulation, the same from the load to the end of the run.
 
-The world is 1, as in gz-sim, its wind 2 and its default level 3. Then in the order in which gz-sim makes them: models
-with their links (visuals, collisions, lights, sensors), nested models, joints (sensors); actors; lights.
+The world is 1, as in gz-sim, its wind 2 and its default level 3. The next numbers follow gz-sim's order of creation:
+models with their links (visuals, collisions, lights, sensors), nested models, joints (sensors); actors; lights.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import Any, Final
 from simkit.scene import SceneLink, SceneModel, SceneWorld
 
 K_NULL_ENTITY: Final = 0
-"""No entity; the name is gz-sim's."""
+"""Number for no entity; the name is gz-sim's."""
 
 WORLD_ENTITY: Final = 1
 FIRST_ENTITY: Final = 4
-"""The number of the first entity after the world's own."""
+"""Number of the first entity after the world's own."""
 
 
 # simkit's handle of a model, link, joint, light, sensor, ...: of the class that is simulated under a kind.
@@ -28,14 +28,16 @@ SceneObject = Any
 
 @dataclass(slots=True)
 class EntityRecord:
-    """One entity.
+    """Record of one entity.
 
     Attributes:
-        kind: world, model, link, joint, visual, collision, light, sensor or actor; empty for one made by hand.
-        scene: what the file says of it.
-        parent: the entity it is in; 0 for the world.
-        children: in the order they came.
-        handle: simkit's handle, once somebody asked.
+        entity: number.
+        kind: world, model, link, joint, visual, collision, light, sensor or actor; empty for a custom entity.
+        name: plain name.
+        scene: object of the scene.
+        parent: parent entity; 0 for the world.
+        children: children in the order of their creation.
+        handle: simkit's handle, after the first access.
     """
 
     entity: int
@@ -48,11 +50,11 @@ class EntityRecord:
 
 
 Key = tuple[str, int]
-"""Kind and identity of a scene object; the scene is kept alive by whoever keeps the key."""
+"""Kind and identity of a scene object; the owner of the key keeps the scene object alive."""
 
 
 class EntityTable:
-    """Numbers for the entities of a structure; who stays keeps the number."""
+    """Numbers for the entities of a structure; an entity keeps its number as long as it exists."""
 
     def __init__(self) -> None:
         self.records: dict[int, EntityRecord] = {}
@@ -60,20 +62,20 @@ class EntityTable:
         self.next = FIRST_ENTITY
 
     def make(self, parent: int = 0) -> EntityRecord:
-        """An entity of nobody's file."""
+        """Create a custom entity."""
         record = EntityRecord(self.next, "", "", None, parent)
         self.records[record.entity] = record
         self.next += 1
         return record
 
     def rebuild(self, world: SceneWorld, models: list[SceneModel]) -> None:
-        """Takes what is there now; entities made by hand stay."""
+        """Update the entities to the current structure; custom entities stay."""
         own = [record for record in self.records.values() if not record.kind]
         self.records = {WORLD_ENTITY: EntityRecord(WORLD_ENTITY, "world", world.name, world, 0)}
         for entity, kind in ((2, "wind"), (3, "level")):
             self.records[entity] = EntityRecord(entity, kind, kind, None, WORLD_ENTITY)
         for model in models:
-            if model.moved_by is None:  # an actor, which comes below
+            if model.moved_by is None:  # models of actors are added as actors below
                 self._add_model(model, WORLD_ENTITY)
         for actor in world.actors:
             self._add("actor", actor, WORLD_ENTITY)
@@ -110,19 +112,19 @@ class EntityTable:
                 self._add(kind, scene, entity)
 
     def below(self, entity: int, kind: str) -> list[int]:
-        """Children of a kind, in order."""
+        """Return the children of a kind, in order."""
         record = self.records.get(entity)
         if record is None:
             return []
         return [child for child in record.children if self.records[child].kind == kind]
 
     def named(self, entity: int, kind: str, name: str) -> int:
-        """The child of a kind and name; 0 where there is none."""
+        """Return the child with a kind and a name; 0 if there is none."""
         return next((child for child in self.below(entity, kind) if self.records[child].name == name), 0)
 
     def link(self, scoped: str) -> EntityRecord | None:
-        """The link of a scoped name; None where there is none."""
-        return next((one for one in self if one.kind == "link" and one.scene.scoped == scoped), None)
+        """Return the link with a scoped name; None if there is none."""
+        return next((record for record in self if record.kind == "link" and record.scene.scoped == scoped), None)
 
     def __iter__(self) -> Iterator[EntityRecord]:
         return iter([self.records[entity] for entity in sorted(self.records)])

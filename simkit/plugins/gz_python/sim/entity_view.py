@@ -1,4 +1,4 @@
-"""View of a simulation as entities by number: their records, simkit's handles of them, readings and commands."""
+"""View of a simulation as entities by number: their records, simkit's handles, readings and commands."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
 
 
 class EntityView(SharedByCopies):
-    """Entities of a simulation by number; without a simulation it holds only entities and data made by hand.
+    """Entities of a simulation by number; without a simulation only custom entities and data.
 
     Args:
-        sim: the simulation; None for none.
+        sim: simulation to view, or None.
 
     Attributes:
         table: entities by number.
-        commands: commands that wait for the next step.
-        checks: readings that are turned on: (entity, reading) -> the tick at which each was.
-        values: what is set of actors, by entity and name.
-        custom: data of components made by hand, by component and entity.
-        hub: what the systems of the simulation share; None before there is one.
-        warned: warnings that were given, which are given once each.
-        published: of a simulation, the joints whose state a plugin of gz publishes, by scoped name.
+        commands: commands for the next step.
+        checks: enabled readings: the tick of the activation by (entity, reading).
+        values: values set for actors, by entity and name.
+        custom: data of custom components, by component and entity.
+        hub: state that the systems of the simulation share; None before its creation.
+        warned: warnings that were reported, so that each is reported once.
+        published: function that returns the scoped names of the joints whose state a gz plugin publishes.
     """
 
     def __init__(self, sim: Simulation | None = None) -> None:
@@ -45,27 +45,27 @@ class EntityView(SharedByCopies):
         self.published: Callable[[Simulation], frozenset[str]] = lambda _: frozenset()
         self._published: tuple[WorldStructure | None, frozenset[int]] = (None, frozenset())
 
-    # ------------------------------------------------------------------ the simulation behind it
+    # ------------------------------------------------------------------ the simulation
 
     @property
     def simulation(self) -> Simulation:
-        """The simulation it shows.
+        """Simulation of the view.
 
         Raises:
-            RuntimeError: it shows none.
+            RuntimeError: the view has no simulation.
         """
         sim = self._sim() if self._sim is not None else None
         if sim is None:
-            raise RuntimeError("this EntityComponentManager shows no simulation; hooks are given one that does")
+            raise RuntimeError("this EntityComponentManager has no simulation; use the one that a hook receives")
         return sim
 
     @property
     def is_live(self) -> bool:
-        """Check whether it shows a simulation."""
+        """True if the view has a simulation."""
         return self._sim is not None
 
     def sync(self) -> EntityTable:
-        """The entities there are now."""
+        """Update the table of entities and return it."""
         if self._sim is not None:
             sim = self.simulation
             if sim.engine.structure is not self._structure:
@@ -74,12 +74,12 @@ class EntityView(SharedByCopies):
         return self.table
 
     def record(self, entity: int, kind: str = "") -> EntityRecord | None:
-        """An entity, where it is there and of a kind."""
+        """Return an entity that exists and has a kind, else None."""
         found = self.sync().records.get(entity)
         return found if found is not None and (not kind or found.kind == kind) else None
 
     def handle(self, entity: int, kind: str) -> Handle:
-        """simkit's handle of a model, link, joint, light or sensor; None where the entity is none, or not simulated."""
+        """Return the simkit handle of a model, link, joint, light or sensor; None if it is not simulated."""
         record = self.record(entity, kind)
         if record is None:
             return None
@@ -87,26 +87,28 @@ class EntityView(SharedByCopies):
             record.handle = self.simulation.contents.handles.tables[kind].get(record.scene.scoped)
         return record.handle
 
-    # ------------------------------------------------------------------ readings that must be asked for
+    # ------------------------------------------------------------------ readings to be enabled
 
-    def enable(self, entity: int, what: str, enable: bool) -> None:
-        """Turns a reading on or off; as in gz-sim it is 0 until a step has passed."""
+    def enable(self, entity: int, reading: str, enable: bool) -> None:
+        """Enable or disable a reading; as in gz-sim it is 0 until the next step."""
         if not enable:
-            self.checks.pop((entity, what), None)
+            self.checks.pop((entity, reading), None)
         else:
-            self.checks.setdefault((entity, what), self.simulation.tick)
+            self.checks.setdefault((entity, reading), self.simulation.tick)
 
-    def is_enabled(self, entity: int, what: str) -> bool | None:
-        """None where a reading was not asked for; False until a step has passed since."""
-        since = self.checks.get((entity, what))
-        if since is None and what in ("position", "velocity") and entity in self._published_joints():
+    def is_enabled(self, entity: int, reading: str) -> bool | None:
+        """Return None for a disabled reading, False until the next step, and then True."""
+        since = self.checks.get((entity, reading))
+        if since is None and reading in ("position", "velocity") and entity in self._published_joints():
             since = 0
         return None if since is None else self.simulation.tick != since
 
     def _published_joints(self) -> frozenset[int]:
-        """Joints of a JointStatePublisher: as in gz-sim it has position and velocity read for everybody."""
+        """Return the joints of JointStatePublishers: as in gz-sim their position and velocity are enabled."""
         sim = self.simulation
-        if sim.tick == 0 or sim.engine.structure is not self._published[0]:  # while loading, plugins still come
+        if (
+            sim.tick == 0 or sim.engine.structure is not self._published[0]
+        ):  # plugins may still be added during the load
             names = self.published(sim)
             own = (r.entity for r in self.sync() if r.kind == "joint" and r.scene.scoped in names)
             self._published = (sim.engine.structure, frozenset(own))
@@ -115,12 +117,12 @@ class EntityView(SharedByCopies):
     # ------------------------------------------------------------------ state
 
     def get_state(self) -> dict[str, object]:
-        """Return the state that a snapshot keeps."""
-        made = [r.entity for r in self.table.records.values() if not r.kind]
+        """Return the state for a snapshot."""
+        custom_entities = [r.entity for r in self.table.records.values() if not r.kind]
         return {
             "next": self.table.next,
             "numbers": dict(self.table.numbers),
-            "made": made,
+            "made": custom_entities,
             "commands": self.commands.copy(),
             "checks": dict(self.checks),
             "values": copy.deepcopy(self.values),
@@ -128,7 +130,7 @@ class EntityView(SharedByCopies):
         }
 
     def set_state(self, state: dict[str, Any]) -> None:
-        """Back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
         self.table.next, self.table.numbers = state["next"], dict(state["numbers"])
         self.table.records = {entity: EntityRecord(entity, "", "", None, 0) for entity in state["made"]}
         self.commands, self.checks = state["commands"].copy(), dict(state["checks"])

@@ -1,4 +1,4 @@
-"""Joints as gz-sim's Python shows them."""
+"""Joints with the interface of gz-sim's Python."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _POSITION, _VELOCITY, _WRENCH = "position", "velocity", "wrench"
 
 
 class Joint(PartOfModel):
-    """A joint. Position, velocity and wrench are None until they are enabled, and empty until a step has passed."""
+    """Joint of a model. Position, velocity and wrench are None until enabled, and empty until the next step."""
 
     KIND = "joint"
 
-    # ------------------------------------------------------------------ what it is
+    # ------------------------------------------------------------------ description
 
     def parent_link_name(self, ecm: EntityView) -> str | None:
-        """As seen from its model; `world` where it hangs on the world."""
+        """Return the name of the parent link relative to the model; `world` if the joint is attached to the world."""
         return self._end(ecm, "parent_link")
 
     def child_link_name(self, ecm: EntityView) -> str | None:
@@ -41,7 +41,7 @@ class Joint(PartOfModel):
         return str(getattr(record.scene, which)).removeprefix(scope)
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
-        """In its child link's frame."""
+        """Return the pose in the frame of the child link."""
         scene = self._scene(ecm)
         if scene is None:
             return None
@@ -75,22 +75,22 @@ class Joint(PartOfModel):
         self._enable(ecm, _WRENCH, enable)
 
     def position(self, ecm: EntityView) -> list[float] | None:
-        """[rad or m], one number for each axis."""
+        """Return the position, one number for each axis [rad or m]."""
         return self._values(ecm, _POSITION)
 
     def velocity(self, ecm: EntityView) -> list[float] | None:
-        """[rad/s or m/s], one number for each axis."""
+        """Return the velocity, one number for each axis [rad/s or m/s]."""
         return self._values(ecm, _VELOCITY)
 
-    def _values(self, ecm: EntityView, what: str) -> list[float] | None:
-        is_read, joint = self._reading(ecm, what), self._handle(ecm)
+    def _values(self, ecm: EntityView, reading: str) -> list[float] | None:
+        is_read, joint = self._reading(ecm, reading), self._handle(ecm)
         if is_read is None or joint is None:
             return None
-        values: list[float] = np.atleast_1d(getattr(joint, what)).tolist() if is_read else []
+        values: list[float] = np.atleast_1d(getattr(joint, reading)).tolist() if is_read else []
         return values
 
     def transmitted_wrench(self, ecm: EntityView) -> list[Message] | None:
-        """One `gz.msgs` Wrench: force [N] and torque [N·m] by the parent on the child, in the joint frame."""
+        """Return one `gz.msgs` Wrench: force [N] and torque [N·m] of the parent on the child, in the joint frame."""
         is_read, joint = self._reading(ecm, _WRENCH), self._handle(ecm)
         if is_read is None or joint is None:
             return None
@@ -104,52 +104,52 @@ class Joint(PartOfModel):
     # ------------------------------------------------------------------ commands
 
     def set_velocity(self, ecm: EntityView, velocities: Sequence[float]) -> None:
-        """Velocities [rad/s or m/s] to have after the next step, as far as the effort limits go.
+        """Command velocities [rad/s or m/s] for the end of the next step, within the effort limits.
 
-        As in gz-sim the joint is then held at rest from step to step unless it is set again, and nothing happens
-        to a joint that was ever given a force.
+        As in gz-sim, the joint is then held at rest in every step without a new command. The command has no effect on a
+        joint that has ever received a force.
         """
         if self.valid(ecm):
             ecm.commands.velocity[self._entity] = self._numbers(velocities)
 
     def set_force(self, ecm: EntityView, forces: Sequence[float]) -> None:
-        """Efforts [N·m or N] for the next step, within the limits."""
+        """Command efforts [N·m or N] for the next step, within the limits."""
         if self.valid(ecm):
             ecm.commands.force[self._entity] = self._numbers(forces)
 
     def reset_position(self, ecm: EntityView, positions: Sequence[float]) -> None:
-        """Puts the joint there [rad or m] before the next step, once."""
+        """Set the position [rad or m] once, before the next step."""
         if self.valid(ecm):
             ecm.commands.position_reset[self._entity] = self._numbers(positions)
 
     def reset_velocity(self, ecm: EntityView, velocities: Sequence[float]) -> None:
-        """Gives the joint these velocities [rad/s or m/s] before the next step, once."""
+        """Set the velocity [rad/s or m/s] once, before the next step."""
         if self.valid(ecm):
             ecm.commands.velocity_reset[self._entity] = self._numbers(velocities)
 
     def set_position_limits(self, ecm: EntityView, limits: Sequence[HasComponents]) -> None:
-        """(lower, upper) [rad or m] for each axis, as `Vector2d`."""
+        """Set (lower, upper) [rad or m] for each axis, as `Vector2d`."""
         self._limit(ecm, "position", limits)
 
-    set_position_imits = set_position_limits  # so it is spelled in gz-sim 8
+    set_position_imits = set_position_limits  # the spelling of gz-sim 8
 
     def set_velocity_limits(self, ecm: EntityView, limits: Sequence[HasComponents]) -> None:
-        """The larger magnitude of each pair [rad/s or m/s] counts."""
+        """Set the velocity limits to the larger magnitude of each pair [rad/s or m/s]."""
         self._limit(ecm, "velocity", limits)
 
     def set_effort_limits(self, ecm: EntityView, limits: Sequence[HasComponents]) -> None:
-        """The larger magnitude of each pair [N·m or N] counts."""
+        """Set the effort limits to the larger magnitude of each pair [N·m or N]."""
         self._limit(ecm, "effort", limits)
 
     def _limit(self, ecm: EntityView, what: str, limits: Sequence[HasComponents]) -> None:
         if self.valid(ecm):
-            pairs = tuple((float(one.x()), float(one.y())) for one in limits)
+            pairs = tuple((float(limit.x()), float(limit.y())) for limit in limits)
             ecm.commands.limits[self._entity, what] = pairs
 
     @staticmethod
     def _numbers(values: Sequence[float]) -> tuple[float, ...]:
-        """Finite numbers; ValueError for others."""
-        found = tuple(float(np.asarray(v).item()) for v in values)  # an array of one number too
+        """Convert values to finite numbers; raise ValueError for NaN or infinite ones."""
+        found = tuple(float(np.asarray(v).item()) for v in values)  # also accepts an array of one number
         if not np.isfinite(found).all():
-            raise ValueError(f"a joint takes finite numbers, got {list(found)}")
+            raise ValueError(f"expected finite numbers for a joint, got {list(found)}")
         return found

@@ -1,6 +1,4 @@
-"""Links as gz-sim's Python shows them: poses and velocities of the link frame's origin in world axes, and
-bounding boxes.
-"""
+"""Links with the interface of gz-sim's Python: poses and velocities in world axes, and bounding boxes."""
 
 from __future__ import annotations
 
@@ -27,20 +25,20 @@ _CORNERS: Final = tuple(product((-1.0, 1.0), repeat=3))
 
 
 def link_box(sim: Simulation, scoped: str) -> AxisAlignedBox:
-    """Around the collisions of a link, in its frame; empty where it has none. Planes and height maps do not count."""
+    """Return the box of a link's collisions in its frame, without planes and height maps; empty without collisions."""
     import mujoco
 
-    endless = int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD)
+    unbounded = int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD)
     model, bound, box = sim.mj_model, sim.engine.names.link(scoped), AxisAlignedBox()
     for geom in bound.geoms:
-        if int(model.geom_type[geom]) not in endless:
+        if int(model.geom_type[geom]) not in unbounded:
             placed = bound.offset.inverse() @ Pose(model.geom_pos[geom], model.geom_quat[geom])
             box.merge(_box_around(placed, model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]))
     return box
 
 
 def box_at_pose(box: AxisAlignedBox, pose: Pose) -> AxisAlignedBox:
-    """The box, along the outer axes, around a box at a pose: never smaller than what is in it."""
+    """Return the box along the outer axes that contains a box at a pose; it is never smaller than the content."""
     low, high = np.array(list(box.min())), np.array(list(box.max()))
     return _box_around(pose, (low + high) / 2, (high - low) / 2) if (low <= high).all() else AxisAlignedBox()
 
@@ -55,16 +53,16 @@ _VELOCITY, _ACCELERATION, _BOX = "velocity", "acceleration", "box"
 
 
 class Link(PartOfModel):
-    """A link. Velocities and accelerations are None until they are enabled, and 0 until a step has passed since."""
+    """Link of a model. Velocities and accelerations are None until they are enabled, and 0 until the next step."""
 
     KIND = "link"
     collisions, collision_by_name, collision_count = child_methods("collision")
     visuals, visual_by_name, visual_count = child_methods("visual")
 
-    # ------------------------------------------------------------------ what it is
+    # ------------------------------------------------------------------ description
 
     def is_canonical(self, ecm: EntityView) -> bool:
-        """Check whether its motion is that of the model it is in."""
+        """Check whether the motion of the link is that of its model."""
         record = self._record(ecm)
         if record is None:
             return False
@@ -75,10 +73,10 @@ class Link(PartOfModel):
         scene = self._scene(ecm)
         return bool(scene is not None and scene.enable_wind)
 
-    # ------------------------------------------------------------------ where it is and how it moves
+    # ------------------------------------------------------------------ pose and motion
 
     def world_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the pose of the link frame; None only where there is no such link."""
+        """Return the pose of the link frame; None only if the link does not exist."""
         link = self._handle(ecm)
         return gz_pose(link.pose) if link is not None else None
 
@@ -88,7 +86,7 @@ class Link(PartOfModel):
         return inertial.pose() if inertial is not None else None
 
     def world_inertial(self, ecm: EntityView) -> Inertiald | None:
-        """Mass and moments at the centre of mass in the world; the moments are in the link's axes."""
+        """Return mass and moments at the centre of mass in the world; the moments are in the link's axes."""
         link = self._handle(ecm)
         if link is None:
             return None
@@ -97,7 +95,7 @@ class Link(PartOfModel):
         return Inertiald(matrix, gz_pose(link.pose) * Pose3d(*own.com, 0, 0, 0))
 
     def world_inertia_matrix(self, ecm: EntityView) -> Matrix3d | None:
-        """The moments about the centre of mass, in world axes."""
+        """Return the moments about the centre of mass, in world axes."""
         inertial = self.world_inertial(ecm)
         return inertial.moi() if inertial is not None else None
 
@@ -108,7 +106,7 @@ class Link(PartOfModel):
         self._enable(ecm, _ACCELERATION, enable)
 
     def world_linear_velocity(self, ecm: EntityView, offset: VectorLike | None = None) -> Vector3d | None:
-        """[m/s] of the origin, or of the point at `offset` [m] in the link frame."""
+        """Return the velocity [m/s] of the origin, or of the point at `offset` [m] in the link frame."""
 
         def at_offset(link: RuntimeLink) -> Vector:
             if offset is None:
@@ -119,26 +117,26 @@ class Link(PartOfModel):
         return self._motion(ecm, _VELOCITY, at_offset)
 
     def world_angular_velocity(self, ecm: EntityView) -> Vector3d | None:
-        """[rad/s]"""
+        """Return the angular velocity [rad/s]."""
         return self._motion(ecm, _VELOCITY, lambda link: link.angular_velocity)
 
     def world_linear_acceleration(self, ecm: EntityView) -> Vector3d | None:
-        """[m/s²] of the origin; that of a body that falls freely is gravity."""
+        """Return the acceleration [m/s²] of the origin; in free fall it is gravity."""
         return self._motion(ecm, _ACCELERATION, lambda link: link.linear_acceleration)
 
     def world_angular_acceleration(self, ecm: EntityView) -> Vector3d | None:
-        """[rad/s²]"""
+        """Return the angular acceleration [rad/s²]."""
         return self._motion(ecm, _ACCELERATION, lambda link: _angular_acceleration(ecm, link))
 
     def _motion(self, ecm: EntityView, what: str, read: Callable[[RuntimeLink], Vector]) -> Vector3d | None:
-        """A vector of the link's motion; None while its readings are off, 0 until a step has passed since."""
+        """Return a vector of the link's motion; None while the reading is disabled, 0 until the next step."""
         is_read, link = self._reading(ecm, what), self._handle(ecm)
         if is_read is None or link is None:
             return None
         return gz_vector(read(link)) if is_read else Vector3d()
 
     def world_kinetic_energy(self, ecm: EntityView) -> float | None:
-        """[J]; None until velocities are enabled."""
+        """Return the kinetic energy [J]; None until velocities are enabled."""
         is_read = self._reading(ecm, _VELOCITY)
         inertial = self.world_inertial(ecm)
         if is_read is None or inertial is None:
@@ -146,56 +144,56 @@ class Link(PartOfModel):
         linear = self.world_linear_velocity(ecm, self._handle(ecm).scene.inertial.com)
         angular = self.world_angular_velocity(ecm)
         assert linear is not None and angular is not None
-        turning = float(angular.dot(inertial.moi() * angular))
-        return 0.5 * (inertial.mass_matrix().mass() * float(linear.squared_length()) + turning)
+        rotational = float(angular.dot(inertial.moi() * angular))
+        return 0.5 * (inertial.mass_matrix().mass() * float(linear.squared_length()) + rotational)
 
-    # ------------------------------------------------------------------ the box around it
+    # ------------------------------------------------------------------ bounding box
 
     def enable_bounding_box_checks(self, ecm: EntityView, enable: bool = True) -> None:
         self._enable(ecm, _BOX, enable)
 
     def axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
-        """Around its collisions, along the link's axes; None until it is enabled, empty without collisions."""
+        """Return the box of the collisions in the link's axes; None until enabled, empty without collisions."""
         return None if self._reading(ecm, _BOX) is None else self.compute_axis_aligned_box(ecm)
 
     def world_axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
-        """Along the world's axes, around the box along the link's; None until it is enabled."""
+        """Return the box along the world's axes around the link's box; None until it is enabled."""
         box = self.axis_aligned_box(ecm)
         return box_at_pose(box, self._handle(ecm).pose) if box is not None else None
 
     def compute_axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
-        """Around its collisions, along the link's axes, whether enabled or not."""
+        """Return the box of the collisions in the link's axes, also if the reading is disabled."""
         link = self._handle(ecm)
         return link_box(ecm.simulation, link.scoped) if link is not None else None
 
     # ------------------------------------------------------------------ commands
 
     def set_linear_velocity(self, ecm: EntityView, velocity: VectorLike) -> None:
-        """Velocity [m/s] in the link's axes, which what it moves freely with has at the start of the next step.
+        """Set the velocity [m/s] in the link's axes for the start of the next step, for the link's whole free body.
 
-        As in gz-sim it is then 0 at the start of every step after that, unless it is set again.
+        As in gz-sim it is then 0 at the start of every later step without a new command.
         """
         if self.valid(ecm):
             ecm.commands.linear[self._entity] = three_numbers(velocity)
 
     def set_angular_velocity(self, ecm: EntityView, velocity: VectorLike) -> None:
-        """The same of the turning [rad/s], in the link's axes."""
+        """Set the angular velocity [rad/s] in the link's axes in the same way."""
         if self.valid(ecm):
             ecm.commands.angular[self._entity] = three_numbers(velocity)
 
     def add_world_force(self, ecm: EntityView, force: VectorLike, position: VectorLike | None = None) -> None:
-        """Force [N] in world axes for the next step, at the centre of mass or at an offset [m] from it in link axes."""
+        """Add a force [N] in world axes for the next step, at the centre of mass or at an offset [m] in link axes."""
         link = self._handle(ecm)
         if link is None:
             return
-        own, pushed = link.scene.inertial.com, three_numbers(force)
+        point, components = link.scene.inertial.com, three_numbers(force)
         if position is not None:
-            own = [a + b for a, b in zip(own, three_numbers(position), strict=True)]
-        about = cross_product(link.pose.rotate(own).tolist(), pushed) if any(own) else (0.0, 0.0, 0.0)
-        ecm.commands.add_wrench(self._entity, pushed, about)
+            point = [a + b for a, b in zip(point, three_numbers(position), strict=True)]
+        torque = cross_product(link.pose.rotate(point).tolist(), components) if any(point) else (0.0, 0.0, 0.0)
+        ecm.commands.add_wrench(self._entity, components, torque)
 
     def add_link_force(self, ecm: EntityView, force: VectorLike, position: VectorLike | None = None) -> None:
-        """The same with the force in the link's axes."""
+        """Add a force [N] in link axes for the next step, at the centre of mass or at an offset [m] in link axes."""
         link = self._handle(ecm)
         if link is not None:
             self.add_world_force(ecm, link.pose.rotate(three_numbers(force)).tolist(), position)
@@ -203,19 +201,19 @@ class Link(PartOfModel):
     def add_world_wrench(
         self, ecm: EntityView, force: VectorLike, torque: VectorLike, offset: VectorLike | None = None
     ) -> None:
-        """Force [N] and torque [N·m] in world axes for the next step, at the link's origin or at an offset from it."""
+        """Add force [N] and torque [N·m] in world axes for the next step, at the link's origin or an offset from it."""
         link = self._handle(ecm)
         if link is None:
             return
-        pushed = three_numbers(force)
-        ecm.commands.add_wrench(self._entity, pushed, three_numbers(torque))
+        components = three_numbers(force)
+        ecm.commands.add_wrench(self._entity, components, three_numbers(torque))
         if offset is not None:
             arm = link.pose.rotate(three_numbers(offset)).tolist()
-            ecm.commands.add_wrench(self._entity, (0.0, 0.0, 0.0), cross_product(arm, pushed))
+            ecm.commands.add_wrench(self._entity, (0.0, 0.0, 0.0), cross_product(arm, components))
 
 
 def _angular_acceleration(ecm: EntityView, link: RuntimeLink) -> Vector:
-    """[rad/s²] in world axes, shape (3,)."""
+    """Return the angular acceleration [rad/s²] in world axes, shape (3,)."""
     import mujoco
 
     sim, out = ecm.simulation, np.zeros(6)

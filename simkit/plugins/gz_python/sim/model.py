@@ -1,4 +1,4 @@
-"""Models as gz-sim's Python shows them."""
+"""Models with the interface of gz-sim's Python."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from simkit.plugins.gz_python.sim.entity_view import EntityView
 
 
 class Model(EntityHandle):
-    """A model."""
+    """Model of the world, or nested model."""
 
     KIND = "model"
     joints, joint_by_name, joint_count = child_methods("joint")
     links, link_by_name, link_count = child_methods("link")
     models, model_by_name = child_methods("model")[:2]
-    """The models directly in it."""
+    """Direct child models."""
 
     def static(self, ecm: EntityView) -> bool:
         scene = self._scene(ecm)
@@ -26,26 +26,26 @@ class Model(EntityHandle):
         return bool(scene is not None and scene.self_collide)
 
     def wind_mode(self, ecm: EntityView) -> bool:
-        """Check whether the wind pushes it: all of its links."""
+        """Check whether the wind acts on all links of the model."""
         scene = self._scene(ecm)
         links = scene.links if scene is not None else ()
         return bool(links) and all(link.enable_wind for link in links)
 
     def source_file_path(self, ecm: EntityView) -> str:
-        """The file it stands in; empty where it came as a text."""
+        """Return the path of the model's file; empty if the model came as a text."""
         scene = self._scene(ecm)
         return (scene.where.file or "") if scene is not None else ""
 
     def canonical_link(self, ecm: EntityView) -> int:
-        """The link whose motion is the model's; it may be in a nested model. 0 where there is none."""
+        """Return the link whose motion is the model's, also in a nested model; 0 if there is none."""
         scene = self._scene(ecm)
         link = ecm.sync().link(scene.canonical_link) if scene is not None else None
         return link.entity if link is not None else K_NULL_ENTITY
 
     def set_world_pose_cmd(self, ecm: EntityView, pose: PoseLike) -> None:
-        """Puts the model at a pose in the world, before the next step.
+        """Set the pose of the model in the world before the next step.
 
-        A nested model stays where it is, as in gz-sim, and a warning says so.
+        A nested model does not move, as in gz-sim, and a warning reports that.
         """
         record = self._record(ecm)
         if record is None:
@@ -62,7 +62,7 @@ class Model(EntityHandle):
 
 
 class PartOfModel(EntityHandle):
-    """Base of what stands in a model and carries sensors: its links and joints."""
+    """Base of links and joints, which belong to a model and have sensors."""
 
     sensors, sensor_by_name, sensor_count = child_methods("sensor")
 

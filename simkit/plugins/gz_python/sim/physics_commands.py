@@ -1,8 +1,8 @@
-"""Commands of systems to the physics, carried out before each step by the rules of gz-sim's physics system.
+"""Commands of systems to the physics, applied before each step with the rules of gz-sim's physics system.
 
-Commands to joints and velocities of links stay, as zeros, once they were given: gz-sim empties them after each step but
-does not take them back, so a joint that was given a velocity once is held at rest from the next step on, and one that
-was given a force no longer takes velocities.
+Commands to joints and velocities of links remain as zeros: gz-sim clears their values after each step, but does not
+remove the commands. A joint with one velocity command is therefore held at rest from the next step on. A joint with one
+force command ignores velocity commands from then on.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
 Numbers = tuple[float, ...]
 FindHandle = Callable[[int, str], Handle]
-"""Gives simkit's handle of an entity that is of a kind; None where it is not."""
+"""Function that returns simkit's handle of an entity of a kind; None if there is none."""
 
 
 class PhysicsCommands:
-    """The commands that wait for the next step, by entity.
+    """Commands for the next step, by entity.
 
     Attributes:
-        force, velocity: of joints [N·m, N; rad/s, m/s]; kept as zeros after a step.
-        position_reset, velocity_reset: the state of joints, once.
-        wrench: of links: force [N] and torque [N·m] in world axes, at the link's origin.
-        pose: of models in the world.
-        linear, angular: velocity of models [m/s, rad/s] and links in their own axes; kept as zeros after a step.
-        limits: of joints: what is limited, and (lower, upper) for each axis.
+        force, velocity: commands to joints [N·m, N; rad/s, m/s]; zeros after a step.
+        position_reset, velocity_reset: new states of joints, applied once.
+        wrench: force [N] and torque [N·m] on links in world axes, at the link's origin.
+        pose: poses of models in the world.
+        linear, angular: velocities of models [m/s, rad/s] and links in their own axes; zeros after a step.
+        limits: (lower, upper) for each axis of a joint, by entity and quantity.
     """
 
     def __init__(self) -> None:
@@ -54,24 +54,25 @@ class PhysicsCommands:
         return other
 
     def add_wrench(self, entity: int, force: Sequence[float], torque: Sequence[float]) -> None:
-        """Adds to what pushes a link in the next step."""
-        before = self.wrench.get(entity)
-        if before is None:
+        """Add force and torque on a link for the next step."""
+        previous = self.wrench.get(entity)
+        if previous is None:
             self.wrench[entity] = (tuple(force), tuple(torque))
         else:
-            both = zip(before, (force, torque), strict=True)
-            pushed, turned = (tuple(a + b for a, b in zip(old, new, strict=True)) for old, new in both)
-            self.wrench[entity] = (pushed, turned)
+            pairs = zip(previous, (force, torque), strict=True)
+            total_force, total_torque = (tuple(a + b for a, b in zip(old, new, strict=True)) for old, new in pairs)
+            self.wrench[entity] = (total_force, total_torque)
 
     @property
     def is_empty(self) -> bool:
+        """True without any command."""
         return not any(vars(self).values())
 
     def carry_out(self, sim: Simulation, handle: FindHandle) -> None:
         """Carry out all commands; those for an entity that was removed are dropped."""
-        for (entity, what), bounds in self.limits.items():
+        for (entity, quantity), bounds in self.limits.items():
             if joint := handle(entity, "joint"):
-                _set_limit(joint, what, bounds)
+                _set_limit(joint, quantity, bounds)
         for entity, position in self.position_reset.items():
             if joint := handle(entity, "joint"):
                 joint.set_position(_first_numbers(position, joint.dof, joint.position))
@@ -81,8 +82,8 @@ class PhysicsCommands:
         for entity, (force, torque) in self.wrench.items():
             if link := handle(entity, "link"):
                 com = link.scene.inertial.com
-                about = cross_product(link.pose.rotate(com).tolist(), force) if any(com) else (0.0, 0.0, 0.0)
-                link.apply_wrench(force, [t - a for t, a in zip(torque, about, strict=True)])
+                shift = cross_product(link.pose.rotate(com).tolist(), force) if any(com) else (0.0, 0.0, 0.0)
+                link.apply_wrench(force, [t - s for t, s in zip(torque, shift, strict=True)])
         for entity, pose in self.pose.items():
             if model := handle(entity, "model"):
                 model.set_pose(pose)
@@ -92,49 +93,49 @@ class PhysicsCommands:
                 if root is not None:
                     _set_link_velocity(sim, *root, part, velocity)
         for entity, effort in self.force.items():
-            # a zero is what is left of an earlier command, and must not undo what another plugin asks of the joint
+            # a zero remains from an earlier command, and must not replace the command of another plugin
             if any(effort) and (joint := handle(entity, "joint")):
                 joint.set_effort(_first_numbers(effort, joint.dof, 0.0))
-        held = [e for e in self.velocity if e not in self.force and e not in self.velocity_reset]
-        turned = [(joint, self.velocity[e]) for e in held if (joint := handle(e, "joint"))]
-        if turned:
-            _set_angular_velocities(sim, turned)
+        driven = [e for e in self.velocity if e not in self.force and e not in self.velocity_reset]
+        commands = [(joint, self.velocity[e]) for e in driven if (joint := handle(e, "joint"))]
+        if commands:
+            _apply_joint_velocities(sim, commands)
         self._clear_after_step()
 
     def _clear_after_step(self) -> None:
-        """After a step's commands: what stays becomes zero, the rest goes."""
-        for once in (self.position_reset, self.velocity_reset, self.wrench, self.pose, self.limits):
-            once.clear()
-        for kept in (self.force, self.velocity, self.linear, self.angular):
-            for entity, values in kept.items():
-                kept[entity] = (0.0,) * len(values)
+        """Set lasting commands to zero and remove the others."""
+        for one_time in (self.position_reset, self.velocity_reset, self.wrench, self.pose, self.limits):
+            one_time.clear()
+        for lasting in (self.force, self.velocity, self.linear, self.angular):
+            for entity, values in lasting.items():
+                lasting[entity] = (0.0,) * len(values)
 
 
-def _first_numbers(values: Numbers, count: int, otherwise: float | Vector) -> float | Numbers:
-    """As many of the values as a joint has degrees of freedom; those missing are what they are."""
+def _first_numbers(values: Numbers, count: int, default: float | Vector) -> float | Numbers:
+    """Return one value for each degree of freedom; missing values have the default."""
     if len(values) >= count:
         return float(values[0]) if count == 1 else values[:count]
-    rest = np.broadcast_to(np.atleast_1d(np.asarray(otherwise, dtype=float)), (count,))
+    rest = np.broadcast_to(np.atleast_1d(np.asarray(default, dtype=float)), (count,))
     return (*values, *rest[len(values) :].tolist())
 
 
-def _set_limit(joint: Joint, what: str, bounds: tuple[Numbers, ...]) -> None:
-    """Sets a joint's limits, of every axis the same as simkit's handle takes them: of the first."""
+def _set_limit(joint: Joint, quantity: str, bounds: tuple[Numbers, ...]) -> None:
+    """Set the limits of a joint from its first axis; simkit's handle has the same limits for all axes."""
     if not bounds:
         return
     lower, upper = bounds[0]
-    if what == "position":
+    if quantity == "position":
         joint.lower, joint.upper = lower, upper
-    elif what == "velocity":
+    elif quantity == "velocity":
         joint.velocity_limit = max(abs(lower), abs(upper))
     else:
         joint.effort_limit = max(abs(lower), abs(upper))
 
 
 def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Link, Pose] | None:
-    """The link that carries what a model or link moves with, and the frame its velocity is given in.
+    """Return the free link that moves with a model or link, and the frame of the commanded velocity.
 
-    None where nothing of it is free.
+    None if the model or link is not part of a free body.
     """
     link, model = handle(entity, "link"), handle(entity, "model")
     if link is not None:
@@ -155,33 +156,32 @@ def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Link, 
 
 
 def _set_link_velocity(sim: Simulation, link: Link, frame: Pose, part: str, velocity: Numbers) -> None:
-    """Gives a free link a linear or an angular velocity; the other part stays."""
+    """Set the linear or angular velocity of a free link, and keep the other velocity."""
     from simkit.runtime.engine.physics_step import VELOCITY
 
     binding, data = sim.engine.names.link(link.scoped), sim.mj_data
     start, dof = int(binding.root_joint_qpos), int(binding.root_joint_dof)
     quaternion = data.qpos[start + 3 : start + 7]
-    wanted = frame.rotate(velocity)
+    linear = target = frame.rotate(velocity)
     if part == "angular":
-        kept = link.linear_velocity
-        data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(quaternion), wanted)
-        wanted = kept  # of the link's origin, which need not be where the engine measures
+        linear = link.linear_velocity  # of the link's origin, which need not be the origin of the engine's body
+        data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(quaternion), target)
     spin = quat_rotate(quaternion, data.qvel[dof + 3 : dof + 6])
     arm = data.qpos[start : start + 3] - link.pose.position
-    data.qvel[dof : dof + 3] = wanted + np.cross(spin, arm)
+    data.qvel[dof : dof + 3] = linear + np.cross(spin, arm)
     sim.engine.physics.changed_body(VELOCITY, binding.body)
 
 
-def _set_angular_velocities(sim: Simulation, turned: list[tuple[Joint, Numbers]]) -> None:
-    """Applies the efforts, within their limits, that bring joints to velocities within one step, contacts aside.
+def _apply_joint_velocities(sim: Simulation, commands: list[tuple[Joint, Numbers]]) -> None:
+    """Apply efforts, within their limits, that bring joints to velocities in one step, without contacts.
 
-    With the acceleration a without them, the inertia I that they feel at these degrees of freedom and the damping D,
-    which the engine integrates implicitly: τ = (I + step·D) (v − q') / step − I a.
+    With the acceleration a without these efforts, the effective inertia I and the damping D, which the engine
+    integrates implicitly: τ = (I + step·D) (v − q') / step − I a.
     """
     import mujoco
 
     targets: dict[int, float] = {}
-    for joint, velocities in turned:
+    for joint, velocities in commands:
         limits = np.broadcast_to(np.atleast_1d(joint.velocity_limit), (max(joint.dof, 1),)).tolist()
         for dof, velocity, limit in zip(joint.mj_dofs, velocities, limits, strict=False):
             targets[dof] = max(-limit, min(limit, velocity))
@@ -193,10 +193,10 @@ def _set_angular_velocities(sim: Simulation, turned: list[tuple[Joint, Numbers]]
     units[range(len(dofs)), dofs] = 1.0
     mujoco.mj_solveM(model, data, solved, units)
     inertia = np.linalg.inv(solved[:, dofs])
-    gained = (np.array([targets[d] for d in dofs]) - data.qvel[dofs]) / sim.timestep
-    damped = sim.timestep * model.dof_damping[dofs] * gained
-    efforts = dict(zip(dofs, (inertia @ (gained - data.qacc[dofs]) + damped).tolist(), strict=True))
-    for joint, _ in turned:
+    acceleration = (np.array([targets[d] for d in dofs]) - data.qvel[dofs]) / sim.timestep
+    damping = sim.timestep * model.dof_damping[dofs] * acceleration
+    efforts = dict(zip(dofs, (inertia @ (acceleration - data.qacc[dofs]) + damping).tolist(), strict=True))
+    for joint, _ in commands:
         values = [efforts.get(dof, 0.0) for dof in joint.mj_dofs]
         if values:
             joint.set_effort(values[0] if len(values) == 1 else values)

@@ -1,4 +1,4 @@
-"""Sensors, lights and actors as gz-sim's Python shows them."""
+"""Sensors, lights and actors with the interface of gz-sim's Python."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 
 class Sensor(EntityHandle):
-    """A sensor on a link or a joint."""
+    """Sensor on a link or a joint."""
 
     KIND = "sensor"
 
@@ -25,7 +25,7 @@ class Sensor(EntityHandle):
         return self._parent(ecm)
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
-        """In the frame of the link or joint that it is on."""
+        """Return the pose in the frame of the parent link or joint."""
         record = self._record(ecm)
         if record is None:
             return None
@@ -34,30 +34,30 @@ class Sensor(EntityHandle):
         return gz_pose(owner.scene.pose_world.inverse() @ record.scene.pose_world)
 
     def topic(self, ecm: EntityView) -> str | None:
-        """The topic of its readings; None where it is not simulated."""
+        """Return the topic of the readings; None if the sensor is not simulated."""
         sensor = self._handle(ecm)
         return str(sensor.topic) if sensor is not None else None
 
 
 class Actor(EntityHandle):
-    """An actor, which its script moves. What is set here is kept and given back, and shows nowhere."""
+    """Actor that its script moves. Values that are set here are stored and returned, without any effect."""
 
     KIND = "actor"
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
-        """The origin of its trajectory, in the world."""
+        """Return the origin of the trajectory, in the world."""
         scene = self._scene(ecm)
         return gz_pose(scene.pose_world) if scene is not None else None
 
     def trajectory_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the pose that was set, relative to `pose`; None before."""
+        """Return the stored pose, relative to `pose`; None without one."""
         return self._stored(ecm, "trajectory_pose", Pose3d)
 
     def set_trajectory_pose(self, ecm: EntityView, pose: PoseLike) -> None:
         self._store(ecm, "trajectory_pose", gz_pose(simkit_pose(pose)))
 
     def world_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return its pose in the world."""
+        """Return the pose in the world."""
         model = ecm.simulation.models.get(self.name(ecm) or "")
         return gz_pose(model.pose) if model is not None else None
 
@@ -71,7 +71,7 @@ class Actor(EntityHandle):
         return self._stored(ecm, "animation_time", timedelta)
 
     def set_animation_time(self, ecm: EntityView, time: timedelta | float) -> None:
-        """A duration, or whole milliseconds as in gz-sim 8."""
+        """Store a duration, or an integer of milliseconds as in gz-sim 8."""
         self._store(ecm, "animation_time", time if isinstance(time, timedelta) else timedelta(milliseconds=time))
 
     def bone_transforms(self, ecm: EntityView) -> dict[str, Pose3d] | None:
@@ -80,32 +80,34 @@ class Actor(EntityHandle):
     def set_bone_transforms(self, ecm: EntityView, transforms: dict[str, PoseLike]) -> None:
         self._store(ecm, "bone_transforms", {name: gz_pose(simkit_pose(pose)) for name, pose in transforms.items()})
 
-    def _stored(self, ecm: EntityView, what: str, kind: type[T]) -> T | None:
-        kept = ecm.values.get((self._entity, what))
-        return kept if isinstance(kept, kind) else None
+    def _stored(self, ecm: EntityView, name: str, kind: type[T]) -> T | None:
+        stored = ecm.values.get((self._entity, name))
+        return stored if isinstance(stored, kind) else None
 
-    def _store(self, ecm: EntityView, what: str, value: object) -> None:
+    def _store(self, ecm: EntityView, name: str, value: object) -> None:
         if self.valid(ecm):
-            ecm.values[self._entity, what] = value
-            ecm.simulation.engine.log.debug("actor %s: %s is kept, only its script moves it", self.name(ecm), what)
+            ecm.values[self._entity, name] = value
+            ecm.simulation.engine.log.debug(
+                "actor %s: %s is stored, but only the script moves it", self.name(ecm), name
+            )
 
 
 class Light(EntityHandle):
-    """A light of the world or on a link."""
+    """Light of the world or on a link."""
 
     KIND = "light"
 
     def parent(self, ecm: EntityView) -> int | None:
-        """The world or a link."""
+        """Return the world or a link."""
         return self._parent(ecm)
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
-        """In the world, or in the frame of the link that carries it."""
+        """Return the pose in the world, or in the frame of the link that carries the light."""
         light = self._handle(ecm)
         return gz_pose(light.state.pose) if light is not None else None
 
     def set_pose(self, ecm: EntityView, pose: PoseLike) -> None:
-        """In the world, or in the frame of the link that carries it; at once."""
+        """Set the pose in the world, or in the frame of the link that carries the light, at once."""
         light = self._handle(ecm)
         if light is not None:
             carrier = ecm.simulation.link(light.scene.link).pose if light.scene.link else None
@@ -113,7 +115,7 @@ class Light(EntityHandle):
             light.set_pose(carrier @ own if carrier is not None else own)
 
     def type(self, ecm: EntityView) -> str | None:
-        """point, directional or spot."""
+        """Return point, directional or spot."""
         return self._read(ecm, "type", str)
 
     def diffuse_color(self, ecm: EntityView) -> Color | None:
@@ -129,22 +131,22 @@ class Light(EntityHandle):
         return self._read(ecm, "intensity", float)
 
     def direction(self, ecm: EntityView) -> Vector3d | None:
-        """A unit vector in the light's own frame."""
+        """Return the unit direction in the light's own frame."""
         return self._read(ecm, "direction", gz_vector)
 
     def attenuation_range(self, ecm: EntityView) -> float | None:
-        """[m]"""
+        """Return the range [m]."""
         return self._part(ecm, "attenuation", 0)
 
     def attenuation_constant(self, ecm: EntityView) -> float | None:
         return self._part(ecm, "attenuation", 1)
 
     def attenuation_linear(self, ecm: EntityView) -> float | None:
-        """[1/m]"""
+        """Return the linear attenuation [1/m]."""
         return self._part(ecm, "attenuation", 2)
 
     def attenuation_quadratic(self, ecm: EntityView) -> float | None:
-        """[1/m²]"""
+        """Return the quadratic attenuation [1/m²]."""
         return self._part(ecm, "attenuation", 3)
 
     def spot_inner_angle(self, ecm: EntityView) -> Angle | None:
@@ -156,7 +158,7 @@ class Light(EntityHandle):
     def spot_falloff(self, ecm: EntityView) -> float | None:
         return self._part(ecm, "spot", 2)
 
-    # ------------------------------------------------------------------ changing it, at once
+    # ------------------------------------------------------------------ changes with immediate effect
 
     def set_diffuse_color(self, ecm: EntityView, color: Color) -> None:
         self._change(ecm, diffuse=_rgba(color))
@@ -171,27 +173,27 @@ class Light(EntityHandle):
         self._change(ecm, intensity=float(value))
 
     def set_direction(self, ecm: EntityView, direction: VectorLike) -> None:
-        """In the light's own frame; its length does not matter, and a zero vector is ignored."""
-        wanted = Vector3d(direction)
+        """Set the direction in the light's own frame; the length is ignored, and so is a zero vector."""
+        vector = Vector3d(direction)
         light = self._handle(ecm)
-        if light is not None and wanted.length() > 0.0:
-            x, y, z = wanted / wanted.length()
+        if light is not None and vector.length() > 0.0:
+            x, y, z = vector / vector.length()
             turned = light.pose.rotate((x, y, z)).tolist()
             self._change(ecm, direction=(x, y, z), direction_world=tuple(turned))
 
     def set_attenuation_range(self, ecm: EntityView, range: float) -> None:
-        """[m]"""
+        """Set the range [m]."""
         self._change_part(ecm, "attenuation", 0, range)
 
     def set_attenuation_constant(self, ecm: EntityView, value: float) -> None:
         self._change_part(ecm, "attenuation", 1, value)
 
     def set_attenuation_linear(self, ecm: EntityView, value: float) -> None:
-        """[1/m]"""
+        """Set the linear attenuation [1/m]."""
         self._change_part(ecm, "attenuation", 2, value)
 
     def set_attenuation_quadratic(self, ecm: EntityView, color: float) -> None:
-        """[1/m²]; gz-sim calls the number `color` too."""
+        """Set the quadratic attenuation [1/m²]; gz-sim also names this parameter `color`."""
         self._change_part(ecm, "attenuation", 3, color)
 
     def set_spot_inner_angle(self, ecm: EntityView, angle: Angle) -> None:
@@ -203,10 +205,10 @@ class Light(EntityHandle):
     def set_spot_falloff(self, ecm: EntityView, falloff: float) -> None:
         self._change_part(ecm, "spot", 2, falloff)
 
-    # ------------------------------------------------------------------ inside
+    # ------------------------------------------------------------------ helpers
 
     def _read(self, ecm: EntityView, name: str, convert: Callable[[Any], T]) -> T | None:
-        """Return a property as it is now, or as in the file where the light is not simulated."""
+        """Return a current property, or the file's one if the light is not simulated."""
         scene, light = self._scene(ecm), self._handle(ecm)
         return convert(getattr(light.scene if light is not None else scene, name)) if scene is not None else None
 

@@ -1,4 +1,4 @@
-"""Systems of gz that hang on a simulation: the time that their hooks get, and what is done once for all of them."""
+"""Systems of gz in a simulation: the time for their hooks, and the work that is done once for all of them."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 
 class UpdateInfo:
-    """The time of an update.
+    """Time of an update.
 
     Attributes:
-        iterations: steps, the one this update belongs to included.
-        paused: whether the physics stands still.
+        iterations: number of steps, including the step of this update.
+        paused: true if the physics is paused.
     """
 
     __slots__ = ("_dt_ns", "_time_ns", "iterations", "paused")
@@ -37,7 +37,7 @@ class UpdateInfo:
 
     @property
     def real_time(self) -> timedelta:
-        """The simulated time too: what depends on the machine's clock would make runs differ."""
+        """Simulated time as well: a dependence on the machine's clock would make runs differ."""
         return self.sim_time
 
     @real_time.setter
@@ -66,20 +66,20 @@ def _nanoseconds(value: timedelta) -> int:
 
 
 class EventManager:
-    """Handed to `configure`; gz's binding offers nothing on it either."""
+    """Argument of `configure`; gz's binding has no methods on it either."""
 
 
 class SystemPlugin(Protocol):
-    """A plugin that stands for a system of gz."""
+    """Plugin that represents a system of gz."""
 
     is_gz_system: bool
 
     def call(self, hook: str, info: UpdateInfo) -> None:
-        """Calls a hook of the system, where it has it."""
+        """Call a hook of the system, if it has the hook."""
 
 
 def systems_of(sim: Simulation) -> list[SystemPlugin]:
-    """The plugins that stand for systems of gz, in order, without those that raised and are left out."""
+    """Return the plugins that represent systems of gz, in order, without disabled ones."""
     plugins: list[Any] = sim.engine.structure.all_plugins()
     return [p for p in plugins if getattr(p, "is_gz_system", False) and not sim.engine.faults.is_disabled(p)]
 
@@ -88,28 +88,29 @@ class SystemHub(SharedByCopies):
     """State that the systems of one simulation share.
 
     Attributes:
-        ecm: the entities.
-        first, last: the first and the last system; the one keeps the state of all, the other carries out commands.
+        ecm: entities of the simulation.
+        first: first system, which stores the state of all.
+        last: last system, which applies the commands.
     """
 
     def __init__(self, sim: Simulation) -> None:
         self._sim, self.ecm = sim, manager_of(sim)
         self._structure: WorldStructure | None = None
-        self._count = -1
+        self._fault_count = -1
         self.first: SystemPlugin | None = None
         self.last: SystemPlugin | None = None
         self._info = UpdateInfo(0, sim.engine.clock.time_ns(1), 0, False)
 
     def look(self) -> None:
-        """Takes note of who is there now."""
-        structure, out = self._sim.engine.structure, len(self._sim.engine.faults.get_state())
-        if structure is not self._structure or out != self._count:
+        """Update `first` and `last` to the current systems."""
+        structure, fault_count = self._sim.engine.structure, len(self._sim.engine.faults.get_state())
+        if structure is not self._structure or fault_count != self._fault_count:
             systems = systems_of(self._sim)
             self.first, self.last = (systems[0], systems[-1]) if systems else (None, None)
-            self._structure, self._count = structure, out
+            self._structure, self._fault_count = structure, fault_count
 
     def info(self, ahead: int) -> UpdateInfo:
-        """The time for hooks: of the step that comes (`ahead` 1) or that is done (0); one object for all of a step."""
+        """Return the time for hooks, one object a step: the next step (`ahead` 1), or the finished one (0)."""
         tick = self._sim.tick + ahead
         info = self._info
         if info.iterations != tick:
@@ -119,13 +120,13 @@ class SystemHub(SharedByCopies):
         return info
 
     def carry_out(self) -> None:
-        """Puts the commands of all systems into effect."""
+        """Apply the commands of all systems."""
         if not self.ecm.commands.is_empty:
             self.ecm.commands.carry_out(self._sim, self.ecm.handle)
 
 
 def hub_of(sim: Simulation) -> SystemHub:
-    """The one hub of a simulation."""
+    """Return the hub of a simulation; every simulation has one."""
     ecm = manager_of(sim)
     if not isinstance(ecm.hub, SystemHub):
         ecm.hub = SystemHub(sim)
@@ -133,7 +134,7 @@ def hub_of(sim: Simulation) -> SystemHub:
 
 
 def update_paused(sim: Simulation) -> None:
-    """One iteration in which the physics stands still."""
+    """Run one iteration with paused physics."""
     info = UpdateInfo(sim.time_ns, 0, sim.tick, True)
     for hook in ("pre_update", "update", "post_update"):
         for system in systems_of(sim):

@@ -1,4 +1,4 @@
-"""The world as gz-sim's Python shows it."""
+"""The world with the interface of gz-sim's Python."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from simkit.scene import SphericalCoordinates as Place
 
 
 class World(EntityHandle):
-    """The world."""
+    """World of the simulation."""
 
     KIND = "world"
     lights, light_by_name, light_count = child_methods("light")
-    """The lights that are on no link."""
+    """Lights that are not on a link."""
     actors, actor_by_name, actor_count = child_methods("actor")
     models, model_by_name, model_count = child_methods("model")
-    """The models that are in no other."""
+    """Models that are not nested."""
 
     def gravity(self, ecm: EntityView) -> Vector3d | None:
-        """[m/s²]"""
+        """Return the gravity [m/s²]."""
         return gz_vector(ecm.simulation.mj_model.opt.gravity) if self.valid(ecm) else None
 
     def magnetic_field(self, ecm: EntityView) -> Vector3d | None:
-        """[T] in world axes."""
+        """Return the magnetic field [T] in world axes."""
         return gz_vector(ecm.simulation.world.magnetic_field) if self.valid(ecm) else None
 
     def atmosphere(self, ecm: EntityView) -> Atmosphere | None:
@@ -44,7 +44,7 @@ class World(EntityHandle):
         return _coordinates(ecm.simulation.control.origin.place) if self.valid(ecm) else None
 
     def set_spherical_coordinates(self, ecm: EntityView, coordinates: SphericalCoordinates) -> None:
-        """Lays the origin somewhere else, at once; sensors of position and field go by it from now on."""
+        """Move the origin to another location at once; position and field sensors use it from now on."""
         if not self.valid(ecm):
             return
         site = ecm.simulation.control.origin
@@ -74,13 +74,13 @@ def _coordinates(place: Place | None) -> SphericalCoordinates | None:
 
 
 def world_entity(*values: Any) -> int:
-    """The world, of a manager or of an entity and a manager; 0 where it shows no simulation."""
+    """Return the world's entity, for a manager or for an entity and a manager; 0 without a simulation."""
     ecm = values[-1]
     return WORLD_ENTITY if ecm.record(WORLD_ENTITY, "world") is not None else K_NULL_ENTITY
 
 
 def world_pose(entity: int, ecm: EntityView) -> Pose3d:
-    """Return the pose of any entity in the world; the identity for what has no pose."""
+    """Return the pose of any entity in the world; the identity for entities without a pose."""
     record = ecm.record(entity)
     if record is None or not record.kind or record.kind == "world":
         return Pose3d()
