@@ -156,7 +156,7 @@ class _Writer:
     def joint(self, joint: SceneJoint, model: str, links: dict[str, SceneLink]) -> Params | None:
         """Return a joint; None, with a warning, for a joint type that SDF does not have."""
         if joint.type in _NOT_IN_SDF:
-            left = "its child link moves freely" if joint.type == "floating" else "it is left out"
+            left = "its child link moves freely" if joint.type == "floating" else "it is omitted"
             message = f"joint {joint.scoped!r}: SDF has no {joint.type} joint; {left}"
             self.diagnostics.warning("SK-WRITE-001", message, joint.where)
             return None
@@ -189,7 +189,7 @@ class _Writer:
         if link.inertial.mass <= 0 or found.old[0] >= -1e-15:
             return link.inertial
         moments = f"{format_moments(found.old)} become {format_moments(found.new)}"
-        message = f"link {link.scoped!r}: SDF takes no negative moment of inertia, {moments}"
+        message = f"link {link.scoped!r}: SDF does not allow a negative moment of inertia; {moments}"
         self.diagnostics.warning("SK-WRITE-003", message, link.where)
         return found.inertial
 
@@ -200,7 +200,7 @@ class _Writer:
         if ground is None or model.base != "fixed" or any(j.child_link == scoped for j in model.joints):
             return model
         if ground.collisions or ground.visuals or ground.sensors or ground.lights:
-            message = f"link {scoped!r} is the world, which has no shapes in SDF; left out"
+            message = f"link {scoped!r} is the world, which has no shapes in SDF; its shapes are omitted"
             self.diagnostics.warning("SK-WRITE-002", message, ground.where)
         links = tuple(link for link in model.links if link is not ground)
         joints = tuple(replace(j, parent_link=_WORLD) if j.parent_link == scoped else j for j in model.joints)
@@ -219,11 +219,11 @@ class _Writer:
         }
         listed = ", ".join(f"{count} {name}" for name, count in lost.items() if count)
         if listed:
-            message = f"model {model.scoped!r}: SDF has no word for {listed}; left out"
+            message = f"model {model.scoped!r}: SDF does not support {listed}; they are omitted"
             self.diagnostics.warning("SK-WRITE-002", message, model.where)
         if model.mjcf is not None:
-            message = f"model {model.scoped!r} is in MuJoCo's own format: actuators, tendons, sensors and settings of"
-            self.diagnostics.warning("SK-WRITE-002", f"{message} the engine are left out", model.where)
+            message = f"model {model.scoped!r} is an MJCF model: actuators, tendons, sensors and settings of"
+            self.diagnostics.warning("SK-WRITE-002", f"{message} the engine are omitted", model.where)
 
 
 def _actor(actor: SceneActor) -> Params:

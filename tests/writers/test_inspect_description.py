@@ -75,7 +75,7 @@ def test_a_world_lists_its_surroundings():
     assert described('<sdf version="1.9"><world name="w"/></sdf>')["worlds"][0]["spherical_coordinates"] is None
 
 
-def test_a_kind_that_nothing_simulates_shows_its_camera_and_its_scan():
+def test_an_unsimulated_sensor_type_shows_its_camera_and_scan_options():
     diagnostics = Diagnostics()
     text = """<sdf version="1.9"><model name="m"><link name="l">
       <sensor name="eye" type="odd_camera"><camera><horizontal_fov>2</horizontal_fov>

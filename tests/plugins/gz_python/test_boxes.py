@@ -41,7 +41,7 @@ def test_the_box_is_around_all_collisions_and_turns_with_the_link() -> None:
         assert body.axis_aligned_box(ecm) is None
 
 
-def test_a_static_link_has_one_and_a_bare_one_an_empty_one() -> None:
+def test_a_static_link_has_a_box_and_a_link_without_collision_an_empty_one() -> None:
     fixture = TestFixture(WORLD)
     with fixture.server().ecm() as ecm:
         stone = Link(Model(World(1).model_by_name(ecm, "rock")).canonical_link(ecm))

@@ -72,7 +72,7 @@ def test_a_force_is_at_the_centre_of_mass_and_turns_nothing() -> None:
     assert sim.link("body::link").angular_velocity == pytest.approx([0, 0, 0], abs=1e-12)
 
 
-def test_a_force_beside_the_centre_turns_by_its_arm_in_link_axes() -> None:
+def test_a_force_at_an_offset_has_the_torque_of_its_arm_in_link_axes() -> None:
     # turned a quarter about z, the arm along the link's x lies along the world's y
     world = body("0.3 0 0 0 0 0", "0 0 5 0 0 1.5707963267948966")
     push = lambda _, ecm: the_link(ecm).add_world_force(ecm, Vector3d(4, 0, 0), Vector3d(0.5, 0, 0))  # noqa: E731
@@ -98,7 +98,7 @@ def test_a_link_force_is_in_the_links_axes() -> None:
 # ---------------------------------------------------------------------- velocities and poses of bodies
 
 
-def test_a_velocity_is_in_the_links_axes_and_gone_after_the_step() -> None:
+def test_a_velocity_command_is_in_link_axes_and_lasts_one_step() -> None:
     speeds: list[float] = []
 
     def note(_: UpdateInfo, ecm: EntityComponentManager) -> None:
@@ -153,7 +153,7 @@ def test_a_static_model_can_be_moved_too() -> None:
     assert sim.model("wall").pose.position == pytest.approx([0, 3, 0])
 
 
-def test_a_nested_model_stays_and_a_warning_says_so_once() -> None:
+def test_a_nested_model_does_not_move_and_is_a_warning_once() -> None:
     world = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="out"><link name="l"/>
       <model name="in"><link name="m"/></model></model></world></sdf>"""
 
@@ -185,7 +185,7 @@ def test_after_a_velocity_command_the_joint_is_held_at_rest() -> None:
     assert sim.joint("stand::axle").velocity == pytest.approx(0, abs=1e-9)
 
 
-def test_a_force_turns_for_one_step_and_bars_velocities() -> None:
+def test_a_force_lasts_one_step_and_disables_velocity_commands() -> None:
     def act(info: UpdateInfo, ecm: EntityComponentManager) -> None:
         if info.iterations == 1:
             the_axle(ecm).set_force(ecm, [8.0])
@@ -215,7 +215,7 @@ def test_limits_can_be_set() -> None:
     assert (joint.lower, joint.upper, joint.velocity_limit, joint.effort_limit) == (-0.1, 0.2, 3, 7)
 
 
-def test_a_number_that_is_none_names_the_hook_and_the_line() -> None:
+def test_nan_in_a_command_names_the_hook_and_the_line() -> None:
     import simkit
 
     fixture = TestFixture(wheel())

@@ -36,7 +36,7 @@ def test_a_component_has_a_name_and_a_number_and_can_be_a_key() -> None:
         components.NoSuchThing  # noqa: B018
 
 
-def test_tags_and_data_come_and_go() -> None:
+def test_tags_and_data_can_be_set_and_removed() -> None:
     ecm = EntityComponentManager()
     e = ecm.create_entity()
     assert ecm.component(e, components.Model) is None
@@ -48,7 +48,7 @@ def test_tags_and_data_come_and_go() -> None:
     assert ecm.remove_component(e, components.Model) and not ecm.remove_component(e, components.Model)
 
 
-def test_equal_data_is_not_set_again_unless_told_to() -> None:
+def test_equal_data_is_set_again_only_without_compare() -> None:
     ecm = EntityComponentManager()
     e = ecm.create_entity()
     ecm.create_component(e, components.Name, "a")
@@ -56,7 +56,7 @@ def test_equal_data_is_not_set_again_unless_told_to() -> None:
     assert ecm.set_component_data(e, components.Name, "a", False) and ecm.set_component_data(e, components.Name, "b")
 
 
-def test_what_does_not_fit_is_refused() -> None:
+def test_invalid_component_data_is_rejected() -> None:
     ecm = EntityComponentManager()
     e = ecm.create_entity()
     with pytest.raises(TypeError, match="is a tag"):
@@ -69,7 +69,7 @@ def test_what_does_not_fit_is_refused() -> None:
         ecm.component(e, "Pose")
 
 
-def test_components_of_ones_own_are_found_by_each() -> None:
+def test_custom_components_are_found_by_each() -> None:
     ecm = EntityComponentManager()
     mine = components.register_custom_component("Mine")
     first, _, third = ecm.create_entity(), ecm.create_entity(), ecm.create_entity()
@@ -82,14 +82,14 @@ def test_components_of_ones_own_are_found_by_each() -> None:
     assert seen == {first: 1, third: 3} and ecm.component(third, mine) == {"value": 30}
 
 
-def test_entities_made_by_hand_have_parents() -> None:
+def test_custom_entities_have_parents() -> None:
     ecm = EntityComponentManager()
     parent, child = ecm.create_entity(), ecm.create_entity()
     assert ecm.parent_entity(child) == 0 and ecm.set_parent_entity(child, parent)
     assert ecm.parent_entity(child) == parent and not ecm.has_entity(99) and ecm.entity_count() == 2
 
 
-def test_a_method_that_is_not_there_says_what_to_use() -> None:
+def test_a_missing_method_names_a_replacement() -> None:
     with pytest.raises(AttributeError, match=r"no request_remove_entity; use simkit's own sim\.remove\(name\)"):
         EntityComponentManager().request_remove_entity  # noqa: B018
     with pytest.raises(AttributeError, match=r"has no create_entitty; did you mean 'create_entity'"):
@@ -110,7 +110,7 @@ def test_later_versions_names_and_loops_work_too() -> None:
 # ---------------------------------------------------------------------- of a simulation
 
 
-def test_what_is_in_the_world_has_gz_sims_components() -> None:
+def test_entities_of_the_world_have_gz_sims_components() -> None:
     found: dict[str, Any] = {}
 
     def look(info: Any, ecm: EntityComponentManager) -> None:
@@ -139,7 +139,7 @@ def test_commands_are_components_too() -> None:
     assert velocity == pytest.approx([1, 0, 0]) and position == pytest.approx([0.003, 0, 9])
 
 
-def test_making_a_velocity_component_turns_the_reading_on() -> None:
+def test_creating_a_velocity_component_enables_the_reading() -> None:
     told: list[Any] = []
 
     def look(info: Any, ecm: EntityComponentManager) -> None:
@@ -151,7 +151,7 @@ def test_making_a_velocity_component_turns_the_reading_on() -> None:
     assert told == [None, Vector3d(2, 0, 0)]
 
 
-def test_what_the_simulation_says_cannot_be_overwritten() -> None:
+def test_a_read_only_component_cannot_be_overwritten() -> None:
     def write(info: Any, ecm: EntityComponentManager) -> None:
         ecm.create_component(4, components.Name, "other")
 
@@ -159,7 +159,7 @@ def test_what_the_simulation_says_cannot_be_overwritten() -> None:
         run(write)
 
 
-def test_a_change_in_place_that_has_no_effect_is_refused() -> None:
+def test_a_change_in_place_of_a_read_only_component_is_rejected() -> None:
     def move(info: Any, ecm: EntityComponentManager) -> None:
         ecm.component(4, components.Pose).set_x(9)
         ecm.set_changed(4, components.Pose)
@@ -168,7 +168,7 @@ def test_a_change_in_place_that_has_no_effect_is_refused() -> None:
         run(move)
 
 
-def test_ones_own_data_can_be_changed_in_place() -> None:
+def test_custom_data_can_be_changed_in_place() -> None:
     mine = components.register_custom_component("Mine")
 
     def keep(info: Any, ecm: EntityComponentManager) -> None:

@@ -84,7 +84,7 @@ def arm(ecm: EntityComponentManager) -> Model:
 # ---------------------------------------------------------------------- the world
 
 
-def test_the_world_is_entity_one_and_tells_its_surroundings(ecm: EntityComponentManager) -> None:
+def test_the_world_is_entity_one_and_has_its_environment(ecm: EntityComponentManager) -> None:
     world = World(world_entity(ecm))
     assert world.entity() == 1 and world.valid(ecm) and world.name(ecm) == "yard"
     assert world.gravity(ecm) == Vector3d(0, 0, -10)
@@ -118,7 +118,7 @@ def test_the_world_counts_what_is_in_it(ecm: EntityComponentManager) -> None:
 # ---------------------------------------------------------------------- models, links, joints
 
 
-def test_a_model_tells_what_it_is(ecm: EntityComponentManager, arm: Model) -> None:
+def test_a_model_has_its_properties(ecm: EntityComponentManager, arm: Model) -> None:
     assert arm.valid(ecm) and not arm.static(ecm) and arm.self_collide(ecm)
     assert (arm.link_count(ecm), arm.joint_count(ecm), len(arm.models(ecm))) == (2, 1, 1)
     assert Link(arm.canonical_link(ecm)).name(ecm) == "base"
@@ -132,7 +132,7 @@ def test_entities_are_numbered_as_gz_sim_numbers_them(ecm: EntityComponentManage
     assert (base.entity(), *base.visuals(ecm), *base.collisions(ecm), *base.sensors(ecm)) == (5, 6, 7, 8)
 
 
-def test_a_handle_of_nothing_is_not_valid_and_tells_nothing(ecm: EntityComponentManager) -> None:
+def test_a_handle_of_no_entity_is_invalid_and_returns_none(ecm: EntityComponentManager) -> None:
     for handle in (Model(), Link(99), Joint(1), Sensor(4), Light(5), Actor(4)):
         assert not handle.valid(ecm)
     assert Link(99).world_pose(ecm) is None and Link(99).name(ecm) is None
@@ -140,7 +140,7 @@ def test_a_handle_of_nothing_is_not_valid_and_tells_nothing(ecm: EntityComponent
     assert ecm.commands.is_empty
 
 
-def test_a_link_tells_its_place_and_its_mass(ecm: EntityComponentManager, arm: Model) -> None:
+def test_a_link_has_its_pose_and_its_mass(ecm: EntityComponentManager, arm: Model) -> None:
     base = Link(arm.link_by_name(ecm, "base"))
     assert base.parent_model(ecm) == arm and base.is_canonical(ecm) and base.wind_mode(ecm)
     assert base.world_pose(ecm) == Pose3d(1, 0, 2, 0, 0, Angle.HALF_PI.radian())
@@ -151,7 +151,7 @@ def test_a_link_tells_its_place_and_its_mass(ecm: EntityComponentManager, arm: M
     assert base.collision_by_name(ecm, "hull") and base.visual_by_name(ecm, "shell") and base.sensor_count(ecm) == 1
 
 
-def test_a_joint_tells_its_ends_its_axis_and_its_kind(ecm: EntityComponentManager, arm: Model) -> None:
+def test_a_joint_has_its_links_axis_and_type(ecm: EntityComponentManager, arm: Model) -> None:
     elbow = Joint(arm.joint_by_name(ecm, "elbow"))
     assert (elbow.parent_link_name(ecm), elbow.child_link_name(ecm)) == ("base", "hand")
     assert elbow.pose(ecm) == Pose3d(0, -0.5, 0, 0, 0, 0)
@@ -161,7 +161,7 @@ def test_a_joint_tells_its_ends_its_axis_and_its_kind(ecm: EntityComponentManage
     assert elbow.type(ecm) == sdformat.JointType.REVOLUTE and elbow.sensor_count(ecm) == 1
 
 
-def test_a_sensor_tells_its_pose_in_what_it_is_on_and_its_topic(ecm: EntityComponentManager, arm: Model) -> None:
+def test_a_sensor_has_its_pose_in_its_parent_and_its_topic(ecm: EntityComponentManager, arm: Model) -> None:
     feel = Sensor(Link(arm.link_by_name(ecm, "base")).sensor_by_name(ecm, "feel"))
     assert feel.pose(ecm) == Pose3d(0, 0, 0.2, 0, 0, 0)
     assert feel.topic(ecm) == "/world/yard/model/arm/link/base/sensor/feel/imu"
@@ -193,7 +193,7 @@ def lamp_and_torch(ecm: EntityComponentManager) -> tuple[Light, Light]:
     return Light(world.light_by_name(ecm, "lamp")), Light(world.light_by_name(ecm, "torch"))
 
 
-def test_a_light_tells_how_it_shines(ecm: EntityComponentManager) -> None:
+def test_a_light_has_its_properties(ecm: EntityComponentManager) -> None:
     lamp, torch = lamp_and_torch(ecm)
     assert lamp.type(ecm) == "point" and torch.type(ecm) == "spot" and lamp.parent(ecm) == 1
     assert lamp.pose(ecm) == Pose3d(0, 2, 2, 0, 0, 0)
@@ -206,7 +206,7 @@ def test_a_light_tells_how_it_shines(ecm: EntityComponentManager) -> None:
     assert torch.spot_falloff(ecm) == 0.8
 
 
-def test_what_is_set_of_a_light_is_there_at_once(fixture: TestFixture, ecm: EntityComponentManager) -> None:
+def test_changes_of_a_light_take_effect_at_once(fixture: TestFixture, ecm: EntityComponentManager) -> None:
     lamp, torch = lamp_and_torch(ecm)
     lamp.set_pose(ecm, Pose3d(4, 2, 2, 0, 0, 0))
     lamp.set_diffuse_color(ecm, Color(1, 1, 0, 1))
@@ -223,7 +223,7 @@ def test_what_is_set_of_a_light_is_there_at_once(fixture: TestFixture, ecm: Enti
     assert lamp.diffuse_color(ecm) == Color(1, 0, 0, 1) and lamp.pose(ecm) == Pose3d(0, 2, 2, 0, 0, 0)
 
 
-def test_what_is_set_of_an_actor_is_kept(ecm: EntityComponentManager) -> None:
+def test_values_set_for_an_actor_are_stored(ecm: EntityComponentManager) -> None:
     walker = Actor(World(1).actor_by_name(ecm, "walker"))
     assert walker.pose(ecm) == walker.world_pose(ecm) == Pose3d(1, 1, 0, 0, 0, 0)
     assert walker.trajectory_pose(ecm) is walker.animation_name(ecm) is walker.animation_time(ecm) is None
@@ -283,7 +283,7 @@ def test_the_times_are_those_of_gz_sim(fixture: TestFixture) -> None:
     ]
 
 
-def test_paused_the_hooks_run_and_the_time_stands(fixture: TestFixture) -> None:
+def test_hooks_run_while_paused_and_the_time_is_constant(fixture: TestFixture) -> None:
     told: list[tuple[int, bool, timedelta]] = []
     fixture.on_pre_update(lambda info, ecm: told.append((info.iterations, info.paused, info.dt)))
     server = fixture.finalize().server()
@@ -298,7 +298,7 @@ def test_an_endless_run_has_a_thread_until_it_is_stopped(fixture: TestFixture) -
     assert not server.is_running()
 
 
-def test_a_server_tells_of_its_world(fixture: TestFixture) -> None:
+def test_a_server_describes_its_world(fixture: TestFixture) -> None:
     server = fixture.server()
     assert server.has_entity("elbow") and not server.has_entity("knee") and server.entity_by_name("arm") == 4
     info = server.current_info()

@@ -35,11 +35,11 @@ from simkit.plugins.gz_python import import_hook
         ("sdformats", None),
     ],
 )
-def test_every_version_is_one_module_of_ours(name: str, ours: str | None) -> None:
+def test_every_version_is_one_module_of_simkit(name: str, ours: str | None) -> None:
     assert import_hook.module_behind(name) == ours
 
 
-def test_the_names_are_there_within_and_gone_after() -> None:
+def test_the_names_exist_only_within_the_context() -> None:
     with gz_python.importable():
         eight, ten = importlib.import_module("gz.sim8"), importlib.import_module("gz.sim10")
         assert eight.Link is ten.Link
@@ -48,7 +48,7 @@ def test_the_names_are_there_within_and_gone_after() -> None:
         importlib.import_module("gz.sim8")
 
 
-def test_installing_lasts_until_it_is_taken_back() -> None:
+def test_install_lasts_until_uninstall() -> None:
     assert gz_python.install() == {}
     try:
         assert importlib.import_module("gz.math7").Vector3d(1, 2, 3).length() > 3
@@ -57,7 +57,7 @@ def test_installing_lasts_until_it_is_taken_back() -> None:
     assert "gz.math7" not in sys.modules
 
 
-def test_a_name_that_is_not_there_says_what_is() -> None:
+def test_a_missing_module_lists_the_existing_ones() -> None:
     with gz_python.importable():
         with pytest.raises(ImportError, match="no Gui; simkit has no user interface"):
             from gz.sim8 import Gui  # type: ignore[import-not-found]  # noqa: F401
@@ -85,14 +85,14 @@ def real_gz(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     import_hook._finder.modules.clear()
 
 
-def test_what_is_really_installed_goes_first_and_is_told(real_gz: Path) -> None:
+def test_an_installed_module_has_priority_and_is_reported(real_gz: Path) -> None:
     assert gz_python.installed() == {"gz.math7": str(real_gz / "gz" / "math7.py")}
     with gz_python.importable():
         assert importlib.import_module("gz.math7").NAME == "the real one"
         assert import_hook.is_shim(importlib.import_module("gz.sim8"))  # the rest of the package is ours
 
 
-def test_asked_to_ours_goes_before_an_installed_one(real_gz: Path) -> None:
+def test_with_shadow_simkits_module_has_priority(real_gz: Path) -> None:
     with gz_python.importable(shadow=True):
         assert import_hook.is_shim(importlib.import_module("gz.math7"))
 

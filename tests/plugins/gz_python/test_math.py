@@ -92,7 +92,7 @@ def test_x_without_an_argument_reads_and_with_one_sets() -> None:
         v[3]
 
 
-def test_normalising_changes_the_vector_and_a_copy_stands_for_itself() -> None:
+def test_normalize_changes_the_vector_and_a_copy_is_independent() -> None:
     v = Vector3d(0, 3, 4)
     same = v
     other = copy.deepcopy(v)
@@ -102,7 +102,7 @@ def test_normalising_changes_the_vector_and_a_copy_stands_for_itself() -> None:
     assert list(Vector3d(1e-9, 0, 0).normalized()) == [1e-9, 0, 0]  # gz-math leaves what is nearly nothing
 
 
-def test_adding_in_place_changes_the_very_vector() -> None:
+def test_adding_in_place_changes_the_same_object() -> None:
     v = Vector3d(1, 1, 1)
     same = v
     v += Vector3d(1, 2, 3)
@@ -237,14 +237,14 @@ def test_six_numbers_are_euler_angles_and_seven_a_quaternion() -> None:
     assert str(Pose3d(1, 2, 3, 0, 0, 1.0)) == "1 2 3 0 0 1"
 
 
-def test_a_pose_gives_out_its_very_parts() -> None:
+def test_a_pose_returns_its_own_components() -> None:
     pose = Pose3d(A)
     pose.pos().x(9)
     pose.set_z(5)
     assert (pose.x(), pose.z()) == (9, 5) and A.x() == 1
 
 
-def test_a_point_is_carried_by_a_pose() -> None:
+def test_a_pose_transforms_a_point() -> None:
     assert array(A.coord_position_add(Vector3d(1, 0, -1))) == pytest.approx((matrix(A) @ [1, 0, -1, 1])[:3])
 
 
@@ -323,20 +323,20 @@ def test_the_pid_follows_gz_maths_signs() -> None:
     assert pid.update(-100.0, 0.0, step) == 1.0
 
 
-def test_colours_are_cut_off_and_temperatures_are_numbers_too() -> None:
+def test_colours_are_clamped_and_temperatures_are_numbers() -> None:
     assert Color(2, 0.5, -1) == Color(1, 0.5, 0, 1)
     assert 300 == Temperature(300) and Temperature(273.15).celsius() == 0  # noqa: SIM300 - as a test of gz-sim asks
     assert Temperature(300).fahrenheit() == pytest.approx(80.33)
 
 
-def test_boxes_hold_points_and_grow() -> None:
+def test_boxes_contain_points_and_merge() -> None:
     box = AxisAlignedBox(Vector3d(1, 1, 1), Vector3d(-1, -1, -1))
     assert box.contains(Vector3d(0, 0.5, 1)) and not box.contains(Vector3d(0, 0, 1.1)) and box.volume() == 8
     assert (box + AxisAlignedBox(2, 2, 2, 3, 3, 3)).size() == Vector3d(4, 4, 4)
     assert AxisAlignedBox().volume() == 0
 
 
-def test_a_rolling_mean_forgets() -> None:
+def test_a_rolling_mean_drops_old_values() -> None:
     mean = RollingMean(2)
     assert math.isnan(mean.mean())
     for value in (1, 2, 4):
@@ -344,14 +344,14 @@ def test_a_rolling_mean_forgets() -> None:
     assert mean.mean() == 3 and mean.count() == 2
 
 
-def test_what_gz_math_has_and_simkit_has_not_says_what_to_use() -> None:
+def test_a_name_missing_from_gz_math_names_a_replacement() -> None:
     with pytest.raises(AttributeError, match=r"no Rand; use random\.Random"):
         gz.Rand  # noqa: B018
     with pytest.raises(AttributeError, match=r"simkit's gz\.math has no Frustum; docs/gazebo_python\.md"):
         gz.Frustum  # noqa: B018
 
 
-def test_vectors_of_another_library_are_taken() -> None:
+def test_vectors_of_another_library_are_accepted() -> None:
     class Foreign:
         def x(self) -> float:
             return 1.0

@@ -42,7 +42,7 @@ def test_after_a_reset_the_callbacks_are_called_as_before() -> None:
     ("hook", "told"),
     [("on_post_update", [1, 2, 3, 1, 2, 3, 1, 2]), ("on_pre_update", [1, 2, 3, 2, 3, 2, 3, 2])],  # 3 becomes the new 1
 )
-def test_who_resets_within_a_callback_has_the_rest_of_the_iterations(hook: str, told: list[int]) -> None:
+def test_a_reset_within_a_callback_keeps_the_remaining_iterations(hook: str, told: list[int]) -> None:
     seen: list[int] = []
     fixture = TestFixture(world())
     control, boolean = message_class("WorldControl"), message_class("Boolean")
@@ -73,7 +73,7 @@ def readings(inside: str) -> list[tuple[Any, Any]]:
     return found
 
 
-def test_a_joint_state_publisher_has_positions_read_for_all() -> None:
+def test_a_joint_state_publisher_enables_positions_for_all_systems() -> None:
     assert readings("") == [(None, None)]
     assert readings(STATES.format("")) == [([0.5], [0.0])]
     assert readings(STATES.format("<joint_name>at_a</joint_name>")) == [([0.5], None)]

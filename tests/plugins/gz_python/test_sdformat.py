@@ -40,13 +40,13 @@ def test_values_are_read_by_type(element: Element) -> None:
     assert element.get_color("paint") == Color(1, 0, 0)
 
 
-def test_with_a_default_it_says_whether_the_value_was_there(element: Element) -> None:
+def test_a_read_with_a_default_returns_a_flag_for_the_value(element: Element) -> None:
     assert element.get_double("force", 1.0) == (2.5, True)
     assert element.get_double("weight", 1.0) == (1.0, False)
     assert element.get_double("weight") == 0.0 and element.get_string("nickname") == ""
 
 
-def test_children_can_be_walked_through(element: Element) -> None:
+def test_children_can_be_iterated(element: Element) -> None:
     wheel = element.find_element("wheel")
     assert wheel is not None
     radii = []
@@ -71,7 +71,7 @@ def test_a_text_that_is_no_number_is_recorded_with_what_is_allowed(element: Elem
     assert found.code == "SK-PARAM-002" and "strong" in found.message
 
 
-def test_what_nobody_read_can_be_told(element: Element) -> None:
+def test_unread_elements_can_be_reported(element: Element) -> None:
     element.get_double("force")
     assert "force" not in {child.name for child, _ in element._params.unread()}
 

@@ -56,12 +56,12 @@ def test_texts_truths_enumerations_and_lists() -> None:
         ("Header", "stamp {sec: 3} data {key: 3}", "in quotes"),
     ],
 )
-def test_what_cannot_be_read_is_said(name: str, text: str, said: str) -> None:
+def test_an_invalid_text_is_an_error(name: str, text: str, said: str) -> None:
     with pytest.raises(MessageError, match=said):
         made(name, text)
 
 
-def test_a_long_nest_is_refused() -> None:
+def test_deep_nesting_is_rejected() -> None:
     with pytest.raises(MessageError):
         made("WorldControl", "reset {" * 5000)
 
@@ -95,7 +95,7 @@ def test_numbers_may_differ_by_the_tolerance() -> None:
     assert met("Float", "0.1", "data: 0.10000000149011612", "data", 0.0), "in single precision it is 0.1"
 
 
-def test_a_negative_match_is_met_by_all_else() -> None:
+def test_a_negative_match_accepts_all_other_messages() -> None:
     assert met("Int32", "data: 1", "data: 2", is_positive=False)
     assert not met("Int32", "data: 1", "data: 1", is_positive=False)
 
@@ -108,6 +108,6 @@ def test_a_negative_match_is_met_by_all_else() -> None:
         ("Double", "data.x", "plain value"),
     ],
 )
-def test_a_path_that_leads_nowhere_is_said(name: str, field: str, said: str) -> None:
+def test_an_invalid_path_is_an_error(name: str, field: str, said: str) -> None:
     with pytest.raises(MessageError, match=said):
         MessageMatcher(message_class(name), "1", field)

@@ -131,7 +131,7 @@ def test_what_a_system_publishes_is_a_ros_message(sim: Any) -> None:
     assert poses.latest.pose.orientation.w == 1.0  # gz's empty orientation is no rotation
 
 
-def test_a_system_hears_others_between_two_steps(sim: Any, talker: Talker) -> None:
+def test_callbacks_run_between_two_steps(sim: Any, talker: Talker) -> None:
     sim.step(21)
     assert talker.heard[1:] == [10_000_000, 20_000_000]
     sim.publish("/cmd", {"linear": {"x": 0.5}})
@@ -155,7 +155,7 @@ def test_a_message_of_another_class_than_was_advertised_is_refused(sim: Any, tal
         talker.out.publish(Double())
 
 
-def test_a_subscription_can_be_ended(sim: Any, talker: Talker) -> None:
+def test_a_subscription_can_be_closed(sim: Any, talker: Talker) -> None:
     assert talker.node.unsubscribe("/clock") and not talker.node.unsubscribe("/clock")
     sim.step(21)
     assert talker.heard == [0]
@@ -166,7 +166,7 @@ def test_a_node_lists_topics_and_what_it_does_itself(sim: Any, talker: Talker) -
     assert talker.node.advertised_topics() == ["/body/pose"] and talker.node.subscribed_topics() == ["/clock", "/cmd"]
 
 
-def test_a_sensors_readings_are_heard_as_gz_knows_them() -> None:
+def test_sensor_readings_arrive_as_gz_messages() -> None:
     class Listener:
         def __init__(self) -> None:
             self.seen: list[float] = []
@@ -181,7 +181,7 @@ def test_a_sensors_readings_are_heard_as_gz_knows_them() -> None:
     assert len(listener.seen) == 4 and listener.seen == pytest.approx([0.0] * 4, abs=1e-9)  # it falls freely
 
 
-def test_a_node_without_a_simulation_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_node_without_a_simulation_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     from simkit.plugins.gz_python import simulation_context
 
     monkeypatch.setattr(simulation_context, "_latest", None)
@@ -189,7 +189,7 @@ def test_a_node_without_a_simulation_says_so(monkeypatch: pytest.MonkeyPatch) ->
         Node().topic_list()
 
 
-def test_a_node_made_before_the_simulation_is_opened_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_node_created_before_the_simulation_connects_to_it(monkeypatch: pytest.MonkeyPatch) -> None:
     from simkit.plugins.gz_python import simulation_context
     from simkit.testing.gz_fixture import TestFixture
 
@@ -207,7 +207,7 @@ def test_a_node_made_before_the_simulation_is_opened_on_it(monkeypatch: pytest.M
     assert "/never" not in fixture.server().simulation.topics()
 
 
-def test_a_picture_comes_as_gz_has_it() -> None:
+def test_an_image_arrives_as_a_gz_message() -> None:
     import numpy as np
 
     pixels = np.arange(6, dtype=np.uint8)
@@ -275,7 +275,7 @@ def test_the_scene_broadcasters_poses_have_names_of_their_own() -> None:
     assert heard_poses("/world/w/pose/info") == heard_poses("/world/w/dynamic_pose/info") == {"body", "link"}
 
 
-def test_a_rate_that_has_no_effect_is_warned_of() -> None:
+def test_a_rate_without_effect_is_a_warning() -> None:
     class Speaker:
         def configure(self, *_: Any) -> None:
             options = AdvertiseMessageOptions()

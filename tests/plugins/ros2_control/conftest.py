@@ -1,4 +1,4 @@
-"""Lets the tests here share their small robots."""
+"""Makes the small robots importable in these tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Small robots with control hardware, and the files that declare their controllers."""
+"""Small robots with control hardware, and files that declare their controllers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CLASSIC = "libgazebo_ros2_control.so"
 
 
 def interfaces(commands: tuple[str, ...], states: tuple[str, ...] = ALL) -> str:
-    """Of one joint in `<ros2_control>`."""
+    """Return the interfaces of one joint in `<ros2_control>`."""
     found = [f'<command_interface name="{name}"/>' for name in commands]
     return "".join(found + [f'<state_interface name="{name}"/>' for name in states])
 
@@ -73,7 +73,7 @@ arm_controller:
 
 
 def files(folder: Path, robot: str, yaml: str = POSITIONS) -> Path:
-    """The robot's file with its parameter file beside it."""
+    """Write the robot's file with its parameter file beside it."""
     (folder / "arm.yaml").write_text(dedent(yaml), encoding="utf-8")
     path = folder / "arm.urdf"
     path.write_text(robot, encoding="utf-8")
@@ -81,27 +81,27 @@ def files(folder: Path, robot: str, yaml: str = POSITIONS) -> Path:
 
 
 def opened(folder: Path, robot: str | None = None, yaml: str = POSITIONS) -> simkit.Simulation:
-    """A robot, loaded."""
+    """Load a robot."""
     return simkit.load(files(folder, arm() if robot is None else robot, yaml))
 
 
 def command(sim: simkit.Simulation, controller: str, *values: float) -> None:
-    """Sends a forward controller what it is to hand on."""
+    """Send a command to a forward command controller."""
     data = list(values)
     sim.publish(f"/{controller}/commands", simkit.msgs.make("std_msgs/msg/Float64MultiArray", data=data))
 
 
 def position(sim: simkit.Simulation, *joints: str) -> list[float]:
-    """Where joints are [rad or m]."""
+    """Return the positions of joints [rad or m]."""
     scoped = [name for joint in joints for name in sim.engine.names.joints if name.endswith(f"::{joint}")]
     return [float(sim.joint(name).position) for name in scoped]
 
 
 def states(sim: simkit.Simulation, manager: str = "/controller_manager") -> dict[str, str]:
-    """Controller -> state, as the manager's service tells."""
+    """Return the state of each controller from the manager's service."""
     return {c.name: c.state for c in sim.call(f"{manager}/list_controllers").controller}
 
 
-def told(sim: simkit.Simulation, code: str) -> list[str]:
-    """The messages of one code, of the load and of the run."""
+def reported_messages(sim: simkit.Simulation, code: str) -> list[str]:
+    """Return the messages of one code, from the load and the run."""
     return [d.message for d in dict.fromkeys((*sim.diagnostics, *sim.engine.reports)) if d.code == code]

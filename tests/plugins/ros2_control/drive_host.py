@@ -1,4 +1,4 @@
-"""A differential drive controller on wheels that turn exactly as they are told, without physics."""
+"""Host of a differential drive controller, with wheels that turn exactly as commanded, without physics."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A trajectory controller of two joints that do at once what they are told, for tests."""
+"""Trajectory controller of two joints that follow commands at once, for tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Controllers on joints that do at once what they are told, or as much of it as a test lets them, without physics."""
+"""Host of controllers with joints that follow commands at once, or as far as a test allows, without physics."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from control_robots import arm, command, interfaces, opened, told
+from control_robots import arm, command, interfaces, opened, reported_messages
 
 import simkit
 
@@ -56,7 +56,7 @@ def test_joint_states_have_every_joint_in_the_order_of_the_hardware(tmp_path: Pa
         assert last.header.stamp.sec == 1 and last.header.frame_id == ""
 
 
-def test_what_a_joint_does_not_have_is_nan_and_extra_joints_are_0(tmp_path: Path) -> None:
+def test_a_missing_interface_is_nan_and_extra_joints_are_0(tmp_path: Path) -> None:
     with opened(tmp_path, arm(MIXED), states("extra_joints: [wheel], frame_id: base")) as sim:
         messages = sim.subscribe("/joint_states")
         sim.run(0.1)
@@ -68,7 +68,7 @@ def test_what_a_joint_does_not_have_is_nan_and_extra_joints_are_0(tmp_path: Path
         assert last.header.frame_id == "base"
 
 
-def test_joints_and_interfaces_choose_and_local_topics_are_the_controllers(tmp_path: Path) -> None:
+def test_joints_and_interfaces_select_states_and_local_topics_are_in_the_controllers_node(tmp_path: Path) -> None:
     chosen = "joints: [j2], interfaces: [position], use_local_topics: true"
     with opened(tmp_path, arm(BOTH), states(chosen)) as sim:
         messages = sim.subscribe("/out/joint_states")
@@ -79,12 +79,14 @@ def test_joints_and_interfaces_choose_and_local_topics_are_the_controllers(tmp_p
         assert list(everything.messages[-1].interface_values[0].interface_names) == ["position"]
 
 
-def test_joints_without_interfaces_choose_nothing_and_that_is_told(tmp_path: Path) -> None:
+def test_joints_without_interfaces_select_nothing_and_are_a_warning(tmp_path: Path) -> None:
     with opened(tmp_path, arm(BOTH), states("joints: [j2]")) as sim:
         messages = sim.subscribe("/joint_states")
         sim.run(0.1)
         assert list(messages.messages[-1].name) == ["j1", "j2"]
-        assert any("set 'joints' and 'interfaces' together" in message for message in told(sim, "SK-CONTROL-011"))
+        assert any(
+            "set 'joints' and 'interfaces' together" in message for message in reported_messages(sim, "SK-CONTROL-011")
+        )
 
 
 def test_dynamic_joint_states_have_sensors_too(tmp_path: Path) -> None:
@@ -96,7 +98,7 @@ def test_dynamic_joint_states_have_sensors_too(tmp_path: Path) -> None:
         assert list(states_.messages[-1].name) == ["j1", "j2"]
 
 
-def test_the_inertial_sensor_is_told_as_it_measures(tmp_path: Path) -> None:
+def test_the_imu_is_published_as_measured(tmp_path: Path) -> None:
     kind = "imu_sensor_broadcaster/IMUSensorBroadcaster"
     parameters = "sensor_name: imu, frame_id: l2, static_covariance_angular_velocity: [1, 0, 0, 0, 2, 0, 0, 0, 3]"
     with opened(tmp_path, arm(BOTH + SENSORS, more=FITTED), yaml(kind, parameters, ARM)) as sim:
@@ -112,7 +114,7 @@ def test_the_inertial_sensor_is_told_as_it_measures(tmp_path: Path) -> None:
         assert last.angular_velocity_covariance.tolist()[4] == 2.0
 
 
-def test_the_wrench_is_told_with_offset_and_multiplier(tmp_path: Path) -> None:
+def test_the_wrench_is_published_with_offset_and_multiplier(tmp_path: Path) -> None:
     kind = "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster"
     parameters = "sensor_name: wrist, frame_id: l1, offset: {force: {x: 1.0}}, multiplier: {force: {z: 2.0}}"
     with opened(tmp_path, arm(BOTH + SENSORS, more=FITTED), yaml(kind, parameters, ARM)) as sim:
@@ -125,7 +127,7 @@ def test_the_wrench_is_told_with_offset_and_multiplier(tmp_path: Path) -> None:
         assert last.force.x == pytest.approx(wrench.force.x + 1.0, abs=1e-3)
 
 
-def test_several_sensors_may_be_heard_at_once(tmp_path: Path) -> None:
+def test_several_broadcasters_can_be_active_at_once(tmp_path: Path) -> None:
     text = yaml(
         "imu_sensor_broadcaster/IMUSensorBroadcaster",
         "sensor_name: imu, frame_id: l2",
@@ -166,12 +168,14 @@ def test_single_interfaces_of_a_wrench_leave_the_others_unmeasured(tmp_path: Pat
         ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster", "frame_id: l1", "SK-PARAM-001"),
     ],
 )
-def test_what_a_broadcaster_lacks_stops_the_load(tmp_path: Path, kind: str, parameters: str, code: str) -> None:
+def test_a_missing_parameter_of_a_broadcaster_stops_the_load(
+    tmp_path: Path, kind: str, parameters: str, code: str
+) -> None:
     with pytest.raises(simkit.LoadError, match=rf"arm\.yaml:\d+: error {code}"):
         opened(tmp_path, arm(BOTH + SENSORS, more=FITTED), yaml(kind, parameters))
 
 
-def test_a_broadcaster_that_nobody_hears_makes_no_messages(tmp_path: Path) -> None:
+def test_a_broadcaster_without_subscriber_makes_no_messages(tmp_path: Path) -> None:
     with opened(tmp_path, arm(BOTH), states("")) as sim:
         sim.run(0.1)
         late = sim.subscribe("/joint_states")

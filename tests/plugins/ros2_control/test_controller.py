@@ -1,4 +1,4 @@
-"""What every controller can do: live parameters, its own state, ends that outlive it."""
+"""Base class of controllers: live parameters, state, and endpoints that stay open."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from control_robots import opened, told
+from control_robots import opened, reported_messages
 
 import simkit
 from simkit.errors import ParameterError
@@ -35,7 +35,7 @@ def tuned(sim: simkit.Simulation, values: dict[str, Any] | None = None) -> Tuned
     return made
 
 
-def test_a_live_parameter_begins_with_the_files_value_and_belongs_to_the_controllers_node(tmp_path: Path) -> None:
+def test_a_live_parameter_starts_with_the_files_value_and_belongs_to_the_controllers_node(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         made = tuned(sim, {"gains": {"elbow": {"p": 3.0}}})
         assert made.gain.value == 3.0
@@ -47,7 +47,7 @@ def test_a_live_parameter_begins_with_the_files_value_and_belongs_to_the_control
         assert "/tuned/set_parameters" in sim.communication.services.names()
 
 
-def test_its_attributes_are_its_state(tmp_path: Path) -> None:
+def test_the_attributes_of_a_controller_are_its_state(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         made = tuned(sim)
         made.heard.append(1.0)
@@ -59,7 +59,7 @@ def test_its_attributes_are_its_state(tmp_path: Path) -> None:
         assert not hasattr(made, "extra")
 
 
-def test_what_cannot_be_copied_is_told_once_and_stays(tmp_path: Path) -> None:
+def test_an_attribute_that_cannot_be_copied_is_reported_once_and_kept(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         made = tuned(sim)
         made.lock = threading.Lock()
@@ -67,10 +67,10 @@ def test_what_cannot_be_copied_is_told_once_and_stays(tmp_path: Path) -> None:
         made.get_state()
         made.set_state(kept)
         assert made.lock is lock
-        assert len(told(sim, "SK-PLUGIN-006")) == 1
+        assert len(reported_messages(sim, "SK-PLUGIN-006")) == 1
 
 
-def test_what_is_opened_again_is_the_same_and_goes_to_the_newer_one(tmp_path: Path) -> None:
+def test_an_endpoint_opened_again_is_the_same_and_calls_the_newer_controller(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         first = tuned(sim)
         second = tuned(sim)

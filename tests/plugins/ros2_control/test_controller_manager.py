@@ -1,4 +1,4 @@
-"""The controller manager: what it loads, who has which joint, its services, and how it goes back in time."""
+"""Controller manager: loading, claims, services, reset and restore."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from control_robots import ALL, POSITIONS, arm, command, files, interfaces, opened, position, states, told
+from control_robots import ALL, POSITIONS, arm, command, files, interfaces, opened, position, reported_messages, states
 
 import simkit
 
@@ -41,7 +41,7 @@ def test_controllers_of_the_file_are_loaded_and_active_in_their_order(tmp_path: 
         assert list(one.claimed_interfaces) == ["j1/position", "j2/position"]
 
 
-def test_a_command_brings_the_joints_there_and_they_stay(tmp_path: Path) -> None:
+def test_a_position_command_moves_the_joints_and_they_hold(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         command(sim, "arm_controller", 0.5, -0.3)
         sim.run(3.0)
@@ -85,13 +85,13 @@ def test_several_files_are_read_and_a_subset_is_loaded(tmp_path: Path) -> None:
         assert states(sim) == {"other": "active"}
 
 
-def test_of_two_that_want_one_joint_the_first_has_it(tmp_path: Path) -> None:
+def test_the_first_of_two_controllers_claims_their_common_joint(tmp_path: Path) -> None:
     with opened(tmp_path, arm(ALL_THREE), TWO) as sim:
         assert states(sim) == {"by_position": "active", "by_effort": "inactive"}
-        assert "'j2/effort' (of 'by_position')" in told(sim, "SK-CONTROL-014")[0]
+        assert "'j2/effort' (of 'by_position')" in reported_messages(sim, "SK-CONTROL-014")[0]
 
 
-def test_switching_changes_how_a_joint_is_driven_and_leaves_the_rest_where_it_is(tmp_path: Path) -> None:
+def test_switching_changes_the_mode_of_one_joint_and_the_others_hold(tmp_path: Path) -> None:
     with opened(tmp_path, arm(ALL_THREE), TWO) as sim:
         command(sim, "by_position", 0.4, 0.2)
         sim.run(2.0)
@@ -110,12 +110,12 @@ def test_a_strict_switch_is_all_or_nothing(tmp_path: Path) -> None:
         assert not switch(sim, on=["by_effort"])  # the joint is taken
         assert not switch(sim, off=["by_position", "by_positoin"])
         assert states(sim) == {"by_position": "active", "by_effort": "inactive"}
-        messages = told(sim, "SK-CONTROL-010")
+        messages = reported_messages(sim, "SK-CONTROL-010")
         assert any("is already claimed (by 'by_position')" in m for m in messages)
         assert any("no controller with this name exists; did you mean 'by_position'?" in m for m in messages)
 
 
-def test_at_best_effort_what_can_be_is_switched(tmp_path: Path) -> None:
+def test_best_effort_switches_the_possible_controllers(tmp_path: Path) -> None:
     with opened(tmp_path, arm(ALL_THREE), TWO) as sim:
         assert switch(sim, on=["nobody", "by_effort"], off=["by_position"], strict=1)
         assert states(sim) == {"by_position": "inactive", "by_effort": "active"}
@@ -126,7 +126,7 @@ def test_an_active_controller_can_be_restarted_and_not_started_twice(tmp_path: P
     with opened(tmp_path) as sim:
         assert switch(sim, on=["arm_controller"], off=["arm_controller"])
         assert not switch(sim, on=["arm_controller"])
-        assert "since it is already active" in told(sim, "SK-CONTROL-010")[-1]
+        assert "since it is already active" in reported_messages(sim, "SK-CONTROL-010")[-1]
 
 
 def test_a_controller_can_be_unloaded_and_loaded_again(tmp_path: Path) -> None:
@@ -150,7 +150,7 @@ def test_a_controller_can_be_unloaded_and_loaded_again(tmp_path: Path) -> None:
         assert position(sim, "j1", "j2") == pytest.approx([0.3, 0.3], abs=1e-3)
 
 
-def test_the_manager_tells_its_hardware_and_types(tmp_path: Path) -> None:
+def test_the_manager_lists_its_hardware_and_types(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         found = sim.call("/controller_manager/list_hardware_interfaces")
         assert [(i.name, i.is_claimed) for i in found.command_interfaces] == [
@@ -181,7 +181,7 @@ def test_controllers_are_updated_at_their_own_rate(tmp_path: Path) -> None:
         assert len(subscription.messages) == pytest.approx(60, abs=1)
 
 
-def test_a_reset_and_a_restore_bring_back_controllers_and_motion(tmp_path: Path) -> None:
+def test_reset_and_restore_recover_controllers_and_motion(tmp_path: Path) -> None:
     with opened(tmp_path, arm(ALL_THREE), TWO) as sim:
         command(sim, "by_position", 0.5, 0.1)
         sim.run(0.3)
@@ -203,7 +203,7 @@ def test_a_reset_and_a_restore_bring_back_controllers_and_motion(tmp_path: Path)
         assert position(sim, "j1", "j2") == pytest.approx([0.5, 0.1], abs=1e-3)
 
 
-def test_a_spawned_robot_is_controlled_too_and_others_may_come_and_go(tmp_path: Path) -> None:
+def test_a_spawned_robot_has_controllers_and_other_robots_may_spawn_and_go(tmp_path: Path) -> None:
     robot = files(tmp_path, arm())
     with simkit.load("<sdf version='1.9'><world name='w'/></sdf>") as sim:
         sim.spawn(robot, name="robot")
@@ -219,7 +219,7 @@ def test_a_spawned_robot_is_controlled_too_and_others_may_come_and_go(tmp_path: 
         assert not [name for name in sim.communication.services.names() if "controller_manager" in name]
 
 
-def test_who_hears_of_a_robot_may_remove_it(tmp_path: Path) -> None:
+def test_a_subscriber_may_remove_the_robot(tmp_path: Path) -> None:
     robot = files(tmp_path, arm())
     with simkit.load("<sdf version='1.9'><world name='w'/></sdf>") as sim:
         sim.spawn(robot, name="robot")
@@ -228,13 +228,13 @@ def test_who_hears_of_a_robot_may_remove_it(tmp_path: Path) -> None:
         assert "robot" not in sim.models
 
 
-def test_a_second_robot_of_the_kind_is_reached_by_its_models_name(tmp_path: Path) -> None:
+def test_a_second_equal_robot_has_its_models_name_as_namespace(tmp_path: Path) -> None:
     robot = files(tmp_path, arm())
     with simkit.load("<sdf version='1.9'><world name='w'/></sdf>") as sim:
         sim.spawn(robot, name="one")
         sim.spawn(robot, name="two")
         assert states(sim) == states(sim, "/two/controller_manager")
-        assert "'/two'" in told(sim, "SK-CONTROL-001")[0]
+        assert "'/two'" in reported_messages(sim, "SK-CONTROL-001")[0]
         data = simkit.msgs.make("std_msgs/msg/Float64MultiArray", data=[0.3, 0.0])
         sim.publish("/two/arm_controller/commands", data)
         sim.run(2.0)
@@ -246,7 +246,7 @@ def looked_at(sim: simkit.Simulation, _: object) -> None:
     sim.engine.physics.fresh()
 
 
-def test_who_listens_changes_no_motion(tmp_path: Path) -> None:
+def test_subscribers_change_no_motion(tmp_path: Path) -> None:
     ends = []
     for listens in (False, True):
         with opened(tmp_path, arm(ALL_THREE), TWO) as sim:
@@ -261,7 +261,7 @@ def test_who_listens_changes_no_motion(tmp_path: Path) -> None:
 # ------------------------------------------------------------------ what is wrong with a file
 
 
-def test_an_unknown_type_is_left_out_with_the_closest(tmp_path: Path) -> None:
+def test_an_unknown_type_is_not_loaded_and_the_closest_is_suggested(tmp_path: Path) -> None:
     yaml = POSITIONS.replace("JointGroupPositionController", "JointGroupPositonController")
     with opened(tmp_path, yaml=yaml) as sim:
         assert states(sim) == {"joint_state_broadcaster": "active"}
@@ -272,7 +272,7 @@ def test_an_unknown_type_is_left_out_with_the_closest(tmp_path: Path) -> None:
         assert "did you mean 'position_controllers/JointGroupPositionController'?" in found.message
 
 
-def test_an_unknown_joint_stops_the_load_at_its_line_with_the_closest(tmp_path: Path) -> None:
+def test_an_unknown_joint_stops_the_load_at_its_line_with_a_suggestion(tmp_path: Path) -> None:
     with pytest.raises(simkit.LoadError, match="SK-CONTROL-012(.|\n)*'j3/position'(.|\n)*did you mean 'j"):
         opened(tmp_path, yaml=POSITIONS.replace("[j1, j2]", "[j1, j3]"))
 
@@ -282,19 +282,19 @@ def test_a_missing_parameter_stops_the_load(tmp_path: Path) -> None:
         opened(tmp_path, yaml=POSITIONS.replace("joints: [j1, j2]", "rate: 1"))
 
 
-def test_a_parameter_that_nobody_reads_is_told(tmp_path: Path) -> None:
+def test_an_unused_parameter_is_a_warning(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS + "    jionts: [j1]\n") as sim:
-        assert any("<jionts> is not used" in message for message in told(sim, "SK-CONTROL-011"))
+        assert any("<jionts> is not used" in message for message in reported_messages(sim, "SK-CONTROL-011"))
 
 
-def test_parameters_of_a_misspelt_controller_are_told(tmp_path: Path) -> None:
+def test_parameters_of_a_misspelt_controller_are_a_warning(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS + "arm_controler:\n  ros__parameters: {joints: [j1]}\n") as sim:
-        assert "'arm_controler'" in told(sim, "SK-CONTROL-019")[0]
+        assert "'arm_controler'" in reported_messages(sim, "SK-CONTROL-019")[0]
 
 
-def test_a_missing_file_is_told_and_the_robot_stands(tmp_path: Path) -> None:
+def test_a_missing_file_is_a_warning_and_the_robot_holds(tmp_path: Path) -> None:
     with opened(tmp_path, arm(plugin="<parameters>package://nowhere/config/none.yaml</parameters>")) as sim:
-        assert "none.yaml is not found" in told(sim, "SK-CONTROL-015")[0]
+        assert "none.yaml is not found" in reported_messages(sim, "SK-CONTROL-015")[0]
         sim.run(1.0)
         assert position(sim, "j1", "j2") == pytest.approx([0.0, 0.0], abs=1e-3)
 
@@ -304,7 +304,7 @@ def test_a_broken_file_stops_the_load_with_its_line(tmp_path: Path) -> None:
         opened(tmp_path, yaml="controller_manager:\n  ros__parameters: [\n")
 
 
-def test_a_file_of_that_name_beside_the_robot_stands_for_one_of_another_machine(tmp_path: Path) -> None:
+def test_a_file_beside_the_robot_replaces_a_path_of_another_machine(tmp_path: Path) -> None:
     for uri in (
         "$(find my_config)/config/arm.yaml",
         "package://my_config/config/arm.yaml",
@@ -314,15 +314,15 @@ def test_a_file_of_that_name_beside_the_robot_stands_for_one_of_another_machine(
             assert states(sim)["arm_controller"] == "active"
 
 
-def test_a_rate_beyond_the_steps_is_told(tmp_path: Path) -> None:
+def test_a_rate_above_the_step_rate_is_a_warning(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS.replace("update_rate: 100", "update_rate: 5000")) as sim:
-        assert "above the step rate of 1000 Hz" in told(sim, "SK-CONTROL-017")[0]
+        assert "above the step rate of 1000 Hz" in reported_messages(sim, "SK-CONTROL-017")[0]
 
 
-def test_a_command_of_another_length_or_with_no_number_is_told_and_left_out(tmp_path: Path) -> None:
+def test_a_command_of_wrong_length_or_with_nan_is_a_warning_and_ignored(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         for values in ((1.0,), (1.0, 1.0, 1.0), (float("nan"), 1.0)):
             command(sim, "arm_controller", *values)
             sim.run(0.1)
-        assert len(told(sim, "SK-CONTROL-016")) == 3
+        assert len(reported_messages(sim, "SK-CONTROL-016")) == 3
         assert position(sim, "j1", "j2") == pytest.approx([0.0, 0.0], abs=1e-4)

@@ -1,4 +1,4 @@
-"""The differential drive controller, on wheels that turn as they are told."""
+"""Differential drive controller on wheels that turn exactly as commanded."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ def test_wheels_turn_by_the_kinematics_of_the_drive() -> None:
     np.testing.assert_allclose(host.written[-1], [(0.5 - 0.2) / 0.1, (0.5 + 0.2) / 0.1])
 
 
-def test_a_command_with_or_without_a_stamp_is_taken_on_cmd_vel() -> None:
+def test_a_command_with_or_without_a_stamp_is_accepted_on_cmd_vel() -> None:
     sim, host = drive()
     sim.publish(CMD, twist(0.3))
     sim.run(0.02)
     assert host.speeds[-1, 0] == pytest.approx(0.3)
 
 
-def test_unstamped_commands_have_a_topic_of_their_own_where_stamps_are_not_used() -> None:
+def test_unstamped_commands_have_their_own_topic_if_stamps_are_not_used() -> None:
     sim, host = drive({"use_stamped_vel": False})
     assert sim.topics()["/base/cmd_vel_unstamped"] == TWIST
     sim.publish("/base/cmd_vel_unstamped", twist(0.4, -1))
@@ -71,7 +71,7 @@ def test_a_command_ends_with_its_timeout() -> None:
     assert (moving[0], moving[-1]) == (0, 25)  # at 0.25 s it is not older than that
 
 
-def test_a_stamp_in_the_past_counts_from_then_and_one_in_the_future_too() -> None:
+def test_the_timeout_counts_from_the_stamp_of_a_command() -> None:
     sim, host = drive({"cmd_vel_timeout": 0.25})
     sim.run(1.0)
     sim.publish(CMD, stamped(0.3, at=0.9))
@@ -85,7 +85,7 @@ def test_a_stamp_in_the_past_counts_from_then_and_one_in_the_future_too() -> Non
     assert np.flatnonzero(host.speeds[:, 0])[-1] == 275
 
 
-def test_a_command_that_is_not_finite_is_left_out_and_that_is_said_once() -> None:
+def test_a_nan_command_is_ignored_and_reported_once() -> None:
     sim, host = drive()
     sim.publish(CMD, twist(0.3))
     sim.run(0.02)
@@ -97,7 +97,7 @@ def test_a_command_that_is_not_finite_is_left_out_and_that_is_said_once() -> Non
     assert [d.code for d in sim.engine.reports].count("SK-CONTROL-045") == 1
 
 
-def test_no_command_is_taken_while_it_is_inactive_and_the_wheels_stop() -> None:
+def test_an_inactive_controller_ignores_commands_and_its_wheels_stop() -> None:
     sim, host = drive({"cmd_vel_timeout": 10})
     sim.publish(CMD, twist(0.3))
     sim.run(0.1)
@@ -132,11 +132,11 @@ def test_speeds_stay_within_their_limits() -> None:
     assert (speeds.max(), speeds.min()) == pytest.approx((1.0, -0.2))
 
 
-def test_the_lower_limit_is_minus_the_upper_one_where_it_is_not_given() -> None:
+def test_a_missing_lower_limit_is_the_negative_upper_limit() -> None:
     assert limited({"has_velocity_limits": True, "max_velocity": 0.7}, -3.0, 0.1)[-1] == pytest.approx(-0.7)
 
 
-def test_limits_that_are_switched_off_are_none_and_without_a_switch_they_hold() -> None:
+def test_disabled_limits_have_no_effect_and_limits_without_a_switch_apply() -> None:
     assert limited({"has_velocity_limits": False, "max_velocity": 0.7}, 3.0, 0.1)[-1] == pytest.approx(3.0)
     assert limited({"max_velocity": 0.7}, 3.0, 0.1)[-1] == pytest.approx(0.7)
     assert limited({"max_velocity": ".nan"}, 3.0, 0.1)[-1] == pytest.approx(3.0)
@@ -163,7 +163,7 @@ def test_each_direction_has_accelerations_of_its_own() -> None:
     np.testing.assert_allclose(back[[5, 205, 220]], [-0.5, 4.0, 1.0], rtol=1e-9)
 
 
-def test_jerk_is_limited_while_the_acceleration_grows_and_nothing_swings() -> None:
+def test_jerk_is_limited_while_the_acceleration_grows_without_oscillation() -> None:
     bounds = {"max_velocity": 1.0, "max_acceleration": 1.0, "max_jerk": 2.0}
     speeds = limited(bounds, 0.8, 3)
     rates = np.diff(speeds, prepend=0) / 0.01
@@ -189,32 +189,32 @@ def test_after_the_timeout_the_base_brakes_by_its_limit() -> None:
     np.testing.assert_allclose(host.speeds[24:50, 0], [0.2, 0.2, *np.arange(0.19, -0.001, -0.01), *[0] * 4], atol=1e-12)
 
 
-def test_the_limited_command_is_told() -> None:
+def test_the_limited_command_is_published() -> None:
     sim, _ = drive({"publish_limited_velocity": True, "linear": {"x": {"max_velocity": 0.1}}})
     out = sim.subscribe(OUT)
     sim.publish(CMD, twist(0.5, 0.3))
     sim.run(0.02)
-    told = out.latest
-    assert (told.twist.linear.x, told.twist.angular.z, told.header.frame_id) == (0.1, 0.3, "base_link")
+    message = out.latest
+    assert (message.twist.linear.x, message.twist.angular.z, message.header.frame_id) == (0.1, 0.3, "base_link")
 
 
 # ---------------------------------------------------------------------- odometry
 
 
-def test_odometry_goes_round_an_arc_exactly() -> None:
+def test_odometry_follows_an_arc_exactly() -> None:
     sim, _ = drive({"cmd_vel_timeout": 100})
     odom = sim.subscribe(ODOM)
     sim.publish(CMD, twist(0.5, 0.5))
     sim.run(2.03)
-    told = odom.latest
-    elapsed = told.header.stamp.sec + told.header.stamp.nanosec * 1e-9
-    pose, yaw = told.pose.pose, 0.5 * elapsed
+    message = odom.latest
+    elapsed = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
+    pose, yaw = message.pose.pose, 0.5 * elapsed
     np.testing.assert_allclose([pose.position.x, pose.position.y], [math.sin(yaw), 1 - math.cos(yaw)], atol=1e-9)
     np.testing.assert_allclose([pose.orientation.z, pose.orientation.w], [math.sin(yaw / 2), math.cos(yaw / 2)])
-    np.testing.assert_allclose([told.twist.twist.linear.x, told.twist.twist.angular.z], 0.5)
+    np.testing.assert_allclose([message.twist.twist.linear.x, message.twist.twist.angular.z], 0.5)
 
 
-def test_odometry_comes_at_its_rate_with_the_transform() -> None:
+def test_odometry_is_published_at_its_rate_with_the_transform() -> None:
     sim, _ = drive({"publish_rate": 20})
     odom, tf = sim.subscribe(ODOM), sim.subscribe("/tf")
     sim.run(1.005)
@@ -229,12 +229,12 @@ def test_frames_and_covariances_are_the_parameters() -> None:
     sim, _ = drive(values)
     odom, tf = sim.subscribe(ODOM), sim.subscribe("/tf")
     sim.run(0.1)
-    told = odom.latest
-    assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_footprint")
+    message = odom.latest
+    assert (message.header.frame_id, message.child_frame_id) == ("odom", "base_footprint")
     transform = tf.latest.transforms[0]
     assert (transform.header.frame_id, transform.child_frame_id) == ("odom", "base_footprint")
-    np.testing.assert_array_equal(told.pose.covariance.reshape(6, 6), np.diag(diagonal))
-    assert not told.twist.covariance.any()
+    np.testing.assert_array_equal(message.pose.covariance.reshape(6, 6), np.diag(diagonal))
+    assert not message.twist.covariance.any()
 
 
 def test_the_transform_can_be_left_out_and_frames_prefixed() -> None:
@@ -249,7 +249,7 @@ def test_the_transform_can_be_left_out_and_frames_prefixed() -> None:
     assert odom.latest.header.frame_id == "odom"
 
 
-def test_odometry_is_of_the_wheels_and_in_open_loop_of_the_limited_commands() -> None:
+def test_odometry_uses_the_wheels_and_in_open_loop_the_limited_commands() -> None:
     slow = {"left": 0.5, "right": 0.5}
     for loop, expected in ((False, 0.25), (True, 0.5)):
         sim, _ = drive({"open_loop": loop, "cmd_vel_timeout": 9, "linear": {"x": {"max_velocity": 0.5}}}, slow)
@@ -259,7 +259,7 @@ def test_odometry_is_of_the_wheels_and_in_open_loop_of_the_limited_commands() ->
         assert odom.latest.pose.pose.position.x == pytest.approx(expected)
 
 
-def test_the_wheels_speeds_do_as_well_as_their_angles() -> None:
+def test_odometry_from_wheel_speeds_equals_that_from_angles() -> None:
     sim, host = drive({"position_feedback": False, "cmd_vel_timeout": 9})
     assert list(host.controller.state_interfaces()) == ["left/velocity", "right/velocity"]
     odom = sim.subscribe(ODOM)
@@ -268,7 +268,7 @@ def test_the_wheels_speeds_do_as_well_as_their_angles() -> None:
     assert odom.latest.pose.pose.position.x == pytest.approx(0.2)
 
 
-def test_odometry_begins_at_zero_whatever_the_wheels_angles() -> None:
+def test_odometry_starts_at_zero_at_any_wheel_angle() -> None:
     sim, _ = drive({}, start={"left": 3.0, "right": -2.0})
     odom = sim.subscribe(ODOM)
     sim.run(0.1)
@@ -308,7 +308,7 @@ def test_multipliers_may_be_set_while_it_runs() -> None:
     np.testing.assert_allclose(host.written[-1], [12, 6])
 
 
-def test_several_wheels_on_a_side_turn_alike_and_odometry_is_of_their_mean() -> None:
+def test_several_wheels_on_a_side_turn_alike_and_odometry_uses_their_mean() -> None:
     names = {"left_wheel_names": ["l1", "l2"], "right_wheel_names": ["r1", "r2"], "cmd_vel_timeout": 9}
     sim, host = drive({**names, "wheels_per_side": 2}, factors={"l1": 0.8, "l2": 1.2, "r1": 0.9, "r2": 1.1})
     odom = sim.subscribe(ODOM)
@@ -341,7 +341,7 @@ def test_a_restored_drive_goes_on_to_the_same_bits() -> None:
 # ---------------------------------------------------------------------- ROS 1
 
 
-def test_the_spelling_of_ros_1_is_understood() -> None:
+def test_the_parameter_names_of_ros_1_are_read() -> None:
     spelled = {
         "left_wheel_names": None,
         "right_wheel_names": None,
@@ -362,8 +362,8 @@ def test_the_spelling_of_ros_1_is_understood() -> None:
 # ---------------------------------------------------------------------- bad parameters
 
 
-def test_all_that_is_wrong_is_said_at_once() -> None:
-    said = refused(
+def test_all_errors_are_reported_at_once() -> None:
+    errors = refused(
         {
             "left_wheel_names": ["a", "b"],
             "right_wheel_names": ["a"],
@@ -385,9 +385,9 @@ def test_all_that_is_wrong_is_said_at_once() -> None:
         ("SK-PARAM-002", "found 2 numbers in 'pose_covariance_diagonal', allowed are 6"),
         ("SK-PARAM-002", "<cmd_vel_timeout>soon"),
     ):
-        assert any(line.startswith(code) and words in line for line in said.splitlines()), (code, words, said)
+        assert any(line.startswith(code) and words in line for line in errors.splitlines()), (code, words, errors)
 
 
-def test_no_wheels_are_an_error_and_a_count_that_differs_a_warning() -> None:
+def test_missing_wheels_are_an_error_and_a_different_count_is_a_warning() -> None:
     assert "SK-CONTROL-040 left_wheel_names names no wheel" in refused({"left_wheel_names": None})
     assert "SK-CONTROL-043 wheels_per_side is 3" in refused({"wheels_per_side": 3})

@@ -53,7 +53,7 @@ def drive(sim: simkit.Simulation, ahead: float, turn: float, seconds: float) -> 
 
 
 @pytest.mark.parametrize("step", [0.001, 0.002])
-def test_it_drives_straight_and_its_odometry_is_true(tmp_path: Path, step: float) -> None:
+def test_the_base_drives_straight_with_correct_odometry(tmp_path: Path, step: float) -> None:
     with opened(tmp_path, step, linear="{x: {max_acceleration: 1.0}}") as sim:
         odom = sim.subscribe(ODOM)
         sim.run(0.5)
@@ -69,7 +69,7 @@ def test_it_drives_straight_and_its_odometry_is_true(tmp_path: Path, step: float
 
 
 @pytest.mark.parametrize("step", [0.001, 0.002])
-def test_it_turns_about_its_middle_and_its_odometry_is_true(tmp_path: Path, step: float) -> None:
+def test_the_base_turns_about_its_centre_with_correct_odometry(tmp_path: Path, step: float) -> None:
     with opened(tmp_path, step) as sim:
         odom = sim.subscribe(ODOM)
         sim.run(0.5)
@@ -81,7 +81,7 @@ def test_it_turns_about_its_middle_and_its_odometry_is_true(tmp_path: Path, step
         assert abs(pose.rpy[2]) > 3 and np.linalg.norm(pose.position[:2]) < 5e-3
 
 
-def test_it_stands_when_commands_stop(tmp_path: Path) -> None:
+def test_the_base_stops_without_commands(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         drive(sim, 0.5, 0.0, 0.5)
         sim.run(1.0)
@@ -99,7 +99,7 @@ def test_odometry_is_stamped_on_the_grid_of_its_rate(tmp_path: Path) -> None:
     assert np.all(np.diff(times) == 40_000_000) and len(times) in (24, 25)
 
 
-def test_in_ros_1_the_wheels_sizes_are_the_models(tmp_path: Path) -> None:
+def test_in_ros_1_missing_wheel_sizes_come_from_the_model(tmp_path: Path) -> None:
     (tmp_path / "base.yaml").write_text(
         "rover:\n  base:\n    type: diff_drive_controller/DiffDriveController\n"
         "    left_wheel: left_wheel\n    right_wheel: [right_wheel]\n"
@@ -123,7 +123,7 @@ def test_in_ros_1_the_wheels_sizes_are_the_models(tmp_path: Path) -> None:
         assert [d.code for d in sim.engine.reports].count("SK-CONTROL-044") == 2
 
 
-def test_it_is_the_same_after_a_reset_and_a_restore(tmp_path: Path) -> None:
+def test_reset_and_restore_give_the_same_motion(tmp_path: Path) -> None:
     with opened(tmp_path, linear="{x: {max_acceleration: 1.0}}") as sim:
         odom = sim.subscribe(ODOM)
 
@@ -141,7 +141,7 @@ def test_it_is_the_same_after_a_reset_and_a_restore(tmp_path: Path) -> None:
         assert go(1.0) == first
 
 
-def test_a_wheel_that_is_not_there_is_named_with_the_closest(tmp_path: Path) -> None:
+def test_a_missing_wheel_is_reported_with_the_closest_name(tmp_path: Path) -> None:
     with pytest.raises(simkit.LoadError, match="left_weel") as caught:
         opened(tmp_path, left_wheel_names="[left_weel]")
     assert "left_wheel" in str(caught.value) and "base.yaml" in str(caught.value)

@@ -1,4 +1,4 @@
-"""An arm that weighs nothing stays where it is put; one like a spring gives way and comes back."""
+"""Gravity compensation: a compensated arm holds its position, and a spring arm yields and returns."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from control_robots import arm, interfaces, opened, states, told
+from control_robots import arm, interfaces, opened, reported_messages, states
 
 import simkit
 
@@ -39,7 +39,7 @@ springy:
 
 
 def switched(sim: simkit.Simulation, on: str, off: str) -> None:
-    """Changes over from a controller to another."""
+    """Deactivate one controller and activate another."""
     assert sim.call(
         "/controller_manager/switch_controller",
         {"activate_controllers": [on], "deactivate_controllers": [off], "strictness": 2},
@@ -47,7 +47,7 @@ def switched(sim: simkit.Simulation, on: str, off: str) -> None:
 
 
 def held_out(folder: Path, yaml: str = YAML, losses: str = "") -> simkit.Simulation:
-    """The arm, brought to where its weight pulls at both joints."""
+    """Return the arm at a pose where its weight acts on both joints."""
     dynamics = losses or '<dynamics damping="0.5" friction="0"/>'
     robot = arm(BOTH, second=dynamics).replace('velocity="3"/>\n</joint>', f'velocity="3"/>{dynamics}</joint>', 1)
     sim = opened(folder, robot, yaml)
@@ -57,16 +57,16 @@ def held_out(folder: Path, yaml: str = YAML, losses: str = "") -> simkit.Simulat
 
 
 def at(sim: simkit.Simulation) -> np.ndarray:
-    """Where the joints are [rad]."""
+    """Return the positions of the joints [rad]."""
     return np.array([sim.joint("arm::j1").position, sim.joint("arm::j2").position])
 
 
-def test_other_controllers_have_the_joints_first(tmp_path: Path) -> None:
+def test_other_controllers_claim_the_joints_first(tmp_path: Path) -> None:
     sim = held_out(tmp_path)
     assert states(sim) == {"arm_controller": "active", "weightless": "inactive", "springy": "inactive"}
 
 
-def test_an_arm_without_weight_stays_and_a_push_moves_it_freely(tmp_path: Path) -> None:
+def test_a_compensated_arm_holds_and_a_push_moves_it_freely(tmp_path: Path) -> None:
     sim = held_out(tmp_path)
     before = at(sim)
     switched(sim, "weightless", "arm_controller")
@@ -86,7 +86,7 @@ def test_without_compensation_the_same_arm_falls(tmp_path: Path) -> None:
     assert np.abs(at(sim) - before).max() > 0.3
 
 
-def test_dry_friction_is_made_up_for_in_motion(tmp_path: Path) -> None:
+def test_dry_friction_is_compensated_in_motion(tmp_path: Path) -> None:
     sim = held_out(tmp_path, YAML.replace("torque_gain: 1.0", "viscous_frictions: [0.5, 0.5]"))
     switched(sim, "weightless", "arm_controller")
     sim.joint("arm::j2").set_velocity(0.3)
@@ -94,12 +94,12 @@ def test_dry_friction_is_made_up_for_in_motion(tmp_path: Path) -> None:
     assert sim.joint("arm::j2").velocity > 0.2  # without, 0.5 N·m·s/rad would have stopped it
 
 
-def test_control_types_of_another_number_are_told(tmp_path: Path) -> None:
+def test_a_wrong_number_of_control_types_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(simkit.LoadError, match="SK-CONTROL-050"):
         held_out(tmp_path, YAML.replace("torque_gain: 1.0", "control_type: [COMMAND]"))
 
 
-def test_a_springy_arm_gives_way_by_effort_over_stiffness_and_comes_back(tmp_path: Path) -> None:
+def test_a_spring_arm_yields_by_effort_over_stiffness_and_returns(tmp_path: Path) -> None:
     sim = held_out(tmp_path)
     before = at(sim)
     switched(sim, "springy", "arm_controller")
@@ -112,10 +112,10 @@ def test_a_springy_arm_gives_way_by_effort_over_stiffness_and_comes_back(tmp_pat
     assert at(sim)[1] - before[1] == pytest.approx(2.0 / 50.0, rel=0.1)
     sim.run(3.0)
     assert at(sim) == pytest.approx(before, abs=5e-3)
-    assert not told(sim, "SK-CONTROL-011")
+    assert not reported_messages(sim, "SK-CONTROL-011")
 
 
-def test_a_springy_arm_follows_a_trajectory(tmp_path: Path) -> None:
+def test_a_spring_arm_follows_a_trajectory(tmp_path: Path) -> None:
     sim = held_out(tmp_path)
     switched(sim, "springy", "arm_controller")
     point = {"positions": [0.2, 0.9], "velocities": [0.0, 0.0], "time_from_start": {"sec": 2, "nanosec": 0}}

@@ -1,4 +1,4 @@
-"""The gripper's action, on a joint that does at once what it is told until something is in its way."""
+"""Gripper action on a joint that follows commands at once until an object blocks it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from control_robots import ALL, arm, interfaces, opened, told
+from control_robots import ALL, arm, interfaces, opened, reported_messages
 
 from simkit.plugins.ros2_control.controllers import gripper_action
 from simkit.runtime.communication.action_server import GoalStatus
@@ -41,9 +41,7 @@ def test_a_goal_succeeds_within_its_tolerance() -> None:
 
 
 @pytest.mark.parametrize(("allowed", "status"), [(False, GoalStatus.ABORTED), (True, GoalStatus.SUCCEEDED)])
-def test_where_the_joint_stalls_the_goal_ends_and_the_gripper_goes_on_pressing(
-    allowed: bool, status: GoalStatus
-) -> None:
+def test_a_stalled_joint_ends_the_goal_and_the_gripper_keeps_pressing(allowed: bool, status: GoalStatus) -> None:
     sim, plugin = gripper({"allow_stalling": allowed}, most={"finger": 0.0})
     goal = close(sim, 0.04)
     sim.run(0.3)
@@ -67,7 +65,7 @@ def test_a_cancelled_goal_leaves_the_joint_where_it_is() -> None:
     assert held == pytest.approx(0.01, abs=0.001)
 
 
-def test_a_second_goal_takes_the_place_of_the_first() -> None:
+def test_a_second_goal_replaces_the_first() -> None:
     sim, plugin = gripper()
     first = close(sim, 0.04)
     sim.run(0.2)
@@ -77,7 +75,7 @@ def test_a_second_goal_takes_the_place_of_the_first() -> None:
     assert plugin.position("finger") == pytest.approx(0.0, abs=1e-9)
 
 
-def test_what_is_no_number_is_rejected_and_what_is_out_of_limits_said() -> None:
+def test_nan_is_rejected_and_a_goal_outside_the_limits_is_a_warning() -> None:
     sim, _ = gripper(limits={"finger": (0.0, 0.045)})
     assert_rejected = close(sim, math.nan)
     sim.step()
@@ -91,7 +89,7 @@ def test_what_is_no_number_is_rejected_and_what_is_out_of_limits_said() -> None:
     assert [d.code for d in sim.diagnostics] == ["SK-CONTROL-021"]
 
 
-def test_when_it_is_deactivated_its_goal_ends_and_no_other_is_taken() -> None:
+def test_deactivation_ends_the_goal_and_rejects_new_goals() -> None:
     sim, plugin = gripper()
     goal = close(sim, 0.04)
     sim.run(0.2)
@@ -101,7 +99,7 @@ def test_when_it_is_deactivated_its_goal_ends_and_no_other_is_taken() -> None:
     assert (goal.status, late.status) == (GoalStatus.ABORTED, GoalStatus.REJECTED)
 
 
-def test_by_effort_a_pid_presses_with_no_more_than_the_goal_allows() -> None:
+def test_the_effort_of_the_pid_stays_within_the_goals_limit() -> None:
     values = {"gains": {"finger": {"p": 200.0, "i": 1.0, "d": 5.0, "i_clamp": 1.0}}, "max_effort": 8.0}
     sim, plugin = gripper(values, cls=gripper_action.EffortGripperActionController, most={"finger": 0.0})
     sim.step()
@@ -114,7 +112,7 @@ def test_by_effort_a_pid_presses_with_no_more_than_the_goal_allows() -> None:
     assert plugin.commanded[-1] == [pytest.approx(0.0, abs=0.01)]
 
 
-def test_the_parallel_kind_takes_a_joint_state_with_speed_and_effort() -> None:
+def test_the_parallel_gripper_accepts_a_joint_state_with_speed_and_effort() -> None:
     sim, plugin = gripper(
         {"max_velocity_interface": "velocity", "max_effort_interface": "effort", "max_effort": 2.0},
         cls=gripper_action.ParallelGripperActionController,
@@ -131,15 +129,15 @@ def test_the_parallel_kind_takes_a_joint_state_with_speed_and_effort() -> None:
     assert (empty.status, empty.reason) == (GoalStatus.REJECTED, "The command has no position.")
 
 
-def test_a_gripper_without_a_joint_is_told() -> None:
+def test_a_gripper_without_a_joint_is_an_error() -> None:
     _, plugin = gripper({"joint": ""})
     assert [d.code for d in plugin.diagnostics] == ["SK-CONTROL-026"]
 
 
-def test_a_gripper_by_effort_without_gains_is_told(tmp_path: Path) -> None:
+def test_an_effort_gripper_without_gains_is_a_warning(tmp_path: Path) -> None:
     yaml = (
         "controller_manager:\n  ros__parameters:\n    grip: {type: effort_controllers/GripperActionController}\n"
         "grip:\n  ros__parameters: {joint: j1}\n"
     )
     with opened(tmp_path, arm(f'<joint name="j1">{interfaces(ALL)}</joint>'), yaml) as sim:
-        assert "gains of joint 'j1' are all 0" in told(sim, "SK-CONTROL-026")[0]
+        assert "gains of joint 'j1' are all 0" in reported_messages(sim, "SK-CONTROL-026")[0]

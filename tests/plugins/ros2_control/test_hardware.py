@@ -1,11 +1,11 @@
-"""The hardware of a robot: interfaces, limits, loops, mimics, first positions, each against what physics asks for."""
+"""Hardware of a robot: interfaces, limits, loops, mimics and initial positions, compared with physics."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import pytest
-from control_robots import ALL, POSITIONS, arm, command, interfaces, opened, position, states, told
+from control_robots import ALL, POSITIONS, arm, command, interfaces, opened, position, reported_messages, states
 
 import simkit
 
@@ -43,7 +43,7 @@ def hardware(*commands: str, first: str = "") -> str:
     return "".join(f'<joint name="{j}">{interfaces(commands)}{first}</joint>' for j in ("j1", "j2"))
 
 
-def test_an_effort_is_what_newton_says(tmp_path: Path) -> None:
+def test_an_effort_accelerates_by_newtons_law(tmp_path: Path) -> None:
     robot = cart(interfaces(("effort",)))
     with opened(tmp_path, robot, slide("effort_controllers/JointGroupEffortController")) as sim:
         command(sim, "group", 10.0)
@@ -75,7 +75,7 @@ def test_a_velocity_is_reached_and_held_against_gravity(tmp_path: Path) -> None:
         assert float(sim.joint("cart::slide").velocity) == pytest.approx(-0.5, abs=1e-3)
 
 
-def test_the_effort_state_is_what_holds_the_joint(tmp_path: Path) -> None:
+def test_the_effort_state_is_the_holding_effort(tmp_path: Path) -> None:
     yaml = slide("position_controllers/JointGroupPositionController").replace(
         "    group:", "    jsb: {type: joint_state_broadcaster/JointStateBroadcaster}\n    group:", 1
     )
@@ -85,7 +85,7 @@ def test_the_effort_state_is_what_holds_the_joint(tmp_path: Path) -> None:
         assert messages.messages[-1].effort == pytest.approx([2.0 * 9.81], rel=2e-3)
 
 
-def test_gains_in_the_hardware_take_the_servos_place(tmp_path: Path) -> None:
+def test_gains_in_the_hardware_replace_the_servo(tmp_path: Path) -> None:
     gains = '<param name="pos_kp">100</param><param name="pos_kd">20</param><command_interface name="position_pid"/>'
     robot = cart(gains + interfaces(()), axis="0 0 1", mass=1.0)
     with opened(tmp_path, robot, slide("position_controllers/JointGroupPositionController")) as sim:
@@ -95,7 +95,7 @@ def test_gains_in_the_hardware_take_the_servos_place(tmp_path: Path) -> None:
         assert position(sim, "slide") == pytest.approx([1.0 - 9.8 / 100], abs=2e-3)
 
 
-def test_an_integral_part_takes_away_what_gravity_leaves(tmp_path: Path) -> None:
+def test_an_integral_part_removes_the_error_of_gravity(tmp_path: Path) -> None:
     gains = (
         '<param name="pos_kp">100</param><param name="pos_ki">50</param><param name="pos_kd">20</param>'
         '<param name="pos_max_integral_error">10000</param><command_interface name="position_pid"/>'
@@ -108,7 +108,7 @@ def test_an_integral_part_takes_away_what_gravity_leaves(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("words", ["kp: 100, kd: 20", "p: 100, d: 20"])
-def test_gains_in_the_parameter_file_do_too(tmp_path: Path, words: str) -> None:
+def test_gains_in_the_parameter_file_replace_the_servo(tmp_path: Path, words: str) -> None:
     yaml = slide("position_controllers/JointGroupPositionController")
     yaml += f"control:\n  ros__parameters:\n    pid_gains:\n      position:\n        slide: {{{words}}}\n"
     robot = cart(interfaces(("position",)), axis="0 0 1", mass=1.0)
@@ -125,7 +125,7 @@ def test_a_position_beyond_the_limit_ends_at_it(tmp_path: Path) -> None:
         assert position(sim, "j1") == pytest.approx([2.0], abs=5e-3)
 
 
-def test_the_first_positions_are_the_descriptions(tmp_path: Path) -> None:
+def test_the_initial_positions_come_from_the_description(tmp_path: Path) -> None:
     inside = interfaces(("position",), ()) + (
         '<state_interface name="position"><param name="initial_value">0.7</param></state_interface>'
     )
@@ -154,7 +154,7 @@ def test_a_mimic_follows_its_leader(tmp_path: Path, where: str) -> None:
         assert position(sim, "j1", "j2") == pytest.approx([-0.4, 0.3], abs=1e-3)
 
 
-def test_joints_of_effort_fall_where_the_file_lets_them(tmp_path: Path) -> None:
+def test_effort_joints_fall_if_hold_joints_is_false(tmp_path: Path) -> None:
     ends = []
     for more in ("", "<hold_joints>false</hold_joints>"):
         plugin = f"<parameters>arm.yaml</parameters>{more}"
@@ -172,7 +172,7 @@ def test_joints_of_effort_fall_where_the_file_lets_them(tmp_path: Path) -> None:
 
 def test_without_a_description_every_joint_has_every_interface(tmp_path: Path) -> None:
     with opened(tmp_path, arm(""), POSITIONS) as sim:
-        assert told(sim, "SK-CONTROL-005")
+        assert reported_messages(sim, "SK-CONTROL-005")
         names = [i.name for i in sim.call("/controller_manager/list_hardware_interfaces").command_interfaces]
         assert names == [f"{joint}/{one}" for joint in ("j1", "j2") for one in ALL]
         command(sim, "arm_controller", 0.3, 0.0)
@@ -180,7 +180,7 @@ def test_without_a_description_every_joint_has_every_interface(tmp_path: Path) -
         assert position(sim, "j1") == pytest.approx([0.3], abs=1e-3)
 
 
-def test_a_description_may_stand_in_the_plugin_of_an_sdf_file(tmp_path: Path) -> None:
+def test_a_description_may_be_in_the_plugin_of_an_sdf_file(tmp_path: Path) -> None:
     (tmp_path / "arm.yaml").write_text(FIRST)
     text = f"""<sdf version="1.9"><model name="m">
     <link name="l"><pose>0 0 1 0 0 0</pose><inertial><mass>1</mass></inertial></link>
@@ -197,7 +197,7 @@ def test_a_description_may_stand_in_the_plugin_of_an_sdf_file(tmp_path: Path) ->
         sim.run(3.0)
         assert states(sim) == {"group": "active"}
         assert position(sim, "j1") == pytest.approx([1.0], abs=1e-3)
-        assert not told(sim, "SK-PARAM-003")
+        assert not reported_messages(sim, "SK-PARAM-003")
 
 
 @pytest.mark.parametrize(
@@ -214,13 +214,13 @@ def test_a_description_may_stand_in_the_plugin_of_an_sdf_file(tmp_path: Path) ->
         ),
     ],
 )
-def test_what_the_hardware_names_and_is_not_there_is_told(tmp_path: Path, block: str, code: str, words: str) -> None:
+def test_unknown_names_in_the_hardware_are_reported(tmp_path: Path, block: str, code: str, words: str) -> None:
     with opened(tmp_path, arm(hardware("position") + block)) as sim:
-        assert any(words in message for message in told(sim, code))
+        assert any(words in message for message in reported_messages(sim, code))
         assert states(sim)["arm_controller"] == "active"
 
 
-def test_a_joint_that_comes_twice_is_the_first(tmp_path: Path) -> None:
+def test_the_first_of_two_equal_joints_is_used(tmp_path: Path) -> None:
     with opened(tmp_path, arm(hardware("position") + f'<joint name="j1">{interfaces(("effort",))}</joint>')) as sim:
-        assert "names joint 'j1' again" in told(sim, "SK-CONTROL-004")[0]
+        assert "names joint 'j1' again" in reported_messages(sim, "SK-CONTROL-004")[0]
         assert states(sim)["arm_controller"] == "active"

@@ -93,7 +93,7 @@ def test_a_commanded_position_beyond_the_limits_ends_at_them(tmp_path: Path) -> 
     assert sim.joint("arm::j2").position == pytest.approx(2.0, abs=1e-3)
 
 
-def test_no_drive_gives_more_than_its_effort_limit(tmp_path: Path) -> None:
+def test_the_effort_stays_within_its_limit(tmp_path: Path) -> None:
     weak = arm().replace('effort="40"', 'effort="6"')
     sim = world(files(tmp_path, weak), 0.001)
     command(sim, "arm_controller", math.pi / 2, 0.0)
@@ -133,7 +133,7 @@ def test_a_velocity_under_load_loses_no_angle(tmp_path: Path, step: float) -> No
     assert sim.joint("arm::j1").position == pytest.approx(end, abs=1e-5)
 
 
-def test_nothing_moves_where_nobody_commands_and_nothing_jumps_at_a_reset(tmp_path: Path) -> None:
+def test_a_joint_without_command_holds_and_does_not_jump_at_a_reset(tmp_path: Path) -> None:
     sim = world(files(tmp_path, arm()), 0.001)
     sim.run(0.5)
     assert sim.joint("arm::j1").position == pytest.approx(0.0, abs=1e-6)
@@ -156,7 +156,7 @@ def test_a_restored_motion_goes_on_with_the_same_bits(tmp_path: Path) -> None:
     assert np.array_equal(first, sim.mj_data.qpos)
 
 
-def test_who_looks_on_changes_no_motion(tmp_path: Path) -> None:
+def test_observers_change_no_motion(tmp_path: Path) -> None:
     ends = []
     for looks in (False, True):
         sim = world(files(tmp_path, arm()), 0.001)
@@ -185,7 +185,7 @@ def test_a_spawned_robot_leaves_the_motion_of_another_as_it_is(tmp_path: Path) -
     assert ends[0] == pytest.approx(ends[1], abs=1e-9)
 
 
-def test_a_joint_that_was_put_elsewhere_comes_back_at_its_velocity_limit(tmp_path: Path) -> None:
+def test_a_displaced_joint_returns_at_its_velocity_limit(tmp_path: Path) -> None:
     sim = world(files(tmp_path, arm()), 0.001)
     sim.run(0.1)
     joint = sim.joint("arm::j2")

@@ -31,7 +31,7 @@ def test_the_integral_stays_within_its_clamp() -> None:
     assert run(pid(i=10.0, i_clamp_min=-0.2, i_clamp_max=0.3), [-1.0] * 5)[-1] == -0.2
 
 
-def test_a_clamped_command_does_not_wind_up_where_that_is_asked_for() -> None:
+def test_a_clamped_command_does_not_wind_up_with_an_antiwindup_strategy() -> None:
     back = {"p": 1.0, "i": 1.0, "u_clamp_max": 1.0}
     wound = run(pid(**back), [2.0] * 50 + [-0.5] * 10)
     careful = run(pid(**back, antiwindup_strategy="conditional_integration"), [2.0] * 50 + [-0.5] * 10)
@@ -47,7 +47,7 @@ def test_an_error_within_the_deadband_adds_nothing() -> None:
     assert run(pid(i=1.0, error_deadband=0.1), [0.05] * 5)[-1] == 0.0
 
 
-def test_it_starts_anew() -> None:
+def test_restart_clears_the_integral() -> None:
     pids = pid(i=1.0)
     run(pids, [1.0] * 5)
     pids.restart()

@@ -1,11 +1,11 @@
-"""What a parameter file says that reaches nobody is told, each with its line and the closest name."""
+"""Unused parameters in a parameter file are reported with their line and the closest name."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import pytest
-from control_robots import POSITIONS, arm, opened, states, told
+from control_robots import POSITIONS, arm, opened, reported_messages, states
 
 import simkit
 
@@ -13,7 +13,7 @@ TYPE = "      type: position_controllers/JointGroupPositionController\n"
 
 
 @pytest.mark.parametrize(
-    ("instead", "said"),
+    ("type_line", "message"),
     [
         ("      rate: 1\n", "is not defined"),
         ("", "is not defined"),
@@ -23,16 +23,16 @@ TYPE = "      type: position_controllers/JointGroupPositionController\n"
         (TYPE.replace("type", "tpye"), "is not defined"),
     ],
 )
-def test_a_controller_without_a_type_is_told(tmp_path: Path, instead: str, said: str) -> None:
-    with opened(tmp_path, yaml=POSITIONS.replace(TYPE, instead)) as sim:
+def test_a_controller_without_a_type_is_a_warning(tmp_path: Path, type_line: str, message: str) -> None:
+    with opened(tmp_path, yaml=POSITIONS.replace(TYPE, type_line)) as sim:
         assert states(sim) == {"joint_state_broadcaster": "active"}
         found = next(d for d in sim.diagnostics if d.code == "SK-CONTROL-013")
         assert found.line in (7, 8)
-        assert f"the 'type' param of controller 'arm_controller' {said}" in found.message
-        assert ("'tpye'" in found.hint) == ("tpye" in instead)
+        assert f"the 'type' param of controller 'arm_controller' {message}" in found.message
+        assert ("'tpye'" in found.hint) == ("tpye" in type_line)
 
 
-def test_a_misspelt_manager_is_told_with_the_closest(tmp_path: Path) -> None:
+def test_a_misspelt_manager_is_a_warning_with_a_suggestion(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS.replace("controller_manager:", "controler_manager:")) as sim:
         assert states(sim) == {}
         found = next(d for d in sim.diagnostics if d.code == "SK-CONTROL-003")
@@ -40,29 +40,29 @@ def test_a_misspelt_manager_is_told_with_the_closest(tmp_path: Path) -> None:
         assert found.hint == "did you mean '/controler_manager'?"
 
 
-def test_a_namespace_that_the_file_does_not_have_is_told(tmp_path: Path) -> None:
+def test_a_namespace_missing_in_the_file_is_a_warning(tmp_path: Path) -> None:
     plugin = "<ros><namespace>/r1</namespace></ros><parameters>arm.yaml</parameters>"
     with opened(tmp_path, arm(plugin=plugin)) as sim:
-        assert "declares no controller for '/r1/controller_manager'" in told(sim, "SK-CONTROL-003")[0]
+        assert "declares no controller for '/r1/controller_manager'" in reported_messages(sim, "SK-CONTROL-003")[0]
 
 
-def test_a_misspelt_parameter_of_the_manager_is_told(tmp_path: Path) -> None:
+def test_a_misspelt_parameter_of_the_manager_is_a_warning(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS.replace("update_rate", "updat_rate")) as sim:
-        assert "the controller manager ignores parameter <updat_rate>" in told(sim, "SK-CONTROL-011")[0]
+        assert "the controller manager ignores parameter <updat_rate>" in reported_messages(sim, "SK-CONTROL-011")[0]
 
 
-def test_a_controllers_parameters_beside_its_type_are_told(tmp_path: Path) -> None:
+def test_parameters_beside_the_type_of_a_controller_are_a_warning(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS.replace(TYPE, TYPE + "      joints: [j1]\n")) as sim:
-        assert "'joints' beside the type of 'arm_controller' is ignored" in told(sim, "SK-CONTROL-011")[0]
+        assert "'joints' beside the type of 'arm_controller' is ignored" in reported_messages(sim, "SK-CONTROL-011")[0]
 
 
-def test_a_controller_that_is_to_be_faster_than_its_manager_is_told(tmp_path: Path) -> None:
+def test_a_controller_rate_above_the_managers_is_a_warning(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS + "    update_rate: 500\n") as sim:
-        message = told(sim, "SK-CONTROL-017")[0]
+        message = reported_messages(sim, "SK-CONTROL-017")[0]
         assert "'arm_controller' has an update rate of 500 Hz, above the manager's 100 Hz" in message
 
 
-def test_a_good_file_is_told_nothing_of(tmp_path: Path) -> None:
+def test_a_valid_file_has_no_diagnostics(tmp_path: Path) -> None:
     yaml = POSITIONS + "control:\n  ros__parameters: {pid_gains: {position: {j1: {kp: 1000.0}}}}\n"
     with opened(tmp_path, yaml=yaml) as sim:
         assert not [d for d in sim.diagnostics if d.severity != "note" and d.code.startswith("SK-CONTROL")]
@@ -74,45 +74,45 @@ def test_a_joint_that_is_named_twice_stops_the_load(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("joints", ["[]", "", '""', "[~]"])
-def test_a_list_with_nothing_in_it_stops_the_load(tmp_path: Path, joints: str) -> None:
+def test_an_empty_list_stops_the_load(tmp_path: Path, joints: str) -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-001: <arm_controller> needs <joints>: a list of names"):
         opened(tmp_path, yaml=POSITIONS.replace("[j1, j2]", joints))
 
 
-@pytest.mark.parametrize(("gains", "said"), [("", "No p gain"), ("    gains: 5\n", "found '5' for 'gains'")])
-def test_a_loop_without_gains_stops_the_load(tmp_path: Path, gains: str, said: str) -> None:
+@pytest.mark.parametrize(("gains", "message"), [("", "No p gain"), ("    gains: 5\n", "found '5' for 'gains'")])
+def test_a_loop_without_gains_stops_the_load(tmp_path: Path, gains: str, message: str) -> None:
     yaml = POSITIONS.replace("position_controllers", "effort_controllers") + gains
     hardware = "".join(
         f'<joint name="{j}"><command_interface name="effort"/><state_interface name="position"/>'
         '<state_interface name="velocity"/></joint>'
         for j in ("j1", "j2")
     )
-    with pytest.raises(simkit.LoadError, match=said):
+    with pytest.raises(simkit.LoadError, match=message):
         opened(tmp_path, arm(hardware), yaml)
 
 
-def test_gains_of_the_plugin_that_reach_no_joint_are_told(tmp_path: Path) -> None:
+def test_gains_for_an_unknown_joint_are_a_warning(tmp_path: Path) -> None:
     gains = "{position: {j1: {kp: 1000.0, kq: 1}, j3: {kp: 1}}, velocty: {j1: {kp: 1}}}"
     with opened(tmp_path, yaml=POSITIONS + f"control:\n  ros__parameters: {{pid_gains: {gains}}}\n") as sim:
-        assert "pid_gains names joint 'j3'" in told(sim, "SK-CONTROL-008")[0]
-        unused = told(sim, "SK-CONTROL-011")
+        assert "pid_gains names joint 'j3'" in reported_messages(sim, "SK-CONTROL-008")[0]
+        unused = reported_messages(sim, "SK-CONTROL-011")
         assert [word for word in ("<kq>", "<velocty>") if any(word in m for m in unused)] == ["<kq>", "<velocty>"]
 
 
-def test_a_name_that_no_file_can_have_is_not_found(tmp_path: Path) -> None:
+def test_an_impossible_file_name_is_not_found(tmp_path: Path) -> None:
     with opened(tmp_path, arm(plugin=f"<parameters>{'a' * 5000}</parameters>")) as sim:
-        assert "is not found" in told(sim, "SK-CONTROL-015")[0]
+        assert "is not found" in reported_messages(sim, "SK-CONTROL-015")[0]
 
 
 @pytest.mark.parametrize(("more", "line"), [("# \xe9".encode("latin-1"), 12), (b"\x07", 12)])
-def test_a_character_that_is_none_is_told_with_its_line(tmp_path: Path, more: bytes, line: int) -> None:
+def test_an_invalid_character_is_reported_with_its_line(tmp_path: Path, more: bytes, line: int) -> None:
     opened(tmp_path)
     (tmp_path / "arm.yaml").write_bytes(POSITIONS.encode() + more)
     with pytest.raises(simkit.LoadError, match=rf"arm.yaml:{line}: error SK-CONTROL-002"):
         simkit.load(tmp_path / "arm.urdf")
 
 
-def test_two_control_plugins_on_one_robot_are_told(tmp_path: Path) -> None:
+def test_two_control_plugins_on_one_robot_are_a_warning(tmp_path: Path) -> None:
     again = '<gazebo><plugin filename="libgazebo_ros2_control.so" name="second"/></gazebo>'
     with opened(tmp_path, arm().replace("</robot>", f"{again}</robot>")) as sim:
-        assert "joint 'j1' is already driven by plugin 'control'" in told(sim, "SK-CONTROL-004")[0]
+        assert "joint 'j1' is already driven by plugin 'control'" in reported_messages(sim, "SK-CONTROL-004")[0]

@@ -1,4 +1,4 @@
-"""Heads that look at points and at what is seen in a pixel."""
+"""Heads that turn towards points and towards the point at a pixel."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def test_the_point_may_be_in_any_frame_of_the_robot(sim: Any) -> None:
     assert look(sim, (1.0, 0.0, 0.0), "rob::base").status is GoalStatus.SUCCEEDED
 
 
-def test_what_is_seen_in_a_pixel_comes_into_the_middle(sim: Any) -> None:
+def test_the_point_at_a_pixel_moves_to_the_image_centre(sim: Any) -> None:
     info = msgs.make(
         "sensor_msgs/msg/CameraInfo",
         header=msgs.header(0, "optical"),
@@ -124,7 +124,7 @@ def test_what_is_seen_in_a_pixel_comes_into_the_middle(sim: Any) -> None:
     assert 520 * seen[1] / seen[2] == pytest.approx(0.0, abs=0.5)
 
 
-def test_the_head_takes_the_time_that_it_is_given(sim: Any) -> None:
+def test_the_head_takes_at_least_the_minimum_duration(sim: Any) -> None:
     slow = look(sim, (2.0, 2.2, 1.0), max_velocity=0.5)
     assert slow.status is GoalStatus.SUCCEEDED
     turned = abs(sim.joint("rob::pan").position)
@@ -134,7 +134,7 @@ def test_the_head_takes_the_time_that_it_is_given(sim: Any) -> None:
     assert sim.time - start == pytest.approx(1.0, abs=0.08)
 
 
-def test_a_point_out_of_reach_is_looked_at_as_far_as_it_goes(sim: Any) -> None:
+def test_the_head_turns_towards_an_unreachable_point_up_to_its_limits(sim: Any) -> None:
     goal = look(sim, (-2.0, -1.0, 1.0))
     assert goal.status is GoalStatus.ABORTED
     assert goal.reason.startswith("the limits of the neck keep it 1.")
@@ -171,7 +171,7 @@ def test_a_cancelled_goal_leaves_the_head_where_it_is(sim: Any) -> None:
         ),
     ],
 )
-def test_what_cannot_be_looked_at_is_rejected_with_the_reason(sim: Any, goal: dict[str, Any], reason: str) -> None:
+def test_an_invalid_goal_is_rejected_with_the_reason(sim: Any, goal: dict[str, Any], reason: str) -> None:
     handle = sim.send_goal(ACTION, goal)
     sim.step(20)
     assert handle.status is GoalStatus.REJECTED
@@ -194,7 +194,7 @@ def test_the_aim_of_two_crossing_axes_is_that_of_the_formula() -> None:
     assert error < 1e-9
 
 
-def test_a_distorted_pixel_is_led_back_to_its_ray() -> None:
+def test_a_distorted_pixel_gives_its_ray() -> None:
     x, y, k1, k2, p1, p2 = 0.3, -0.2, -0.1, 0.02, 0.001, -0.002
     r2 = x * x + y * y
     radial = 1 + k1 * r2 + k2 * r2**2

@@ -1,4 +1,4 @@
-"""`libgazebo_ros_control.so`: controllers, names, gains and services as ROS 1 has them."""
+"""`libgazebo_ros_control.so`: controllers, names, gains and services of ROS 1."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def send(sim: simkit.Simulation, value: float) -> None:
     sim.publish("/rrbot/one/command", simkit.msgs.make("std_msgs/msg/Float64", data=value))
 
 
-def test_a_loop_of_effort_brings_a_joint_there_and_tells_its_state(tmp_path: Path) -> None:
+def test_an_effort_loop_reaches_a_position_and_publishes_its_state(tmp_path: Path) -> None:
     gains = "    pid: {p: 300.0, i: 50.0, d: 20.0, i_clamp: 30.0}\n"
     with opened(
         tmp_path, robot("EffortJointInterface"), yaml("effort_controllers/JointPositionController", gains)
@@ -56,7 +56,7 @@ def test_a_loop_of_effort_brings_a_joint_there_and_tells_its_state(tmp_path: Pat
         assert len(sent.messages) == pytest.approx(400, abs=2)
 
 
-def test_services_speak_as_ros_1_does(tmp_path: Path) -> None:
+def test_services_use_the_states_of_ros_1(tmp_path: Path) -> None:
     kind = "position_controllers/JointPositionController"
     with opened(tmp_path, robot("PositionJointInterface"), yaml(kind, "")) as sim:
         manager = "/rrbot/controller_manager"
@@ -80,7 +80,7 @@ def test_a_velocity_of_one_joint(tmp_path: Path) -> None:
         assert float(sim.joint("arm::j1").velocity) == pytest.approx(0.5, abs=0.01)
 
 
-def test_a_loop_of_effort_keeps_a_velocity(tmp_path: Path) -> None:
+def test_an_effort_loop_holds_a_velocity(tmp_path: Path) -> None:
     gains = "    pid: {p: 50.0, i: 100.0, d: 0.0, i_clamp: 40.0}\n"
     with opened(
         tmp_path, robot("EffortJointInterface"), yaml("effort_controllers/JointVelocityController", gains)
@@ -107,7 +107,7 @@ def test_the_namespace_is_the_models_name_where_none_is_given(tmp_path: Path) ->
         assert "/arm/joint_states" in sim.topics()
 
 
-def test_without_a_file_nothing_is_loaded_and_a_note_says_how(tmp_path: Path) -> None:
+def test_without_a_file_nothing_is_loaded_and_a_note_has_the_remedy(tmp_path: Path) -> None:
     plain = arm("", "<robotNamespace>/r</robotNamespace>", ROS_1, more=transmissions("EffortJointInterface"))
     with opened(tmp_path, plain) as sim:
         assert states(sim, "/r/controller_manager") == {}

@@ -1,4 +1,4 @@
-"""Parameters written in another form than is wanted: a value for a block, a list for a value, and so on."""
+"""Parameters in a wrong form: a value for a block, a list for a value, and so on."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def node(folder: Path, text: str) -> tuple[Params, Diagnostics]:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("rate: [100, 50]", "found a list for 'rate', allowed is a number"),
         ("rate: []", "found a list for 'rate', allowed is a number"),
@@ -34,10 +34,10 @@ def node(folder: Path, text: str) -> tuple[Params, Diagnostics]:
         ("rate:", "found rate without a value, allowed is a number"),
     ],
 )
-def test_only_a_value_is_a_number(tmp_path: Path, text: str, told: str) -> None:
+def test_only_a_value_is_a_number(tmp_path: Path, text: str, message: str) -> None:
     params, found = node(tmp_path, text)
     assert params.number("rate", 7.0) == 7.0
-    assert [(d.line, d.message) for d in found] == [(3, told)]
+    assert [(d.line, d.message) for d in found] == [(3, message)]
 
 
 @pytest.mark.parametrize("text", ["gains: 5", "gains: [1]", "gains: []", "gains: abc"])
@@ -54,17 +54,17 @@ def test_a_name_with_nothing_below_it_is_an_empty_block(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("joints: {j1: 1}", "found a block for 'joints', allowed is a list"),
         ("joints: [j1, {j2: 1}]", "found a block in the list 'joints', allowed is a value"),
         ("joints: [j1, [j2]]", "found a list in the list 'joints', allowed are values"),
     ],
 )
-def test_only_values_are_in_a_list(tmp_path: Path, text: str, told: str) -> None:
+def test_only_values_are_in_a_list(tmp_path: Path, text: str, message: str) -> None:
     params, found = node(tmp_path, text)
     params.all("joints")
-    assert [d.message for d in found] == [told]
+    assert [d.message for d in found] == [message]
 
 
 def test_a_single_value_is_a_list_of_one_and_a_list_of_numbers_a_vector(tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_a_single_value_is_a_list_of_one_and_a_list_of_numbers_a_vector(tmp_path
     assert not list(found)
 
 
-def test_what_was_told_of_is_not_told_of_again_as_unread(tmp_path: Path) -> None:
+def test_a_reported_value_is_not_reported_again_as_unread(tmp_path: Path) -> None:
     params, found = node(tmp_path, "rate: [1, 2]\nname: {a: 1}\njoints: {j: 1}")
     params.number("rate", 1.0)
     params.text("name", "")
@@ -83,14 +83,14 @@ def test_what_was_told_of_is_not_told_of_again_as_unread(tmp_path: Path) -> None
     assert [d.code for d in found] == ["SK-PARAM-002"] * 3
 
 
-def test_merge_keys_bring_in_what_a_block_does_not_say_itself(tmp_path: Path) -> None:
+def test_merge_keys_add_missing_keys_to_a_block(tmp_path: Path) -> None:
     params, found = node(tmp_path, "a: &a {p: 1, i: 2}\nb: {<<: *a, p: 3}\nc: {<<: [{p: 4}, {p: 5, d: 6}]}")
     assert [params.block("b").number(name) for name in "pi"] == [3.0, 2.0]
     assert [params.block("c").number(name) for name in "pd"] == [4.0, 6.0]
     assert not list(found)
 
 
-def test_a_value_that_has_no_effect_is_told_of_where_it_stands(tmp_path: Path) -> None:
+def test_a_value_without_effect_is_reported_at_its_line(tmp_path: Path) -> None:
     params, found = node(tmp_path, "cmd_timeout: 0.2")
     assert read_timeout(params, 0.5) == 0.0
     wheels = "left_wheel_names: [l]\nright_wheel_names: [r]\nwheel_separation: 1\nwheel_radius: 0.1\nwheels_per_side: 2"

@@ -6,7 +6,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from control_robots import CLASSIC, POSITIONS, arm, command, position, states, told
+from control_robots import CLASSIC, POSITIONS, arm, command, position, reported_messages, states
 from test_ros_1_control import ROS_1, transmissions
 from typer.testing import CliRunner
 
@@ -38,16 +38,16 @@ def sent(sim: simkit.Simulation, topic: str, *values: float) -> None:
     sim.publish(topic, simkit.msgs.make("std_msgs/msg/Float64MultiArray", data=list(values)))
 
 
-def test_a_robot_of_ros_1_runs_the_controllers_of_a_file_beside_it(tmp_path: Path) -> None:
+def test_a_ros_1_robot_runs_the_controllers_of_a_given_file(tmp_path: Path) -> None:
     with simkit.load(robot_of_ros_1(), params_files=[saved(tmp_path, OF_ROS_1)]) as sim:
         assert states(sim) == DECLARED
-        assert not told(sim, "SK-CONTROL-018")
+        assert not reported_messages(sim, "SK-CONTROL-018")
         sent(sim, "/arm_controller/command", 0.4, -0.2)
         sim.run(2.0)
         assert position(sim, "j1", "j2") == pytest.approx([0.4, -0.2], abs=1e-3)
 
 
-def test_a_file_of_ros_1_is_below_the_robots_namespace_whether_it_says_so_or_not(tmp_path: Path) -> None:
+def test_a_ros_1_file_is_below_the_robots_namespace_with_or_without_its_name(tmp_path: Path) -> None:
     """As `<group ns="...">` of a launch file puts it there."""
     plain = saved(tmp_path, OF_ROS_1 + PIDS)
     inside = saved(tmp_path, "r:\n" + "".join(f"  {line}\n" for line in (OF_ROS_1 + PIDS).splitlines()), "in.yaml")
@@ -61,7 +61,7 @@ def test_a_file_of_ros_1_is_below_the_robots_namespace_whether_it_says_so_or_not
     assert ends[0] == ends[1] > 0.51  # its loop has no integral: it gives way to the weight
 
 
-def test_several_files_are_one_and_the_later_goes_over_the_earlier(tmp_path: Path) -> None:
+def test_several_files_are_merged_and_the_later_overrides_the_earlier(tmp_path: Path) -> None:
     over = saved(tmp_path, "arm_controller: {joints: [j2]}\n", "over.yaml")
     with simkit.load(robot_of_ros_1(), params_files=[saved(tmp_path, OF_ROS_1), over]) as sim:
         sent(sim, "/arm_controller/command", 0.3)
@@ -69,7 +69,7 @@ def test_several_files_are_one_and_the_later_goes_over_the_earlier(tmp_path: Pat
         assert position(sim, "j1", "j2") == pytest.approx([0.0, 0.3], abs=1e-3)
 
 
-def test_a_plugin_of_ros_2_takes_it_over_the_file_that_it_names(tmp_path: Path) -> None:
+def test_a_given_file_overrides_the_file_of_a_ros_2_plugin(tmp_path: Path) -> None:
     saved(tmp_path, POSITIONS, "arm.yaml")
     (tmp_path / "arm.urdf").write_text(arm(), encoding="utf-8")
     given = saved(tmp_path, "/arm_controller: {ros__parameters: {joints: [j2]}}\n")
@@ -79,7 +79,7 @@ def test_a_plugin_of_ros_2_takes_it_over_the_file_that_it_names(tmp_path: Path) 
         assert position(sim, "j1", "j2") == pytest.approx([0.0, 0.3], abs=1e-3)
 
 
-def test_a_file_of_ros_2_serves_a_robot_of_ros_1(tmp_path: Path) -> None:
+def test_a_ros_2_file_works_for_a_ros_1_robot(tmp_path: Path) -> None:
     for namespace, below in (("<robotNamespace/>", ""), ("<robotNamespace>/r</robotNamespace>", "/r")):
         with simkit.load(robot_of_ros_1(namespace), params_files=[saved(tmp_path, POSITIONS)]) as sim:
             assert states(sim, f"{below}/controller_manager") == {
@@ -88,10 +88,10 @@ def test_a_file_of_ros_2_serves_a_robot_of_ros_1(tmp_path: Path) -> None:
             }
 
 
-def test_a_file_of_ros_1_serves_a_robot_of_ros_2_but_for_its_loops(tmp_path: Path) -> None:
+def test_a_ros_1_file_works_for_a_ros_2_robot_except_its_gains(tmp_path: Path) -> None:
     with simkit.load(arm(plugin="", library=CLASSIC), params_files=[saved(tmp_path, OF_ROS_1 + PIDS)]) as sim:
         assert states(sim) == dict.fromkeys(DECLARED, "active")
-        assert "gazebo_ros_control has gains for the plugin of ROS 1" in told(sim, "SK-CONTROL-011")[0]
+        assert "gazebo_ros_control has gains for the plugin of ROS 1" in reported_messages(sim, "SK-CONTROL-011")[0]
         command(sim, "arm_controller", 0.4, -0.2)
         sim.run(2.0)
         assert position(sim, "j1", "j2") == pytest.approx([0.4, -0.2], abs=1e-3)
@@ -104,30 +104,30 @@ def test_a_file_may_be_for_one_model_and_for_one_that_comes_later(tmp_path: Path
     with simkit.load("empty", spawn=spawn, params_files=[f"two={path}", ("three", path)]) as sim:
         assert states(sim, "/one/controller_manager") == {}
         assert states(sim, "/two/controller_manager") == DECLARED
-        assert "given.yaml is for the model 'three'" in told(sim, "SK-CONTROL-060")[0]
+        assert "given.yaml is for the model 'three'" in reported_messages(sim, "SK-CONTROL-060")[0]
         sim.spawn(robot, name="three")
         assert states(sim, "/three/controller_manager") == DECLARED
         sim.reset()
         assert states(sim, "/two/controller_manager") == DECLARED
 
 
-def test_a_file_that_nobody_reads_is_told(tmp_path: Path) -> None:
+def test_an_unused_file_is_a_warning(tmp_path: Path) -> None:
     path = saved(tmp_path, OF_ROS_1)
     with simkit.load("empty", params_files=[path]) as sim:
-        assert "no model has a control plugin" in told(sim, "SK-CONTROL-060")[0]
+        assert "no model has a control plugin" in reported_messages(sim, "SK-CONTROL-060")[0]
     with simkit.load(robot_of_ros_1(), params_files=[f"amr={path}"]) as sim:
         (found,) = (d for d in sim.diagnostics if d.code == "SK-CONTROL-060")
         assert "'arm'" in found.hint
         assert "--params-file" in next(d.hint for d in sim.diagnostics if d.code == "SK-CONTROL-018")
 
 
-def test_a_wrong_value_is_told_as_the_file_has_it_and_the_file_is_not_called_unread(tmp_path: Path) -> None:
+def test_a_wrong_value_is_reported_as_written_and_the_file_counts_as_read(tmp_path: Path) -> None:
     path = saved(tmp_path, "controller_manager: {ros__parameters: {update_rate: fast}}\n")
     with pytest.raises(LoadError) as caught:
         simkit.load("empty", spawn=["tiago:0,0,0"], params_files=[path])
-    said = [d for d in caught.value.diagnostics if d.severity != "note"]
-    assert [d.code for d in said] == ["SK-PARAM-002"]
-    assert "found update_rate: fast, allowed is a number" in said[0].message
+    errors = [d for d in caught.value.diagnostics if d.severity != "note"]
+    assert [d.code for d in errors] == ["SK-PARAM-002"]
+    assert "found update_rate: fast, allowed is a number" in errors[0].message
 
 
 def test_missing_and_broken_files_stop_the_load_all_in_one_pass(tmp_path: Path) -> None:
@@ -149,7 +149,7 @@ def test_a_file_of_two_robots_is_broken_once(tmp_path: Path) -> None:
     assert [d.code for d in raised.value.diagnostics if d.severity == "error"] == ["SK-CONTROL-002"]
 
 
-def test_the_command_line_takes_it(tmp_path: Path) -> None:
+def test_the_command_line_accepts_a_parameter_file(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(robot_of_ros_1(), encoding="utf-8")
     path = saved(tmp_path, OF_ROS_1)
     words = ["run", str(tmp_path / "r.urdf"), "--duration", "0.2", "--params-file"]
@@ -160,11 +160,13 @@ def test_the_command_line_takes_it(tmp_path: Path) -> None:
         assert done.exit_code == 2 and "SK-CONTROL-0" in done.stderr
 
 
-def test_what_a_plugin_says_of_a_model_that_is_spawned_at_the_load_is_told(tmp_path: Path) -> None:
+def test_diagnostics_of_a_model_spawned_during_the_load_are_reported(tmp_path: Path) -> None:
     robot, words = tmp_path / "r.urdf", "<parameters>arm.yaml</parameters>"
     robot.write_text(robot_of_ros_1("<controlPeriode>1</controlPeriode>"), encoding="utf-8")
     with simkit.load("empty", spawn=[f"{robot}:0,0,0"]) as sim:
-        assert told(sim, "SK-CONTROL-018") and "<controlPeriode>" in told(sim, "SK-PARAM-003")[0]
+        assert (
+            reported_messages(sim, "SK-CONTROL-018") and "<controlPeriode>" in reported_messages(sim, "SK-PARAM-003")[0]
+        )
     saved(tmp_path, "[a]", "arm.yaml")
     robot.write_text(robot_of_ros_1(words), encoding="utf-8")
     with pytest.raises(LoadError, match="SK-CONTROL-002"):

@@ -67,20 +67,20 @@ def test_one_piece_without_velocities_is_straight_though_the_others_are_cubic() 
     assert at(spline, 0.25).motion[0, 0] == pytest.approx(3 * 0.25**2 - 2 * 0.25**3)
 
 
-def test_a_point_that_is_over_is_where_the_way_begins() -> None:
+def test_a_trajectory_begins_at_its_first_past_point() -> None:
     late = point(1.5, [5.0, 5.0])
     spline = Spline.through(late, [point(1.0, [1.0, 1.0]), point(2.0, [3.0, 1.0])])
     np.testing.assert_allclose(at(spline, 1.5).motion[0], [2.0, 1.0])
 
 
-def test_without_interpolation_the_next_point_is_wanted_at_once() -> None:
+def test_without_interpolation_the_target_is_the_next_point() -> None:
     spline = Spline.through(START, [point(1.0, [1.0, 1.0]), point(2.0, [3.0, 2.0])], steps=True)
     assert at(spline, 0.5).motion[0].tolist() == [0.0, 1.0]
     assert at(spline, 1.5).motion[0].tolist() == [3.0, 2.0]
     assert at(spline, 2.5).motion[0].tolist() == [3.0, 2.0]
 
 
-def test_efforts_are_drawn_out_between_their_points() -> None:
+def test_efforts_are_interpolated_between_points() -> None:
     spline = Spline.through(START, [point(1.0, [1.0, 1.0], None, None, [4.0, 0.0]), point(2.0, [1.0, 1.0])])
     efforts = at(spline, 0.5).efforts
     assert efforts is not None and efforts.tolist() == [2.0, 0.0]
@@ -88,7 +88,7 @@ def test_efforts_are_drawn_out_between_their_points() -> None:
     assert last is not None and last.tolist() == [0.0, 0.0]
 
 
-def test_velocities_are_summed_up_to_positions_where_none_are_given() -> None:
+def test_velocities_are_integrated_to_missing_positions() -> None:
     points = integrate_points(START, [point(1.0, None, [1.0, -1.0]), point(3.0, None, [1.0, -1.0])])
     assert [p.positions.tolist() for p in points if p.positions is not None] == [[0.5, 0.5], [2.5, -1.5]]
     (only,) = integrate_points(START, [point(2.0, None, None, [1.0, 0.0])])
@@ -103,14 +103,14 @@ def test_each_joint_comes_to_rest_at_its_own_deceleration() -> None:
     np.testing.assert_allclose(at(spline, 2.0).motion, [[1.25, 1.0, 3.0], [0.0] * 3, [0.0] * 3], atol=1e-12)
 
 
-def test_joints_that_turn_without_end_take_the_short_way() -> None:
+def test_continuous_joints_take_the_short_way() -> None:
     turning = np.array([True, False])
     turns = whole_turn_offset(np.array([6.0, 6.0]), np.array([0.1, 0.1]), turning)
     np.testing.assert_allclose(turns, [2 * np.pi, 0.0])
     np.testing.assert_allclose(shortest_differences(np.array([6.0, 6.0]), turning), [6.0 - 2 * np.pi, 6.0])
 
 
-def test_a_time_has_the_same_bits_alone_and_among_those_that_are_worked_out_ahead() -> None:
+def test_a_setpoint_has_the_same_bits_alone_and_computed_ahead() -> None:
     ends = [point(1.0, [0.3, 0.7], [0.2, -0.1], [0.1, 0.4]), point(2.5, [1.0, 0.0], [0.0, 0.0], [0.0, 0.0])]
     step = 7_000_001
     alone, ahead = Spline.through(START, ends), Spline.through(START, ends)

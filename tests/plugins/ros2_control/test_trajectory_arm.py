@@ -73,13 +73,13 @@ def positions(sim: Any) -> list[float]:
 
 
 @pytest.mark.parametrize("step", [0.001, 0.002, 0.004])
-def test_it_keeps_to_the_trajectory_against_gravity(tmp_path: Path, step: float) -> None:
+def test_the_arm_follows_the_trajectory_against_gravity(tmp_path: Path, step: float) -> None:
     sim = arm(tmp_path, step)
     worst: list[float] = []
     goal = sim.send_goal(
         FOLLOW,
         {"trajectory": trajectory(JOINTS, (2.0, [0.8, -1.0], [0.3, 0.0]), (4.0, [1.2, 1.0], [0.0, 0.0]))},
-        lambda told: worst.append(float(np.abs(told.error.positions).max())),
+        lambda state: worst.append(float(np.abs(state.error.positions).max())),
     )
     sim.run(4.1)
     assert goal.status is GoalStatus.SUCCEEDED
@@ -111,7 +111,7 @@ def test_a_goal_outside_the_limits_ends_at_them(tmp_path: Path) -> None:
     assert "SK-CONTROL-021" in [d.code for d in sim.diagnostics]
 
 
-def test_a_gripper_that_meets_something_stalls_and_goes_on_pressing(tmp_path: Path) -> None:
+def test_a_gripper_on_an_object_stalls_and_keeps_pressing(tmp_path: Path) -> None:
     sim = arm(tmp_path, wall=WALL)
     goal = sim.send_goal("/hand_controller/gripper_cmd", {"command": {"position": 0.05, "max_effort": 5.0}})
     sim.run(2.0)

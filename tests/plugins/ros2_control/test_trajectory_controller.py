@@ -14,7 +14,7 @@ from tests.plugins.ros2_control.perfect_joints import trajectory
 # ---------------------------------------------------------------------- following
 
 
-def test_it_follows_in_the_order_of_its_own_joints_and_says_so() -> None:
+def test_the_trajectory_is_followed_in_the_controllers_joint_order() -> None:
     sim, plugin = arm()
     told: list[Any] = []
     points = trajectory(["b", "a"], (2.0, [1.0, 2.0], [0.5, 1.0]), (4.0, [0.0, 1.0], [0.0, 0.0]))
@@ -44,7 +44,7 @@ def test_a_trajectory_on_the_topic_is_followed_too() -> None:
     assert (plugin.position("a"), plugin.position("b")) == (1.0, 0.0)
 
 
-def test_it_holds_where_it_is_before_anything_comes_and_costs_nothing_then() -> None:
+def test_the_controller_holds_before_the_first_trajectory_and_is_idle() -> None:
     sim, plugin = arm()
     sim.run(0.2)
     assert plugin.commanded[-1] == [0.0, 0.5]
@@ -60,7 +60,7 @@ def test_a_stamp_in_the_future_is_when_the_first_segment_ends_its_wait() -> None
     assert plugin.position("a") == 1.0
 
 
-def test_of_a_stamp_in_the_past_what_is_over_is_left_out() -> None:
+def test_the_past_part_of_a_trajectory_is_skipped() -> None:
     sim, plugin = arm({"constraints": {"goal_time": 0.5}})
     sim.run(2.0)
     send(sim, (0.5, [5.0, 0.5]), (1.5, [6.0, 0.5]), stamp=1.0)
@@ -78,7 +78,7 @@ def test_a_speed_scaling_stretches_the_time() -> None:
     assert plugin.position("a") == pytest.approx(0.75, abs=0.011)
 
 
-def test_a_joint_that_turns_without_end_takes_the_short_way() -> None:
+def test_a_continuous_joint_takes_the_short_way() -> None:
     sim, plugin = arm(start={"a": 6.2, "b": 0.5}, continuous=("a",))
     goal = send(sim, (1.0, [0.1, 0.5]))
     sim.run(1.1)
@@ -86,7 +86,7 @@ def test_a_joint_that_turns_without_end_takes_the_short_way() -> None:
     assert plugin.position("a") == pytest.approx(0.1 + 2 * math.pi)
 
 
-def test_some_joints_may_be_left_out_where_that_is_allowed() -> None:
+def test_a_partial_trajectory_is_accepted_if_allowed() -> None:
     sim, plugin = arm({"allow_partial_joints_goal": True})
     goal = send(sim, (1.0, [0.7]), joints=["a"])
     sim.run(1.1)
@@ -94,7 +94,7 @@ def test_some_joints_may_be_left_out_where_that_is_allowed() -> None:
     assert (plugin.position("a"), plugin.position("b")) == (0.7, 0.5)
 
 
-def test_in_open_loop_it_begins_at_the_last_command_and_not_where_the_joint_is() -> None:
+def test_an_open_loop_trajectory_begins_at_the_last_command() -> None:
     at = []
     for values in ({}, {"interpolate_from_desired_state": True}):
         sim, plugin = arm({**values, "constraints": {}}, most={"a": 0.001})
@@ -110,7 +110,7 @@ def test_in_open_loop_it_begins_at_the_last_command_and_not_where_the_joint_is()
 # ---------------------------------------------------------------------- ends
 
 
-def test_a_joint_that_strays_ends_the_goal_and_the_joints_hold_where_they_are() -> None:
+def test_a_violated_path_tolerance_ends_the_goal_and_the_joints_hold() -> None:
     sim, plugin = arm(most={"a": 0.005})
     goal = send(sim, (1.0, [1.0, 0.6]), (2.0, [2.0, 0.6]))
     sim.run(0.5)
@@ -122,7 +122,7 @@ def test_a_joint_that_strays_ends_the_goal_and_the_joints_hold_where_they_are() 
     assert (plugin.position("a"), plugin.position("b")) == held
 
 
-def test_what_does_not_arrive_in_time_is_aborted() -> None:
+def test_a_late_goal_is_aborted() -> None:
     sim, plugin = arm({"constraints": {"goal_time": 0.3, "a": {"goal": 0.02}}}, most={"a": 0.004})
     goal = send(sim, (1.0, [1.0, 0.5]))
     sim.run(1.3)
@@ -135,7 +135,7 @@ def test_what_does_not_arrive_in_time_is_aborted() -> None:
     assert plugin.position("a") == pytest.approx(held)
 
 
-def test_without_a_goal_time_it_waits_for_ever() -> None:
+def test_without_a_goal_time_a_goal_waits_for_ever() -> None:
     sim, _ = arm({"constraints": {"a": {"goal": 0.02}}}, most={"a": 0.002})
     goal = send(sim, (1.0, [1.0, 0.5]))
     sim.run(4.5)
@@ -179,7 +179,7 @@ def test_a_cancelled_goal_may_slow_down_instead() -> None:
     assert plugin.position("a") == pytest.approx(1.0 + 1.0**2 / (2 * 2.0), abs=0.02)
 
 
-def test_a_second_goal_takes_the_place_of_the_first() -> None:
+def test_a_second_goal_replaces_the_first() -> None:
     sim, plugin = arm()
     first = send(sim, (1.0, [1.0, 0.5]))
     sim.run(0.5)
@@ -192,7 +192,7 @@ def test_a_second_goal_takes_the_place_of_the_first() -> None:
     assert plugin.position("a") == 0.0
 
 
-def test_a_trajectory_that_is_over_is_held_at_the_last_command_for_a_timeout_only() -> None:
+def test_a_finished_trajectory_holds_its_last_command_until_the_timeout() -> None:
     sim, plugin = arm({"cmd_timeout": 1.0, "constraints": {"goal_time": 0.5}}, most={"a": 0.002})
     sim.publish(TOPIC, trajectory(["a", "b"], (1.0, [1.0, 0.5])))
     sim.run(2.2)
@@ -202,12 +202,12 @@ def test_a_trajectory_that_is_over_is_held_at_the_last_command_for_a_timeout_onl
     assert plugin.position("a") == pytest.approx(held)
 
 
-def test_a_timeout_that_is_not_longer_than_the_goal_time_is_none_and_said() -> None:
+def test_a_timeout_up_to_the_goal_time_is_ignored_with_a_warning() -> None:
     _, plugin = arm({"cmd_timeout": 0.2})
     assert codes(plugin) == ["SK-CONTROL-023"]
 
 
-def test_when_it_is_deactivated_its_goal_ends() -> None:
+def test_deactivation_ends_the_goal() -> None:
     sim, plugin = arm()
     goal = send(sim, (1.0, [1.0, 0.5]))
     sim.run(0.5)
@@ -253,7 +253,7 @@ def test_when_it_is_deactivated_its_goal_ends() -> None:
         ),
     ],
 )
-def test_what_cannot_be_followed_is_rejected_with_the_reason_and_changes_nothing(
+def test_an_invalid_trajectory_is_rejected_with_the_reason_and_changes_nothing(
     joints: list[str], points: list[Any], reason: str
 ) -> None:
     sim, plugin = arm()
@@ -308,7 +308,7 @@ def test_an_unknown_joint_among_the_tolerances_leaves_them_as_they_are() -> None
         ({"command_joints": ["c"]}, "'command_joints' parameter must have the same size"),
     ],
 )
-def test_parameters_that_cannot_be_are_told_apart(values: dict[str, Any], message: str) -> None:
+def test_invalid_parameters_have_different_messages(values: dict[str, Any], message: str) -> None:
     _, plugin = arm(values)
     assert "SK-CONTROL-024" in codes(plugin)
     assert any(message in d.message for d in plugin.diagnostics)

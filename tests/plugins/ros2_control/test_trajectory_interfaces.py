@@ -15,7 +15,7 @@ from tests.plugins.ros2_control.perfect_joints import trajectory
 # ---------------------------------------------------------------------- interfaces
 
 
-def test_by_velocity_alone_a_pid_brings_it_there() -> None:
+def test_a_pid_reaches_the_goal_by_velocity_alone() -> None:
     gains = {"a": {"p": 8.0, "ff_velocity_scale": 1.0}, "b": {"p": 8.0, "i": 0.1, "i_clamp": 1.0}}
     sim, plugin = arm({"command_interfaces": ["velocity"], "gains": gains, "constraints": {}})
     send(sim, (2.0, [1.0, 0.0], [0.0, 0.0]))
@@ -33,7 +33,7 @@ def test_position_and_velocity_are_commanded_together() -> None:
     assert plugin.commanded[-1] == pytest.approx([0.5, 0.5, 1.0, 0.0])
 
 
-def test_joints_that_are_only_measured_are_followed_by_the_others() -> None:
+def test_measured_joints_need_no_command_interface() -> None:
     sim, plugin = arm({"command_joints": ["b"]})
     goal = send(sim, (1.0, [0.0, 1.0]))
     sim.run(1.1)
@@ -41,7 +41,7 @@ def test_joints_that_are_only_measured_are_followed_by_the_others() -> None:
     assert plugin.commanded[-1] == [1.0]
 
 
-def test_the_kinds_of_ros_1_need_no_interfaces_and_have_their_topic() -> None:
+def test_the_ros_1_controllers_have_default_interfaces_and_their_topic() -> None:
     values = {"joints": ["a", "b"], "constraints": {}, "command_interfaces": [], "state_interfaces": []}
     sim, plugin = arm(values, cls=joint_trajectory_kinds.PositionJointTrajectoryController)
     sim.publish("/arm_controller/command", trajectory(["a", "b"], (1.0, [1.0, 0.0], [0.2, 0.0])))
@@ -52,7 +52,7 @@ def test_the_kinds_of_ros_1_need_no_interfaces_and_have_their_topic() -> None:
 # ---------------------------------------------------------------------- telling
 
 
-def test_its_state_is_told_to_whoever_listens() -> None:
+def test_the_state_is_published_to_subscribers() -> None:
     sim, _ = arm()
     told: list[Any] = []
     sim.subscribe("/arm_controller/controller_state", told.append)
@@ -66,7 +66,7 @@ def test_its_state_is_told_to_whoever_listens() -> None:
     assert len(told) == 50
 
 
-def test_where_it_is_to_be_can_be_asked() -> None:
+def test_the_desired_state_can_be_queried() -> None:
     sim, _ = arm()
     sim.run(1.0)
     send(sim, (1.0, [1.0, 0.5]))
@@ -77,7 +77,7 @@ def test_where_it_is_to_be_can_be_asked() -> None:
     assert not sim.call("/arm_controller/query_state", {"time": {"sec": 0}}).success
 
 
-def test_a_restored_run_goes_on_as_the_first_did() -> None:
+def test_a_restored_run_continues_like_the_first() -> None:
     sim, plugin = arm()
     goal = send(sim, (1.0, [1.0, 0.5], [0.0, 0.0]))
     sim.run(0.3)
@@ -120,7 +120,7 @@ def test_the_integral_of_a_pid_is_restored_with_the_rest() -> None:
     assert plugin.commanded[-1] == once
 
 
-def test_what_older_files_say_is_understood() -> None:
+def test_older_parameter_names_are_read() -> None:
     older = {"stop_trajectory_duration": 0.5, "start_with_holding": True, "gains": {"a": {"angle_wraparound": True}}}
     sim, plugin = arm({**older, "constraints": {}}, start={"a": 6.2, "b": 0.5})
     assert not codes(plugin)
@@ -135,7 +135,7 @@ def test_what_older_files_say_is_understood() -> None:
     assert plugin.position("a") == pytest.approx(2 * math.pi + 0.1 + 1.0 + 1.0 * 0.5 / 2, abs=0.02)
 
 
-def test_numbers_beyond_all_bounds_change_nothing() -> None:
+def test_huge_numbers_change_nothing() -> None:
     sim, plugin = arm()
     goal = send(sim, (1.0, [1e300, 0.5]))
     sim.publish("/arm_controller/speed_scaling_input", {"factor": 1e300})

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from control_robots import POSITIONS, arm, command, interfaces, opened, told
+from control_robots import POSITIONS, arm, command, interfaces, opened, reported_messages
 
 from simkit.diagnostics import Diagnostics
 from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
@@ -24,14 +24,14 @@ def law(kind: str, actuators: tuple[float, ...], joints: tuple[float, ...], offs
     return found[0]
 
 
-def test_a_simple_one_multiplies_position_less_offset_and_divides_effort() -> None:
+def test_a_simple_transmission_multiplies_position_minus_offset_and_divides_effort() -> None:
     made = law("simple", (1.0,), (50.0,), (0.2,))
     assert made.actuate(POSITION, np.array([0.7])) == pytest.approx([25.0])
     assert made.actuate(VELOCITY, np.array([0.1])) == pytest.approx([5.0])
     assert made.actuate(EFFORT, np.array([100.0])) == pytest.approx([2.0])
 
 
-def test_a_differential_one_adds_and_subtracts() -> None:
+def test_a_differential_transmission_adds_and_subtracts() -> None:
     made = law("differential", (10.0, -10.0), (2.0, 3.0), (0.1, -0.1))
     x1, x2 = 0.5 - 0.1, 0.2 + 0.1
     assert made.actuate(POSITION, np.array([0.5, 0.2])) == pytest.approx(
@@ -49,7 +49,7 @@ def test_a_four_bar_linkage_moves_the_second_with_the_first() -> None:
     assert [2 * 10 * t1, 3 * (20 * t2 - 2 * 10 * t1)] == pytest.approx([4.0, 9.0])
 
 
-def test_power_in_is_power_out() -> None:
+def test_transmissions_conserve_power() -> None:
     made = law("differential", (10.0, 20.0), (2.0, 3.0), (0.0, 0.0))
     rates, efforts = np.array([0.3, -0.7]), np.array([4.0, 9.0])
     assert made.actuate(VELOCITY, rates) @ made.actuate(EFFORT, efforts) == pytest.approx(rates @ efforts)
@@ -77,10 +77,10 @@ def test_actuators_are_state_interfaces_and_no_joints_of_joint_states(tmp_path: 
         assert effort == pytest.approx(of_joint / 100)
 
 
-def test_one_that_does_not_fit_is_told(tmp_path: Path) -> None:
+def test_an_invalid_transmission_is_a_warning(tmp_path: Path) -> None:
     wrong = (
         '<transmission name="t"><plugin>transmission_interface/DifferentialTransmission</plugin>'
         '<actuator name="m"/><joint name="j1"/></transmission>'
     )
     with opened(tmp_path, arm(BOTH + wrong), POSITIONS) as sim:
-        assert "has 1 joint(s) and 1 actuator(s)" in told(sim, "SK-CONTROL-008")[0]
+        assert "has 1 joint(s) and 1 actuator(s)" in reported_messages(sim, "SK-CONTROL-008")[0]
