@@ -230,7 +230,7 @@ class Controller(SharedByCopies, abc.ABC):
     def get_state(self) -> dict[str, object]:
         """Return a copy of every attribute that the controller set; handles and publishers are not duplicated.
 
-        An attribute that cannot be copied is left out and reported once (SK-PLUGIN-006).
+        An attribute that cannot be copied is omitted and reported once (SK-PLUGIN-006).
         """
         own = {k: v for k, v in vars(self).items() if k not in _OWN_ATTRIBUTES}
         memo: dict[int, object] = {id(self): self}

@@ -262,14 +262,8 @@ class JointActuators(SharedByCopies):
         control, position, velocity = data.ctrl.item, data.qpos.item, data.qvel.item
         target, speed = self.targets.item, commands.item
         previous_speeds, references, speeds, positions, velocities = [], [], [], [], []
-        for (
-            k,
-            actuator,
-            qpos,
-            dof,
-            stiffness,
-            top,
-        ) in now.velocity_joints:  # only a few joints, so plain numbers are faster than arrays
+        # only a few joints, so plain numbers are faster than arrays
+        for k, actuator, qpos, dof, stiffness, top in now.velocity_joints:
             previous, commanded = control(actuator) / stiffness, speed(k)
             previous_speeds.append(previous)
             references.append(target(k) + previous * period)

@@ -76,9 +76,7 @@ def _wrap_in_namespace(entry: Entry, parts: Sequence[str]) -> Entry:
 def _report_ros_1_gains(own: Entry, given: ParameterFile, diagnostics: Diagnostics) -> None:
     below = own.below or {}
     if _ROS_1_LOOPS in below:
-        message = (
-            f"{given.path.name}: {_ROS_1_LOOPS} has gains for the plugin of ROS 1, but this robot has that of ROS 2"
-        )
+        message = f"{given.path.name}: {_ROS_1_LOOPS} has gains for the plugin of ROS 1; this robot's is of ROS 2"
         hint = "move them to the plugin's own node: pid_gains: {position: {JOINT: {kp: ..., kd: ...}}}"
         diagnostics.warning("SK-CONTROL-011", message, below[_ROS_1_LOOPS].where, hint)
 
@@ -101,9 +99,8 @@ def report_unused_parameters(manager: ControllerManager, found: Diagnostics) -> 
             _report_in_ros_1(name, entry, declared, found)
     nodes = [(pattern, entry) for file in manager.files.files for pattern, entry in file.nodes]
     for pattern, entry in nodes:
-        if not pattern.endswith("*") and node_matches(
-            pattern, node
-        ):  # a pattern also matches other nodes, which may use its parameters
+        # a pattern also matches other nodes, which may use its parameters
+        if not pattern.endswith("*") and node_matches(pattern, node):
             for name, parameter in (entry.below or {}).items():
                 _report_in_manager(name, parameter, declared, manager.files.node_names(), found)
     if not declared:
@@ -139,9 +136,8 @@ def _report_in_manager(
         for key, parameter in (entry.below or {}).items():
             if key not in KNOWN_PARAMETERS["declaration"]:
                 message = f"{key!r} beside the type of {name!r} is ignored: a controller has its own node"
-                found.warning(
-                    "SK-CONTROL-011", message, parameter.where, f"{name}: {{ros__parameters: {{{key}: ...}}}}"
-                )
+                hint = f"{name}: {{ros__parameters: {{{key}: ...}}}}"
+                found.warning("SK-CONTROL-011", message, parameter.where, hint)
     elif name in KNOWN_PARAMETERS["manager"]:
         return
     elif entry.form in ("block", "nothing") or name in nodes:
@@ -164,11 +160,8 @@ def _report_no_type(name: str, entry: Entry, found: Diagnostics) -> None:
     what = "is not defined" if kind is None else f"is {'empty' if kind.form in ('value', 'nothing') else 'no text'}"
     message = f"the 'type' param of controller {name!r} {what}; it is not loaded"
     near = did_you_mean("type", [key for key in entry.below or {} if key != "type"])
-    hint = (
-        f"rename {near.removeprefix('did you mean ').rstrip('?')} to 'type'"
-        if near
-        else f"{name}: {{type: package/Class}}"
-    )
+    misspelt = near.removeprefix("did you mean ").rstrip("?")
+    hint = f"rename {misspelt} to 'type'" if near else f"{name}: {{type: package/Class}}"
     found.warning("SK-CONTROL-013", message, where, hint)
 
 

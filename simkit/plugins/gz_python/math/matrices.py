@@ -75,9 +75,7 @@ class Matrix3d(_SquareMatrix):
         elif len(values) == 1 and callable(values[0]):
             self._m[:] = [[values[0](i, j) for j in range(3)] for i in range(3)]
         elif values:
-            raise TypeError(
-                f"expected no value, nine numbers, a rotation or a matrix for a 3 x 3 matrix, got {values!r}"
-            )
+            raise TypeError(f"expected 0 or 9 numbers, a rotation or a 3 x 3 matrix, got {values!r}")
 
     def array(self) -> Rows:
         """Return a copy as a NumPy array, shape (3, 3)."""

@@ -74,21 +74,17 @@ class MessageMatcher:
 def _find_field(kind: type[Message], path: Sequence[str]) -> tuple[str, str]:
     """Return the class that has the last field of a path, and the kind of the field."""
     owner, found = kind.__name__, ""
-    for position, name in enumerate(path):
+    for depth, name in enumerate(path):
         fields = MESSAGE_CLASSES[owner].FIELDS
         if name not in fields:
             hint = did_you_mean(name, fields) or f"its fields are {', '.join(fields)}"
             raise MessageError(f"gz.msgs.{owner} has no field {name!r}; {hint}")
         found = fields[name]
-        if position < len(path) - 1:
+        if depth < len(path) - 1:
             if found.endswith("[]"):
-                raise MessageError(
-                    f"{name!r} of gz.msgs.{owner} is repeated; a path cannot go through a repeated field"
-                )
+                raise MessageError(f"{name!r} of gz.msgs.{owner} is repeated; no path can go through it")
             if found in PLAIN_DEFAULTS:
-                raise MessageError(
-                    f"{name!r} of gz.msgs.{owner} is a plain value and has no field {path[position + 1]!r}"
-                )
+                raise MessageError(f"{name!r} of gz.msgs.{owner} is a plain value and has no field {path[depth + 1]!r}")
             owner = found
     return owner, found
 
