@@ -100,7 +100,7 @@ def test_the_wall_time_limit_ends_a_paused_run(yard: Path) -> None:
     result = run(yard, "--paused", "--wall-timeout", "500ms", "--assert", "time > 1", "--duration", "2")
     assert result.exit_code == 5
     assert "FAILED  the run was stopped after 0.5 s of wall time (--wall-timeout)" in result.stdout
-    assert "FAILED  time > 1: was not looked at" in result.stdout
+    assert "FAILED  time > 1: was not evaluated" in result.stdout
 
 
 def test_a_plugin_that_never_comes_back_is_interrupted_and_named(tmp_path: Path) -> None:
