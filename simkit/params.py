@@ -35,15 +35,8 @@ class Params:
     """
 
     __slots__ = (
-        "_asked",
-        "_attributes_asked",
-        "_read",
-        "attributes",
-        "children",
-        "diagnostics",
-        "name",
-        "value",
-        "where",
+        *("_asked", "_attributes_asked", "_read"),
+        *("attributes", "children", "diagnostics", "name", "value", "where"),
     )
 
     def __init__(
@@ -364,7 +357,7 @@ class Params:
 
     def _bad(self, found: str, allowed: str, where: Where) -> None:
         shown = found if len(found) <= 200 else found[:200] + "..."
-        self.diagnostics.error("SK-PARAM-002", f"found {shown}, allowed is {allowed}", where)
+        self.diagnostics.error("SK-PARAM-002", f"found {shown}; expected {allowed}", where)
 
 
 def _is_number(text: str) -> bool:

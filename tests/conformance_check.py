@@ -29,7 +29,7 @@ def expected(path: Path = EXPECTED) -> dict[str, str]:
             continue
         name, _, reason = line.partition(": ")
         if not reason.strip() or len(name.split()) != 2:
-            raise SystemExit(f"{path.name}:{number}: found {line!r}, allowed is 'suite name: reason'")
+            raise SystemExit(f"{path.name}:{number}: found {line!r}; expected 'suite name: reason'")
         found[" ".join(name.split())] = reason.strip()
     return found
 

@@ -26,7 +26,7 @@ def test_every_exception_names_a_suite_and_a_reason(check: ModuleType) -> None:
 
 def test_an_exception_without_a_reason_is_refused(check: ModuleType, tmp_path: Path) -> None:
     (tmp_path / "list.txt").write_text("# what fails\ncorpus W001\n")
-    with pytest.raises(SystemExit, match=r"list.txt:2: found 'corpus W001', allowed is 'suite name: reason'"):
+    with pytest.raises(SystemExit, match=r"list.txt:2: found 'corpus W001'; expected 'suite name: reason'"):
         check.expected(tmp_path / "list.txt")
 
 

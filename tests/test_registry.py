@@ -117,7 +117,7 @@ def test_a_load_imports_neither_the_kinds_that_it_does_not_use_nor_the_message_t
     program = "import sys, simkit; simkit.load('empty'); print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     imported = set(done.stdout.split())
-    assert "simkit.plugins.world.world_statistics" in imported
+    assert "simkit.plugins.world.clock_and_statistics" in imported
     unwanted = {
         "simkit.plugins.gz.visual_properties",
         "simkit.sensors.rays.lidar",

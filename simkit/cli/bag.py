@@ -141,7 +141,7 @@ def _parse_remappings(pairs: list[str]) -> dict[str, str]:
     for text in pairs:
         old, sign, new = text.partition(":=")
         if not sign or not old or not new:
-            raise InputError(f"SK-CLI-018 --remap: found {text!r}, allowed is OLD:=NEW", "SK-CLI-018")
+            raise InputError(f"SK-CLI-018 --remap: found {text!r}; expected OLD:=NEW", "SK-CLI-018")
         found[absolute_name(old)] = absolute_name(new)
     return found
 

@@ -55,7 +55,7 @@ def record(
         named, all_, compile_pattern(regex, "--regex"), compile_pattern(exclude, "--exclude-regex"), hidden
     )
     if storage != "mcap":
-        raise InputError(f"SK-CLI-018 --storage: found {storage!r}, allowed is mcap", "SK-CLI-018")
+        raise InputError(f"SK-CLI-018 --storage: found {storage!r}; expected mcap", "SK-CLI-018")
     target = output or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     with connect_to_simulation(sim) as client:
         recording = _Recording(LiveSource(client), selection, duration)

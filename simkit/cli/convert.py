@@ -48,7 +48,7 @@ def convert(
     elif ending in (".xml", ".mjcf"):
         count = _to_mjcf(file, output, source, strict=strict, force=force, verbose=verbose)
     else:
-        found = f"found the ending {output.suffix!r}, allowed is .xml, .mjcf, .sdf or .world"
+        found = f"found the ending {output.suffix!r}; expected .xml, .mjcf, .sdf or .world"
         raise InputError(f"SK-CLI-018 --output {output}: {found}", "SK-CLI-018")
     stdout_console().print(f"{output}" + (f" and {count} files in {output.stem}_assets" if count else ""))
 

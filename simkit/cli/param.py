@@ -101,7 +101,7 @@ def set_(
 ) -> int:
     """Set parameters; exit code 2 if a value is rejected."""
     if len(pairs) % 2:
-        text = f"found {len(pairs)} words, allowed are pairs: name value [name value ...]"
+        text = f"found {len(pairs)} words; expected pairs: name value [name value ...]"
         raise InputError(f"SK-CLI-031 the parameters: {text}", "SK-CLI-031")
     values = list(zip(pairs[::2], [parse_parameter_value(text) for text in pairs[1::2]], strict=True))
     with connect_to_simulation(sim) as client:

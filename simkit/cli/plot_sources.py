@@ -162,7 +162,7 @@ def _series(source: str, fields: Sequence[str], request: PlotRequest) -> list[Se
         return found
     base = found[-counts[-1] :]
     if len(base) != 1:
-        raise InputError(f"SK-BAG-010 --against {request.against}: has {len(base)} numbers, allowed is 1", "SK-BAG-010")
+        raise InputError(f"SK-BAG-010 --against {request.against}: has {len(base)} numbers; expected 1", "SK-BAG-010")
     return series_over(found[: -counts[-1]], base[0])
 
 

@@ -58,7 +58,7 @@ def _seconds(text: str) -> float:
     """Parse a time: `30`, `30s`, `500ms` or `2min`."""
     match = _TIME.fullmatch(text.strip())
     if match is None or not float(match[1]) > 0:
-        raise typer.BadParameter(f"{text!r} is not a time; allowed are times above 0 such as 30, 30s, 500ms or 2min")
+        raise typer.BadParameter(f"{text!r} is not a time; expected times above 0 such as 30, 30s, 500ms or 2min")
     return float(match[1]) * _UNITS[match[2]]
 
 
@@ -179,7 +179,7 @@ def _timeout(seconds: float) -> float:
 def _expression(until: str | None) -> str:
     """Validate a condition. An empty one is rejected: it usually comes from an unset variable of a shell script."""
     if until is not None and not until.strip():
-        raise typer.BadParameter("an expression is empty", param_hint="--until")
+        raise typer.BadParameter("the expression is empty", param_hint="--until")
     return until or ""
 
 

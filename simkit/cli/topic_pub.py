@@ -70,7 +70,7 @@ def pub(
     fields = parse_fields(text, "the message")
     number = 1 if once else times or 0
     if once and times is not None:
-        raise InputError("SK-CLI-018 --once and --times: found both, allowed is one of them", "SK-CLI-018")
+        raise InputError("SK-CLI-018 --once and --times: found both; expected one of them", "SK-CLI-018")
     with connect_to_simulation(sim) as client:
         publisher = client.advertise(topic, _full_type_name(client, topic, message_type))
         make = _message_factory(publisher.type_name, fields)

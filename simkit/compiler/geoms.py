@@ -14,8 +14,8 @@ from simkit.compiler import shape_geometry
 from simkit.compiler.assets import Assets, geom_colours
 from simkit.compiler.contact_friction import contact_properties
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
-from simkit.compiler.meshes.collision_bodies import convex_bodies, convex_hull
 from simkit.compiler.meshes.companion_files import Pixels
+from simkit.compiler.meshes.convex_decomposition import convex_bodies, convex_hull
 from simkit.compiler.meshes.mesh_part import Colour, MeshFileError, MeshPart, has_area, join_parts
 from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
 from simkit.compiler.name_map import GeomOwner, ModelRecord

@@ -89,7 +89,7 @@ class MessageBuilder:
             return self.build(value)
         if getattr(value, "__msgtype__", None) == self.name:
             return value
-        raise MessageError(f"found {_short(value)}, allowed is a {self.name} or a dict of its fields")
+        raise MessageError(f"found {_short(value)}; expected a {self.name} or a dict of its fields")
 
 
 @cache
@@ -133,7 +133,7 @@ def _scalar(name: str) -> tuple[_Default, _Conversion]:
 
 def _float(value: FieldValue) -> float:
     if isinstance(value, (str, bytes, bool)):
-        raise MessageError(f"found {_short(value)}, allowed is a number")
+        raise MessageError(f"found {_short(value)}; expected a number")
     return float(value)
 
 
@@ -142,27 +142,27 @@ def _integer(low: int, high: int, value: FieldValue) -> int:
         value = int(value)
     number = operator.index(value)
     if not low <= number <= high:
-        raise MessageError(f"found {number}, allowed is a whole number from {low} to {high}")
+        raise MessageError(f"found {number}; expected a whole number from {low} to {high}")
     return number
 
 
 def _boolean(value: FieldValue) -> bool:
     if value is True or value is False or isinstance(value, np.bool_):
         return bool(value)
-    raise MessageError(f"found {_short(value)}, allowed is true or false")
+    raise MessageError(f"found {_short(value)}; expected true or false")
 
 
 def _text(value: FieldValue) -> str:
     if not isinstance(value, str):
-        raise MessageError(f"found {_short(value)}, allowed is a text")
+        raise MessageError(f"found {_short(value)}; expected a text")
     return value
 
 
 def _check_length(count: int, length: int | None, bound: int | None) -> None:
     if length is not None and count != length:
-        raise MessageError(f"found {count} entries, allowed is {length}")
+        raise MessageError(f"found {count} entries; expected {length}")
     if bound is not None and count > bound:
-        raise MessageError(f"found {count} entries, allowed is at most {bound}")
+        raise MessageError(f"found {count} entries; expected at most {bound}")
 
 
 def _numbers(
@@ -175,7 +175,7 @@ def _numbers(
     else:
         array = np.asarray(value)
         if array.size and (array.dtype.kind not in "biuf" or (dtype.kind in "iu" and array.dtype.kind == "f")):
-            raise MessageError(f"found {_short(value)}, allowed is a list of {dtype}")
+            raise MessageError(f"found {_short(value)}; expected a list of {dtype}")
         array = array.astype(dtype).reshape(-1)
     _check_length(len(array), length, bound)
     return array
@@ -183,6 +183,6 @@ def _numbers(
 
 def _items(convert: _Conversion, length: int | None, bound: int | None, value: FieldValue) -> list[FieldValue]:
     if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, (Sequence, np.ndarray)):
-        raise MessageError(f"found {_short(value)}, allowed is a list")
+        raise MessageError(f"found {_short(value)}; expected a list")
     _check_length(len(value), length, bound)
     return [convert(item) for item in value]

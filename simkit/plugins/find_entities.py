@@ -51,7 +51,7 @@ def read_required_name(params: Params, element: str) -> str:
     name = params.text(element, required=True)
     named = params.child(element)
     if named is not None and not name:
-        named.error("SK-PARAM-002", f"found <{element}></{element}>, allowed is a name")
+        named.error("SK-PARAM-002", f"found <{element}></{element}>; expected a name")
     return name
 
 
@@ -62,7 +62,7 @@ def read_topic(params: Params, element: str, default: str) -> str:
     named = params.child(element)
     if topic == "/" and named is not None:
         found = f"found <{element}>{written}</{element}>"
-        named.error("SK-PARAM-002", f"{found}, allowed is a name with a letter or a digit")
+        named.error("SK-PARAM-002", f"{found}; expected a name with a letter or a digit")
     return topic
 
 

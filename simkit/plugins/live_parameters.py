@@ -32,7 +32,7 @@ def declare_at(plugin: ParameterOwner, parameter: Parameter[T], params: Params, 
     parameter.value = value = _first_value(params, element, parameter)
     is_new = parameter.node not in communication.live_parameters.nodes()
     if not parameter.is_within(value):
-        params.error("SK-PARAM-002", f"found <{element}> {value!r}, allowed is {parameter.allowed}")
+        params.error("SK-PARAM-002", f"found <{element}> {value!r}; expected {parameter.allowed}")
     communication.live_parameters.add(parameter)
     if is_new:
         with communication.bus.owned_by(plugin):

@@ -55,7 +55,7 @@ class RosNames:
                     if word not in {"--ros-args", "-r", "--remap"}:
                         allowed = "from:=to" if element.name == "remapping" else "a remapping from:=to"
                         element.error(
-                            "SK-PARAM-002", f"found <{element.name}>{word}</{element.name}>, allowed is {allowed}"
+                            "SK-PARAM-002", f"found <{element.name}>{word}</{element.name}>; expected {allowed}"
                         )
                     continue
                 source, target = rule["from"], rule["to"]
@@ -73,7 +73,7 @@ class RosNames:
         if clean.strip("/") == full.strip("/"):
             return full
         if self._params is not None:
-            allowed = "allowed are letters, digits and _ / . : -"
+            allowed = "expected letters, digits and _ / . : -"
             message = f"plugin {self.node!r}: found a topic {full!r}, {allowed}; {clean!r} is used instead"
             self._params.diagnostics.warning("SK-PLUGIN-012", message, self._params.where)
         return clean

@@ -53,7 +53,7 @@ class Entry:
         """Return the entry as an item of the list of that name; a nested list is an error."""
         if self.items is None:
             return [self.block(name, diagnostics)]
-        diagnostics.error("SK-CONTROL-002", f"found a list in the list {name!r}, allowed are values", self.where)
+        diagnostics.error("SK-CONTROL-002", f"found a list in the list {name!r}; expected values", self.where)
         return []
 
     def block(self, name: str, diagnostics: Diagnostics) -> ParameterBlock:
@@ -184,7 +184,7 @@ def _nodes(entry: Entry, path: str, diagnostics: Diagnostics) -> Iterator[tuple[
                 yield path or "/**", _expand_dotted_keys(below)
             elif below.text or below.items:
                 found = below.text or "a list"
-                message = f"found {found!r} under {PARAMETERS!r} of {path or '/**'!r}, allowed are names with values"
+                message = f"found {found!r} under {PARAMETERS!r} of {path or '/**'!r}; expected names with values"
                 diagnostics.error("SK-CONTROL-002", message, below.where)
         else:
             yield from _nodes(below, f"{path}/{key.strip('/')}", diagnostics)
@@ -273,7 +273,7 @@ class _EntryReader:
             if not name or not isinstance(getattr(key, "value", None), str):
                 where = Where(self._file, key.start_mark.line + 1)
                 found = "an empty name" if not name else "a list or block as a name"
-                self._diagnostics.error("SK-CONTROL-002", f"found {found}, allowed is a text", where)
+                self._diagnostics.error("SK-CONTROL-002", f"found {found}; expected a text", where)
                 continue
             entry = self.entry(value, depth + 1)
             if key.tag == _MERGE:
@@ -293,7 +293,7 @@ class _EntryReader:
         for item in [entry] if entry.items is None else entry.items:
             if item.below is None:
                 where = Where(self._file, key.start_mark.line + 1)
-                self._diagnostics.error("SK-CONTROL-002", "found a value after '<<', allowed is a block", where)
+                self._diagnostics.error("SK-CONTROL-002", "found a value after '<<'; expected a block", where)
             found = {**(item.below or {}), **found}
         return found
 

@@ -123,7 +123,7 @@ def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
             raise ValueError
     except ValueError:
         raise InputError(
-            f"SK-CLI-010 --cmd-vel: found {text!r}, allowed is LINEAR,ANGULAR such as 0.2,0.3", "SK-CLI-010"
+            f"SK-CLI-010 --cmd-vel: found {text!r}; expected LINEAR,ANGULAR such as 0.2,0.3", "SK-CLI-010"
         ) from None
     twist_topics = [topic for topic, type_name in topics.items() if type_name in _TWISTS]
     topic = "/cmd_vel" if "/cmd_vel" in twist_topics else twist_topics[0] if len(twist_topics) == 1 else None
@@ -194,7 +194,7 @@ def validate_items(items: Iterable[tuple[object, str]]) -> list[JsonObject]:
 def _validate_item(item_with_location: tuple[object, str]) -> JsonObject:
     item, where = item_with_location
     if not isinstance(item, dict):
-        raise _script_error(where, f"found {item!r:.60}, allowed is {{at, topic, message}}")
+        raise _script_error(where, f"found {item!r:.60}; expected {{at, topic, message}}")
     _command(item, where, None)
     return {**item, "where": where}
 
@@ -238,7 +238,7 @@ def _command(item: JsonMapping, where: str, topics: Mapping[str, str] | None) ->
             raise _script_error(where, f"key {key!r} is missing")
     topic = item["topic"]
     if not isinstance(topic, str):
-        raise _script_error(where, f"topic: found {topic!r}, allowed is a text")
+        raise _script_error(where, f"topic: found {topic!r}; expected a text")
     topic = topic if topic.startswith("/") else "/" + topic
     if topics is not None and topic not in topics:
         raise _script_error(
@@ -247,7 +247,7 @@ def _command(item: JsonMapping, where: str, topics: Mapping[str, str] | None) ->
     message = item.get("message") or {}
     if not isinstance(message, dict):
         kind = "its message" if topics is None else topics[topic]
-        raise _script_error(where, f"message: found {message!r:.60}, allowed is a mapping of the fields of {kind}")
+        raise _script_error(where, f"message: found {message!r:.60}; expected a mapping of the fields of {kind}")
     at = _number(item["at"], "at", where, 0.0)
     until = None if item.get("until") is None else _number(item["until"], "until", where, at)
     rate = _number(item.get("rate", _RATE), "rate", where, 1e-6)
@@ -257,7 +257,7 @@ def _command(item: JsonMapping, where: str, topics: Mapping[str, str] | None) ->
 def _number(value: object, key: str, where: str, minimum: float) -> float:
     number = finite_number(value)
     if number is None or number < minimum:
-        raise _script_error(where, f"{key}: found {value!r:.60}, allowed is a number of at least {minimum:g}")
+        raise _script_error(where, f"{key}: found {value!r:.60}; expected a number of at least {minimum:g}")
     return number
 
 

@@ -112,7 +112,7 @@ def check_target(path: Path) -> None:
     """
     if path.suffix.lower() not in (".png", ".jpg", ".jpeg"):
         raise InputError(
-            f"SK-CLI-013 --picture {path}: found the ending {path.suffix!r}, allowed is .png or .jpg", "SK-CLI-013"
+            f"SK-CLI-013 --picture {path}: found the ending {path.suffix!r}; expected .png or .jpg", "SK-CLI-013"
         )
     if not path.absolute().parent.is_dir():
         raise InputError(f"SK-CLI-013 --picture {path}: folder {path.absolute().parent} does not exist", "SK-CLI-013")

@@ -32,7 +32,7 @@ _DIRECTION_FIELDS: Final = frozenset(("direction_world", "xyz_world"))
 def check_model_name(name: object) -> None:
     """Raise InputError for a name that no model in a file can have."""
     if not isinstance(name, str) or not name.strip():
-        raise InputError(f"found the name {name!r} for a model, allowed is a text that is not empty", "SK-NAME-005")
+        raise InputError(f"found the name {name!r} for a model; expected a text that is not empty", "SK-NAME-005")
     is_reserved = name == "world" or (name.startswith("__") and name.endswith("__"))
     if is_reserved or "::" in name:
         reason = "is reserved" if is_reserved else "has '::', which separates names"

@@ -325,6 +325,6 @@ def _check_hook_rates(plugin: AttachedPlugin) -> None:
     for name in ("before_step_rate", "after_step_rate"):
         rate = getattr(plugin, name)
         if rate is not None and not (isinstance(rate, (int, float)) and 0 <= rate < math.inf):
-            message = f"plugin {plugin.name!r}: {name} is {rate!r}, allowed is a number of at least 0 [Hz], or None"
+            message = f"plugin {plugin.name!r}: {name} is {rate!r}; expected a number of at least 0 [Hz], or None"
             plugin.params.error("SK-PLUGIN-023", message, "0 and None mean every step")
             setattr(plugin, name, None)

@@ -200,7 +200,7 @@ class _Override:
             return replace(world, surroundings=replace(world.surroundings, **_change_value(element, self._boolean())))
         red, green, blue = self._vector(3)
         if not all(0.0 <= part <= 1.0 for part in (red, green, blue)):
-            raise _override_error(self.text, f"found {self.value!r}, allowed are red, green and blue from 0 to 1")
+            raise _override_error(self.text, f"found {self.value!r}; expected red, green and blue from 0 to 1")
         colour = (red, green, blue, 1.0)
         return replace(world, surroundings=replace(world.surroundings, **_change_value(element, colour)))
 
@@ -281,7 +281,7 @@ class _Override:
 
     def _known(self, element: str, allowed: Collection[str]) -> None:
         if element not in allowed:
-            hint = did_you_mean(element, allowed) or "allowed are " + ", ".join(allowed)
+            hint = did_you_mean(element, allowed) or "expected " + ", ".join(allowed)
             raise _override_error(self.text, f"the element {element!r} cannot be set here; {hint}")
 
     def _number(self, fits: Callable[[float], bool], allowed: str) -> float:
@@ -290,7 +290,7 @@ class _Override:
         except ValueError:
             value = math.nan
         if math.isnan(value) or not fits(value):
-            raise _override_error(self.text, f"found {self.value!r}, allowed is {allowed}")
+            raise _override_error(self.text, f"found {self.value!r}; expected {allowed}")
         return value
 
     def _non_negative(self) -> float:
@@ -298,13 +298,13 @@ class _Override:
 
     def _one_of(self, allowed: Sequence[str]) -> str:
         if self.value not in allowed:
-            raise _override_error(self.text, f"found {self.value!r}, allowed is one of {', '.join(allowed)}")
+            raise _override_error(self.text, f"found {self.value!r}; expected one of {', '.join(allowed)}")
         return self.value
 
     def _boolean(self) -> bool:
         folded = self.value.lower()
         if folded not in ("true", "false", "1", "0"):
-            raise _override_error(self.text, f"found {self.value!r}, allowed is true, false, 1 or 0")
+            raise _override_error(self.text, f"found {self.value!r}; expected true, false, 1 or 0")
         return folded in ("true", "1")
 
     def _vector(self, size: int) -> tuple[float, ...]:
@@ -313,7 +313,7 @@ class _Override:
         except ValueError:
             values = ()
         if len(values) != size or not all(math.isfinite(v) for v in values):
-            raise _override_error(self.text, f"found {self.value!r}, allowed are {size} numbers")
+            raise _override_error(self.text, f"found {self.value!r}; expected {size} numbers")
         return values
 
 

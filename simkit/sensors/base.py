@@ -289,7 +289,7 @@ class Sensor(Sampler):
         rate, file_rate = float(message.data), self.scene.rate
         refused = ""
         if not (math.isfinite(rate) and rate >= 0):
-            refused = "allowed is a finite number of at least 0"
+            refused = "expected a finite number of at least 0"
         elif self.sim.world.gazebo_quirks and file_rate > 0 and not 0 < rate <= file_rate:
             refused = f"Gazebo allows at most the file's {file_rate:g} Hz"
         if not refused:

@@ -107,7 +107,7 @@ def read_noise(owner: Params, default: str = "none") -> NoiseModel:
     type_name = params.attribute("type") or params.text("type", "")
     kind = type_name or ("gaussian" if is_data_sheet else default)
     if kind not in _TYPES:
-        params.error("SK-PARAM-002", f"found noise of type {kind!r}, allowed is {', '.join(_TYPES)}")
+        params.error("SK-PARAM-002", f"found noise of type {kind!r}; expected {', '.join(_TYPES)}")
     if kind == "none":
         if not type_name and any(_is_nonzero_or_text(child.value) for child in params.children):
             hint = 'write <noise type="gaussian">'

@@ -48,12 +48,12 @@ def read_timing(params: Params, rate: float) -> TimingOptions:
         jitter = 0.0
     elif jitter > 0 and 2 * exact_fraction(jitter) * exact_rate(rate) >= 1:
         limit = f"less than half a period, {0.5 / rate:g} s at {rate:g} Hz"
-        message = f"<jitter>{jitter:g}</jitter> is too large: allowed is {limit}"
+        message = f"<jitter>{jitter:g}</jitter> is too large; the limit is {limit}"
         params.block("jitter").error("SK-SENSOR-022", message)
         jitter = 0.0
     if latency_jitter > latency:
         found = f"<latency_jitter>{latency_jitter:g}</latency_jitter>"
-        message = f"{found} is too large: allowed is at most the <latency>, {latency:g} s"
+        message = f"{found} is too large; the limit is the <latency>, {latency:g} s"
         params.block("latency_jitter").error("SK-SENSOR-022", message)
         latency_jitter = latency
     phase = params.number("phase", 0.0, minimum=0)

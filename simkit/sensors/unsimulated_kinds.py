@@ -84,7 +84,7 @@ def read_transceiver(params: Params) -> Transceiver:
     low = block.number("min_frequency", 2412.0, minimum=0)
     high = block.number("max_frequency", 2484.0, minimum=0)
     if low > high:
-        message = f"found <min_frequency> {low:g} above <max_frequency> {high:g}, allowed is min ≤ max"
+        message = f"found <min_frequency> {low:g} above <max_frequency> {high:g}; expected min ≤ max"
         block.error("SK-PARAM-002", message)
     return Transceiver(
         essid=block.text("essid", "wireless"),
@@ -101,7 +101,7 @@ def read_dvl(params: Params) -> DopplerVelocityLog:
     block = next((found for name in _DVL_ELEMENTS if (found := params.child(name))), params.block("dvl"))
     reach = (block.number("minimum_range", 0.1, minimum=0), block.number("maximum_range", 100.0, minimum=0))
     if reach[0] >= reach[1]:
-        block.error("SK-PARAM-002", f"found a range from {reach[0]:g} to {reach[1]:g}, allowed is min < max")
+        block.error("SK-PARAM-002", f"found a range from {reach[0]:g} to {reach[1]:g}; expected min < max")
     modes, layer = _read_tracking(block.block("tracking"), reach[1])
     block.pose("reference_frame")
     return DopplerVelocityLog(
@@ -128,10 +128,10 @@ def _read_beams(arrangement: Params) -> tuple[Beam, ...]:
         )
         element.child("visualize")
         if abs(beam.tilt) >= math.pi / 2:
-            element.error("SK-PARAM-002", f"found a tilt of {beam.tilt:g} rad, allowed is less than a right angle")
+            element.error("SK-PARAM-002", f"found a tilt of {beam.tilt:g} rad; expected less than a right angle")
         beams.append(beam)
     if arrangement.was_read and len(beams) < 3:
-        arrangement.error("SK-PARAM-002", f"found {len(beams)} <beam>, allowed are three or more")
+        arrangement.error("SK-PARAM-002", f"found {len(beams)} <beam>; expected three or more")
     return tuple(beams)
 
 
@@ -150,7 +150,7 @@ def _read_tracking(tracking: Params, far: float) -> tuple[Mapping[str, TrackingM
                 velocity.text(axis, "")
             near, end = bounds.number("near", layer[0], minimum=0), bounds.number("far", layer[1], minimum=0)
             if not near < end <= far:
-                message = f"found a layer from {near:g} to {end:g}, allowed is near < far ≤ the maximum range {far:g}"
+                message = f"found a layer from {near:g} to {end:g}; expected near < far ≤ the maximum range {far:g}"
                 bounds.error("SK-PARAM-002", message)
             layer = (near, end, mode.integer("bins", layer[2], minimum=1))
     return modes, layer

@@ -19,7 +19,7 @@ def read_visibility_mask(block: Params) -> int:
     except ValueError:
         mask = -2
     if not -1 <= mask <= ALL_VISIBLE:
-        allowed = f"allowed is a whole number from -1 (all) to {ALL_VISIBLE}"
+        allowed = f"expected a whole number from -1 (all) to {ALL_VISIBLE}"
         message = f"found <visibility_mask>{text}</visibility_mask>, {allowed}"
         block.block("visibility_mask").error("SK-PARAM-002", message)
         return ALL_VISIBLE

@@ -165,7 +165,7 @@ def test_no_file_is_replaced_without_force(folder: Path) -> None:
     [
         (["wheel_brake", "--on", "modle"], "did you mean 'model'?"),
         (["libgazebo_ros_diff_drive.so"], "comes with simkit"),
-        (["..."], "allowed are names such as wheel_brake"),
+        (["..."], "expected names such as wheel_brake"),
         ([], "SK-PLUGIN-072"),
         (["x", "--from", "y.sdf"], "SK-PLUGIN-072"),
         (["--from", "none.sdf"], "none.sdf"),

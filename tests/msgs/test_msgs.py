@@ -99,8 +99,8 @@ def test_a_message_object_is_used_unchanged() -> None:
     [
         ({"linaer": {}}, "no field 'linaer'; did you mean 'linear'?"),
         ({"linear": {"X": 1}}, "did you mean 'x'?"),
-        ({"linear": {"x": "fast"}}, "found 'fast', allowed is a number"),
-        ({"linear": 3}, "allowed is a geometry_msgs/msg/Vector3 or a dict"),
+        ({"linear": {"x": "fast"}}, "found 'fast'; expected a number"),
+        ({"linear": 3}, "expected a geometry_msgs/msg/Vector3 or a dict"),
         ({"linear": {"x": None}}, "found None"),
     ],
 )

@@ -200,7 +200,7 @@ def test_an_unknown_policy_is_an_error_with_the_allowed_words(tmp_path: Path) ->
     plugin = (
         "<plugin name='d' filename='libgazebo_ros_diff_drive.so'><simkit:on_error>ignore</simkit:on_error></plugin>"
     )
-    with pytest.raises(simkit.LoadError, match="allowed is one of stop, disable"):
+    with pytest.raises(simkit.LoadError, match="expected one of stop, disable"):
         simkit.load(world(GROUND, rover(plugin)))
     with pytest.raises(simkit.SimkitError, match="'stop' or 'disable'"):
         simkit.load(world(GROUND), on_error="ignore")  # type: ignore[arg-type]

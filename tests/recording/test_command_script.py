@@ -61,9 +61,9 @@ def test_a_steady_velocity_goes_to_the_only_topic_that_takes_one() -> None:
 @pytest.mark.parametrize(
     ("text", "topics", "reason"),
     [
-        ("fast", TOPICS, "allowed is LINEAR,ANGULAR"),
-        ("0.2", TOPICS, "allowed is LINEAR,ANGULAR"),
-        ("0.2,nan", TOPICS, "allowed is LINEAR,ANGULAR"),
+        ("fast", TOPICS, "expected LINEAR,ANGULAR"),
+        ("0.2", TOPICS, "expected LINEAR,ANGULAR"),
+        ("0.2,nan", TOPICS, "expected LINEAR,ANGULAR"),
         ("0.2,0", {"/imu": "sensor_msgs/msg/Imu"}, "found none"),
         ("0.2,0", {"/a": "geometry_msgs/msg/Twist", "/b": "geometry_msgs/msg/Twist"}, "several (/a, /b)"),
     ],
@@ -92,7 +92,7 @@ def test_a_script_is_read(tmp_path: Path) -> None:
         ("- {at: -1, topic: /cmd_vel}\n", 1, "at least 0"),
         ("- {at: 2, until: 1, topic: /cmd_vel}\n", 1, "until"),
         ("- {at: 1, topic: /cmd_vel, message: 3}\n", 1, "message: found 3"),
-        ("- just a text\n", 1, "allowed is {at, topic, message}"),
+        ("- just a text\n", 1, "expected {at, topic, message}"),
         ("at: 0\n", 1, "is not a list of {at, topic, message}"),
         ("- {at: 0, topic: [\n", 2, "is not YAML"),
     ],

@@ -86,7 +86,7 @@ def test_a_picture_shows_path_and_scan(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "reason"), [("out.gif", "allowed is .png or .jpg"), ("no/out.png", "no does not exist")]
+    ("name", "reason"), [("out.gif", "expected .png or .jpg"), ("no/out.png", "no does not exist")]
 )
 def test_an_unwritable_picture_is_reported_before_the_run(tmp_path: Path, name: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason):

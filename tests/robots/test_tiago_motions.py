@@ -103,7 +103,7 @@ def test_a_wall_before_the_robot_is_named(motions: dict[str, Motion]) -> None:
         goal = sim.send_goal("/play_motion2", {"motion_name": "reach_max"})
         sim.run(0.1)
         assert goal.status.name == "ABORTED"
-        assert "wall::body come" in goal.result.error and "_link and wall::body" in goal.result.error
+        assert "wall::body overlap" in goal.result.error and "_link and wall::body" in goal.result.error
 
 
 def test_without_an_arm_the_head_has_its_motions() -> None:
@@ -122,4 +122,4 @@ def test_a_head_that_would_turn_into_the_arm_is_refused(sim: Any, motions: dict[
     robot.set_joint_positions(dict(zip(motions["reach_max"].joints, motions["reach_max"].positions[-1], strict=True)))
     goal = sim.send_goal("/play_motion2", {"motion_name": "inspect_surroundings"})
     sim.run(0.1)
-    assert goal.status.name == "ABORTED" and "head_2_link and arm_4_link come" in goal.result.error
+    assert goal.status.name == "ABORTED" and "head_2_link and arm_4_link overlap" in goal.result.error

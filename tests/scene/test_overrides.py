@@ -74,9 +74,9 @@ def test_a_later_override_replaces_an_earlier_one() -> None:
     ("override", "reason"),
     [
         ("physics.max_step_sise=0.004", "did you mean 'max_step_size'?"),
-        ("physics.max_step_size=0", "allowed is a positive number"),
-        ("physics.max_step_size=nan", "allowed is a positive number"),
-        ("world.gravity=0 0", "allowed are 3 numbers"),
+        ("physics.max_step_size=0", "expected a positive number"),
+        ("physics.max_step_size=nan", "expected a positive number"),
+        ("world.gravity=0 0", "expected 3 numbers"),
         ("arm::tip::imv.update_rate=3", "did you mean 'arm::tip::imu'?"),
         ("arm::tip::imu.update_rate=often", "found 'often'"),
         ("arm::hinge.axis.limit.uper=1", "did you mean 'axis.limit.upper'?"),

@@ -123,9 +123,9 @@ class FrameReader:
             return None
         length, kind = HEAD.unpack_from(buffer, begin)
         if kind not in self._kinds:
-            raise BadFrame(f"a frame has kind {kind}, allowed is {' or '.join(map(str, self._kinds))}")
+            raise BadFrame(f"a frame has kind {kind}; expected {' or '.join(map(str, self._kinds))}")
         if length > self._largest:
-            raise BadFrame(f"a frame has {length} bytes, allowed are {self._largest}")
+            raise BadFrame(f"a frame has {length} bytes; the limit is {self._largest}")
         end = begin + 5 + length
         if available < end:
             return None

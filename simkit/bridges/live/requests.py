@@ -146,14 +146,14 @@ def control(request: Request) -> object:
         if type(count) is float and count.is_integer():
             count = int(count)
         if type(count) is not int or not 0 < count < 1 << 40:
-            raise RequestRefused(f"step: found {value!r:.80}, allowed is a whole number of steps of at least 1")
+            raise RequestRefused(f"step: found {value!r:.80}; expected a whole number of steps of at least 1")
         pausing.step(count)
     elif action == "rtf":
         if value is not None and not (type(value) in (int, float) and 0 < value < float("inf")):
-            raise RequestRefused(f"rtf: found {value!r:.80}, allowed is a number above 0, or nothing for no limit")
+            raise RequestRefused(f"rtf: found {value!r:.80}; expected a number above 0, or nothing for no limit")
         pausing.pace = None if value is None else float(value)
     else:
-        raise RequestRefused(f"control: found {action!r:.80}, allowed is pause, resume, step or rtf")
+        raise RequestRefused(f"control: found {action!r:.80}; expected pause, resume, step or rtf")
     return state(request)
 
 
@@ -201,7 +201,7 @@ def advertise(request: Request) -> object:
 def _count_new_topic(request: Request, topic: str) -> None:
     """Count a topic that only clients have. Recordings and topic counts keep such a topic until the run ends."""
     if not _NEW_TOPIC.fullmatch(topic):
-        raise RequestRefused(f"{topic!r} is not a topic name; allowed are letters, digits and _ between slashes")
+        raise RequestRefused(f"{topic!r} is not a topic name; expected letters, digits and _ between slashes")
     names = request.server.client_topics
     if topic not in names and len(names) >= MOST_OPEN:
         message = f"clients of this run have already created {MOST_OPEN} topics; no more can be created"

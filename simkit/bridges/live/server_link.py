@@ -163,7 +163,7 @@ class ServerLink:
         if self._closed is not None:
             raise self._closed
         if len(frame) > LARGEST_IN:
-            text = f"a message of {len(frame)} bytes is too large to send; allowed are {LARGEST_IN}"
+            text = f"a message of {len(frame)} bytes is too large to send; the limit is {LARGEST_IN}"
             raise LiveError(text, "SK-LIVE-008")
         try:
             self._socket.sendall(frame)

@@ -56,7 +56,7 @@ def folder_fault(folder: Path) -> str:
     if found.st_uid != os.getuid():
         return f"{folder} belongs to another user"
     if found.st_mode & 0o077:
-        return f"{folder} is open to others (mode {stat.S_IMODE(found.st_mode):o}, allowed is 700)"
+        return f"{folder} is open to others (mode {stat.S_IMODE(found.st_mode):o}; expected 700)"
     return ""
 
 

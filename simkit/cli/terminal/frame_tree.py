@@ -133,7 +133,7 @@ def receive_transforms(
                 return
             message = source.decode(received)
             if not hasattr(message, "transforms"):
-                text = f"SK-CLI-032 {received.topic} has type {received.type_name}, allowed is {_TYPE}"
+                text = f"SK-CLI-032 {received.topic} has type {received.type_name}; expected {_TYPE}"
                 raise InputError(text, "SK-CLI-032")
             frames.take(message, static=received.topic in static)
             yield received

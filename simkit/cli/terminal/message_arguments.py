@@ -32,7 +32,7 @@ def parse_fields(text: str, what: str) -> JsonObject:
     if found is None:
         return {}
     if not isinstance(found, dict) or any(not isinstance(key, str) for key in found):
-        message = f"{what}: found {shown}, allowed is a mapping of fields such as '{{linear: {{x: 0.2}}}}'"
+        message = f"{what}: found {shown}; expected a mapping of fields such as '{{linear: {{x: 0.2}}}}'"
         raise InputError(f"SK-CLI-031 {message}", "SK-CLI-031")
     return found
 

@@ -129,7 +129,7 @@ def parse_pairs(texts: Sequence[str], option: str) -> dict[str, str]:
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name.strip():
-            raise InputError(f"SK-CLI-018 {option}: found {text!r}, allowed is NAME=VALUE", "SK-CLI-018")
+            raise InputError(f"SK-CLI-018 {option}: found {text!r}; expected NAME=VALUE", "SK-CLI-018")
         found[name.strip()] = value
     return found
 
@@ -142,7 +142,7 @@ def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
     """
     if word not in allowed:
         hint = did_you_mean(word, allowed)
-        text = f"SK-CLI-018 {name}: found {word!r}, allowed is {', '.join(allowed)}"
+        text = f"SK-CLI-018 {name}: found {word!r}; expected {', '.join(allowed)}"
         raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
     return word
 

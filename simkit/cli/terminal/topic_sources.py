@@ -284,7 +284,7 @@ def open_source(sim: str | None, bag: Path | None) -> Iterator[Source]:
     """
     if bag is not None:
         if sim is not None and sim != os.environ.get("SIMKIT_SIM"):  # the environment variable is not a conflict
-            raise InputError("SK-CLI-018 --sim and --bag: found both, allowed is one of them", "SK-CLI-018")
+            raise InputError("SK-CLI-018 --sim and --bag: found both; expected one of them", "SK-CLI-018")
         from simkit.recording.bags.reader import open_bag_to_read
 
         with open_bag_to_read(bag) as reader:

@@ -117,4 +117,4 @@ def _check_memory(element: Params, text: str) -> None:
 
 
 def _report_excess(element: Params, name: str, found: str, allowed: str) -> None:
-    element.error("SK-MJCF-005", f"<{element.name} {name}>: found {found}, allowed is {allowed}")
+    element.error("SK-MJCF-005", f"<{element.name} {name}>: found {found}; expected {allowed}")

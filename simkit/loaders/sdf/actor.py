@@ -50,7 +50,7 @@ def _animation(element: Params) -> Animation:
 def _trajectory(element: Params) -> Trajectory:
     number = element.attribute("id", "0").strip()
     if not is_small_integer(number.removeprefix("-")):
-        element.error("SK-PARAM-002", f"found <trajectory id={number!r}>, allowed is a whole number")
+        element.error("SK-PARAM-002", f"found <trajectory id={number!r}>; expected a whole number")
         number = "0"
     points = [Waypoint(p.number("time", required=True), p.pose("pose")) for p in element.all("waypoint")]
     for before, after, waypoint in zip(points, points[1:], element.all("waypoint")[1:], strict=False):

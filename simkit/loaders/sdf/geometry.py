@@ -102,7 +102,7 @@ def _optimization(element: Params) -> tuple[str, int]:
     requested = element.attribute("optimization")
     if requested in ("", *_OPTIMIZATIONS):
         return requested, most
-    message = f"<mesh optimization={requested!r}> is unknown; allowed are {', '.join(_OPTIMIZATIONS)}"
+    message = f"<mesh optimization={requested!r}> is unknown; expected {', '.join(_OPTIMIZATIONS)}"
     element.warning("SK-MESH-015", message, did_you_mean(requested, _OPTIMIZATIONS))
     return "", most
 
@@ -145,7 +145,7 @@ def _outline(element: Params) -> tuple[tuple[float, float], ...] | None:
             if not max(abs(x), abs(y)) <= _LARGEST_SIZE:
                 raise ValueError(point.value)
         except ValueError:
-            point.error("SK-PARAM-002", f"found <point>{point.value}</point>, allowed is 2 numbers")
+            point.error("SK-PARAM-002", f"found <point>{point.value}</point>; expected 2 numbers")
             continue
         points.append((x, y))
     if len(points) < 3:

@@ -207,7 +207,7 @@ def _thread_pitch(element: Params) -> float:
     if element.has("screw_thread_pitch"):
         return element.number("screw_thread_pitch", 1.0)
     if old == 0:
-        message = "found <thread_pitch>0</thread_pitch>, allowed is a number other than 0"
+        message = "found <thread_pitch>0</thread_pitch>; expected a number other than 0"
         element.child_or_self("thread_pitch").error("SK-PARAM-002", message)
         return 1.0
     return -2 * math.pi / old if element.has("thread_pitch") else 1.0

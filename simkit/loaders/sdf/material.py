@@ -98,7 +98,7 @@ def read_colour(block: Params, name: str, default: Colour) -> Colour:
     except ValueError:
         numbers = []
     if len(numbers) not in (3, 4) or any(map(math.isnan, numbers)):
-        found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>, allowed is red green blue [alpha]")
+        found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>; expected red green blue [alpha]")
         return default
     r, g, b, a = [min(1.0, max(0.0, v)) for v in (*numbers, 1.0)[:4]]
     return (r, g, b, a)

@@ -85,5 +85,5 @@ def _mask(contact: Params, name: str) -> int:
             raise ValueError
         return int(text, 16 if text.startswith("0x") else 10) & 0xFFFFFFFF
     except ValueError:
-        found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>, allowed is a whole number")
+        found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>; expected a whole number")
         return 0xFFFF

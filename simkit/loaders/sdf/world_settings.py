@@ -98,7 +98,7 @@ def _fog(scene: Params) -> Fog | None:
     if kind == "none":
         return None
     if kind not in _FOGS:
-        message = f"found <type>{kind}</type> of a fog, allowed is one of none, {', '.join(_FOGS)}; no fog is drawn"
+        message = f"found <type>{kind}</type> of a fog; expected one of none, {', '.join(_FOGS)}; no fog is drawn"
         block.child_or_self("type").warning("SK-RENDER-010", message, did_you_mean(kind, _FOGS) or _FOG_HINT)
         return None
     return fog

@@ -19,7 +19,7 @@ def report_bad_value(element: Params, attribute: str, allowed: str) -> None:
     text = element.attributes.get(attribute, "")
     shown = text if len(text) <= 60 else text[:57] + "..."
     hint = _XACRO_HINT if "${" in text or "$(" in text else ""
-    element.error("SK-URDF-013", f'<{element.name} {attribute}="{shown}">: allowed is {allowed}', hint)
+    element.error("SK-URDF-013", f'<{element.name} {attribute}="{shown}">: expected {allowed}', hint)
 
 
 def report_missing(element: Params, attribute: str, allowed: str, owner: str = "") -> None:
@@ -109,7 +109,7 @@ def leading_numbers(element: Params, attribute: str, count: int, allowed: str = 
     parts = text_attribute(element, attribute).split()
     if len(parts) > count and all(parse_number(part) is not None for part in parts):
         found = f'<{element.name} {attribute}="{" ".join(parts[:8])}"> has {len(parts)} numbers'
-        report_substitute(element, found, f"the first {count} are used", f"allowed is {allowed or f'{count} numbers'}")
+        report_substitute(element, found, f"the first {count} are used", f"expected {allowed or f'{count} numbers'}")
         element.attributes[attribute] = " ".join(parts[:count])
     return numbers_attribute(element, attribute, count, allowed)
 
@@ -142,7 +142,7 @@ def extension_boolean(element: Params) -> bool:
     """Return the value of true, yes, 1 or false, no, 0; any other text is an error."""
     found = extension_text(element).lower()
     if found not in ("true", "yes", "1", "false", "no", "0"):
-        element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}, allowed is true or false")
+        element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}; expected true or false")
     return found in ("true", "yes", "1")
 
 
@@ -154,5 +154,5 @@ def extension_numbers(element: Params, count: int) -> Sequence[float] | None:
         return kept
     allowed = "a number" if count == 1 else f"{count} numbers"
     hint = _XACRO_HINT if "${" in extension_text(element) else ""
-    element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}, allowed is {allowed}", hint)
+    element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}; expected {allowed}", hint)
     return None

@@ -98,7 +98,7 @@ def _number(element: Params, name: str, default: float) -> float:
         return default
     value = parse_number(extension_text(found))
     if value is None or abs(value) == float("inf"):
-        report_substitute(found, f"<{name}> is {extension_text(found)!r}, allowed is a number", f"{default:g} is used")
+        report_substitute(found, f"<{name}> is {extension_text(found)!r}; expected a number", f"{default:g} is used")
         return default
     return value
 

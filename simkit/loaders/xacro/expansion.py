@@ -16,7 +16,7 @@ from simkit.loaders.xacro.expansion_limits import MAX_FILES_DEEP, BoundError, Bu
 from simkit.loaders.xacro.expression import Evaluator, Function, Names, Value
 from simkit.loaders.xacro.expression_functions import DIRECT_NAMES, math_functions, python_functions, tokenize
 from simkit.loaders.xacro.file_access import FileAccess, MissingError
-from simkit.loaders.xacro.private_package import MACRO_ARGUMENT, XacroModule, import_private_xacro
+from simkit.loaders.xacro.isolated_xacro import MACRO_ARGUMENT, XacroModule, import_private_xacro
 
 MAX_EXPANDED = 50_000
 MAX_COPIED = 300_000

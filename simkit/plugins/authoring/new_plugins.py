@@ -60,7 +60,7 @@ def plugin_named(name: str, parent: str) -> NewPlugin:
     """
     if parent not in PARENTS:
         hint = did_you_mean(parent, PARENTS)
-        text = f"{_BAD} --on: found {parent!r}, allowed is {', '.join(PARENTS)}"
+        text = f"{_BAD} --on: found {parent!r}; expected {', '.join(PARENTS)}"
         raise InputError(text + (f"; {hint}" if hint else ""), _BAD)
     if normalise(name) in plugin_kinds():
         raise InputError(f"{_BAD} {name!r} comes with simkit: simkit plugin info {name}", _BAD)
@@ -169,7 +169,7 @@ def _python_names(name: str) -> tuple[str, str]:
     if module in sys.stdlib_module_names or keyword.iskeyword(module):
         module, class_name = f"{module}_plugin", f"{class_name}Plugin"
     if not module.isidentifier():
-        allowed = "allowed are names such as wheel_brake, WheelBrake or libwheel_brake.so"
+        allowed = "expected names such as wheel_brake, WheelBrake or libwheel_brake.so"
         raise InputError(f"{_BAD} {name!r} is not usable as a Python name; {allowed}", _BAD)
     return module, class_name
 

@@ -124,7 +124,7 @@ class GazeboRosAckermannDrive(CommandedDrive):
         if not isinstance(shape, (Cylinder, Sphere)):
             kind = type(shape).__name__.lower()
             message = f"the drive needs the radius of its wheels, but the collision of {found[3].name!r} is a {kind}"
-            params.error("SK-PLUGIN-093", f"{message}; allowed is a cylinder or a sphere")
+            params.error("SK-PLUGIN-093", f"{message}; expected a cylinder or a sphere")
             return
         self._radius = shape.radius
         front_left, front_right, rear_left, rear_right = (_centre(link) for link in found)

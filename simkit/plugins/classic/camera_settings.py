@@ -199,7 +199,7 @@ def read_depths(options: Options, near: str, far: str) -> tuple[float, float]:
     last: float = getattr(options, far)
     if last <= found:
         elements = f"<{fields[far].element}> beyond <{fields[near].element}>"
-        options.params.error("SK-PARAM-002", f"found depths from {found:g} to {last:g} m, allowed is a {elements}")
+        options.params.error("SK-PARAM-002", f"found depths from {found:g} to {last:g} m; expected a {elements}")
         default_near = float(fields[near].default)
         return default_near, max(float(fields[far].default), 2 * default_near)
     return found, last if last <= FARTHEST else math.inf

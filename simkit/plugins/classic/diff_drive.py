@@ -137,7 +137,7 @@ class DiffDriveOptions(CommonDiffDriveOptions):
         count, left, right = self.num_wheel_pairs, self.left_joints, self.right_joints
         if left and right and not len(left) == len(right) == count:
             found_text = f"found {len(left)} <left_joint> and {len(right)} <right_joint>"
-            allowed = f"allowed is one of each for each of {count} <num_wheel_pairs>"
+            allowed = f"expected one of each for each of {count} <num_wheel_pairs>"
             self.params.error("SK-PARAM-002", f"{found_text}, {allowed}")
             return ()
         # pairs beyond the end of a list get Gazebo's default

@@ -134,7 +134,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         for name, position in zip(self._names, positions, strict=True):
             joint: Joint = model.joint(name)
             if joint.dof != 1:
-                problem = f"joint {joint.scoped!r} is {joint.type} and is not set; allowed is a joint with one axis"
+                problem = f"joint {joint.scoped!r} is {joint.type} and is not set; expected a joint with one axis"
                 self.once.left_out(joint.scoped, problem)
                 continue
             try:

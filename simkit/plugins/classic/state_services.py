@@ -171,7 +171,7 @@ def set_joints(sim: Simulation, model: str, names: list[str], positions: npt.NDA
     for name in targets:
         joint = handle.joint(name)
         if joint.dof != 1:
-            raise RequestRefused(f"joint {name!r} has {joint.dof} degrees of freedom, allowed is one")
+            raise RequestRefused(f"joint {name!r} has {joint.dof} degrees of freedom; expected one")
     handle.set_joint_positions(targets)
 
 

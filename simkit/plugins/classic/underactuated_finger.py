@@ -88,7 +88,7 @@ class UnderactuatedFinger(ModelPlugin):
         joint = None if named is None else _of_one_axis(scene, named)
         scale = options.scale_factor
         if scale == 0.0:
-            options.params.error("SK-PARAM-002", "found <scale_factor> 0, allowed is any other number")
+            options.params.error("SK-PARAM-002", "found <scale_factor> 0; expected any other number")
         gains = self._gains(options.pid_gains)
         if joint is None or scale == 0.0:
             return
@@ -164,6 +164,6 @@ def _of_one_axis(scene: SceneModel, named: Params) -> SceneJoint | None:
     """Return the joint that an element names; None after an error."""
     joint = find_joint(scene, named.value, named) if named.value else None
     if joint is not None and len(joint.axes) != 1:
-        named.error("SK-PLUGIN-003", f"joint {joint.name!r} has {len(joint.axes)} axes, allowed is one")
+        named.error("SK-PLUGIN-003", f"joint {joint.name!r} has {len(joint.axes)} axes; expected one")
         return None
     return joint

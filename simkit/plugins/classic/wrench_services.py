@@ -71,7 +71,7 @@ def joint_effort(sim: Simulation, request: msgs.ApplyJointEffort_Request) -> Tim
     """
     joint = joint_of(sim, request.joint_name)
     if joint.dof != 1:
-        raise RequestRefused(f"joint {joint.scoped!r} has {joint.dof} degrees of freedom, allowed is one")
+        raise RequestRefused(f"joint {joint.scoped!r} has {joint.dof} degrees of freedom; expected one")
     effort, span = require_finite(request.effort, "effort"), _tick_range(sim, request)
     return None if span is None else TimedWrench("", joint.scoped, (effort,), *span)
 

@@ -17,7 +17,7 @@ from simkit.plugins.classic.server_services import ClassicServices
 from simkit.plugins.discovery.find_plugin_class import find_plugin
 from simkit.plugins.discovery.python_plugins import Attachment, ParentGetter, SceneEntity, attach_plugins, handle_getter
 from simkit.plugins.drives.robot_transforms import StaticTransforms
-from simkit.plugins.world.world_statistics import ClockPublisher, WorldStats
+from simkit.plugins.world.clock_and_statistics import ClockPublisher, WorldStats
 from simkit.scene import SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
 from simkit.sensors import sensor_kinds
 from simkit.sensors.presets.preset_defaults import add_preset_defaults

@@ -114,7 +114,7 @@ def as_plugin(made: object, diagnostics: Diagnostics, where: Where = NOWHERE) ->
     if inspect.isclass(made) and issubclass(made, Plugin) and not inspect.isabstract(made):
         return made()
     if not has_hooks(made):
-        diagnostics.error("SK-PLUGIN-022", f"found {made!r}, allowed is {describe_allowed_plugins()}", where)
+        diagnostics.error("SK-PLUGIN-022", f"found {made!r}; expected {describe_allowed_plugins()}", where)
         return None
     plugin = GzSystem(system_of(made))
     plugin.name = _plugin_name(made)

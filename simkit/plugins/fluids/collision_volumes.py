@@ -63,7 +63,7 @@ class HullFactory:
         return Hull(solid.volume, origin + axes @ solid.centre, solid.reach, solid, axes, origin)
 
     def _triangles(self, shape: Geometry, collision: SceneCollision) -> Triangles | None:
-        from simkit.compiler.meshes.collision_bodies import convex_hull
+        from simkit.compiler.meshes.convex_decomposition import convex_hull
         from simkit.compiler.meshes.convex_pieces import mesh_volume
 
         vertices, faces = _surface(shape, collision)

@@ -207,7 +207,7 @@ def read_aerofoil(options: AerofoilOptions) -> Aerofoil:
 
 def _direction(params: Params, name: str, found: Triple, default: Any) -> Triple:
     if not any(found):
-        params.error("SK-PARAM-002", f"found <{name}>0 0 0</{name}>, allowed is a direction")
+        params.error("SK-PARAM-002", f"found <{name}>0 0 0</{name}>; expected a direction")
         fallback: Triple = default.default
         return fallback
     return unit(found)

@@ -171,7 +171,7 @@ def read_field(params: Params, quirks: bool) -> WindField:
     field = WindField(tuple(_piece(when) for when in whens) if whens else (_piece(options, is_bounded=False),))
     for piece, piece_options in zip(field.pieces, whens or (options,), strict=True):
         if piece.least < -1e-9:
-            text = f"found <{piece_options.params.name}> with a minimum of {piece.least:g}, allowed is {_ALLOWED}"
+            text = f"found <{piece_options.params.name}> with a minimum of {piece.least:g}; expected {_ALLOWED}"
             piece_options.params.error("SK-PARAM-002", text)
     return field
 
@@ -193,7 +193,7 @@ def _number_of(block: Params) -> float:
     except ValueError:
         value = math.nan
     if not abs(value) <= 1e9:
-        block.error("SK-PARAM-002", f"found <{block.name}>{block.value}</{block.name}>, allowed is a number")
+        block.error("SK-PARAM-002", f"found <{block.name}>{block.value}</{block.name}>; expected a number")
         return 0.0
     return value
 
@@ -207,7 +207,7 @@ def _interval(block: Params, axis: str) -> Interval:
 def _bound(block: Params, closed: str, opened: str, default: float) -> tuple[float, bool]:
     bounds = [(name, block.attribute(name)) for name in (closed, opened) if block.attribute(name)]
     if len(bounds) == 2:
-        block.error("SK-PARAM-002", f"found {closed} and {opened} on one <{block.name}>, allowed is one of the two")
+        block.error("SK-PARAM-002", f"found {closed} and {opened} on one <{block.name}>; expected one of the two")
     for name, text in bounds[:1]:
         try:
             value = float(text)
@@ -215,7 +215,7 @@ def _bound(block: Params, closed: str, opened: str, default: float) -> tuple[flo
             value = math.nan
         if math.isfinite(value):
             return value, name == closed
-        block.error("SK-PARAM-002", f'found {name}="{text}", allowed is a number [m]')
+        block.error("SK-PARAM-002", f'found {name}="{text}"; expected a number [m]')
     return default, False
 
 

@@ -256,7 +256,7 @@ def _read_noise(options: WindNoiseOptions) -> WindNoise | None:
     noise, kinds = options.params, ("gaussian", "gaussian_quantized", "none")
     kind = options.type_attribute or options.type
     if kind not in kinds:
-        noise.error("SK-PARAM-002", f"found noise of type {kind!r}, allowed is {', '.join(kinds)}")
+        noise.error("SK-PARAM-002", f"found noise of type {kind!r}; expected {', '.join(kinds)}")
     if kind not in kinds[:2]:
         noise.mark_all_read()
         return None

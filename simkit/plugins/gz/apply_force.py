@@ -254,7 +254,7 @@ class ApplyJointForce(ModelPlugin):
         if math.isfinite(effort):
             self._effort = effort
         else:
-            self.once.left_out("finite", f"the command {effort} is ignored; allowed is a finite number")
+            self.once.left_out("finite", f"the command {effort} is ignored; expected a finite number")
 
     def explain_divergence(self, name: str) -> str:
         """Describe the effort of this plugin on a joint whose physics diverged, or return an empty text."""

@@ -110,7 +110,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
             if joint is None or not has_axis(joint, 0, element):
                 continue
             if joint.type not in _ONE_AXIS or len(joint.axes) != 1:
-                message = f"joint {joint.name!r} is {joint.type}; allowed is one of " + ", ".join(sorted(_ONE_AXIS))
+                message = f"joint {joint.name!r} is {joint.type}; expected one of " + ", ".join(sorted(_ONE_AXIS))
                 element.error("SK-PLUGIN-003", message)
             elif joint in chosen:
                 message = f"plugin {self.name!r}: joint {joint.name!r} is listed twice; the first entry is used"

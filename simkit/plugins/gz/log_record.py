@@ -100,7 +100,7 @@ class LogRecord(WorldPlugin):
                 patterns.append(re.compile(element.value))
             except re.error as error:
                 found = f"found <record_topic>{element.value}</record_topic>"
-                element.error("SK-PARAM-002", f"{found}, allowed is a topic or a regular expression: {error}")
+                element.error("SK-PARAM-002", f"{found}; expected a topic or a regular expression: {error}")
         return frozenset(plain), tuple(patterns)
 
     def _report_unused(self, params: Params) -> None:

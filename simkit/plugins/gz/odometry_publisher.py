@@ -61,7 +61,7 @@ class OdometryPublisher(ModelPlugin):
         self._dimensions = self.options.dimensions
         if self._dimensions not in (2, 3):
             element = params.child("dimensions") or params
-            element.error("SK-PARAM-002", f"found <dimensions>{self._dimensions}</dimensions>, allowed is 2 or 3")
+            element.error("SK-PARAM-002", f"found <dimensions>{self._dimensions}</dimensions>; expected 2 or 3")
         # a frequency of zero means every step, as in Gazebo
         self.after_step_rate = self.options.odom_publish_frequency
         turn = quat_from_rpy(*self.options.rpy_offset)

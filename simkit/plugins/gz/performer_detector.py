@@ -79,7 +79,7 @@ class Performers(WorldPlugin):
             size = options.geometry.box.size
             if min(size) <= 0.0:
                 if options.geometry.box.params.has("size"):
-                    element.error("SK-PARAM-002", f"found a <box> of {size}, allowed are lengths above 0")
+                    element.error("SK-PARAM-002", f"found a <box> of {size}; expected lengths above 0")
                 continue
             if model and model not in models:
                 message = f"performer {name!r} is model {model!r}, which does not exist yet"
@@ -124,7 +124,7 @@ class PerformerDetector(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         box, size = self.options.geometry.box.params, self.options.geometry.box.size
         if box.has("size") and min(size) <= 0.0:
-            box.error("SK-PARAM-002", f"found a <box> of {size}, allowed are lengths above 0")
+            box.error("SK-PARAM-002", f"found a <box> of {size}; expected lengths above 0")
         self._half = size[0] / 2, size[1] / 2, size[2] / 2
         self._offset = self.options.pose.position
         self._is_centred = not self._offset.any()

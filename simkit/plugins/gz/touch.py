@@ -47,7 +47,7 @@ class TouchTimer(ModelPlugin):
         self._duration = round(self.options.time * 1e9)  # [ns]
         self._topic = valid_topic(self.options.namespace)
         if self._topic == "/" and params.has("namespace"):
-            params.error("SK-PARAM-002", "found a <namespace> without a letter or digit, allowed is a topic's name")
+            params.error("SK-PARAM-002", "found a <namespace> without a letter or digit; expected a topic's name")
         self._links = frozenset(link.scoped for link in scene.links)
         self._is_enabled = self.options.enabled
         self._world = builder.world.name

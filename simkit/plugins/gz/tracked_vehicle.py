@@ -289,7 +289,7 @@ class TrackedVehicle(TwistDrive):
             self._efficiency = efficiency
             self._begin()
         else:
-            self.once.left_out("efficiency", "a steering efficiency is ignored; allowed is a positive number")
+            self.once.left_out("efficiency", "a steering efficiency is ignored; expected a positive number")
 
     def _begin(self) -> None:
         self._is_new = True

@@ -124,7 +124,7 @@ class TriggeredPublisher(WorldPlugin):
         self._input_kind = kind
         self._matchers = [m for match in matchers if (m := self._read_match(kind, match)) is not None]
         if matchers and not any(match.value for match in matchers):
-            element.error("SK-PARAM-002", "found no <match> with a text, allowed is one, or none at all")
+            element.error("SK-PARAM-002", "found no <match> with a text; expected one, or none at all")
             return
         if kind is MESSAGE_CLASSES["Pose"] and any(
             match.attributes.get("field", "").startswith("header.") for match in matchers
@@ -140,7 +140,7 @@ class TriggeredPublisher(WorldPlugin):
         tolerance = _tolerance(element)
         if logic not in ("positive", "negative"):
             found = f'<match logic_type="{logic}">'
-            element.error("SK-PARAM-002", f"found {found}, allowed is positive or negative")
+            element.error("SK-PARAM-002", f"found {found}; expected positive or negative")
             return None
         if not element.value:
             message = f"plugin {self.name!r}: a <match> without a text has no effect"
@@ -185,7 +185,7 @@ class TriggeredPublisher(WorldPlugin):
         listed = [name for name in MESSAGE_CLASSES if _has_ros_type(name)] if known is None else list(known)
         if name in listed and package in ("gz.msgs", "ignition.msgs"):
             return message_class(name)
-        hint = did_you_mean(name, listed) or f"allowed are {', '.join(sorted(listed))} of gz.msgs"
+        hint = did_you_mean(name, listed) or f"expected {', '.join(sorted(listed))} of gz.msgs"
         message = f'<{element.name} {attribute}="{written}">: messages of this type are not supported here'
         element.error("SK-PLUGIN-120", message, hint)
         return None
@@ -259,7 +259,7 @@ def _tolerance(element: Params) -> float:
     except ValueError:
         tolerance = -1.0
     if not tolerance >= 0.0:
-        element.error("SK-PARAM-002", f'found <match tol="{text}">, allowed is a number of at least 0')
+        element.error("SK-PARAM-002", f'found <match tol="{text}">; expected a number of at least 0')
         return TOLERANCE
     return tolerance
 

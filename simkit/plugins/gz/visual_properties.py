@@ -86,7 +86,7 @@ class Thermal(Plugin):
 def _read_kelvins(params: Params, name: str) -> float:
     found = params.number(name)
     if found < 0:
-        message = f"found <{name}> {found:g}, allowed is at least 0 K: 0 is used, as in Gazebo"
+        message = f"found <{name}> {found:g}; expected at least 0 K: 0 is used, as in Gazebo"
         params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block(name).where)
     return max(found, 0.0)
 
@@ -164,7 +164,7 @@ class ThermalSensor(SensorPlugin):
         found = self.options.resolution
         if found > 0:
             return found
-        message = f"found <resolution> {found:g}, allowed is a number above 0: the default is used, as in Gazebo"
+        message = f"found <resolution> {found:g}; expected a number above 0: the default is used, as in Gazebo"
         params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("resolution").where)
         return None
 

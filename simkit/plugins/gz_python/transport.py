@@ -16,7 +16,7 @@ from simkit.plugins.gz_python import simulation_context
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.gz_python.msgs.ros_conversion import call_service, from_ros, to_ros, twins_of
-from simkit.plugins.shared_by_copies import SharedByCopies
+from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin

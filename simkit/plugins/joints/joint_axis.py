@@ -107,7 +107,7 @@ def find_joints(scene: SceneModel, params: Params, axis: int = 0, most: int | No
         params.text(element, required=True)
     for joint_name in elements:
         if not joint_name.value:
-            joint_name.error("SK-PARAM-002", f"found an empty <{element}>, allowed is the name of a joint")
+            joint_name.error("SK-PARAM-002", f"found an empty <{element}>; expected the name of a joint")
             continue
         joint = find_joint(scene, joint_name.value, joint_name)
         if joint is not None and has_axis(joint, axis, joint_name):

@@ -163,7 +163,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
         if math.isfinite(target):
             self._target = target
         else:
-            self.once.left_out("finite", f"the command {target} is ignored; allowed is a finite number")
+            self.once.left_out("finite", f"the command {target} is ignored; expected a finite number")
 
     def declare_controller(self, first: Pid) -> None:
         """Set the controller and declare its gains as live parameters.

@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import NOWHERE, Where
-from simkit.plugins.shared_by_copies import SharedByCopies
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ def limit_violations(motion: Motion, joints: Mapping[str, Joint]) -> list[str]:
         k = int(np.argmax(over))
         if over[k] > _ROUNDING:
             unit = "m" if joints[name].type == "prismatic" else "rad"
-            allowed = f"allowed is {axis.lower:g} to {axis.upper:g}"
+            allowed = f"expected {axis.lower:g} to {axis.upper:g}"
             found.append(f"{name} would be at {values[k]:g} {unit} at {motion.times[k]:g} s, {allowed}")
     return found
 

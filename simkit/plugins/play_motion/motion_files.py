@@ -127,7 +127,7 @@ def _motion(key: str, entry: Entry, diagnostics: Diagnostics) -> Motion:
     """
     below = entry.below
     if below is None:
-        raise ValueError(f"found {entry.text!r}, allowed is a block with {', '.join(_KEYS[:3])}")
+        raise ValueError(f"found {entry.text!r}; expected a block with {', '.join(_KEYS[:3])}")
     if not key.strip() or not key.isprintable():
         raise ValueError("its key is empty or not printable")
     _report_unknown(f"motion {key!r}", below, _KEYS, diagnostics)
@@ -159,7 +159,7 @@ def _meta(key: str, below: dict[str, Entry], diagnostics: Diagnostics) -> dict[s
     if entry is None:
         return {}
     if entry.below is None and (entry.text or entry.items):
-        message = f"motion {key!r}: 'meta' is not used, allowed is a block with {', '.join(_META_KEYS)}"
+        message = f"motion {key!r}: 'meta' is not used; expected a block with {', '.join(_META_KEYS)}"
         diagnostics.warning("SK-MOTION-006", message, entry.where)
     return entry.below or {}
 
@@ -174,7 +174,7 @@ def _points(
     for k, item in enumerate(entry.items or ()):
         point = item.below
         if point is None:
-            raise ValueError(f"point {k} is {item.text!r}, allowed is a block with positions and time_from_start")
+            raise ValueError(f"point {k} is {item.text!r}; expected a block with positions and time_from_start")
         _report_unknown(f"motion {key!r}, point {k}", point, _POINT_KEYS, diagnostics)
         positions = _numbers(point, "positions", f"point {k}")
         if len(positions) != width:
@@ -189,7 +189,7 @@ def _points(
                 raise ValueError(f"point {k} has {len(row)} velocities for {width} joints")
             velocities.append(row)
     if velocities and len(velocities) != len(times):
-        raise ValueError(f"{len(velocities)} of {len(times)} points have velocities, allowed is all or none")
+        raise ValueError(f"{len(velocities)} of {len(times)} points have velocities; expected all or none")
     return times, flat, tuple(velocities)
 
 
@@ -210,13 +210,13 @@ def _read_planner(entry: Entry, found: MotionFile, diagnostics: Diagnostics) -> 
 def _bounded_number(entry: Entry, name: str, least: float, *, strictly: bool) -> float:
     value = _number(entry, name)
     if not math.isfinite(value) or value < least or (strictly and value == least):
-        raise ValueError(f"found {value:g}, allowed is a number {'above' if strictly else 'from'} {least:g}")
+        raise ValueError(f"found {value:g}; expected a number {'above' if strictly else 'from'} {least:g}")
     return value
 
 
 def _names(entry: Entry) -> tuple[str, ...]:
     if entry.below is not None or (entry.items is None and entry.text):
-        raise ValueError(f"found {entry.text or 'a block'!r}, allowed is a list of joints")
+        raise ValueError(f"found {entry.text or 'a block'!r}; expected a list of joints")
     return tuple(item.text for item in entry.items or ())
 
 
@@ -239,11 +239,11 @@ def _numbers(below: dict[str, Entry], name: str, owner: str = "") -> list[float]
 
 def _number(entry: Entry, name: str) -> float:
     if entry.items is not None or entry.below is not None:
-        raise ValueError(f"{name!r} holds a list or block, allowed are numbers")
+        raise ValueError(f"{name!r} holds a list or block; expected numbers")
     try:
         return float(entry.text)
     except ValueError:
-        raise ValueError(f"{name!r} holds {entry.text!r}, allowed are numbers") from None
+        raise ValueError(f"{name!r} holds {entry.text!r}; expected numbers") from None
 
 
 def _report_unknown(owner: str, below: dict[str, Entry], allowed: tuple[str, ...], diagnostics: Diagnostics) -> None:

@@ -142,7 +142,7 @@ def plan_motion(
     start = np.array([float(joint.position) for joint in joints.values()])
     found = course_from(start, motion, speed_limits(motion, joints), approach)
     if not found.duration <= _LONGEST_DURATION:
-        text = f"motion {motion.key!r} would take {found.duration:g} s, allowed is up to {_LONGEST_DURATION:.0f} s"
+        text = f"motion {motion.key!r} would take {found.duration:g} s; expected up to {_LONGEST_DURATION:.0f} s"
         raise MotionRefused(OTHER_ERROR, text)
     if looks_around and not approach.free_joints.issuperset(motion.joints):
         check_collisions(sim, robot, motion, found, joints, approach.free_joints)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from simkit.msgs.message_types import Message
 from simkit.params import Params
 from simkit.plugins.live_parameters import declare_at
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.hardware_interfaces import InterfaceSelection
-from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.runtime.communication.parameter_server import Parameter
 
 if TYPE_CHECKING:

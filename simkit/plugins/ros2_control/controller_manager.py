@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.controller import Controller, ControllerEndpoints
 from simkit.plugins.ros2_control.hardware import Hardware
 from simkit.plugins.ros_parameter_files import ParameterFiles
-from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.registry import Kinds
 
 if TYPE_CHECKING:

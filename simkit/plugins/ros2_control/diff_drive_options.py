@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from simkit.params import Params
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros_parameter_block import read_numbers
-from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 _INFINITY = math.inf

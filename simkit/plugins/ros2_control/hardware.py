@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.compiler.couplings import Couplings
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.actuator_modes import EFFORT_MODE, FREE, POSITION_MODE, SPRING_MODE, VELOCITY_MODE
 from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY, Indices, InterfaceTable, Reading
 from simkit.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
 from simkit.plugins.ros2_control.hardware_sensors import HardwareSensor, find_sensor
 from simkit.plugins.ros2_control.joint_actuators import JointActuators
 from simkit.plugins.ros2_control.transmissions import TransmissionLaw, transmission_laws
-from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:

@@ -57,7 +57,7 @@ def parse_number(
     if minimum <= value <= _LARGEST_NUMBER:
         return value
     allowed = "a number" if math.isnan(value) else f"a number from {minimum:g} to {_LARGEST_NUMBER:g}"
-    found.error("SK-PARAM-002", f"found {text!r}, allowed is {allowed}", element.where)
+    found.error("SK-PARAM-002", f"found {text!r}; expected {allowed}", element.where)
     return default
 
 

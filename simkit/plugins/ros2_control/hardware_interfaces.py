@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.plugins.shared_by_copies import SharedByCopies
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 
 Indices = npt.NDArray[np.intp]

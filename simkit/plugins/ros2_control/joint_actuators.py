@@ -22,11 +22,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
 from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY, Indices
 from simkit.plugins.ros2_control.velocity_references import advance_references
-from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 from simkit.runtime.engine.physics_step import CONTROL
 

@@ -9,12 +9,12 @@ import numpy as np
 
 from simkit import msgs
 from simkit.params import Params
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.hardware import Hardware
 from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY, array_index
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.trajectory import Setpoint
 from simkit.plugins.ros_parameter_block import read_names
-from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from simkit.plugins.shared_by_copies import SharedByCopies
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 
 SECOND: Final = 1_000_000_000

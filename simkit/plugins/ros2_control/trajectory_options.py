@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit.params import Params
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.trajectory import Spline
 from simkit.plugins.ros2_control.trajectory_goals import Tolerances
-from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:

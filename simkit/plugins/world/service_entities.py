@@ -132,7 +132,7 @@ def entity_of(sim: Simulation, message: msgs.Entity, kinds: Sequence[str]) -> tu
     number = int(message.type)
     kind = KINDS[number] if 0 <= number < len(KINDS) else "none"
     if kind != "none" and kind not in kinds:
-        raise RequestRefused(f"found an entity of type {kind}, allowed is {' or '.join(kinds)}")
+        raise RequestRefused(f"found an entity of type {kind}; expected {' or '.join(kinds)}")
     allowed_kinds = (kind,) if kind != "none" else tuple(kinds)
     if message.name:
         return find_entity(sim, message.name, allowed_kinds)
@@ -175,7 +175,7 @@ def require_finite(value: float, what: str, minimum: float | None = None) -> flo
     number = float(value)
     if not math.isfinite(number) or (minimum is not None and number < minimum):
         allowed = "a finite number" + (f" of at least {minimum:g}" if minimum is not None else "")
-        raise RequestRefused(f"found {what} {value!r}, allowed is {allowed}")
+        raise RequestRefused(f"found {what} {value!r}; expected {allowed}")
     return number
 
 

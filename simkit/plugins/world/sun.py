@@ -114,7 +114,7 @@ def _start(options: SunOptions) -> float:
         found = datetime.fromisoformat(text)
         return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()
     except (ValueError, OverflowError):
-        params.block("start").error("SK-PARAM-002", f"found <start>{text}</start>, allowed is {_DATE}")
+        params.block("start").error("SK-PARAM-002", f"found <start>{text}</start>; expected {_DATE}")
         return 0.0
 
 
@@ -159,7 +159,7 @@ def _irradiance(options: SunOptions) -> float | None:
     if 0 <= value <= LARGEST:
         return value
     allowed = f"clear_sky, or a number from 0 to {LARGEST:g} [W/m²]"
-    message = f"found <irradiance>{text}</irradiance>, allowed is {allowed}"
+    message = f"found <irradiance>{text}</irradiance>; expected {allowed}"
     options.params.block("irradiance").error("SK-PARAM-002", message)
     return None
 

@@ -177,7 +177,7 @@ class WorldServices(WorldPlugin):
         given = [field for field, value in sources.items() if value]
         if len(given) != 1:
             raise RequestRefused(
-                f"found {' and '.join(given) or 'none'} of sdf, sdf_filename and clone_name, allowed is one"
+                f"found {' and '.join(given) or 'none'} of sdf, sdf_filename and clone_name; expected one"
             )
         requested = pose_of(factory.pose)
         # a ROS message always has a pose, so the identity without a frame means the pose in the file
@@ -206,7 +206,7 @@ class WorldServices(WorldPlugin):
     def _set_pose_vector(self, request: msgs.SetEntityPoses_Request) -> None:
         if len(request.entities) != len(request.poses):
             raise RequestRefused(
-                f"found {len(request.entities)} entities and {len(request.poses)} poses, allowed are as many"
+                f"found {len(request.entities)} entities and {len(request.poses)} poses; expected as many"
             )
         poses = [pose_of(pose) for pose in request.poses]
         for entity in request.entities:  # check all entities before the first one moves

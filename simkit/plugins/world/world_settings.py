@@ -97,7 +97,7 @@ def set_world_location(sim: Simulation, request: SetSphericalCoordinates_Request
     latitude, longitude, elevation, heading = _numbers(request)
     surface = int(request.surface_model)
     if surface not in (0, 1):
-        raise RequestRefused(f"found surface_model {surface}, allowed is 0 (EARTH_WGS84) or 1 (MOON_SCS)")
+        raise RequestRefused(f"found surface_model {surface}; expected 0 (EARTH_WGS84) or 1 (MOON_SCS)")
     name, (equatorial, polar) = ("EARTH_WGS84", _EARTH) if surface == 0 else ("MOON_SCS", _MOON)
     before = sim.control.origin.place or SphericalCoordinates(where=sim.world.where)
     sim.control.origin.move(
@@ -133,7 +133,7 @@ def _numbers(request: SetSphericalCoordinates_Request) -> tuple[float, float, fl
     latitude = require_finite(request.latitude_deg, "latitude_deg")
     longitude = require_finite(request.longitude_deg, "longitude_deg")
     if not -90.0 <= latitude <= 90.0:
-        raise RequestRefused(f"found latitude_deg {latitude:g}, allowed is a number from -90 to 90")
+        raise RequestRefused(f"found latitude_deg {latitude:g}; expected a number from -90 to 90")
     elevation, heading = (
         require_finite(request.elevation, "elevation"),
         require_finite(request.heading_deg, "heading_deg"),

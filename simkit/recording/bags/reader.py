@@ -240,7 +240,7 @@ def _open_storage(path: Path) -> _CompleteBag | _TruncatedBag:
     if path.is_dir() and not (path / "metadata.yaml").exists() and not list(path.glob("*.mcap")):
         raise InputError(f"SK-CLI-035 {path} is not a bag: it has neither metadata.yaml nor an MCAP file", _UNREADABLE)
     if not path.is_dir() and path.suffix not in (".mcap", ".db3"):
-        text = f"SK-CLI-035 {path}: found the ending {path.suffix!r}, allowed is .mcap, .db3 or a rosbag2 folder"
+        text = f"SK-CLI-035 {path}: found the ending {path.suffix!r}; expected .mcap, .db3 or a rosbag2 folder"
         raise InputError(text, _UNREADABLE)
     if not path.is_dir() and not path.is_file():
         raise InputError(f"SK-CLI-035 {path} is neither a file nor a folder", _UNREADABLE)

@@ -64,7 +64,7 @@ def check_suffix(name: str) -> None:
     """
     ending = name[name.rfind(".") :].lower() if "." in name else ""
     if ending not in SUFFIXES:
-        text = f"SK-BAG-012 {name}: found the ending {ending!r}, allowed is {' or '.join(SUFFIXES)}"
+        text = f"SK-BAG-012 {name}: found the ending {ending!r}; expected {' or '.join(SUFFIXES)}"
         raise InputError(text, "SK-BAG-012")
 
 

@@ -157,7 +157,7 @@ class _FieldPath:
 
     def _count(self, found: Sequence[object]) -> None:
         if len(found) > MOST_CURVES:
-            raise self._path_error(f"means {len(found)} numbers, allowed are {MOST_CURVES}")
+            raise self._path_error(f"means {len(found)} numbers; the limit is {MOST_CURVES}")
 
     # ------------------------------------------------------------------ one step
 

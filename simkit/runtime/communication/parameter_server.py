@@ -89,7 +89,7 @@ class Parameter(Generic[T]):
         """
         found = _convert(value, self.value)
         if found is None or not self.is_within(found):
-            raise ParameterError(f"{self.node} {self.name}: found {value!r}, allowed is {self.allowed}")
+            raise ParameterError(f"{self.node} {self.name}: found {value!r}; expected {self.allowed}")
         return found  # type: ignore[no-any-return]
 
     def take(self, value: T) -> None:

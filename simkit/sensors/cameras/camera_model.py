@@ -185,7 +185,7 @@ def read_clip(params: Params) -> tuple[float, float]:
     near, far = clip.number("near", 0.1, minimum=1e-6), clip.number("far", 100.0, minimum=1e-6, maximum=_FARTHEST)
     if far > near:
         return near, far
-    clip.error("SK-PARAM-002", f"found clip planes from {near:g} to {far:g} m, allowed is a <far> beyond <near>")
+    clip.error("SK-PARAM-002", f"found clip planes from {near:g} to {far:g} m; expected a <far> beyond <near>")
     return 0.1, 100.0
 
 
@@ -195,7 +195,7 @@ def _read_field_of_view(params: Params) -> float:
     if hfov <= _WIDEST:
         return hfov
     found = params.block("horizontal_fov")
-    allowed = f"allowed is a number from {_NARROWEST:g} to {_WIDEST:g} rad for a pinhole camera"
+    allowed = f"expected a number from {_NARROWEST:g} to {_WIDEST:g} rad for a pinhole camera"
     hint = "give the angle in radians; the sensor type wide_angle_camera allows up to 6.28 rad"
     found.error("SK-PARAM-002", f"found <horizontal_fov>{hfov:g}</horizontal_fov>, {allowed}", hint)
     return _WIDEST

@@ -36,7 +36,7 @@ def read_depth_range(block: Params, model: CameraModel) -> tuple[float, float]:
     near, far = clip.number("near", model.near, minimum=1e-6), clip.number("far", model.far, minimum=1e-6)
     if far > near:
         return near, far
-    clip.error("SK-PARAM-002", f"found depths from {near:g} to {far:g} m, allowed is a <far> beyond <near>")
+    clip.error("SK-PARAM-002", f"found depths from {near:g} to {far:g} m; expected a <far> beyond <near>")
     return model.near, model.far
 
 
@@ -98,7 +98,7 @@ def read_camera(block: Params, read_model: ModelReader = read_camera_model, has_
     image = block.block("image")
     width, height = image.integer("width", 320, minimum=1), image.integer("height", 240, minimum=1)
     if max(width, height) > MAX_PIXELS:
-        image.error("SK-PARAM-002", f"found an image of {width}x{height}, allowed is up to {MAX_PIXELS}x{MAX_PIXELS}")
+        image.error("SK-PARAM-002", f"found an image of {width}x{height}; expected up to {MAX_PIXELS}x{MAX_PIXELS}")
         width, height = min(width, MAX_PIXELS), min(height, MAX_PIXELS)
     samples = image.integer("anti_aliasing", 4, minimum=0)
     model = read_model(block, width, height)
@@ -132,7 +132,7 @@ def _read_encoding(image: Params, has_depth: bool) -> str:
         return "rgb8"
     if image_format in image_messages.ENCODINGS:
         return image_messages.ENCODINGS[image_format]
-    allowed = "allowed is one of " + ", ".join(image_messages.ENCODINGS)
+    allowed = "expected one of " + ", ".join(image_messages.ENCODINGS)
     if image_format in image_messages.WITHOUT_ENCODING:
         message = f"no ROS image has <format>{image_format}</format>; images are R8G8B8 instead"
         image.diagnostics.warning("SK-SENSOR-120", message, element.where, allowed)

@@ -154,7 +154,7 @@ def read_keyword(params: Params, element: str, meanings: Mapping[str, str], defa
     child = block.child(element)
     keyword = default if child is None else child.value.strip().lower()
     if child is not None and keyword not in meanings:
-        message = f"found <{element}>{child.value}</{element}>, allowed is one of {', '.join(meanings)}"
+        message = f"found <{element}>{child.value}</{element}>; expected one of {', '.join(meanings)}"
         child.error("SK-PARAM-002", message, did_you_mean(keyword, tuple(meanings)))
         keyword = default
     return meanings[keyword]

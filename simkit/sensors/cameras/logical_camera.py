@@ -94,13 +94,13 @@ class LogicalCamera(Sensor):
         block = params.block("logical_camera")
         near, far = block.number("near", 0.0, minimum=0.0), block.number("far", 1.0, minimum=0.0)
         if near >= far:
-            block.error("SK-PARAM-002", f"found <near> {near:g} and <far> {far:g}, allowed is near < far")
+            block.error("SK-PARAM-002", f"found <near> {near:g} and <far> {far:g}; expected near < far")
         fov, aspect = block.number("horizontal_fov", 1.0), block.number("aspect_ratio", 1.0)
         if not 0 < fov < math.pi:
-            block.error("SK-PARAM-002", f"found <horizontal_fov> {fov:g}, allowed is an angle above 0 and below pi")
+            block.error("SK-PARAM-002", f"found <horizontal_fov> {fov:g}; expected an angle above 0 and below pi")
             fov = 1.0
         if aspect <= 0:
-            block.error("SK-PARAM-002", f"found <aspect_ratio> {aspect:g}, allowed is a number above 0")
+            block.error("SK-PARAM-002", f"found <aspect_ratio> {aspect:g}; expected a number above 0")
             aspect = 1.0
         return LogicalCameraOptions(near, far, fov, aspect)
 

@@ -246,5 +246,5 @@ def _free_name(others: Sequence[CameraUnit], name: str, block: Params) -> str:
     used = {eye.name for eye in others}
     if name not in used:
         return name
-    block.error("SK-PARAM-002", f"two cameras of a sensor have the name {name!r}, allowed are different names")
+    block.error("SK-PARAM-002", f"two cameras of a sensor have the name {name!r}; expected different names")
     return f"{name}_{len(others)}"

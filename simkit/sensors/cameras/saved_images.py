@@ -37,7 +37,7 @@ def read_save(block: Params) -> Path | None:
     if enabled not in ("true", "1"):
         save.mark_all_read()
         if enabled not in ("false", "0"):
-            save.error("SK-PARAM-002", f'found <save enabled="{enabled}">, allowed is true, false, 1 or 0')
+            save.error("SK-PARAM-002", f'found <save enabled="{enabled}">; expected true, false, 1 or 0')
         return None
     path = save.text("path", required=True)
     if not path:

@@ -171,7 +171,7 @@ def _read_lens(block: Params) -> Lens:
         c3 = source.number("c3", 0.0, minimum=-_MOST, maximum=_MOST)
         lens = Lens(name, c1, c2, c3, f, source.choice("fun", ("sin", "tan", "id"), "tan"))
         if not (lens.widest > 0 and float(lens.radius(np.array(lens.widest))) > 0):
-            source.error("SK-PARAM-002", f"found c2 {c2:g} and c3 {c3:g}, allowed is a wider lens")
+            source.error("SK-PARAM-002", f"found c2 {c2:g} and c3 {c3:g}; expected a wider lens")
             lens = LENSES["stereographic"]
     else:
         lens = LENSES[name]

@@ -74,7 +74,7 @@ class Encoder(Sensor):
         if block.has("counts_per_revolution"):
             counts = block.number("counts_per_revolution", 1.0, minimum=1)
             if block.has("resolution"):
-                block.error("SK-PARAM-002", "found <resolution> and <counts_per_revolution>, allowed is one of them")
+                block.error("SK-PARAM-002", "found <resolution> and <counts_per_revolution>; expected one of them")
             resolution = 2 * math.pi / counts
         velocity = block.block("velocity")
         return EncoderOptions(

@@ -29,7 +29,7 @@ class AirSensor(VectorSensor):
         self._column: AirColumn = air_column(Atmosphere() if quirks else world.atmosphere)
         self._origin_height = 0.0 if quirks else origin
         if world.atmosphere.temperature <= 0 and not quirks:
-            message = f"<temperature> of the atmosphere is {world.atmosphere.temperature:g} K, allowed is above 0"
+            message = f"<temperature> of the atmosphere is {world.atmosphere.temperature:g} K; expected above 0"
             report_once(self, "error", "SK-SENSOR-060", message, world.atmosphere.where, "give <temperature> in kelvin")
         height = self._origin_height + float(self.scene.pose_world.position[2])
         if not MIN_ALTITUDE <= height <= MAX_ALTITUDE:

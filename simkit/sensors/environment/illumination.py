@@ -17,7 +17,7 @@ from simkit.compiler.name_map import NameMap
 from simkit.pose import Pose, Vector
 from simkit.runtime.handles.light import Light, LightState
 from simkit.scene import SceneLight
-from simkit.sensors.temporary_values import temporary_values
+from simkit.sensors.values_with_expiry import temporary_values
 
 LEAST_OPACITY: Final = 0.5
 """Lowest opacity of a visual that casts a shadow."""

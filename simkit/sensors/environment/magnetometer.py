@@ -54,7 +54,7 @@ def _read_year(block: Params) -> float:
         year = float("nan")
     if FIRST_YEAR <= year <= LAST_YEAR:
         return year
-    allowed = f"allowed is a date as 2026-07-01 or 2026.5 from {FIRST_YEAR:g} to {LAST_YEAR:g}"
+    allowed = f"expected a date as 2026-07-01 or 2026.5 from {FIRST_YEAR:g} to {LAST_YEAR:g}"
     message = f"found <date>{element.value[:60]}</date>, {allowed}"
     element.error("SK-SENSOR-063", message)
     return DEFAULT_DATE

@@ -119,7 +119,7 @@ def _irradiance(params: Params) -> float | None:
     if 0 <= value <= LARGEST:
         return value
     allowed = f"light, or a number from 0 to {LARGEST:g} [W/m²]"
-    found.error("SK-PARAM-002", f"found <irradiance>{found.value}</irradiance>, allowed is {allowed}")
+    found.error("SK-PARAM-002", f"found <irradiance>{found.value}</irradiance>; expected {allowed}")
     return None
 
 
@@ -135,7 +135,7 @@ def _normal(params: Params, default: Vec3) -> Vec3:
     x, y, z = params.vector3("normal", default)
     length = math.sqrt(x * x + y * y + z * z)
     if length < 1e-12:
-        params.block("normal").error("SK-PARAM-002", "found a <normal> of length zero, allowed is any other vector")
+        params.block("normal").error("SK-PARAM-002", "found a <normal> of length zero; expected any other vector")
         return default
     return (x / length, y / length, z / length)
 

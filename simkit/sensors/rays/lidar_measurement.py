@@ -129,15 +129,15 @@ class LidarMeasurement(Sensor):
         low = limits.number("min", 0.0, minimum=0)
         high = limits.number("max", 0.0, minimum=0, finite=False)
         if MAX_RANGE < high < np.inf:
-            limits.block("max").error("SK-PARAM-002", f"found {high:g} m, allowed is at most {MAX_RANGE:g}, or inf")
+            limits.block("max").error("SK-PARAM-002", f"found {high:g} m; expected at most {MAX_RANGE:g}, or inf")
             low, high = 0.0, 1.0
         if not high > low:
-            limits.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m, allowed is a <max> above <min>")
+            limits.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m; expected a <max> above <min>")
         horizontal = _read_sweep(scan.block("horizontal"), 640)
         vertical = _read_sweep(scan.block("vertical"), 1)
         if horizontal.samples * vertical.samples > _MAX_RAYS:
             rays = horizontal.samples * vertical.samples
-            scan.error("SK-PARAM-002", f"found {rays} rays, allowed are at most {_MAX_RAYS}")
+            scan.error("SK-PARAM-002", f"found {rays} rays; expected at most {_MAX_RAYS}")
             horizontal = vertical = Sweep(1, 0.0, 0.0)
         return LidarOptions(horizontal, vertical, low, high, read_noise(block, "gaussian"), read_visibility_mask(block))
 
@@ -280,7 +280,7 @@ def _read_sweep(params: Params, samples: int) -> Sweep:
     high = params.number("max_angle", 0.0, minimum=-_MAX_ANGLE, maximum=_MAX_ANGLE)
     if high < low:
         params.error(
-            "SK-PARAM-002", f"found angles from {low:g} to {high:g}, allowed is a <max_angle> of at least <min_angle>"
+            "SK-PARAM-002", f"found angles from {low:g} to {high:g}; expected a <max_angle> of at least <min_angle>"
         )
     return Sweep(count, low, high)
 

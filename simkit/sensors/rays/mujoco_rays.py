@@ -12,7 +12,7 @@ import numpy.typing as npt
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.ray_culling import ENDLESS, NearbyGeoms, RayBundle, RayHits, can_reach, reaches_plane
-from simkit.sensors.temporary_values import temporary_values
+from simkit.sensors.values_with_expiry import temporary_values
 
 _SEEN, _UNSEEN = 0, 1  # geom groups of the copied model
 _INFINITE = np.array(np.inf)

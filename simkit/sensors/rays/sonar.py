@@ -64,7 +64,7 @@ def _read_axis(block: Params) -> tuple[float, float, float]:
     x, y, z = block.vector3("axis", (0.0, 0.0, -1.0))
     length = math.hypot(x, y, z)
     if length == 0:
-        block.block("axis").error("SK-PARAM-002", "found an <axis> of length 0, allowed is any other")
+        block.block("axis").error("SK-PARAM-002", "found an <axis> of length 0; expected any other")
         return (0.0, 0.0, -1.0)
     return (x / length, y / length, z / length)
 
@@ -93,7 +93,7 @@ class Sonar(Sensor):
         low = block.number("min", 0.0, minimum=0)
         high = block.number("max", 1.0, minimum=0, maximum=_MAX_RANGE)
         if not high > low:
-            block.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m, allowed is a <max> above <min>")
+            block.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m; expected a <max> above <min>")
             low, high = 0.0, 1.0
         radius = block.number("radius", 0.5, minimum=0)
         half_angle = math.atan2(radius, high) if geometry == "cone" else math.pi

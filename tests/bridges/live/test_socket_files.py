@@ -33,7 +33,7 @@ def test_a_folder_that_others_may_enter_is_not_used(court: simkit.Simulation, so
         server.path.parent.chmod(0o777)
         other, note = serve(court)
         assert other is None
-        assert "SK-LIVE-009" in note and "is open to others (mode 777, allowed is 700)" in note
+        assert "SK-LIVE-009" in note and "is open to others (mode 777; expected 700)" in note
         assert simulations() == [], "sockets in such a folder are not trusted either"
 
 

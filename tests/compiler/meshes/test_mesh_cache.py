@@ -15,7 +15,7 @@ from mesh_makers import L_SHAPE, QUAD, binary_stl, picture
 import simkit
 from simkit.compiler.meshes import collision_bodies as mesh_collision
 from simkit.compiler.meshes import mesh_cache, mesh_reader
-from simkit.compiler.meshes.collision_bodies import convex_bodies
+from simkit.compiler.meshes.convex_decomposition import convex_bodies
 from simkit.compiler.meshes.mesh_reader import convert_file, load_file
 from simkit.compiler.shape_geometry import polyline_triangles
 from simkit.scene import Polyline

@@ -13,7 +13,7 @@ from mesh_makers import L_SHAPE, TETRAHEDRON, TETRAHEDRON_FACES
 
 from simkit.compiler.meshes import collision_bodies as mesh_collision
 from simkit.compiler.meshes import collision_bodies as mesh_decompose
-from simkit.compiler.meshes.collision_bodies import convex_bodies
+from simkit.compiler.meshes.convex_decomposition import convex_bodies
 from simkit.compiler.meshes.convex_pieces import filled_ratio, mesh_volume
 from simkit.compiler.shape_geometry import polyline_triangles
 from simkit.pose import Pose

@@ -289,5 +289,5 @@ def test_reset_restore_and_spawn_keep_the_settings_of_the_plugin() -> None:
     ],
 )
 def test_an_empty_depth_range_is_an_error(library: str, content: str) -> None:
-    with pytest.raises(simkit.LoadError, match="allowed is a .* beyond"):
+    with pytest.raises(simkit.LoadError, match="expected a .* beyond"):
         simkit.load(world("depth", CAMERA, plugin(library, content)))

@@ -79,5 +79,5 @@ def test_an_empty_topic_is_the_default_and_one_without_a_letter_an_error(
         assert default in sim.topics()
         assert "/" not in sim.topics()
     for bad in ("/", "ü"):
-        with pytest.raises(simkit.LoadError, match=f"found <{element}>{bad}</{element}>, allowed is a name"):
+        with pytest.raises(simkit.LoadError, match=f"found <{element}>{bad}</{element}>; expected a name"):
             simkit.load(world(GROUND, model(f"<{element}>{bad}</{element}>")))

@@ -155,5 +155,5 @@ def test_a_name_may_begin_with_the_name_of_the_world() -> None:
 
 
 def test_an_entity_without_a_name_is_an_error() -> None:
-    with pytest.raises(LoadError, match="found <entity_name></entity_name>, allowed is a name"):
+    with pytest.raises(LoadError, match="found <entity_name></entity_name>; expected a name"):
         simkit.load(world("<persistent><entity_name/><entity_type>link</entity_type></persistent>"))

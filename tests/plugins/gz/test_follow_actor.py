@@ -153,5 +153,5 @@ def test_errors_are_reported() -> None:
 
 
 def test_an_empty_target_is_an_error() -> None:
-    with pytest.raises(LoadError, match="found <target></target>, allowed is a name"):
+    with pytest.raises(LoadError, match="found <target></target>; expected a name"):
         load(walker(followed=""))

@@ -107,7 +107,7 @@ def test_topic_nested_links_and_missing_ones() -> None:
 def test_an_empty_link_name_and_a_topic_without_a_letter_are_errors() -> None:
     with pytest.raises(LoadError, match="has no link ''"):
         simkit.load(world(link=""))
-    with pytest.raises(LoadError, match="found <topic>ü</topic>, allowed is a name with a letter or a digit"):
+    with pytest.raises(LoadError, match="found <topic>ü</topic>; expected a name with a letter or a digit"):
         simkit.load(world("<topic>ü</topic>"))
     with simkit.load(world("<topic/>")) as sim:  # as in gz, the default
         assert "/model/m/kinetic_energy" in sim.topics()

@@ -218,7 +218,7 @@ def test_gpu_lidars_stop_while_the_battery_is_empty_if_the_world_enables_this(is
 def test_a_duplicate_battery_name_is_an_error() -> None:
     again = f"<plugin {GZ}><battery_name>main</battery_name><voltage>9</voltage><capacity>1</capacity></plugin>"
     recharge = {"enable_recharge": "true", "charging_time": 1}
-    with pytest.raises(LoadError, match="the model has a battery 'main' already"):
+    with pytest.raises(LoadError, match="the model already has a battery 'main'"):
         simkit.load(world(**REAL, **recharge, other=again))
-    with pytest.raises(LoadError, match="found <battery_name></battery_name>, allowed is a name"):
+    with pytest.raises(LoadError, match="found <battery_name></battery_name>; expected a name"):
         simkit.load(world(**REAL, other=again.replace(">main<", "><")))

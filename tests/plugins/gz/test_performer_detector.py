@@ -122,5 +122,5 @@ def test_levels_are_a_note_and_a_detector_without_performers_is_a_warning() -> N
 
 
 def test_a_performer_without_a_model_is_an_error() -> None:
-    with pytest.raises(LoadError, match="found <ref></ref>, allowed is a name"):
+    with pytest.raises(LoadError, match="found <ref></ref>; expected a name"):
         simkit.load(world(names=("",)))

@@ -173,5 +173,5 @@ def test_the_service_enables_all_detectors_of_a_namespace() -> None:
 
 
 def test_an_empty_target_is_an_error() -> None:
-    with pytest.raises(LoadError, match="found <target></target>, allowed is a name"):
+    with pytest.raises(LoadError, match="found <target></target>; expected a name"):
         simkit.load(world(PAD, probe(target="")))

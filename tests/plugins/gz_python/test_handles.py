@@ -304,5 +304,5 @@ def test_a_server_describes_its_world(fixture: TestFixture) -> None:
     info = server.current_info()
     assert info is not None and info.iterations == 0 and info.sim_time == timedelta(0) and info.paused
     assert server.current_info(1) is None
-    with pytest.raises(ValueError, match="number 0, not 1"), server.ecm(1):
+    with pytest.raises(ValueError, match="there is no world 1; the only world has number 0"), server.ecm(1):
         pass

@@ -44,9 +44,9 @@ def test_texts_truths_enumerations_and_lists() -> None:
     [
         ("Twist", "linaer: {x: 1}", "did you mean 'linear'"),
         ("Twist", "linear: {x: 1", "ends before the message is complete"),
-        ("Twist", "linear: 1", "allowed is {"),
+        ("Twist", "linear: 1", "expected {"),
         ("Twist", "linear {x 1}", "without a colon"),
-        ("Twist", "linear {x: one}", "allowed is a number"),
+        ("Twist", "linear {x: one}", "expected a number"),
         ("Int32", "data: 1.5", "whole number"),
         ("Boolean", "data: yes", "true or false"),
         ("StringMsg", "data: hello", "in quotes"),

@@ -94,7 +94,7 @@ def test_a_motion_has_the_line_of_its_definition(tmp_path: Path) -> None:
         ("joints: [shoulder, elbow]", "joints: shoulder", "'joints' is not a list"),
         ("0.2, 0.3]", "0.2]", "it has 3 positions, but 2 joints at 2 times need 4"),
         ("0.2, 0.3]", "0.2, nan]", "a NaN or infinite number"),
-        ("0.2, 0.3]", "0.2, far]", "'positions' holds 'far', allowed are numbers"),
+        ("0.2, 0.3]", "0.2, far]", "'positions' holds 'far'; expected numbers"),
         ("[0.5, 2.0]", "[0.5, 0.5]", "its times must increase, but 0.5 s comes after 0.5 s"),
         ("[0.5, 2.0]", "[-1.0, 2.0]", "its first time is -1 s"),
         ("times_from_start: [0.5, 2.0]", "", "it needs 'times_from_start'"),
@@ -145,7 +145,7 @@ def test_the_planner_block_sets_the_approach(tmp_path: Path) -> None:
 
 def test_an_approach_speed_of_zero_is_ignored(tmp_path: Path) -> None:
     found, reports = read(tmp_path, ROS_2 + "        motion_planner: {approach_velocity: 0}\n")
-    assert found.approach_velocity is None and "allowed is a number above 0" in reports[0]
+    assert found.approach_velocity is None and "expected a number above 0" in reports[0]
 
 
 def test_a_motion_with_infinite_velocities_is_left_out(tmp_path: Path) -> None:
@@ -171,7 +171,7 @@ def test_an_invalid_approach_speed_is_ignored(tmp_path: Path, value: str) -> Non
 @pytest.mark.parametrize("value", ["wrist", "{wrist: 1}", "-1"])
 def test_excluded_joints_must_be_a_list(tmp_path: Path, value: str) -> None:
     found, reports = read(tmp_path, ROS_2 + f"        exclude_from_planning_joints: {value}\n")
-    assert found.excluded_joints is None and "allowed is a list of joints" in reports[0]
+    assert found.excluded_joints is None and "expected a list of joints" in reports[0]
 
 
 def test_entries_without_effect_are_reported(tmp_path: Path) -> None:

@@ -76,7 +76,7 @@ def test_an_unknown_motion_is_rejected_with_the_closest(sim: Any) -> None:
 def test_a_motion_beyond_the_limits_is_reported_at_load_and_refused(sim: Any) -> None:
     assert [d.message for d in sim.diagnostics if d.code == "SK-MOTION-004"] == [
         "motion 'too_far' will be refused, because it exceeds the joint limits: "
-        "elbow would be at 3.5 rad at 2 s, allowed is -2.8 to 2.8"
+        "elbow would be at 3.5 rad at 2 s; expected -2.8 to 2.8"
     ]
     goal = arm.play(sim, "too_far")
     assert goal.status.name == "ABORTED" and not goal.result.success

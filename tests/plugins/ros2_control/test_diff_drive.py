@@ -382,7 +382,7 @@ def test_all_errors_are_reported_at_once() -> None:
         ("SK-CONTROL-042", "has_velocity_limits is true, but max_velocity [m/s or rad/s] is missing"),
         ("SK-CONTROL-042", "min_acceleration is set, but max_acceleration [m/s² or rad/s²] is missing"),
         ("SK-PARAM-002", "<max_jerk>-3"),
-        ("SK-PARAM-002", "found 2 numbers in 'pose_covariance_diagonal', allowed are 6"),
+        ("SK-PARAM-002", "found 2 numbers in 'pose_covariance_diagonal'; expected 6"),
         ("SK-PARAM-002", "<cmd_vel_timeout>soon"),
     ):
         assert any(line.startswith(code) and words in line for line in errors.splitlines()), (code, words, errors)

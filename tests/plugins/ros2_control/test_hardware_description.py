@@ -37,7 +37,7 @@ def test_an_initial_position_outside_the_limits_is_clamped(tmp_path: Path) -> No
 @pytest.mark.parametrize("value", ["abc", "nan", "1e400", "1e300"])
 def test_a_value_that_is_not_a_finite_number_stops_the_load(tmp_path: Path, word: str, value: str) -> None:
     inside = f'<param name="pos_kp">1</param><param name="{word}">{value}</param>'
-    with pytest.raises(simkit.LoadError, match=f"SK-PARAM-002: found '{value}', allowed is a number"):
+    with pytest.raises(simkit.LoadError, match=f"SK-PARAM-002: found '{value}'; expected a number"):
         opened(tmp_path, hardware(inside))
 
 

@@ -28,10 +28,10 @@ def node(folder: Path, text: str) -> tuple[Params, Diagnostics]:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("rate: [100, 50]", "found a list for 'rate', allowed is a number"),
-        ("rate: []", "found a list for 'rate', allowed is a number"),
-        ("rate: {a: 1}", "found a block for 'rate', allowed is a number"),
-        ("rate:", "found rate without a value, allowed is a number"),
+        ("rate: [100, 50]", "found a list for 'rate'; expected a number"),
+        ("rate: []", "found a list for 'rate'; expected a number"),
+        ("rate: {a: 1}", "found a block for 'rate'; expected a number"),
+        ("rate:", "found rate without a value; expected a number"),
     ],
 )
 def test_only_a_value_is_a_number(tmp_path: Path, text: str, message: str) -> None:
@@ -44,7 +44,7 @@ def test_only_a_value_is_a_number(tmp_path: Path, text: str, message: str) -> No
 def test_only_a_block_is_a_block(tmp_path: Path, text: str) -> None:
     params, found = node(tmp_path, text)
     assert params.block("gains").number("p", 2.0) == 2.0
-    assert "for 'gains', allowed is a block of names with values" in next(iter(found)).message
+    assert "for 'gains'; expected a block of names with values" in next(iter(found)).message
 
 
 def test_a_name_with_nothing_below_it_is_an_empty_block(tmp_path: Path) -> None:
@@ -56,9 +56,9 @@ def test_a_name_with_nothing_below_it_is_an_empty_block(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("joints: {j1: 1}", "found a block for 'joints', allowed is a list"),
-        ("joints: [j1, {j2: 1}]", "found a block in the list 'joints', allowed is a value"),
-        ("joints: [j1, [j2]]", "found a list in the list 'joints', allowed are values"),
+        ("joints: {j1: 1}", "found a block for 'joints'; expected a list"),
+        ("joints: [j1, {j2: 1}]", "found a block in the list 'joints'; expected a value"),
+        ("joints: [j1, [j2]]", "found a list in the list 'joints'; expected values"),
     ],
 )
 def test_only_values_are_in_a_list(tmp_path: Path, text: str, message: str) -> None:

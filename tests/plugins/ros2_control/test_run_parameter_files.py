@@ -127,7 +127,7 @@ def test_a_wrong_value_is_reported_as_written_and_the_file_counts_as_read(tmp_pa
         simkit.load("empty", spawn=["tiago:0,0,0"], params_files=[path])
     errors = [d for d in caught.value.diagnostics if d.severity != "note"]
     assert [d.code for d in errors] == ["SK-PARAM-002"]
-    assert "found update_rate: fast, allowed is a number" in errors[0].message
+    assert "found update_rate: fast; expected a number" in errors[0].message
 
 
 def test_missing_and_broken_files_stop_the_load_all_in_one_pass(tmp_path: Path) -> None:

@@ -141,5 +141,5 @@ def test_huge_numbers_change_nothing() -> None:
     sim.publish("/arm_controller/speed_scaling_input", {"factor": 1e300})
     sim.run(0.1)
     assert (goal.status, goal.reason) == (GoalStatus.REJECTED, "The positions at point #0 are not all finite numbers.")
-    assert "allowed is a number from 0 to 1000" in sim.diagnostics[0].message
+    assert "expected a number from 0 to 1000" in sim.diagnostics[0].message
     assert plugin.position("a") == 0.0

@@ -95,7 +95,7 @@ def test_a_request_must_have_exactly_one_source(caplog: pytest.LogCaptureFixture
     with load() as sim:
         assert not create(sim, name="one")
         assert not create(sim, sdf=model("one"), clone_name="box")
-        assert "found none of sdf, sdf_filename and clone_name, allowed is one" in caplog.text
+        assert "found none of sdf, sdf_filename and clone_name; expected one" in caplog.text
         assert "found sdf and clone_name of" in caplog.text
 
 
@@ -127,7 +127,7 @@ def test_a_model_is_removed_by_its_name_or_its_id(caplog: pytest.LogCaptureFixtu
     ("entity", "why"),
     [
         ({"name": "sun"}, "the light 'sun' cannot be removed"),
-        ({"name": "box::body", "type": 3}, "found an entity of type link, allowed is model or light"),
+        ({"name": "box::body", "type": 3}, "found an entity of type link; expected model or light"),
         ({}, "neither a name nor an id"),
         ({"id": 5}, "no model or light with the id 5"),
     ],
@@ -160,7 +160,7 @@ def test_a_rotation_is_normalised_and_zeros_are_the_identity() -> None:
 def test_nan_and_infinite_numbers_are_refused(caplog: pytest.LogCaptureFixture) -> None:
     with load() as sim:
         assert not ask(sim, "set_pose", entity={"name": "box"}, pose={"position": {"x": math.nan}}).success
-        assert "found pose.position.x nan, allowed is a finite number" in caplog.text
+        assert "found pose.position.x nan; expected a finite number" in caplog.text
         assert sim.model("box").pose.position == pytest.approx((0, 0, 0.5))
 
 
@@ -173,7 +173,7 @@ def test_several_poses_are_set_or_none() -> None:
         assert "did you mean 'arm'?" in response.status_message
         assert sim.model("box").pose.position[2] == 4
         response = ask(sim, "set_pose_vector", entities=entities, poses=poses[:1])
-        assert response.status_message == "found 2 entities and 1 poses, allowed are as many"
+        assert response.status_message == "found 2 entities and 1 poses; expected as many"
 
 
 def test_every_service_except_control_has_a_blocking_variant() -> None:
@@ -372,8 +372,8 @@ def test_an_entity_is_moved_to_a_geographic_location() -> None:
 @pytest.mark.parametrize(
     ("fields", "why"),
     [
-        ({"latitude_deg": 91.0}, "found latitude_deg 91, allowed is a number from -90 to 90"),
-        ({"surface_model": 7}, "found surface_model 7, allowed is 0 (EARTH_WGS84) or 1 (MOON_SCS)"),
+        ({"latitude_deg": 91.0}, "found latitude_deg 91; expected a number from -90 to 90"),
+        ({"surface_model": 7}, "found surface_model 7; expected 0 (EARTH_WGS84) or 1 (MOON_SCS)"),
         ({"entity": {"name": "box"}}, "the world has no <spherical_coordinates>"),
     ],
 )

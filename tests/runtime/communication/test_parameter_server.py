@@ -69,7 +69,7 @@ def test_a_value_that_is_not_allowed_changes_nothing_and_says_what_is(
     sim: Any, name: str, value: Any, allowed: str
 ) -> None:
     before = sim.communication.parameters["/Tuner"][name].value
-    with pytest.raises(ParameterError, match=f"allowed is {allowed}"):
+    with pytest.raises(ParameterError, match=f"expected {allowed}"):
         sim.set_parameter("/Tuner", name, value)
     assert sim.communication.parameters["/Tuner"][name].value == before
 
@@ -178,7 +178,7 @@ def test_odd_values_are_taken_as_they_are_or_refused(default: Any, given: Any, t
 
     with simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=[One()]) as sim:
         if taken is None:
-            with pytest.raises(ParameterError, match="One value: found .*, allowed is"):
+            with pytest.raises(ParameterError, match="One value: found .*; expected"):
                 sim.set_parameter("/One", "value", given)
         else:
             sim.set_parameter("/One", "value", given)

@@ -295,7 +295,7 @@ def test_the_boxes_are_drawn_in_green_into_a_image_of_their_own(kind: str) -> No
 
 
 def test_an_unknown_type_is_an_error_with_the_known_ones() -> None:
-    with pytest.raises(LoadError, match=r"SK-PARAM-002.*allowed is one of 2d, visible_2d.*full_2d.*3d"):
+    with pytest.raises(LoadError, match=r"SK-PARAM-002.*expected one of 2d, visible_2d.*full_2d.*3d"):
         load("boundingbox", "", "<box_type>4d</box_type>")
 
 

@@ -231,7 +231,7 @@ def test_an_older_file_has_the_type_in_the_sensor_itself() -> None:
 
 
 def test_an_unknown_type_is_an_error_that_lists_the_known_ones() -> None:
-    with pytest.raises(LoadError, match=r"SK-PARAM-002.*allowed is one of semantic, instance, panoptic"):
+    with pytest.raises(LoadError, match=r"SK-PARAM-002.*expected one of semantic, instance, panoptic"):
         load("segmentation", "", "<segmentation_type>semantik</segmentation_type>")
 
 

@@ -90,7 +90,7 @@ class _TextReader:
 
     def expect_end(self) -> None:
         if self._peek():
-            raise MessageError(f"found {_shorten(self._peek())} after the value, allowed is one value")
+            raise MessageError(f"found {_shorten(self._peek())} after the value; expected one value")
 
     def read_fields(self, message: Message, end: str) -> None:
         """Read fields up to the token `end`."""
@@ -103,7 +103,7 @@ class _TextReader:
             has_colon = self._skip(":")
             is_repeated, item_kind = kind.endswith("[]"), kind.removesuffix("[]")
             if not has_colon and item_kind in PLAIN_DEFAULTS:
-                raise MessageError(f"found {name!r} without a colon, allowed is {name}: value")
+                raise MessageError(f"found {name!r} without a colon; expected {name}: value")
             for value in self.read_values(item_kind, is_repeated=is_repeated):
                 _set_field(message, name, value, is_repeated=is_repeated)
             self._skip(",", ";")
@@ -117,14 +117,14 @@ class _TextReader:
         while not self._skip("]"):
             values.append(self._read_value(kind))
             if not self._skip(",") and self._peek() != "]":
-                raise MessageError(f"found {_shorten(self._peek())} in a list, allowed is a comma or ]")
+                raise MessageError(f"found {_shorten(self._peek())} in a list; expected a comma or ]")
         return values
 
     def _read_value(self, kind: str) -> object:
         token = self._next()
         if kind not in PLAIN_DEFAULTS:
             if token not in _CLOSES:
-                raise MessageError(f"found {_shorten(token)}, allowed is {{ and the fields of a gz.msgs.{kind}")
+                raise MessageError(f"found {_shorten(token)}; expected {{ and the fields of a gz.msgs.{kind}")
             inner = MESSAGE_CLASSES[kind]()
             self.read_fields(inner, _CLOSES[token])
             self._next()
@@ -167,7 +167,7 @@ def _number_of_word(kind: type[Message], word: str) -> int:
     if not isinstance(number, int):
         known = [name for name in vars(kind) if name.isupper() and isinstance(getattr(kind, name), int)]
         allowed = " or ".join(("a whole number", *known))
-        raise MessageError(f"found {_shorten(word)}, allowed is {allowed}")
+        raise MessageError(f"found {_shorten(word)}; expected {allowed}")
     return number
 
 
@@ -175,12 +175,12 @@ def _parse_plain(kind: str, token: str) -> object:
     if kind == "b":
         if token in _TRUE or token in _FALSE:
             return token in _TRUE
-        raise MessageError(f"found {_shorten(token)}, allowed is true or false")
+        raise MessageError(f"found {_shorten(token)}; expected true or false")
     number = _number(token)
     if kind == "i" and number is None and re.fullmatch(r"[A-Za-z_]\w*", token):
         return _EnumWord(token)
     if number is None or (kind == "i" and number != number // 1):
-        raise MessageError(f"found {_shorten(token)}, allowed is a {'whole ' if kind == 'i' else ''}number")
+        raise MessageError(f"found {_shorten(token)}; expected a {'whole ' if kind == 'i' else ''}number")
     return int(number) if kind == "i" else float(number)
 
 
@@ -204,7 +204,7 @@ def _number(token: str) -> float | int | None:
 
 def _unquote(token: str) -> str:
     if token[:1] not in ('"', "'"):
-        raise MessageError(f"found {_shorten(token)}, allowed is a text in quotes")
+        raise MessageError(f"found {_shorten(token)}; expected a text in quotes")
 
     def unescape(found: re.Match[str]) -> str:
         code = found[1]

@@ -19,7 +19,7 @@ from simkit.plugins.gz_python.sim.model import Model as _Model
 from simkit.plugins.gz_python.sim.sensors_lights_actors import Sensor as _Sensor
 from simkit.plugins.gz_python.sim.world import World as _World
 from simkit.plugins.gz_python.sim.world import world_pose
-from simkit.plugins.shared_by_copies import SharedByCopies
+from simkit.plugins.not_deep_copied import SharedByCopies
 
 
 class ComponentState(IntEnum):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.plugins.gz_python.sim.entity_table import EntityRecord, EntityTable, Handle
 from simkit.plugins.gz_python.sim.physics_commands import PhysicsCommands
-from simkit.plugins.shared_by_copies import SharedByCopies
+from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation, WorldStructure

@@ -6,7 +6,7 @@ from datetime import timedelta
 from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit.plugins.gz_python.sim.entity_component_manager import manager_of
-from simkit.plugins.shared_by_copies import SharedByCopies
+from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation, WorldStructure

@@ -205,7 +205,7 @@ class _LoopController(Controller):
             self._target = values
             return
         found = f"a command of {len(values)} numbers" if len(values) != len(self._joints) else f"{values.tolist()}"
-        message = f"controller {self.name!r}: found {found}, allowed are {len(self._joints)} finite numbers"
+        message = f"controller {self.name!r}: found {found}; expected {len(self._joints)} finite numbers"
         self.sim.engine.reports.warning("SK-CONTROL-016", f"{message}; the command is ignored", self.params.where)
 
     def update(self, now_ns: int, period: float) -> None:

@@ -205,7 +205,7 @@ class JointTrajectoryController(Controller):
         if 0.0 <= message.factor <= _FASTEST:
             self._scaling = float(message.factor)
         else:
-            what = f"the speed scaling {message.factor:g} is ignored; allowed is a number from 0 to {_FASTEST:g}"
+            what = f"the speed scaling {message.factor:g} is ignored; expected a number from 0 to {_FASTEST:g}"
             self._warnings.warn("SK-CONTROL-020", what, what)
 
     def _report_unfollowable(self, message: JointTrajectory) -> None:

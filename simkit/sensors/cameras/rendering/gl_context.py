@@ -162,7 +162,7 @@ def _candidates() -> tuple[str, ...]:
     if requested in _OFF:
         raise RenderError(f"rendering is switched off by MUJOCO_GL={requested}; run `unset MUJOCO_GL`")
     if requested not in (*_LIBRARIES, *_ON):
-        raise RenderError(f"MUJOCO_GL={requested}: unknown renderer, allowed is one of {', '.join(_LIBRARIES)}")
+        raise RenderError(f"MUJOCO_GL={requested}: unknown renderer; expected one of {', '.join(_LIBRARIES)}")
     if requested in _LIBRARIES:
         return (_LIBRARIES[requested],)
     if sys.platform == "darwin":

@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit.compiler.lights import MOST_LIGHTS
 from simkit.pose import Vector
-from simkit.sensors.temporary_values import temporary_values
+from simkit.sensors.values_with_expiry import temporary_values
 
 _AHEAD: Final = 3.0  # [m] typical distance of the objects that a camera sees
 _REACH: Final = 15.0  # [m] radius of shadows around a camera in a larger scene

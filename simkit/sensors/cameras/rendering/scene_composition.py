@@ -17,7 +17,7 @@ from simkit.sensors.cameras.rendering.lights_and_shadows import convert_point_li
 from simkit.sensors.cameras.rendering.transparency import DRAWN_HERE
 from simkit.sensors.cameras.rendering.view import Shot, View
 from simkit.sensors.cameras.rendering.view_culling import Bounds, bounds_of
-from simkit.sensors.temporary_values import temporary_values
+from simkit.sensors.values_with_expiry import temporary_values
 
 SOLID: Final = 0.995
 """Opacity below which the engine draws a shape as transparent."""

@@ -273,7 +273,7 @@ def test_the_quality_is_said_once_with_the_renderer_and_what_it_leaves_out(caplo
 
 
 def test_a_quality_that_there_is_not_is_refused() -> None:
-    with pytest.raises(InputError, match="allowed is one of fast, gazebo, high"):
+    with pytest.raises(InputError, match="expected one of fast, gazebo, high"):
         simkit.load(world(""), overrides=["scene.quality=best"])
     with pytest.raises(simkit.LoadError, match="fast, gazebo, high"):
         simkit.load(world("", top=scene("<quality>best</quality>")))
