@@ -13,7 +13,7 @@ import pytest
 from mesh_makers import L_SHAPE, QUAD, binary_stl, picture
 
 import simkit
-from simkit.compiler.meshes import collision_bodies as mesh_collision
+from simkit.compiler.meshes import convex_decomposition as mesh_collision
 from simkit.compiler.meshes import mesh_cache, mesh_reader
 from simkit.compiler.meshes.convex_decomposition import convex_bodies
 from simkit.compiler.meshes.mesh_reader import convert_file, load_file

@@ -11,7 +11,7 @@ import pytest
 import trimesh
 from mesh_makers import L_SHAPE, TETRAHEDRON, TETRAHEDRON_FACES
 
-from simkit.compiler.meshes import collision_bodies as mesh_collision
+from simkit.compiler.meshes import convex_decomposition as mesh_collision
 from simkit.compiler.meshes import collision_bodies as mesh_decompose
 from simkit.compiler.meshes.convex_decomposition import convex_bodies
 from simkit.compiler.meshes.convex_pieces import filled_ratio, mesh_volume

@@ -119,7 +119,7 @@ def test_times_are_seconds_and_vectors_have_a_length() -> None:
         ("/said.data", "SK-BAG-010", "a text"),
         ("/scan.ranges", "SK-BAG-010", "ranges[0:10]"),
         ("/scan.ranges[2:]", "SK-BAG-010", "has no end"),
-        ("/scan.ranges[0:1000]", "SK-BAG-010", "expected 64"),
+        ("/scan.ranges[0:1000]", "SK-BAG-010", "the limit is 64"),
         ("/scan.ranges[front]", "SK-CLI-033", "have no names"),
         ("/tf.transforms[base]", "SK-BAG-010", "its fields: "),
         ("", "SK-CLI-030", "no topic '/'"),
