@@ -154,4 +154,4 @@ def test_a_goal_may_be_waited_for_for_ever(yard: Any, simkit_line: Any) -> None:
 def test_a_message_that_is_too_large_is_reported(yard: Any, simkit_line: Any) -> None:
     values = '{data: "' + "x" * (17 << 20) + '"}'
     told = simkit_line("topic", "pub", "--once", "-w", "0", "/big", "std_msgs/msg/String", values)
-    assert told.exit_code == 2 and "is too large to send; expected 16777216" in told.stderr
+    assert told.exit_code == 2 and "is too large to send; the limit is 16777216" in told.stderr

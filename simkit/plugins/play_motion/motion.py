@@ -141,7 +141,7 @@ def limit_violations(motion: Motion, joints: Mapping[str, Joint]) -> list[str]:
         if over[k] > _ROUNDING:
             unit = "m" if joints[name].type == "prismatic" else "rad"
             allowed = f"expected {axis.lower:g} to {axis.upper:g}"
-            found.append(f"{name} would be at {values[k]:g} {unit} at {motion.times[k]:g} s, {allowed}")
+            found.append(f"{name} would be at {values[k]:g} {unit} at {motion.times[k]:g} s; {allowed}")
     return found
 
 

@@ -12,7 +12,6 @@ import trimesh
 from mesh_makers import L_SHAPE, TETRAHEDRON, TETRAHEDRON_FACES
 
 from simkit.compiler.meshes import convex_decomposition as mesh_collision
-from simkit.compiler.meshes import collision_bodies as mesh_decompose
 from simkit.compiler.meshes.convex_decomposition import convex_bodies
 from simkit.compiler.meshes.convex_pieces import filled_ratio, mesh_volume
 from simkit.compiler.shape_geometry import polyline_triangles
@@ -122,7 +121,7 @@ def test_pieces_are_not_more_than_asked_for():
 
 
 def test_without_the_extra_the_hull_collides_and_the_extra_is_named(make, compiled, corner, monkeypatch):
-    monkeypatch.setattr(mesh_decompose, "is_available", lambda: False)
+    monkeypatch.setattr(mesh_collision, "is_available", lambda: False)
     monkeypatch.setattr(mesh_collision, "is_available", lambda: False)
     _, said = resting_height(make, compiled, Mesh(corner, "corner.obj", optimization="convex_decomposition"))
     assert [d.code for d in said if "MESH" in d.code] == ["SK-MESH-014", "SK-MESH-004"]
@@ -132,8 +131,8 @@ def test_without_the_extra_the_hull_collides_and_the_extra_is_named(make, compil
 def test_a_decomposition_that_breaks_down_is_a_warning(make, compiled, corner, monkeypatch, tmp_path):
     script = tmp_path / "broken.py"
     script.write_text("import os; os.abort()")
-    monkeypatch.setattr(mesh_decompose, "_SCRIPT", Path(script))
-    monkeypatch.setattr(mesh_decompose, "is_available", lambda: True)
+    monkeypatch.setattr(mesh_collision, "_SCRIPT", Path(script))
+    monkeypatch.setattr(mesh_collision, "is_available", lambda: True)
     _, said = resting_height(make, compiled, Mesh(corner, "corner.obj", optimization="convex_decomposition"))
     assert "SK-MESH-014" in [d.code for d in said]
 

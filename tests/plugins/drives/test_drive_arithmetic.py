@@ -180,7 +180,7 @@ def test_specific_limits_override_general_ones() -> None:
 def test_limits_with_the_wrong_sign_are_an_error() -> None:
     params = Params.from_dict({"max_acceleration": -1.0, "min_angular_velocity": 1.0, "max_jerk": 0.0})
     speed_limits(SpeedLimitOptions(params))
-    assert [(d.code, d.message.split(",")[0]) for d in params.diagnostics] == [
+    assert [(d.code, d.message.split(";")[0]) for d in params.diagnostics] == [
         ("SK-PARAM-002", "found <min_angular_velocity>1.0</min_angular_velocity>"),
         ("SK-PARAM-002", "found <max_acceleration>-1.0</max_acceleration>"),
     ]
