@@ -34,11 +34,11 @@ def test_a_command_of_the_page_runs(line: str, tmp_path: Path) -> None:
     words = shlex.split(line)[1:]
     with Terminal(sys.executable, "-m", "simkit", *words, cwd=tmp_path) as terminal:
         if "--teleop" in words:
-            terminal.wait_for(r"asked 0\.00 m/s, 0\.00 rad/s")
+            terminal.wait_for(r"requested 0\.00 m/s, 0\.00 rad/s")
             terminal.press("wa")
             terminal.wait_for(r"0\.0[15] m/s, 0\.10 rad/s")
         else:
-            terminal.wait_for("paused at t=0.2 s: space goes on, n does one step, Ctrl-C ends")
+            terminal.wait_for("paused at t=0.2 s: space resumes, n advances one step, Ctrl-C ends")
         terminal.press("\x03")
         assert terminal.wait() == 130
     assert ("--record" not in words) or (tmp_path / "drive.mcap").stat().st_size > 0
