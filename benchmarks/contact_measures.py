@@ -282,7 +282,7 @@ class Measure:
 MEASURES = {
     "contact": Measure("steps in contact", "%", 99.0, _contact, more=True, exact=100.0),
     "hop": Measure("hop", "mm", 0.05, _hop),
-    "distance": Measure("way, beyond v·dt/2", "%", 1.0, _distance),
+    "distance": Measure("distance, beyond v·dt/2", "%", 1.0, _distance),
     "angle": Measure("angle turned, beyond ω·dt/2", "%", 1.0, _angle),
     "force": Measure("friction over μN", "%", 1.0, _force),
     "direction": Measure("direction of friction", "°", 1.0, _direction),

@@ -164,7 +164,7 @@ def _topics_without_images(sim: Simulation) -> set[str]:
 
 
 def compare_stepping(sim: Simulation, rounds: int) -> Figure:
-    """Compare steps without due tasks with `mj_step` on a copy of the same model and state."""
+    """Compare steps in which no plugin or sensor is due with `mj_step` on a copy of the same model and state."""
     sim.step(100)
     sim.engine.scheduler.clear()
     sim.engine.scheduler.rewind(sim.tick)

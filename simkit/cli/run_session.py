@@ -234,7 +234,7 @@ class Session:
     def _keyboard(self) -> Keyboard | WindowsKeyboard | None:
         """Open the terminal's keyboard if teleop is on or the output goes to the terminal.
 
-        A pager that shows the output reads the keys itself.
+        If the output goes to a pager, the pager reads the keys. simkit then reads them only for teleop.
         """
         from simkit.cli.terminal.keyboard import open_keyboard
 

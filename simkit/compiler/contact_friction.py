@@ -183,17 +183,23 @@ def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagn
         return bounce_solref(surface.restitution, timestep)
     if surface.kp is None or surface.kp >= STIFF_KP or surface.kp <= 0.0:
         if surface.kp is not None and surface.kp != 1e12:
-            text = f"contact stiffness {surface.kp:g} N/m is simulated as rigid: {world * 1e3:g} ms, critically damped"
+            text = (
+                f"contact stiffness {surface.kp:g} N/m is simulated as rigid: "
+                f"time constant {world * 1e3:g} ms, critical damping"
+            )
             diagnostics.note("SK-PHYS-004", text, surface.where)
         return rigid_time_constant(timestep), 1.0
     if mass <= 0.0:
-        text = f"contact stiffness {surface.kp:g} N/m of a static surface is ignored; that of the other surface counts"
+        text = (
+            f"contact stiffness {surface.kp:g} N/m of a static surface is ignored; "
+            "the stiffness of the other surface is used"
+        )
         diagnostics.note("SK-PHYS-004", text, surface.where)
         return rigid_time_constant(timestep), 1.0
     omega = math.sqrt(surface.kp / mass)
     damping = max(1.0, (surface.kd or 0.0) / (2.0 * mass * omega))
     constant = max(1.0 / (damping * omega), world)
-    text = f"contact stiffness {surface.kp:g} N/m carries {mass:g} kg with a time constant of {constant * 1e3:.3g} ms"
+    text = f"contact stiffness {surface.kp:g} N/m under {mass:g} kg has a time constant of {constant * 1e3:.3g} ms"
     diagnostics.note("SK-PHYS-004", text, surface.where)
     return constant, damping
 

@@ -261,7 +261,7 @@ def _grid_triangles(rows: int, columns: int) -> Ints:
 
 
 def _textured_ellipsoid(radii: Floats, length: float) -> tuple[Floats, Ints, Floats]:
-    """Return an ellipsoid whose halves are `length` apart; the image covers it once around and from pole to pole."""
+    """Return an ellipsoid whose halves are `length` apart; the image is wrapped around it once, from pole to pole."""
     turn, circle = _unit_circle()
     rise = np.linspace(-np.pi / 2, np.pi / 2, _SEGMENTS_UP + 1)
     height = radii[2] * np.sin(rise) + np.sign(rise) * length / 2
@@ -283,7 +283,7 @@ def _textured_ellipsoid(radii: Floats, length: float) -> tuple[Floats, Ints, Flo
 
 
 def _textured_cylinder(radius: float, half: float) -> tuple[Floats, Ints, Floats]:
-    """Return a cylinder with the image once around the side, and once on each end."""
+    """Return a cylinder; the image is wrapped around the side once, and covers each end once."""
     turn, ring = _unit_circle()
     sides = [np.column_stack([radius * ring, np.full(len(turn), z)]) for z in (-half, half)]
     side_uv = [np.column_stack([turn / (2.0 * np.pi), np.full(len(turn), v)]) for v in (0.0, 1.0)]

@@ -255,7 +255,10 @@ class Plugin(abc.ABC):
         return declare_at(self, parameter, self.params, element or name)
 
     def random(self, channel: str, width: int = 1) -> RandomStream:
-        """Return a random stream of this plugin: `.normal(index)` has `width` numbers, set by seed, name and index."""
+        """Return a random stream of this plugin.
+
+        `.normal(index)` returns `width` numbers, which depend only on the seed, the plugin, `channel` and `index`.
+        """
         owner = f"{self.scoped}::{self.name}" if self.scoped else self.name
         return self.sim.engine.streams.stream(owner, channel, width)
 

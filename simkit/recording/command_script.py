@@ -64,7 +64,7 @@ class Command:
 
 
 class Commands:
-    """Sender of commands at the first tick at or after their time.
+    """Scheduled commands; each one is sent at the first tick at or after its time.
 
     Args:
         sim: simulation that receives the commands.

@@ -96,13 +96,13 @@ class WorldContents:
         return name in self.handles.tables["sensor"]
 
     def scene_link(self, scoped: str) -> SceneLink:
-        """Return a link as described by the file."""
+        """Return the description of a link from the file of the world or model."""
         return self.handles.scene_link(scoped)
 
     # ------------------------------------------------------------------ spawn and remove
 
     def spawn_all(self, models: Iterable[SpawnRequest]) -> list[Model]:
-        """Add several models at once, which takes little longer than one. A failure adds none of them.
+        """Add several models in one operation, which takes little longer than adding one. If one fails, none is added.
 
         Args:
             models: source, name and pose of each model, as for `Simulation.spawn`.

@@ -93,7 +93,7 @@ class PauseControl:
         self._set(tick, is_stepping=False)
 
     def catch_up(self) -> None:
-        """Run to the pause tick, outside a step, in a world that no other code keeps running."""
+        """Run to the pause tick if no step is active and no other code keeps the world running."""
         engine = self._engine
         if self.until is not None and not self.is_served and not engine.is_stepping and self.until > engine.tick:
             self._advance(self.until)
@@ -115,7 +115,7 @@ class PauseControl:
     def advance(self, count: int) -> None:
         """Advance by up to `count` steps, limited by the pause tick; `simkit run` calls it repeatedly.
 
-        The call ends when a hook restores another time, which may be the time at which the call began.
+        The call also ends when a hook restores a state, even if that state has the time at which the call began.
         """
         engine = self._engine
         end, commands = engine.tick + count, self._commands

@@ -109,7 +109,10 @@ def _describe_target(sim: Simulation, topic: str, owner: object) -> TeleopTarget
 
 
 def _speed_limits(model: Model | None, topic: str, owner: object) -> tuple[Bounds, Bounds]:
-    """Return the speed limits of the drive plugin; if it has none, those of a known robot."""
+    """Return the linear and the angular speed limits for keyboard commands.
+
+    They are the limits of the drive plugin. If it has none, they are those of a TurtleBot3; other robots have no limit.
+    """
     speed_bounds = getattr(owner, "speed_bounds", None)
     found: tuple[Bounds, Bounds] | None = None if speed_bounds is None else speed_bounds(topic)
     if found is not None and any(math.isfinite(bound) for bounds in found for bound in bounds):

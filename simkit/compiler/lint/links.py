@@ -75,9 +75,9 @@ def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[Link
     if gyration > LARGEST_GYRATION_RATIO * farthest:
         found.warning(
             "SK-LINT-008",
-            f"link {foot.scoped!r}: its inertia is that of {mass:.4g} kg at a radius of {gyration:.3g} m, but the link "
-            f"reaches only {farthest:.3g} m from its centre of mass: {(gyration / farthest) ** 2:.0f} times too "
-            "much",
+            f"link {foot.scoped!r}: the inertia is {(gyration / farthest) ** 2:.0f} times too large; "
+            f"it is that of {mass:.4g} kg at a radius of {gyration:.3g} m, but the link reaches only {farthest:.3g} m "
+            "from its centre of mass",
             foot.scene.where,
             "check the units: a part in mm and g gives an inertia in g·mm², 1e-9 kg·m²",
         )

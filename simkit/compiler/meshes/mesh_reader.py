@@ -140,7 +140,7 @@ def _read(suffix: str, content: bytes, companions: Companions) -> list[MeshPart]
         return _with_trimesh(suffix, content)
     near = closest(suffix, SUFFIXES)
     hint = f"; did you mean {near}?" if near else ""
-    raise MeshFileError(f"is a {suffix or 'nameless'} file; supported are {', '.join(SUFFIXES)}{hint}")
+    raise MeshFileError(f"is a {suffix or 'nameless'} file (supported: {', '.join(SUFFIXES)}){hint}")
 
 
 def _with_trimesh(suffix: str, content: bytes) -> list[MeshPart]:

@@ -59,7 +59,7 @@ def _asset_problem(data: bytes, suffix: str, kind: str) -> str:
         return "the file is empty"
     if suffix not in _KNOWN_SUFFIXES.get(kind, ()):
         known = ", ".join(sorted(_KNOWN_SUFFIXES.get(kind, ())))
-        return f"MuJoCo cannot read a {suffix or 'file without suffix'} as a {kind}; supported are {known}"
+        return f"MuJoCo cannot read a {suffix or 'file without suffix'} as a {kind} (supported: {known})"
     if data.startswith(b"\x89PNG"):
         return _png_problem(data)
     if suffix == ".stl":

@@ -46,7 +46,7 @@ def check_bounds(root: Params) -> None:
 
 
 def _elements(root: Params) -> Iterator[tuple[Params, int]]:
-    """Yield every element with the number of copies that replication makes of it."""
+    """Yield every element with the number of its copies by `<replicate>`, `<composite>` and `<flexcomp>`."""
     stack = [(root, 1)]
     while stack:
         element, times = stack.pop()

@@ -40,7 +40,7 @@ def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str)
     if children and children[0].name == "image":
         block.child("image")
         children[0].mark_all_read()
-        children[0].warning("SK-SDF-012", f"{what}: <image> as a shape is not simulated")
+        children[0].warning("SK-SDF-012", f"{what}: the shape <image> is not simulated")
     return shapes.Empty()
 
 

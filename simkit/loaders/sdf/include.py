@@ -90,7 +90,10 @@ def _with_changes(include: Params, element: Params, file: SdfFile, workspace: Wo
 
 
 def _included_name(include: Params, file: SdfFile, workspace: Workspace) -> str:
-    """Return the name of an include's model, without diagnostics, because the later reading reports all problems."""
+    """Return the name of an include's model.
+
+    Problems are not reported here, because simkit reads the include again later and reports them then.
+    """
     name = include.text("name", "")
     uri = include.text("uri", "")
     if name or not uri:

@@ -127,4 +127,6 @@ def _report_missing_texture(what: str, element: Params, workspace: Workspace) ->
     """Record one warning for each missing texture, even if several visuals use it."""
     if what not in workspace.reported:
         workspace.reported.add(what)
-        workspace.diagnostics.warning("SK-URI-006", f"{what} is not found; drawn without it", element.where)
+        workspace.diagnostics.warning(
+            "SK-URI-006", f"{what} is not found; the visual is drawn without the texture", element.where
+        )

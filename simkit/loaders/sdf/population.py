@@ -132,7 +132,7 @@ def _grid(population: Params, rule: Params, name: str) -> Points | None:
         return None
     step = np.array(rule.vector3("step", (1.0, 1.0, 0.0)))
     if np.abs(step).max() > _WIDEST:
-        rule.error(_CODE, f"population {name!r} has steps of more than {_WIDEST:g} m")
+        rule.error(_CODE, f"population {name!r}: a component of <step> is larger than {_WIDEST:g} m")
         return None
     column, row = np.meshgrid(np.arange(cols) - (cols - 1) / 2, np.arange(rows) - (rows - 1) / 2)
     return np.column_stack((column.ravel() * step[0], row.ravel() * step[1], np.zeros(rows * cols)))

@@ -74,7 +74,7 @@ class IncludedRobot(IncludedModel):
 def _frames_document(robot: SdfFile, workspace: Workspace) -> Params:
     """Return an SDF document with the robot's links and joints as frames, for poses and joints of the world.
 
-    Mistakes are not reported here, because the later reading of the robot reports them.
+    Problems are not reported here, because simkit reads the robot again later and reports them then.
     """
     draft = declare_robot(robot, workspace.quiet(), workspace.resolver)
     place_links(draft)

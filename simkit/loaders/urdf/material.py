@@ -92,7 +92,8 @@ class Materials:
         if texture is not None:
             uri = text_attribute(texture, "filename")
             if not uri:
-                texture.warning("SK-URI-006", "<texture> names no file (filename=); drawn without it")
+                message = "<texture> names no file (filename=); the visual is drawn without the texture"
+                texture.warning("SK-URI-006", message)
             path = self.draft.assets.texture(uri, texture) if uri else None
         if rgba is None and path is None:
             return None

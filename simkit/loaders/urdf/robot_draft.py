@@ -51,7 +51,7 @@ class RobotFiles:
             path = self.resolver.resolve(uri, place.where, found, self.folder)
             self._found[key] = path if path is None else path.absolute()
             for problem in found:
-                message = f"texture: {problem.message}; drawn without it"
+                message = f"texture: {problem.message}; the visual is drawn without the texture"
                 self.diagnostics.warning("SK-URI-006", message, place.where, problem.hint)
         return self._found[key]
 

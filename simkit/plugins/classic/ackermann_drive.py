@@ -118,7 +118,7 @@ class GazeboRosAckermannDrive(CommandedDrive):
         bare = [link.name for link in found if not link.collisions]
         if bare:
             names = ", ".join(map(repr, bare))
-            params.error("SK-PLUGIN-093", f"the drive needs the size of its wheels, but {names} has no collision")
+            params.error("SK-PLUGIN-093", f"the drive cannot measure its wheels: no collision in {names}")
             return
         shape = found[3].collisions[0].geometry
         if not isinstance(shape, (Cylinder, Sphere)):

@@ -303,7 +303,7 @@ class GazeboRosDiffDrive(CommandedDrive):
         return self._reckoning.pose, rolling_twist(self._wheels, pair.radius, pair.separation)
 
     def _start_erring(self) -> tuple[NoisyOdometry | None, EquivalentWheelAngles | None]:
-        """Return the noisy odometry, and the equivalent wheels if its source is the ground truth."""
+        """Return the noisy odometry, and for ground truth also the wheel angles that give the true motion."""
         options, followed = self.options, None
         if options.noise is None:
             return None, None

@@ -50,7 +50,8 @@ class GazeboRosFtSensor(ModelPlugin):
     momentum. `<gaussian_noise>` is the standard deviation on each of the six numbers [N, N·m].
 
     Attributes:
-        reads_contacts: keeps resting bodies awake, because a sleeping body would have no weight.
+        reads_contacts: keeps resting bodies awake, because a sleeping body has no contact forces and its weight would
+            not be measured.
     """
 
     endpoints = (publishes("wrench", TYPE, named_by=("topicName",)),)

@@ -132,9 +132,9 @@ class GazeboRosImuSensorOptions(Options):
 class GazeboRosImuSensor(SensorPlugin):
     """Publishes its IMU on `~/out` (after `<remapping>`), in the link's frame or `<frame_name>`.
 
-    The orientation is relative to the world (REP 145), or with `<initial_orientation_as_reference>` true to the
-    attitude at the start. ROS 1 has `<gaussianNoise>` on all published numbers, `<rpyOffset>`, which turns the
-    orientation, and `<updateRateHZ>`, which may lower the sensor's rate.
+    The orientation is relative to the world (REP 145). If `<initial_orientation_as_reference>` is true, it is relative
+    to the orientation at the start. In ROS 1, `<gaussianNoise>` adds noise to all published numbers, `<rpyOffset>`
+    turns the orientation, and `<updateRateHZ>` may lower the sensor's rate.
     """
 
     endpoints = (publishes("~/out", "sensor_msgs/msg/Imu", named_by=("topicName",)),)

@@ -204,7 +204,10 @@ def _set_joints(sim: Simulation, request: msgs.SetModelConfiguration_Request) ->
 
 
 def property_services(sim: Simulation) -> Table:
-    """Return the services of gazebo_ros_properties, except `set_link_properties`: masses and inertias are compiled."""
+    """Return the services of gazebo_ros_properties.
+
+    `set_link_properties` is missing, because masses and inertias cannot be changed in a compiled world.
+    """
     return {
         "get_world_properties": ("gazebo_msgs/srv/GetWorldProperties", partial(_world_properties, sim)),
         "get_model_properties": ("gazebo_msgs/srv/GetModelProperties", partial(properties.model_properties, sim)),

@@ -76,14 +76,16 @@ def _attach_plugin(plugin: Plugin, name: str, world: SceneWorld, diagnostics: Di
     listed = ", ".join(map(repr, list(candidates)[:12])) or "none"
     if name:
         if name not in candidates:
-            message = f"plugin {shown!r} cannot be attached to {name!r}: it is not a {allowed}; there is {listed}"
+            message = (
+                f"plugin {shown!r} cannot be attached to {name!r}, which is not a {allowed}; possible names: {listed}"
+            )
             diagnostics.error("SK-PLUGIN-021", message, hint=did_you_mean(name, candidates))
         return candidates.get(name)
     moving = [a for a in candidates.values() if not getattr(a.scene, "static", False)]
     fitting = [a for a in moving if not isinstance(a.scene, SceneModel) or "::" not in a.scoped]
     if len(fitting) == 1:
         return fitting[0]
-    message = f"plugin {shown!r} belongs on a {allowed}, and there is not exactly one candidate: {listed}"
+    message = f"plugin {shown!r} needs the name of one {allowed}; possible names: {listed}"
     diagnostics.error("SK-PLUGIN-021", message, hint=f'name the entity: plugins=[("name", {shown}(...))]')
     return None
 

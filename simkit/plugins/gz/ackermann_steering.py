@@ -185,7 +185,7 @@ class AckermannSteering(TwistDrive):
     def _on_actuators(self, message: Actuators) -> None:
         if self._number >= len(message.position):
             count = len(message.position)
-            self.log.warning("ignored a message with %d positions: it has no number %d", count, self._number)
+            self.log.warning("ignored a message with %d positions: it has no index %d", count, self._number)
         else:
             self._steer(float(message.position[self._number]))
 

@@ -60,7 +60,13 @@ class Course:
                 yield float(self.times[k] + s * h), self._at(k, float(s), float(h))
 
     def _at(self, k: int, s: float, h: float) -> Vector:
-        """Return the cubic between points k and k + 1, at the fraction s of the interval h."""
+        """Return the value of the cubic polynomial between points k and k + 1.
+
+        Args:
+            k: index of the first point.
+            s: fraction of the interval, 0 to 1.
+            h: length of the interval [s].
+        """
         p0, p1, v0, v1 = self.positions[k], self.positions[k + 1], self.velocities[k] * h, self.velocities[k + 1] * h
         found: Vector = p0 + s * (v0 + s * ((3 * (p1 - p0) - 2 * v0 - v1) + s * (v0 + v1 - 2 * (p1 - p0))))
         return found

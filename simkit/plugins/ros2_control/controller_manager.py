@@ -290,7 +290,7 @@ class ControllerManager(SharedByCopies):
             where = self._declaration_location(name)
             problem = self.load(name)
             if problem:
-                self.reports.warning("SK-CONTROL-013", f"{problem}; it is not loaded", where)
+                self.reports.warning("SK-CONTROL-013", f"{problem}; the controller is not loaded", where)
                 continue
             if self.configure(name):
                 continue  # the diagnostics of its parameters report the problem

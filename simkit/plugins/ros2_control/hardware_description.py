@@ -245,8 +245,8 @@ def _known_interfaces(
         if name in MOTION_INTERFACES or (what == "command" and name.removesuffix("_pid") in MOTION_INTERFACES):
             known.append(name)
             continue
-        message = f"joint {joint!r}: {what} interface {name!r} is not supported, supported are "
-        message += ", ".join(MOTION_INTERFACES)
+        message = f"joint {joint!r}: {what} interface {name!r} is not supported "
+        message += f"(supported: {', '.join(MOTION_INTERFACES)})"
         near = did_you_mean(name, MOTION_INTERFACES)
         found.warning("SK-CONTROL-009", f"{message}; it is ignored", element.where, near)
     return tuple(known)
@@ -356,7 +356,7 @@ def _interfaces_of_ros_1(written: Sequence[str], owner: str, where: Where, found
         if plain in _ROS_1:
             names.append(_ROS_1[plain])
         elif plain != "JointStateInterface":  # it only reads, and every joint has state interfaces
-            message = f"transmission {owner!r}: hardware interface {interface!r} is not supported, supported are "
-            message += ", ".join(_ROS_1)
+            message = f"transmission {owner!r}: hardware interface {interface!r} is not supported "
+            message += f"(supported: {', '.join(_ROS_1)})"
             found.warning("SK-CONTROL-009", f"{message}; it is ignored", where, did_you_mean(plain, _ROS_1))
     return names

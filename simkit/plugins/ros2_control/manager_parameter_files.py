@@ -148,7 +148,10 @@ def _report_in_manager(
 
 
 def _report_in_ros_1(name: str, entry: Entry, declared: Mapping[str, str], found: Diagnostics) -> None:
-    """Check one name in the robot's namespace, which may hold any parameter: it must look like a controller."""
+    """Report an entry in the robot's namespace that has a controller's parameters but no type.
+
+    Other nodes may have parameters in this namespace too, so an entry without a controller's parameters is accepted.
+    """
     below = entry.below or {}
     if name not in declared and any(key in below for key in _CONTROLLER_PARAMETERS):
         _report_no_type(name, entry, found)
@@ -157,8 +160,10 @@ def _report_in_ros_1(name: str, entry: Entry, declared: Mapping[str, str], found
 def _report_no_type(name: str, entry: Entry, found: Diagnostics) -> None:
     kind = (entry.below or {}).get("type")
     where = entry.where if kind is None else kind.where
-    what = "is not defined" if kind is None else f"is {'empty' if kind.form in ('value', 'nothing') else 'no text'}"
-    message = f"the 'type' param of controller {name!r} {what}; it is not loaded"
+    what = (
+        "is not defined" if kind is None else f"is {'empty' if kind.form in ('value', 'nothing') else 'not a string'}"
+    )
+    message = f"the 'type' param of controller {name!r} {what}; the controller is not loaded"
     near = did_you_mean("type", [key for key in entry.below or {} if key != "type"])
     misspelt = near.removeprefix("did you mean ").rstrip("?")
     hint = f"rename {misspelt} to 'type'" if near else f"{name}: {{type: package/Class}}"

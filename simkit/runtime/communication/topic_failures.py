@@ -52,7 +52,7 @@ class TopicFailures:
         self._reports.warning("SK-TOPIC-005", message, hint="subscribe with keep=, or close the subscription after use")
 
     def report_dropped(self, topic: str, depth: int) -> None:
-        """Warn that more messages came for one step than an input accepts."""
+        """Warn that a plugin's input received more messages for one step than its queue can keep."""
         message = f"more than {depth} messages on {topic!r} came for one step: the oldest are dropped from now on"
         hint = "send less often; sim.communication.bus.dropped counts them"
         self._reports.warning("SK-TOPIC-004", message, hint=hint)

@@ -53,7 +53,11 @@ class ContactCorrection:
         self._sequence: AndersonAcceleration | None = None
 
     def guess(self, moves: Floats) -> None:
-        """Set references from a guess of J a, shape (nefc,), before any forces are known."""
+        """Set references from an estimate of J a (Jacobian times acceleration), before any forces are known.
+
+        Args:
+            moves: estimate of J a, shape (nefc,).
+        """
         accelerations, aref, asked = moves.tolist(), self._aref, self._asked
         self._before = before = aref.tolist()
         for row, mus, normal, goal, _, _ in self._contacts:

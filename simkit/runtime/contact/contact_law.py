@@ -48,7 +48,9 @@ QUIET_SPEED: Final = 1e-4
 """Root sum square [m/s, rad/s] of the velocities along all constraints below which nothing slides."""
 
 FAST_SPEED: Final = 0.5
-"""Least speed [m/s] of a body that may hit something within a window; a rolling body touches but does not slide.
+"""Least speed [m/s] of a body that may hit something within a time window of `window_length` steps.
+
+A slower body that rolls touches the ground but does not slide.
 
 Below this speed the engine's own contacts throw a body back with a sixth of its speed, at most three times
 `EXIT_SPEED`.

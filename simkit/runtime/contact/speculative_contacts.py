@@ -32,7 +32,7 @@ SPECULATIVE_FLAG: Final = int(mujoco.mjtEnableBit.mjENBL_SPECULATIVE)
 """Bit in `model.opt.enableflags` for a window with speculative contacts."""
 
 _GROWTH: Final = 2.0
-"""Factor by which speeds may grow within a window."""
+"""Factor by which speeds may grow within a time window of `window_length` steps."""
 
 _MAX_TILTED_TRAVEL: Final = 3.0
 """Travel of both bodies in a step, in half thicknesses; beyond it up to 13 of 100 tilted boxes and capsules pass
@@ -51,7 +51,7 @@ _multiply = np.multiply
 
 
 class FastApproach(NamedTuple):
-    """Two geoms, one of which may pass through the other within the next window.
+    """Two geoms: `geom` may pass through `other` within the next time window of `window_length` steps.
 
     Attributes:
         geom: fast geom.
@@ -150,7 +150,7 @@ class FastBodyDetector:
         return bool(np.add.reduceat(speeds * self._weights, self._starts).max() <= 1.0)
 
     def _meets(self, data: mujoco.MjData) -> bool:
-        """Check whether a fast geom may pass through another within a window."""
+        """Check whether a fast geom may pass through another within a time window of `window_length` steps."""
         model, moving = self.model, self._moving
         scratch = self._positions(data)
         linear, turning = self._velocities(scratch)
@@ -219,7 +219,10 @@ class FastBodyDetector:
         return linear, turning
 
     def _near(self, places: Floats, fast: Ints, speeds: Floats) -> tuple[Ints, Ints]:
-        """Find pairs of a fast geom and a geom that it may reach within a window, even after bounces."""
+        """Find pairs of a fast geom and a geom that it may reach, even after bounces.
+
+        The pairs are those for the next time window of `window_length` steps.
+        """
         model, others = self.model, self._others
         radius = model.geom_rbound
         reach = (speeds[fast, None] + speeds[None, others]) * (self._window * _GROWTH * model.opt.timestep)
@@ -263,9 +266,9 @@ class FastBodyDetector:
             self.on_approach(found)
 
     def _is_on_course(self, scratch: mujoco.MjData, one: Ints, other: Ints, linear: Floats) -> npt.NDArray[np.bool_]:
-        """Check whether the bounding sphere of one geom meets the bounding box of the other.
+        """Check for each pair whether the bounding sphere of geom `one` meets the bounding box of geom `other`.
 
-        The check assumes straight motion within a window.
+        The check assumes straight motion within a time window of `window_length` steps.
         """
         model = self.model
         start = self._inside(scratch.geom_xpos[one], other)

@@ -1,4 +1,4 @@
-"""State of the physics between two steps: MuJoCo's model and data, their stage of update, and divergence errors."""
+"""State of the physics between two steps: MuJoCo's model and data, which data is outdated, and divergence."""
 
 from __future__ import annotations
 

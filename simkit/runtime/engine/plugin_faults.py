@@ -1,7 +1,7 @@
 """Handling of plugins that raise: an exception stops the run, or disables the plugin from then on.
 
 `PluginFaults.guard` wraps every hook and callback of a plugin that is called during a run. A watcher on another thread
-finds the active call in the stack (`active_plugin_calls`), so that watching costs nothing.
+finds the active call in the stack (`active_plugin_calls`), so a watcher makes plugin calls no slower.
 """
 
 from __future__ import annotations

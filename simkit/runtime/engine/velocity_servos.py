@@ -10,7 +10,8 @@ times a second:
 The mean error is that of the last period, command − travel / period. The second term is the error that the servo needed
 to accelerate the robot. The rest is caused by a load: the load / kv that the correction does not yet compensate.
 
-- A servo with its full effort in that direction at an end of the period is not corrected further (no windup).
+- The correction does not grow if the servo has its full effort in that direction at the start or end of the period
+  (no windup).
 - The recent change of the command is subtracted: a start without a load has no overshoot.
 - A command of zero resets the correction. A robot that scrubs its wheels has other loads at rest, and wheels that push
   against each other would creep.

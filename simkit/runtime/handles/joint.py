@@ -284,7 +284,9 @@ class Joint(Handle):
                 "SK-JOINT-012",
             )
         if self._is_floating and not self._binding.free:
-            raise InputError(f"joint {self.scoped!r} is floating, but another joint holds its child", "SK-JOINT-012")
+            raise InputError(
+                f"floating joint {self.scoped!r} cannot be set: its child has another joint", "SK-JOINT-012"
+            )
 
     def _to_joint(self, stored: Vector) -> Vector:
         """Convert the engine's velocities or efforts to the joint's own frame; only those of a ball joint differ."""

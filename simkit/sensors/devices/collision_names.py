@@ -78,7 +78,7 @@ class _RigidLinks:
                 yield from self.lumped(self._links[joint.child_link], seen)
 
     def converted(self, root: SceneLink) -> dict[str, SceneCollision]:
-        """Return the collisions by the names that Gazebo gives them if it merges all links into `root`."""
+        """Return the collisions of all links that Gazebo merges into `root`, with Gazebo's names as keys."""
         found: dict[str, SceneCollision] = {}
         for number, (base, collision) in enumerate(self.lumped(root)):
             name = f"{base}_collision" + (f"_{number}" if number else "")

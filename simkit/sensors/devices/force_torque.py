@@ -48,7 +48,7 @@ class ForceTorque(VectorSensor):
     belongs_to = ("joint",)
     has_dynamic_bias = True
     needs_acceleration = True
-    # a load that sleeps on a static body would have no weight
+    # a sleeping load on a static body has no contact forces, so its weight would not be measured
     reads_contacts = True
     options: ForceTorqueOptions
 

@@ -76,25 +76,33 @@ VARIATIONS: Final = (
     Variation("as it is", "hash seed 0, one thread, a callback on every topic"),
     Variation(
         "elsewhere",
-        "other hash seed, working directory, HOME, TZ, LANG; messages collected",
+        "different hash seed, working directory, HOME, TZ, LANG; messages collected",
         4711,
         2,
         True,
         "kept",
         True,
     ),
-    Variation("not received", "no subscribers; other hash seed, pictures rendered in parallel", 17, 4, True, "none"),
-    Variation("late", "two subscribers on each topic from half time on; other hash seed", 99, 2, False, "late"),
     Variation(
-        "restored", "half time: snapshot, go on, spawn, restore; other hash seed", 5, 1, True, "kept", detour="restore"
+        "not received", "no subscribers; different hash seed, pictures rendered in parallel", 17, 4, True, "none"
     ),
-    Variation("reset", "short run, then reset; other hash seed", 23, 1, False, "called", detour="reset"),
+    Variation("late", "two subscribers on each topic from half time on; different hash seed", 99, 2, False, "late"),
+    Variation(
+        "restored",
+        "half time: snapshot, more steps, spawn, restore; different hash seed",
+        5,
+        1,
+        True,
+        "kept",
+        detour="restore",
+    ),
+    Variation("reset", "short run, then reset; different hash seed", 23, 1, False, "called", detour="reset"),
 )
 """Environments; the first run is the reference."""
 
 
 def choose_variations(runs: int) -> list[Variation]:
-    """Return a number of variations: the first ones, then repetitions with other hash seeds."""
+    """Return a number of variations: the first ones, then repetitions with different hash seeds."""
     repeated = (
         replace(variation, name=f"{variation.name} {round_}", hash_seed=variation.hash_seed + 7919 * round_)
         for round_ in count(2)

@@ -336,7 +336,7 @@ def test_ply_and_off_are_read_and_others_are_named(tmp_path):
     for suffix in ("ply", "off"):
         made.export(tmp_path / f"t.{suffix}")
         assert volume(load_file(tmp_path / f"t.{suffix}")) == pytest.approx(1.0)
-    with pytest.raises(MeshFileError, match=r"supported are \.dae, \.stl"):
+    with pytest.raises(MeshFileError, match=r"supported: \.dae, \.stl"):
         load_file(written(tmp_path, "t.fbx", b"x"))
 
 

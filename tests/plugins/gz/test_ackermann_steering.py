@@ -117,7 +117,7 @@ def test_steering_only_by_a_message_of_actuators(caplog):
     assert angles(sim) == pytest.approx(ackermann(BASE / math.tan(0.2)), abs=2e-3)
     sim.publish("/actuators", {"position": [9.0]})
     sim.run(0.1)
-    assert "it has no number 1" in caplog.text
+    assert "it has no index 1" in caplog.text
 
 
 def test_sub_topics_and_topics():

@@ -18,8 +18,8 @@ TYPE = "      type: position_controllers/JointGroupPositionController\n"
         ("      rate: 1\n", "is not defined"),
         ("", "is not defined"),
         ('      type: ""\n', "is empty"),
-        ("      type: [a, b]\n", "is no text"),
-        ("      type: {a: b}\n", "is no text"),
+        ("      type: [a, b]\n", "is not a string"),
+        ("      type: {a: b}\n", "is not a string"),
         (TYPE.replace("type", "tpye"), "is not defined"),
     ],
 )

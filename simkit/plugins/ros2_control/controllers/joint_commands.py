@@ -116,7 +116,7 @@ class EffortController(ForwardCommandController):
 
 
 class _OneJointController(ForwardCommandController):
-    """Forwards commands to one joint, named by `joint`, as ROS 1's controllers."""
+    """Forwards commands to one joint, named by `joint`, as the ROS 1 controllers do."""
 
     def configure(self) -> None:
         self._names = [f"{self.params.text('joint', required=True)}/{self.interface}"]

@@ -11,7 +11,7 @@ from simkit.plugins.ros2_control.joint_pids import JointPids
 
 
 class PositionJointTrajectoryController(JointTrajectoryController):
-    """Follows trajectories by position commands, as ROS 1's controller."""
+    """Follows trajectories by position commands, as the ROS 1 controller does."""
 
     types = ("position_controllers/JointTrajectoryController",)
     default_commands: ClassVar[tuple[str, ...]] = ("position",)
@@ -21,21 +21,21 @@ class PositionJointTrajectoryController(JointTrajectoryController):
 
 
 class VelocityJointTrajectoryController(PositionJointTrajectoryController):
-    """Follows trajectories by velocity commands from PIDs, as ROS 1's controller."""
+    """Follows trajectories by velocity commands from PIDs, as the ROS 1 controller does."""
 
     types = ("velocity_controllers/JointTrajectoryController",)
     default_commands = ("velocity",)
 
 
 class EffortJointTrajectoryController(PositionJointTrajectoryController):
-    """Follows trajectories by effort commands from PIDs, as ROS 1's controller."""
+    """Follows trajectories by effort commands from PIDs, as the ROS 1 controller does."""
 
     types = ("effort_controllers/JointTrajectoryController",)
     default_commands = ("effort",)
 
 
 class PositionVelocityJointTrajectoryController(PositionJointTrajectoryController):
-    """Follows trajectories by position and velocity commands, as ROS 1's controller."""
+    """Follows trajectories by position and velocity commands, as the ROS 1 controller does."""
 
     types = ("pos_vel_controllers/JointTrajectoryController",)
     default_commands = ("position", "velocity")

@@ -72,7 +72,7 @@ def _plain_row(width: int, colour: tuple[int, int, int]) -> Colours:
 
 @functools.cache
 def _read_pixels() -> Any:
-    """Return the library's own function, because PyOpenGL's checks the array for as long as the reading takes."""
+    """Return glReadPixels without PyOpenGL's wrapper, whose check of the array takes as long as the read itself."""
     from OpenGL.raw.GL.VERSION import GL_1_0
 
     return GL_1_0.glReadPixels
