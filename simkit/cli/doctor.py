@@ -93,7 +93,9 @@ def _engine() -> list[str]:
     _line("mujoco", f"{found['mujoco'] or 'missing'} (core {found['mujoco-core'] or 'missing'})")
     problems = []
     if not found["mujoco"] or not found["mujoco-core"] or found["mujoco"] != found["mujoco-core"]:
-        problems.append(f"mujoco and mujoco-core have different versions, as after an upgrade from 3.x: {_REINSTALL}")
+        problems.append(
+            f"mujoco and mujoco-core are missing or have different versions, as after an upgrade from 3.x: {_REINSTALL}"
+        )
     elif not found["mujoco"].startswith("4."):
         problems.append(f"simkit needs mujoco 4: {_REINSTALL}")
     probe = subprocess.run(

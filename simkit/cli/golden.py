@@ -203,7 +203,7 @@ golden = typer.Typer(help="Record and compare golden runs (reference sensor outp
 def record(
     world: Annotated[str, Argument(help="Scenario (.yaml, .py), world or bare name.", metavar="WORLD|SCENARIO")],
     out_: Annotated[Path, option("Folder to write.", "DIR", "--out", "-o")],
-    duration: Annotated[float | None, option("Simulated seconds; default: 10.", "S", min=0)] = None,
+    duration: Annotated[float | None, option("Simulated seconds; default: the scenario's, or 10.", "S", min=0)] = None,
     seed: options.Seed = None,
     topic: Annotated[list[str], option("Record only topics that match this pattern; repeatable.", "PATTERN")] = [],
     skip: Annotated[list[str], option("Leave out topics that match this pattern; repeatable.", "PATTERN")] = [],

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from simkit.plugins.not_deep_copied import SharedByCopies
+
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
 
 
-class OneTimeWarnings:
+class OneTimeWarnings(SharedByCopies):
     """Warnings of a plugin, each reported once, even after resets; a handle without state that a reset clears."""
 
     def __init__(self, plugin: Plugin) -> None:
@@ -29,6 +31,3 @@ class OneTimeWarnings:
     def not_finite(self, command: str = "a command") -> None:
         """Warn that a command with a NaN or infinite number is ignored."""
         self.left_out("finite", f"{command} with a NaN or infinite number is ignored")
-
-    def __deepcopy__(self, memo: dict[int, object]) -> OneTimeWarnings:
-        return self

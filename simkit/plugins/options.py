@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, Literal, Protocol, Self, TypeVar, overload
 
 from simkit.params import Params
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import IDENTITY, Pose
 
 OptionKind = Literal["number", "integer", "boolean", "text", "vector", "pose", "choice", "block", ""]
@@ -29,7 +30,7 @@ OptionsKind = TypeVar("OptionsKind", bound="Options")
 OptionsKind_co = TypeVar("OptionsKind_co", bound="Options", covariant=True)
 
 
-class Options:
+class Options(SharedByCopies):
     """Options in one block of a file.
 
     Args:
@@ -63,9 +64,6 @@ class Options:
             yield option.element
             if option.options is not None:
                 yield from option.options.element_names()
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Options:
-        return self
 
 
 @dataclass(eq=False)

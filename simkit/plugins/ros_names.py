@@ -8,6 +8,7 @@ from types import MappingProxyType
 
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
+from simkit.plugins.not_deep_copied import SharedByCopies
 
 _RULE = re.compile(r"^(?P<from>[^=]+?):=(?P<to>.+)$")
 
@@ -17,7 +18,7 @@ def is_ros_1(params: Params, names: Iterable[str]) -> bool:
     return not params.has("ros") and any(params.has(name) for name in names)
 
 
-class RosNames:
+class RosNames(SharedByCopies):
     """Names of a ROS node.
 
     Args:
@@ -82,6 +83,3 @@ class RosNames:
         if name == "~" or name.startswith("~/"):
             return f"{self.namespace}/{self.node}{name[1:]}"
         return name if name.startswith("/") else f"{self.namespace}/{name}"
-
-    def __deepcopy__(self, memo: dict[int, object]) -> RosNames:
-        return self

@@ -236,7 +236,7 @@ def not_found_error(
     """Make a 'not found' error that suggests the closest name or lists all names."""
     names = list(known)
     listed = ", ".join(names[:20]) + (f" and {len(names) - 20} more" if len(names) > 20 else "")
-    hint = did_you_mean(name, names) or ("known: " + listed if names else f"there are no {noun}s")
+    hint = did_you_mean(name, names) or ("known: " + listed if names else "there are none")
     return InputError(f"{code} no {noun} {name!r} in {where}; {hint}", code)
 
 

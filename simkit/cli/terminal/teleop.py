@@ -84,7 +84,7 @@ def _choose_topic(owners: dict[str, object]) -> str:
             "SK-CLI-051",
         )
     if len({id(owner) for owner in owners.values()}) > 1:
-        text = f"SK-CLI-051 --teleop: the world has several velocity topics: {', '.join(owners)}"
+        text = f"SK-CLI-051 --teleop: several robots have velocity topics: {', '.join(owners)}"
         raise InputError(f"{text}\n    help: choose one with --teleop {next(iter(owners))}", "SK-CLI-051")
     return next(iter(owners))  # all topics belong to one drive plugin
 

@@ -9,6 +9,7 @@ from typing import Final, Protocol
 import numpy as np
 
 from simkit.plugins.actors.script import Floats, Script, Track
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.plugin_names import aliases
 from simkit.pose import Pose
 from simkit.scene import SceneActor, SceneLink, SceneModel
@@ -34,7 +35,7 @@ class Rig(Protocol):
         ...
 
 
-class AnimatedActor:
+class AnimatedActor(SharedByCopies):
     """Actor with its script and the poses of its links over time.
 
     Args:
@@ -52,9 +53,6 @@ class AnimatedActor:
         self.moves = script.moves or (rig is not None and script.length > 0.0)
         self._going = [link_poses_in_world(track, rig, False) for track in script.tracks]
         self._resting = [table[[0, -1]] for table in (link_poses_in_world(t, rig, True) for t in script.tracks)]
-
-    def __deepcopy__(self, memo: dict[int, object]) -> AnimatedActor:
-        return self
 
     def poses(self, time: float) -> Floats:
         """Return the world poses of the links: the origin, then the parts; position and quaternion, shape (n, 7)."""

@@ -12,12 +12,13 @@ from simkit.plugins.actors.actor_model import WalkingPerson
 from simkit.plugins.actors.animated_actor import AnimatedActor, link_poses_in_world
 from simkit.plugins.actors.script import Floats, Stride
 from simkit.plugins.actors.skin import SkinRig
+from simkit.plugins.not_deep_copied import SharedByCopies
 
 _ROWS: Final = 256
 """Rows in the table of a cycle; linear interpolation between rows is exact to a millimetre."""
 
 
-class Gait:
+class Gait(SharedByCopies):
     """Cycle of an actor's walk; immutable.
 
     Args:
@@ -32,9 +33,6 @@ class Gait:
         self._going = _table(cast, animation, self._cycle, speed, seconds)
         # an actor with a skin stops in the middle of a step, as in gz; a built-in person puts the feet together
         self._standing = None if isinstance(cast.rig, SkinRig) else _table(cast, animation, 0.0, 0.0, seconds)[0]
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Gait:
-        return self
 
     def poses(self, place: tuple[float, float, float], yaw: float, distance: float, goes: bool) -> Floats:
         """Return the world poses of the links: the origin, then the parts; position and quaternion, shape (n, 7).

@@ -13,6 +13,7 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import offers, publishes
 from simkit.plugins.find_entities import find_link, find_named_link
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, OptionsOf, number, text, texts
 from simkit.plugins.publish_on_demand import publish_while_subscribed
 from simkit.plugins.ros_names import is_ros_1
@@ -180,14 +181,11 @@ class GazeboRosVacuumGripper(ModelPlugin):
         return True
 
 
-class _GrippableLinks:
+class _GrippableLinks(SharedByCopies):
     """Positions of gripper links and of links that they may hold in the engine; a handle without state of its own."""
 
     def __init__(self) -> None:
         self._known: WorldStructure | None = None
-
-    def __deepcopy__(self, memo: dict[int, object]) -> _GrippableLinks:
-        return self
 
     def bind(self, sim: Simulation, own: str, fixed: frozenset[str], grippers: list[str]) -> None:
         """Find the links in the present model."""

@@ -16,6 +16,7 @@ from simkit.plugins.drives.odometry import (
     transforms,
 )
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ class DriveOutputOptions:
     covariance: tuple[float, float, float]
 
 
-class DriveOutputs:
+class DriveOutputs(SharedByCopies):
     """Publishers of one drive. A deep copy returns the same object, because there is no state to copy.
 
     Args:
@@ -65,9 +66,6 @@ class DriveOutputs:
         self._odom = plugin.advertise(options.odometry_topic, ODOMETRY) if options.odometry else None
         self._tf = plugin.advertise("/tf", TRANSFORMS) if options.odometry_tf or options.wheel_tf else None
         self._states = plugin.advertise("joint_states", JOINT_STATE) if options.joint_states else None
-
-    def __deepcopy__(self, memo: dict[int, object]) -> DriveOutputs:
-        return self
 
     @property
     def wants_odometry(self) -> bool:

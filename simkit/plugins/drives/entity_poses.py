@@ -13,6 +13,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.plugins.drives.odometry import message_types
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ _IDENTITY: PoseNumbers = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class PosedEntity:
+class PosedEntity(SharedByCopies):
     """Link, model or visual whose pose is published.
 
     Attributes:
@@ -50,9 +51,6 @@ class PosedEntity:
     handle: Link | Model | None = None
     within: Link | Model | None = None
     moves: bool = False
-
-    def __deepcopy__(self, memo: dict[int, object]) -> PosedEntity:
-        return self
 
 
 class _CompiledEntity(NamedTuple):
@@ -79,7 +77,7 @@ class _CompiledEntity(NamedTuple):
     is_base: bool = False
 
 
-class EntityPoses:
+class EntityPoses(SharedByCopies):
     """Poses of a sequence of entities, prepared for one compiled model.
 
     Args:
@@ -133,9 +131,6 @@ class EntityPoses:
                 pose = _compose_poses(there, pose)
             placed.append((frame, child, pose))
         return placed
-
-    def __deepcopy__(self, memo: dict[int, object]) -> EntityPoses:
-        return self
 
     # ------------------------------------------------------------------ inside
 

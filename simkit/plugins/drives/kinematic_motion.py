@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.params import LARGEST
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import IDENTITY, Pose, Vector
 from simkit.runtime.engine.physics_step import STALE, VELOCITY
 
@@ -25,7 +26,7 @@ _STATIC, _OTHER = -1, -2  # owners of geoms that no motion moves
 _SIX = np.arange(6)
 
 
-class KinematicMotion:
+class KinematicMotion(SharedByCopies):
     """Free links of a model that move together as one rigid body. A deep copy returns the same object.
 
     Joints below the free links keep their velocities; gravity and inertia still act on a carried arm.
@@ -45,9 +46,6 @@ class KinematicMotion:
 
     def __bool__(self) -> bool:
         return bool(self._roots)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> KinematicMotion:
-        return self
 
     @property
     def frame(self) -> Pose:
@@ -91,7 +89,7 @@ class VelocityTarget:
     falls: bool = False
 
 
-class KinematicMover:
+class KinematicMover(SharedByCopies):
     """Executor of velocity targets; the shared computation is done once per step.
 
     A deep copy returns the same object.
@@ -100,9 +98,6 @@ class KinematicMover:
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
         self._bound: tuple[object, tuple[KinematicMotion, ...]] = (None, ())
-
-    def __deepcopy__(self, memo: dict[int, object]) -> KinematicMover:
-        return self
 
     def move(self, moves: Sequence[VelocityTarget]) -> None:
         """Apply the targets to the next step only.

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit import msgs
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
 
 if TYPE_CHECKING:
@@ -241,7 +242,7 @@ def command_of(message: Any) -> tuple[float, float] | None:
     return (forward, turn) if math.isfinite(forward) and math.isfinite(turn) else None
 
 
-class TrueMotion:
+class TrueMotion(SharedByCopies):
     """Ground truth of a model's pose and twist.
 
     Args:
@@ -256,9 +257,6 @@ class TrueMotion:
         # constant vector from the link's origin to the model's, in the model's axes
         there = model.scene.pose_world.inverse().transform(canonical.scene.pose_world.position)
         self._arm = (-there).tolist()
-
-    def __deepcopy__(self, memo: dict[int, object]) -> TrueMotion:
-        return self
 
     def place(self) -> tuple[float, ...]:
         """Return the world pose of the model's frame as x, y, z, qw, qx, qy, qz; cheap enough for every step."""

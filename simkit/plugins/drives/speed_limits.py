@@ -6,21 +6,19 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, number
 
 _QUANTITIES = ("velocity", "acceleration", "jerk")
 
 
 @dataclass(frozen=True, slots=True)
-class SpeedLimiter:
+class SpeedLimiter(SharedByCopies):
     """Bounds of a commanded speed and its first two derivatives (SI units); infinite where unlimited."""
 
     velocity: tuple[float, float] = (-math.inf, math.inf)
     acceleration: tuple[float, float] = (-math.inf, math.inf)
     jerk: tuple[float, float] = (-math.inf, math.inf)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> SpeedLimiter:
-        return self
 
     def limit(self, target: float, last: float, before_last: float, step: float) -> float:
         """Return the speed to command now, limited in jerk, then acceleration, then speed (gz-math's SpeedLimiter).

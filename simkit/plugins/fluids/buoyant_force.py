@@ -13,6 +13,7 @@ import numpy.typing as npt
 from simkit.plugins.fluids.collision_volumes import Hull
 from simkit.plugins.fluids.link_forces import PushedLinks, cross
 from simkit.plugins.fluids.submerged_volume import Solid
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class _Part(NamedTuple):
     middle: Three
 
 
-class BuoyantForces:
+class BuoyantForces(SharedByCopies):
     """Buoyant forces on the hulls of one compiled model. A deep copy returns the same object.
 
     Args:
@@ -95,9 +96,6 @@ class BuoyantForces:
         self._always: Immersion | None = None
         self._parts = [_part(*part) for part in parts] if len(parts) <= _FEW else []
         self._evens, self._wholes = self._is_even.tolist(), self._whole.tolist()
-
-    def __deepcopy__(self, memo: dict[int, object]) -> BuoyantForces:
-        return self
 
     def _find_even(self, model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
         """Return the mask of links whose centre of volume is their centre of mass."""

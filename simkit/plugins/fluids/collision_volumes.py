@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
 from simkit.plugins.fluids.submerged_volume import Solid, Triangles, solid_of
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 from simkit.scene import Geometry, Mesh, Polyline, SceneCollision, SceneLink
 
@@ -34,7 +35,7 @@ class Hull:
     origin: Vector = field(default_factory=lambda: np.zeros(3))
 
 
-class HullFactory:
+class HullFactory(SharedByCopies):
     """Factory of hulls that converts equal shapes only once. A deep copy returns the same object.
 
     Args:
@@ -44,9 +45,6 @@ class HullFactory:
     def __init__(self, on_open_mesh: Callable[[str], None]) -> None:
         self._on_open_mesh = on_open_mesh
         self._solids: dict[Geometry, Solid | None] = {}
-
-    def __deepcopy__(self, memo: dict[int, object]) -> HullFactory:
-        return self
 
     def hulls(self, link: SceneLink) -> list[Hull]:
         """Return one hull for each collision of a link that has a volume."""

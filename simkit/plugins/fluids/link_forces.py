@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 from simkit.runtime.engine.physics_step import CONTROL
 
@@ -32,7 +33,7 @@ def cross(a: Vector, b: Vector) -> Vector:
     return found
 
 
-class PushedLinks:
+class PushedLinks(SharedByCopies):
     """Movable links of the current compiled model; static links are left out. A deep copy returns the same object.
 
     Args:
@@ -57,9 +58,6 @@ class PushedLinks:
 
     def __len__(self) -> int:
         return len(self.names)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> PushedLinks:
-        return self
 
     @property
     def is_current(self) -> bool:

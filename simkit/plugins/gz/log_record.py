@@ -14,6 +14,7 @@ from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.drives.entity_poses import PoseNumbers, pose_numbers
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
 from simkit.plugins.endpoints import publishes
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
 from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
@@ -28,15 +29,12 @@ FILE: Final = "state.mcap"
 _IS_PATTERN: Final = re.compile(r"[*?\[\]().]")
 
 
-class _Log:
+class _Log(SharedByCopies):
     """Recording of a run. Snapshots, resets and restores keep the same object."""
 
     def __init__(self) -> None:
         self.recorder: Recorder | None = None
         self.was_begun = False
-
-    def __deepcopy__(self, memo: dict[int, object]) -> _Log:
-        return self
 
 
 class LogRecordOptions(Options):

@@ -10,11 +10,12 @@ import numpy as np
 from simkit.diagnostics import did_you_mean
 from simkit.params import LARGEST, Params
 from simkit.plugins.find_entities import find_joint
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 from simkit.scene import SceneJoint, SceneModel
 
 
-class JointAxis:
+class JointAxis(SharedByCopies):
     """Axis of a joint; positions in rad or m, efforts in N·m or N.
 
     Attributes:
@@ -86,9 +87,6 @@ class JointAxis:
     def _pending(self) -> Vector:
         applied = self.joint._physics.data.qfrc_applied
         return np.array([applied[dof] for dof in self.joint.mj_dofs])
-
-    def __deepcopy__(self, memo: dict[int, object]) -> JointAxis:
-        return self
 
 
 def find_joints(scene: SceneModel, params: Params, axis: int = 0, most: int | None = None) -> list[SceneJoint]:

@@ -13,6 +13,7 @@ from simkit.plugins.joints.joint_axis import JointAxis, find_joints
 from simkit.plugins.joints.kinematic_trees import KinematicTrees
 from simkit.plugins.joints.pid import FIELDS, Pid, PidOptions, declare_pid
 from simkit.plugins.joints.velocity_servo import VelocityServo
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, boolean, integer, text, texts
 
@@ -246,15 +247,12 @@ class JointCommander(ControlledJoints, ModelPlugin):
             params.diagnostics.warning("SK-PLUGIN-043", message, self.where)
 
 
-class _VelocityGroup:
+class _VelocityGroup(SharedByCopies):
     """Plugins that command velocities in one structure, with the kinematic trees of their joints."""
 
     def __init__(self, structure: object, members: list[JointCommander]) -> None:
         self.structure, self.members = structure, members
         self.layouts: dict[tuple[int, ...], KinematicTrees] = {}
-
-    def __deepcopy__(self, memo: dict[int, object]) -> _VelocityGroup:
-        return self
 
 
 GAINS: Final = tuple(FIELDS)

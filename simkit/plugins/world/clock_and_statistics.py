@@ -14,6 +14,7 @@ from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.drives.entity_poses import EntityPoses, PosedEntity, PoseSample, pose_numbers, transforms_message
 from simkit.plugins.drives.odometry import TRANSFORMS
+from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -29,7 +30,7 @@ POSE_RATE: Final = 60.0
 _WINDOW: Final = 20  # number of statistics in the average real-time factor, as in gz's server
 
 
-class WallClock:
+class WallClock(SharedByCopies):
     """Wall-clock duration of a run; nothing in a world may depend on it.
 
     The duration is not part of a world's state: snapshots exclude it, and restoring a run does not reset it.
@@ -62,9 +63,6 @@ class WallClock:
         recent.append((simulated, self.real))
         elapsed = recent[-1][1] - recent[0][1]
         return (recent[-1][0] - recent[0][0]) / elapsed if elapsed > 0.0 else 0.0
-
-    def __deepcopy__(self, memo: dict[int, object]) -> WallClock:
-        return self
 
 
 class WorldStats(WorldPlugin):

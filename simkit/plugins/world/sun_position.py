@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 
 _STEP: Final = 60.0  # [s] between the times at which the algorithm runs
@@ -59,7 +60,7 @@ class SunDirection:
     azimuth: float
 
 
-class SunPath:
+class SunPath(SharedByCopies):
     """Direction of the sun over a site, as a function of time alone.
 
     The algorithm (I. Reda, A. Andreas, Solar Position Algorithm for Solar Radiation Applications, NREL/TP-560-34302)
@@ -113,9 +114,6 @@ class SunPath:
         elevation, azimuth = np.radians(rows[3]), np.radians(rows[4])
         level = np.cos(elevation)
         return np.stack((level * np.sin(azimuth), level * np.cos(azimuth), np.sin(elevation)), axis=-1)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> SunPath:
-        return self
 
 
 def refraction(elevation: float, pressure: float, temperature: float) -> float:

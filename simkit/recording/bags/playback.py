@@ -140,7 +140,9 @@ class Playback:
         for text in topics:
             old, sign, new = text.partition(":=")
             if not old or (sign and not new):
-                raise InputError(f"SK-CLI-018 --play-topic: found {text!r}; expected TOPIC or OLD:=NEW", "SK-CLI-018")
+                raise InputError(
+                    f"SK-CLI-018 a topic to play: found {text!r}; expected TOPIC or OLD:=NEW", "SK-CLI-018"
+                )
             old = absolute_name(old)
             new = absolute_name(new) if sign else old
             for name, names, where in (

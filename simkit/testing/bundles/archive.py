@@ -127,8 +127,13 @@ class Bundle:
                 continue
             target = folder.joinpath(*PurePosixPath(name).parts)
             target.parent.mkdir(parents=True, exist_ok=True)
-            with target.open("xb") as file:
-                file.writelines(self._pieces(name))
+            file = target.open("xb")
+            try:
+                with file:
+                    file.writelines(self._pieces(name))
+            except InputError:
+                target.unlink()
+                raise
 
     # ------------------------------------------------------------------ validation
 

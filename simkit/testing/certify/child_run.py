@@ -184,10 +184,10 @@ class _ChildRun:
                 with suppress(InputError):
                     sim.spawn(_DETOUR_MODEL)
 
-    def _set_paused(self, is_away: bool) -> None:
-        self._marks.is_away = self._witness.is_away = is_away
+    def _set_paused(self, is_paused: bool) -> None:
+        self._marks.is_paused = self._witness.is_paused = is_paused
         if self._topic_hashes is not None:
-            self._topic_hashes.is_paused = is_away
+            self._topic_hashes.is_paused = is_paused
 
     # ------------------------------------------------------------------ outcome
 

@@ -232,19 +232,19 @@ class PluginCallRecorder:
     """Recorder of every plugin call.
 
     Attributes:
-        is_away: True while recording is paused.
+        is_paused: True while recording is paused.
     """
 
     def __init__(self) -> None:
         self.events: list[PluginCall] = []
-        self.is_away = False
+        self.is_paused = False
         self._known: dict[int, dict[str, int]] = {}
 
     def call(
         self, engine: EngineState, plugin: object, hook: str, method: Callable[..., object], values: tuple[object, ...]
     ) -> Any:
         """Call a method of a plugin and record its effect."""
-        if self.is_away or not hasattr(plugin, "has_hook"):
+        if self.is_paused or not hasattr(plugin, "has_hook"):
             return method(*values)
         before, tick = writable_state_hash(engine.physics.data), engine.tick
         try:
@@ -322,11 +322,11 @@ class TickHashes:
     """Short hashes of the physics and of the inputs for every tick.
 
     Attributes:
-        is_away: True while recording is paused.
+        is_paused: True while recording is paused.
     """
 
     def __init__(self, sim: Simulation) -> None:
-        self._sim, self.is_away = sim, False
+        self._sim, self.is_paused = sim, False
         self.state: dict[int, int] = {}
         self.inputs: dict[int, int] = {}
         sim.communication.on_demand.add(lambda: True, None, self._mark, "after")
@@ -338,7 +338,7 @@ class TickHashes:
         return np.array(state, np.uint64), np.array(inputs, np.uint64)
 
     def _mark(self, _: int) -> None:
-        if self.is_away:
+        if self.is_paused:
             return
         physics = self._sim.engine.physics
         data, tick = physics.data, physics.tick

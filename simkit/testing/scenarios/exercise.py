@@ -86,7 +86,7 @@ class _ExerciseReader(ValueReader):
             self._document.error("SK-SCEN-006", "the exercise has no checks, so every plugin would pass", hint=hint)
         if scenario.wall_timeout is None:
             scenario = replace(scenario, wall_timeout=_WALL_TIMEOUT)
-        parameters = self._parameters()
+        parameters = self._mapping("parameters")
         runs = self._runs(scenario, parameters)
         title, text, hand_in, robot = (self._stripped(key) for key in ("title", "text", "hand_in", "robot"))
         file = self._document.path
@@ -105,8 +105,7 @@ class _ExerciseReader(ValueReader):
         return tuple(found)
 
     def run(self, number: int, scenario: RunSpec, parameters: JsonMapping) -> ExerciseRun:
-        requested = self._fields.get("duration", scenario.duration)
-        duration = self._number_of(requested, None, ("duration",), above=0.0)
+        duration = self._number("duration", scenario.duration, above=0.0)
         folder = self._document.path.parent
         spawn = (resolve_spawn_file(folder, one) for one in self._texts_of(self._fields.get("spawn", []), "spawn"))
         changed = replace(
@@ -119,7 +118,7 @@ class _ExerciseReader(ValueReader):
         name = self._fields.get("name", f"run {number + 1}")
         if not isinstance(name, str):
             self._wrong(name, "a string", "name")
-        return ExerciseRun(str(name), changed, {**parameters, **self._parameters()})
+        return ExerciseRun(str(name), changed, {**parameters, **self._mapping("parameters")})
 
     # ------------------------------------------------------------------ plain values
 
@@ -136,13 +135,6 @@ class _ExerciseReader(ValueReader):
             return tuple(listed)
         self._wrong(value, "a string or a list of strings", key)
         return ()
-
-    def _parameters(self) -> JsonMapping:
-        value = self._fields.get("parameters", {})
-        if isinstance(value, dict) and all(isinstance(one, str) for one in value):
-            return value
-        self._wrong(value, "a mapping", "parameters")
-        return {}
 
     def _overrides(self) -> tuple[str, ...]:
         value = self._fields.get("set", {})

@@ -176,16 +176,16 @@ class ScenarioReader(ValueReader):
 
     def _played(self) -> float:
         """Return the duration of the bag that is played [s]; 10 s without a bag."""
-        fields = self._fields.get("play")
-        if fields is None and "play_topics" in self._fields:
+        bag_name = self._fields.get("play")
+        if bag_name is None and "play_topics" in self._fields:
             hint = "add play: BAG, whose commands are sent again"
             self._document.error("SK-SCEN-004", "'play_topics' needs 'play'", "play_topics", hint=hint)
-        if not isinstance(fields, str) or not fields.strip():
+        if not isinstance(bag_name, str) or not bag_name.strip():
             if "play" in self._fields:
-                self._wrong(fields, "the name of a bag", "play")
+                self._wrong(bag_name, "the name of a bag", "play")
             return 10.0
         try:
-            with open_bag_to_read(self._document.path.parent / fields) as bag:
+            with open_bag_to_read(self._document.path.parent / bag_name) as bag:
                 return bag.duration
         except InputError as error:
             self._document.error(error.code, f"play: {str(error).removeprefix(error.code).strip()}", "play")

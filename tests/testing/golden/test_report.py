@@ -51,7 +51,7 @@ def test_every_difference_check_note_and_other_version_is_told() -> None:
         "allowed 1 mm",
         "/odom: 50 Hz became 51 Hz: 200 messages became 204",
         "check   pose('cart').x > 2: it was 1.9 at most – drive on",
-        "tier    other machine (mujoco 4.0.0 → 4.0.1): within the tolerances",
+        "tier    other machine or versions (mujoco 4.0.0 → 4.0.1): within the tolerances",
         "note    /imu: less than 1e-9 apart",
     ):
         assert said in text

@@ -113,8 +113,8 @@ def engine_changes(golden: RunRecord, run: RunRecord, changes: Sequence[Change])
         return []
     if any(change.kind == "model" for change in changes):
         return []
-    named_files = {edit.entity for change in changes for edit in change.edits}
-    edits = [e for e in field_edits(golden, run) if not _is_explained_by_scene(e.path, named_files)]
+    named_entities = {edit.entity for change in changes for edit in change.edits}
+    edits = [e for e in field_edits(golden, run) if not _is_explained_by_scene(e.path, named_entities)]
     first = [e for e in edits if e.path.rpartition(" ")[2] not in _DERIVED_FIELDS] or edits
     groups: dict[tuple[str, str, str], list[Edit]] = {}
     for edit in first:
@@ -122,9 +122,11 @@ def engine_changes(golden: RunRecord, run: RunRecord, changes: Sequence[Change])
     return [_engine_change(several) for several in groups.values()]
 
 
-def _is_explained_by_scene(path: str, named_files: set[str]) -> bool:
+def _is_explained_by_scene(path: str, named_entities: set[str]) -> bool:
     name = path.split(" ", 1)[-1].rpartition(" ")[0]
-    return any(part and (name == part or name.startswith(part + "::") or part.startswith(name)) for part in named_files)
+    return any(
+        part and (name == part or name.startswith(part + "::") or part.startswith(name)) for part in named_entities
+    )
 
 
 def _engine_change(several: list[Edit]) -> Change:

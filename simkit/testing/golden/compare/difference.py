@@ -49,9 +49,9 @@ class Comparison:
     """Result of comparing two records.
 
     Attributes:
-        tier: "exact" if the same machine and versions must give the same bits, else "tolerant".
+        tier: "exact" if no difference of machine or versions can change bits, else "tolerant".
         differences: Differences beyond their tolerance, by time, then topic; empty for a pass.
-        notes: Sentences about differences within their tolerance.
+        notes: Sentences about differences that do not count, and about what is not compared.
         machine: Entries of the fingerprint that differ: name -> (golden, run).
         topics: Number of compared topics.
         messages: Number of compared messages.

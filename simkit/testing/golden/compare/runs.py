@@ -97,7 +97,7 @@ def _compare_topics(golden: RunRecord, run: RunRecord, same: bool, same_pictures
             notes += result.notes
             found.topics += 1
             found.messages += len(mine.times_ns)
-    more = [f"{len(notes) - _NOTES} more differences are within their tolerance"] if len(notes) > _NOTES else []
+    more = [f"{len(notes) - _NOTES} more notes"] if len(notes) > _NOTES else []
     found.notes += notes[:_NOTES] + more
 
 

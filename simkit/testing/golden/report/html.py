@@ -158,10 +158,11 @@ def _figures(verdict: Verdict, most: int) -> Iterator[PlotFigure | ImageFigure]:
 
 def _tier(comparison: Comparison) -> str:
     if comparison.tier == "exact":
-        return "same machine and versions: bits must be equal"
+        return "no difference of the machine that can change bits: bits must be equal"
     if not comparison.machine:
-        return "same machine and versions; numbers must be within the tolerances"
-    return f"other machine ({machine_text(comparison) or 'see the table'}): numbers must be within the tolerances"
+        return "no known difference of the machine; numbers must be within the tolerances"
+    known = machine_text(comparison) or "see the table"
+    return f"other machine or versions ({known}): numbers must be within the tolerances"
 
 
 def _machine_rows(verdict: Verdict) -> list[_MachineRow]:

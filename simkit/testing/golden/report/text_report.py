@@ -152,9 +152,9 @@ def _body_lines(verdict: Verdict, most: int) -> Iterator[tuple[str, str]]:
         for line in _limited_lines(verdict.run.end.strip().splitlines(), most, "lines"):
             yield "run", line
     if exact:
-        yield "tier", "same machine and versions: bits must be equal"
+        yield "tier", "no difference of the machine that can change bits: bits must be equal"
     else:
-        yield "tier", f"other machine ({machine_text(comparison) or 'unknown'}): within the tolerances"
+        yield "tier", f"other machine or versions ({machine_text(comparison) or 'unknown'}): within the tolerances"
     for note in _limited_lines(comparison.notes, most, "notes"):
         yield "note", note
 
