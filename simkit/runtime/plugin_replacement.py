@@ -172,7 +172,7 @@ def _loaded_state(sim: Simulation, plugin: AttachedPlugin) -> PluginState:
 
 
 def _carried_state(new: Any, loaded: PluginState, old_state: PluginState, first: PluginState) -> PluginState:
-    """Return the state with which the new plugin continues; for a Gazebo system, its variables count."""
+    """Return the state with which the new plugin continues; of a Gazebo system, only the variables are merged."""
     if "variables" not in loaded or not getattr(new, "is_gz_system", False):
         return _merge_attributes(loaded, old_state, first, type(new).__module__)
     old_variables, first_variables = old_state.get("variables", {}), first.get("variables", {})
@@ -236,7 +236,7 @@ def close_endpoints(sim: Simulation, owner: object) -> None:
 
 
 def _is_callback_of(callback: object, owner: object) -> bool:
-    """Check whether a callback is a method of a plugin, or a guard of one."""
+    """Check whether a callback is a method of a plugin, or a wrapper of such a method by `PluginFaults.guard`."""
     if getattr(callback, "__self__", None) is owner:
         return True
     for cell in getattr(callback, "__closure__", None) or ():
@@ -249,7 +249,7 @@ def _is_callback_of(callback: object, owner: object) -> bool:
 def _take_over_parameters(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin) -> None:
     """Keep the values of live parameters that were set on the old plugin, if the new plugin accepts them.
 
-    New parameters of the same name may hide the old ones; the first snapshot contains the old ones.
+    A new parameter may hide the old parameter of the same name. The first snapshot still contains both.
     """
     table = sim.communication.live_parameters
     first = {p: value for part, state in sim._loaded.handles if part is table for p, value in state}

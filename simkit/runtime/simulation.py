@@ -78,7 +78,7 @@ class Simulation:
 
     @property
     def tick(self) -> int:
-        """Number of the present step."""
+        """Number of steps from t = 0 to the present state."""
         return self.engine.physics.tick
 
     @property
@@ -102,7 +102,7 @@ class Simulation:
         return self.engine.clock.timestep
 
     def step(self, count: int = 1) -> None:
-        """Advance by `count` steps; raise SimulationDiverged or PluginError on a failure."""
+        """Advance by `count` steps. Raise SimulationDiverged or PluginError if the physics or a plugin fails."""
         if count < 0:
             raise ValueError(f"count must not be negative, got {count}")
         self._advance(self.tick + int(count))
@@ -110,7 +110,7 @@ class Simulation:
     def run(self, duration: float) -> None:
         """Advance by a duration [s] of simulated time, rounded to the nearest whole step.
 
-        The number of steps is the same if a hook restores an earlier time.
+        If a hook restores an earlier time, the number of steps stays the same.
         """
         if not duration >= 0:
             raise ValueError(f"duration must be a number of seconds that is not negative, got {duration}")
@@ -140,7 +140,7 @@ class Simulation:
 
     @journaled
     def reset(self, seed: int | None = None) -> None:
-        """Reset to t = 0 and the loaded state: physics, plugins, sensors and random streams (reseeded if given)."""
+        """Reset physics, plugins, sensors and random streams to the loaded state at t = 0; `seed` replaces the seed."""
         loaded, engine = self._loaded_state(), self.engine
         engine.loop.drop_deferred()
         self.communication.bus.settle()
@@ -187,7 +187,7 @@ class Simulation:
 
     def _restore(self, snapshot: Snapshot) -> None:
         self.contents.spawner.snapshots.restore(snapshot)
-        self.engine.loop.halt()  # a served run determines its end again
+        self.engine.loop.halt()  # `simkit run` then computes its target again
         self.engine.reschedule()
         self.contents.spawner.forget_gone()
 
@@ -271,7 +271,7 @@ class Simulation:
 
     @property
     def paused(self) -> bool:
-        """True while the world is paused for its services and `simkit run`; settable."""
+        """True while the world is paused; settable. A pause does not stop a script that calls `step` or `run`."""
         return self.control.paused
 
     @paused.setter
@@ -306,7 +306,11 @@ class Simulation:
         return self.communication.bus.topics()
 
     def call(self, service: str, request: Message = None) -> Message:
-        """Send a request (message, dict of its fields, or None for all zero) to a service; return its response.
+        """Send a request to a service and return the response.
+
+        Args:
+            service: name of the service; a missing leading slash is added.
+            request: message, dict of its fields, or None for a message whose fields are all zero.
 
         Raises:
             ServiceError: no such service; the message suggests the closest name.
@@ -322,7 +326,8 @@ class Simulation:
         Args:
             service: name of the service; a missing leading slash is added.
             type_name: service type, such as `std_srvs/srv/Trigger`.
-            handler: function from a request to a response: a message, a dict of its fields, or None for all zero.
+            handler: function that receives a request and returns the response: a message, a dict of its fields, or None
+                for a message whose fields are all zero.
 
         Raises:
             ServiceError: a service of that name exists.
@@ -337,7 +342,7 @@ class Simulation:
 
         Args:
             action: name of the action.
-            goal: message, dict of its fields, or None for all zero.
+            goal: message, dict of its fields, or None for a message whose fields are all zero.
             on_feedback: function that receives each feedback message.
             on_done: function that receives the handle after the end of the goal.
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 ModelLoader = Callable[..., SceneModel]
 SensorsAndPluginsMaker = Callable[..., SensorsAndPlugins]
 SpawnRequest = tuple[object, str | None, Pose | None]
-"""Source of a model (or a model), and its new name and pose; None for those of the source."""
+"""Source of a model (or a model), new name and new pose; None keeps the name or the pose of the source."""
 
 
 class Spawner:
@@ -160,7 +160,10 @@ class Spawner:
         self.switch(replace(self._recompiled(builder), models=models, movable=old.movable - {name}, parts=parts))
 
     def forget_gone(self) -> None:
-        """Close plugins that nothing can bring back; within a step at its end, because a plugin may be running."""
+        """Close the plugins that no restore can bring back.
+
+        During a step, they are closed at the end of the step, because one of the plugins may be running.
+        """
         if self._engine.is_stepping:
             self._engine.loop.defer(self.forget)
         else:

@@ -223,7 +223,7 @@ class WorldContents:
 
     @journaled
     def add_weld(self, name: str, parent_link: str, child_link: str) -> None:
-        """Add an open weld between two links during the run; `set_weld` closes it.
+        """Add a weld between two links during the run. The weld is open, so has no effect, until `set_weld` closes it.
 
         Raises:
             KeyError: a link does not exist.
@@ -235,8 +235,9 @@ class WorldContents:
     def set_weld(self, name: str, closed: bool) -> None:
         """Close a weld with its links at their present poses, or open it.
 
-        The constraint keeps the anchor, a point of the second body, at its place in the first body, and the relative
-        orientation. These are seven numbers of `eq_data` behind the three of the anchor.
+        A closed weld keeps a point of the second body, the anchor, at its present position in the first body. It also
+        keeps the relative orientation. `eq_data` holds the anchor (3 numbers), then this position and this orientation
+        (7 numbers).
 
         Raises:
             KeyError: no such weld.

@@ -100,7 +100,7 @@ class PauseControl:
 
     @contextmanager
     def served(self) -> Iterator[None]:
-        """Mark the world as kept running within the context."""
+        """Mark the world as kept running by other code within the context."""
         self.is_served = True
         try:
             yield
@@ -142,7 +142,7 @@ class PauseControl:
 
 
 _MASK_FIELDS = ("geom_contype", "geom_conaffinity")
-_PLACE_FIELDS = ("body_pos", "body_quat")  # of moved bodies that are fixed or hinged to the world
+_PLACE_FIELDS = ("body_pos", "body_quat")  # of bodies that are fixed or hinged to the world and were moved
 
 
 class GeographicOrigin:
@@ -207,7 +207,7 @@ class WorldControl:
 
     @property
     def paused(self) -> bool:
-        """True while the world is paused for its services, `simkit run` and Gazebo; settable.
+        """True while the world is paused; settable. The services of the world, `simkit run` and Gazebo read this state.
 
         A script that calls `step` or `run` sets its own target and reaches it all the same.
         """

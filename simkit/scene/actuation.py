@@ -38,7 +38,7 @@ class TransmissionEnd:
 
     Attributes:
         name: plain name, as written.
-        reduction: actuator position divided by joint position.
+        reduction: ratio of actuator position to joint position.
         offset: offset of the joint position [rad or m].
         role: `joint1`, `actuator2`, ...; empty if not given.
         interfaces: hardware interfaces, as written.

@@ -1,4 +1,7 @@
-"""Shapes. Lengths in metres, in the shape's own frame: centred, with the axis of symmetry along z."""
+"""Shapes. Lengths in metres.
+
+Each shape is centred in its own frame. Its axis of symmetry is z; a plane has the normal that it specifies.
+"""
 
 from __future__ import annotations
 

@@ -53,7 +53,8 @@ class MjcfSource(MjcfElements):
     """MuJoCo's own description of a model, with the mapping of its elements to those of the scene.
 
     Attributes:
-        document: returns a new specification of the whole file (an `mujoco.MjSpec`) in which every element has a name.
+        document: function that returns a new specification of the whole file (an `mujoco.MjSpec`) with names for all
+            elements.
         place: pose of the file's world in the world frame at load time.
         prefix: prefix of all names in the compiled world; empty for a file that is the world itself.
         roots: names, as in the file, of the top-level bodies that belong to this model.

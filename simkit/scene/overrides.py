@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T", bound="DataclassInstance")
 _Entity = SceneModel | SceneLink | SceneJoint | SceneLight | SceneCollision | SceneSensor | SceneVisual | ScenePlugin
-_Tree = dict[str, "_Tree"]  # field that holds entities -> such fields of these entities
+_Tree = dict[str, "_Tree"]  # name of a field with entities -> fields of these entities that hold entities too
 
 _SENSOR_TREE: _Tree = {"plugins": {}}
 _LINK_TREE: _Tree = {
@@ -322,7 +322,7 @@ def _change_value(name: str, value: object) -> dict[str, Any]:
 
 
 def _path_of(item: _Entity, owner: str) -> str:
-    """Return the name that `--set` begins with, or an empty name for a visual, of which only plugins can be set."""
+    """Return the name of an entity in `--set`; empty for a visual, because only the plugins of a visual can be set."""
     if isinstance(item, ScenePlugin):
         return f"{owner}::{item.name}" if owner else item.name
     return "" if isinstance(item, SceneVisual) else item.scoped

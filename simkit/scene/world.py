@@ -185,7 +185,7 @@ class SceneWorld:
         quality: requested rendering quality: fast, gazebo or high.
         gazebo_quirks: true if sensors reproduce Gazebo's known errors (`<simkit:gazebo_quirks>`).
         wind: velocity of the air [m/s] in the world frame.
-        mjcf: for a world in MuJoCo's own format: returns a new specification, whose engine settings are used.
+        mjcf: function that returns a new specification of a world in MuJoCo's own format; its engine settings are used.
     """
 
     name: str = "default"

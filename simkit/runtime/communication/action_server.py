@@ -33,7 +33,7 @@ CancelCallback = Callable[["GoalHandle"], bool | None]
 class GoalStatus(enum.IntEnum):
     """Status of a goal. The numbers are those of `action_msgs/msg/GoalStatus`; REJECTED is simkit's own.
 
-    UNKNOWN is a goal that has not reached its plugin yet, or that was sent after the restored state.
+    A goal is UNKNOWN until it reaches its plugin. It is UNKNOWN again after a restore to a time before it was sent.
     """
 
     REJECTED = -1
@@ -55,10 +55,10 @@ class GoalHandle:
     Attributes:
         id: 1, 2, … in the order in which goals were sent.
         request: goal message.
-        status: status; see `GoalStatus`.
+        status: present status; see `GoalStatus`.
         result: result message; None before the end.
         feedback: newest feedback message.
-        reason: reason of a rejection, or another text about the end of the goal.
+        reason: text of the plugin about the end of the goal, such as the reason for a rejection.
         sent_ns: simulated time at which the goal was sent [ns].
     """
 
@@ -95,13 +95,17 @@ class GoalHandle:
     # ------------------------------------------------------------------ for the plugin
 
     def reject(self, reason: str = "") -> None:
-        """Reject the goal; allowed only in the goal callback."""
+        """Reject the goal. Only the goal callback of the plugin can do this."""
         if self.status in (GoalStatus.EXECUTING, GoalStatus.CANCELING):
             raise ActionError(f"goal {self.id} of {self._action.name!r} was accepted already; abort it")
         self._end(GoalStatus.REJECTED, None, reason)
 
     def publish_feedback(self, feedback: Message) -> None:
-        """Send feedback, a message or a dict of its fields, to the client; ignored after the end of the goal."""
+        """Send feedback to the client. After the end of the goal, feedback is ignored.
+
+        Args:
+            feedback: feedback message, or a dict of its fields.
+        """
         if self.is_done:
             return
         self.feedback = self._as_message(feedback, "Feedback")
@@ -127,7 +131,7 @@ class GoalHandle:
         self._notify(self._on_done, self, "get_result")
 
     def _notify(self, callback: Callback | None, argument: Message, part: str) -> None:
-        """Call a callback of the client; its exception is not an error of the plugin."""
+        """Call a callback of the client. An exception of the callback does not count as an error of the plugin."""
         if callback is None:
             return
         try:
@@ -173,7 +177,7 @@ class Action:
         self._on_goal, self._on_cancel = on_goal, on_cancel
 
     def offer(self, goal: GoalHandle) -> None:
-        """Pass a goal to the plugin, which executes it unless it rejects it at once."""
+        """Pass a goal to the plugin. The plugin executes the goal, unless its goal callback rejects the goal."""
         if goal.is_done:
             return  # the plugin raised before it received the goal
         if not self.active:
@@ -253,7 +257,7 @@ class ActionTable(EndpointTable[Action]):
 
         Args:
             name: name of the action; a missing leading slash is added.
-            goal: message, dict of its fields, or None for all zero.
+            goal: message, dict of its fields, or None for a message whose fields are all zero.
             on_feedback: function that receives each feedback message.
             on_done: function that receives the handle after the end of the goal.
 

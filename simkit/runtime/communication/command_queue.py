@@ -10,13 +10,13 @@ QUEUE_DEPTH: Final = 1000
 """Largest number of messages of a topic that wait for one step; the newest are kept, as with ROS's `KEEP_LAST`."""
 
 QueuedContent = Any
-"""Message, or function to call if there is no topic."""
+"""Message of a topic. An entry without a topic contains a function to call instead."""
 
 QueuedCommand = tuple[str, QueuedContent]
 
 
 class CommandQueue(dict[int, QueuedCommand]):
-    """Waiting commands by order of arrival; false if empty.
+    """Waiting commands in the order of arrival. The truth value of the queue is False if no command waits.
 
     The newest `depth` messages of each topic are kept; dropped older messages are counted. Entries without a topic are
     function calls, which are never dropped.
@@ -26,8 +26,8 @@ class CommandQueue(dict[int, QueuedCommand]):
 
     Attributes:
         dropped: number of dropped messages by topic.
-        depths: limit by topic, where it differs from `QUEUE_DEPTH`.
-        generation: counter that changes when all content was replaced (a reset or a restore).
+        depths: limits by topic, for topics whose limit differs from `QUEUE_DEPTH`.
+        generation: counter that changes when a reset or a restore replaces all commands.
     """
 
     def __init__(self, on_full: Callable[[str, int], None]) -> None:

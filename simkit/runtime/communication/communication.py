@@ -24,12 +24,12 @@ MessageMaker = Callable[[str], "Message"]
 class OnDemandTasks:
     """Tasks of a simulation that are due only while they are needed.
 
-    The need is checked when the schedule is made and when `look` is called. Without any need, the schedule is the same
-    as without these tasks.
+    The class checks which tasks are needed when the schedule is made and when `look` is called. A task that is not
+    needed does not change the schedule.
 
     Args:
-        bus: topic bus whose subscriptions decide.
-        reschedule: function that is called when the need has changed.
+        bus: topic bus, whose subscriptions decide which tasks are needed.
+        reschedule: function that is called when other tasks are needed than before.
     """
 
     def __init__(self, bus: TopicBus, reschedule: Callable[[], None]) -> None:
@@ -55,11 +55,12 @@ class OnDemandTasks:
         """Publish on topics at a rate while they have subscribers.
 
         Args:
-            topics: types by topic.
+            topics: ROS types by topic.
             rate: publishing rate [Hz].
-            make: function that returns the message of a topic, or a function that makes it when a subscriber reads it.
-            is_aside: exclude the topics from recorders and counters unless they are named.
-            is_listed: list the topics even without subscribers.
+            make: function that receives a topic and returns its message. It may also return a function that makes the
+                message when a subscriber reads the message.
+            is_aside: True if recorders and counters ignore the topics unless the user names them.
+            is_listed: True if the lists of topics contain these topics even without subscribers.
 
         Returns:
             Publishers by topic.
@@ -85,7 +86,7 @@ class OnDemandTasks:
         return publishers
 
     def look(self) -> None:
-        """Reschedule if the need for a task has changed."""
+        """Reschedule if other tasks are needed than at the last check."""
         wanted = [is_wanted() for is_wanted, _, _, _ in self._tasks]
         if wanted != self._wanted and any(wanted + self._wanted):
             self._reschedule()
@@ -121,7 +122,7 @@ class Communication:
         self.on_demand = OnDemandTasks(bus, engine.reschedule)
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Enable only the interfaces of these plugins and sensors, and those without an owner."""
+        """Enable the interfaces of these plugins and sensors and those without an owner; disable the others."""
         for table in (self.bus, self.services, self.actions, self.live_parameters):
             table.set_active(owners)
 
@@ -135,7 +136,7 @@ class Communication:
         self.actions.abandon(owner, reason)
 
     def set_parameter(self, node: str, name: str, value: object) -> None:
-        """Set a live parameter: at once, or before the next step if called from a hook or a callback.
+        """Set a live parameter at once; a call from a hook or a callback takes effect before the next step.
 
         Raises:
             ParameterError: no parameter has that name, or the value is not allowed.

@@ -65,7 +65,7 @@ class EndpointTable(Generic[E]):
         return {e.name: e for endpoints in self._endpoints.values() for e in endpoints if e.owner is owner}
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Enable only the endpoints of these owners, and those without an owner."""
+        """Enable the endpoints of these owners and all endpoints without an owner; disable the others."""
         living = {id(owner) for owner in owners}
         for endpoint in (e for endpoints in self._endpoints.values() for e in endpoints):
             endpoint.active = endpoint.owner is None or id(endpoint.owner) in living
@@ -76,7 +76,10 @@ class EndpointTable(Generic[E]):
         self._endpoints = {n: [e for e in found if id(e.owner) not in removed] for n, found in self._endpoints.items()}
 
     def _check_type(self, type_name: str) -> None:
-        """Raise MessageError for an unknown type; the content of its definition is read with the first message."""
+        """Raise MessageError for an unknown type.
+
+        The definition of a known type is read later, with the first message of the type.
+        """
         if type_name not in definition_files():
             msgs.full_name(f"{type_name}_{self.part}")
 
@@ -84,14 +87,14 @@ class EndpointTable(Generic[E]):
         return next((endpoint for endpoint in self._endpoints.get(name, ()) if endpoint.active), None)
 
     def _get(self, name: str) -> E:
-        """Return the active endpoint of that name; the error for a missing one suggests the closest name."""
+        """Return the active endpoint of that name. If none exists, raise an error that suggests the closest name."""
         found = self._find(name)
         if found is None:
             raise self.error(f"no {self.kind} {name!r}; {name_hint(name, self.names())}")
         return found
 
     def _as_message(self, endpoint: E, value: Message) -> Message:
-        """Convert a message, a dict of its fields, or None for all zero to a request or goal.
+        """Convert a value to a request or goal: a message, a dict of its fields, or None for fields that are all zero.
 
         Raises:
             MessageError: the value does not fit the type.

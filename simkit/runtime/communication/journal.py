@@ -22,7 +22,7 @@ class Journal(Protocol):
     """Recorder of external inputs; `TopicBus.journal` while it is active."""
 
     def passing(self, operation: str, arguments: Mapping[str, object]) -> AbstractContextManager[Any]:
-        """Return a context manager for an operation that may be external.
+        """Return the context manager in which an operation runs; it records the operation if the caller is external.
 
         Args:
             operation: name of the operation.
@@ -30,13 +30,16 @@ class Journal(Protocol):
         """
 
     def called_back(self, subscription: object) -> AbstractContextManager[None]:
-        """Return a context manager for the call of a callback that belongs to no plugin."""
+        """Return the context manager in which a callback runs.
+
+        If the callback belongs to no plugin, the journal records the calls that the callback makes.
+        """
 
     def hears(self, topic: str, subscription: object) -> None:
-        """Record a new subscription whose callback belongs to no plugin, before it is added."""
+        """Record a subscription whose callback belongs to no plugin, before the bus adds the subscription."""
 
     def outside(self, callback: OutsideCallback) -> OutsideCallback:
-        """Return a replacement for a callback that may be external."""
+        """Return a wrapper of a callback, which records the calls that an external callback makes."""
 
     def before_steps(self) -> None:
         """Record the beginning of a series of steps."""
@@ -46,7 +49,7 @@ class Journal(Protocol):
 
 
 class JournalKeeper(Protocol):
-    """Object with the present journal: the topic bus.
+    """Object that stores the active journal. The topic bus is such an object.
 
     Attributes:
         journal: recorder of external inputs; None without one.

@@ -45,7 +45,7 @@ class Parameter(Generic[T]):
         choices: allowed values; empty if not limited to a list.
         description: meaning, with its unit.
         owner: plugin of the parameter.
-        active: True if the plugin is part of the simulation; False if only a restore can bring it back.
+        active: True if the plugin is part of the simulation; False if only a restore can bring the plugin back.
     """
 
     def __init__(
@@ -82,7 +82,7 @@ class Parameter(Generic[T]):
         return f"{words} of at most {self.maximum:g}" if self.maximum is not None else words
 
     def checked(self, value: object) -> T:
-        """Return the value as it would be stored.
+        """Check a value, convert it to the type of the parameter, and return it.
 
         Raises:
             ParameterError: the value has another type or is out of bounds; the message lists the allowed values.
@@ -135,7 +135,7 @@ class ParameterTable:
         self._parameters.setdefault(parameter.node, {})[id(parameter.owner), parameter.name] = parameter
 
     def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
-        """Return the name of a plugin's node, the first free one of `wanted`, `otherwise`, `otherwise_2` and so on."""
+        """Return a name for a plugin's node: the first free name of `wanted`, `otherwise`, `otherwise_2` and so on."""
         names = itertools.chain((wanted, otherwise), (f"{otherwise}_{i}" for i in itertools.count(2)))
         return next(name for name in names if self._is_free(name, owner))
 
@@ -164,7 +164,7 @@ class ParameterTable:
 
     @journaled
     def set(self, node: str, name: str, value: object) -> None:
-        """Set a parameter: before the next step if called during a step, else at once.
+        """Set a parameter at once; a call during a step takes effect before the next step.
 
         Raises:
             ParameterError: no parameter has that name, or the value is not allowed.
@@ -177,7 +177,7 @@ class ParameterTable:
             parameter.take(checked)
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Enable only the parameters of these plugins."""
+        """Enable the parameters of these plugins; disable all others."""
         living = {id(owner) for owner in owners}
         for parameter in (p for found in self._parameters.values() for p in found.values()):
             parameter.active = id(parameter.owner) in living
@@ -203,7 +203,7 @@ class ParameterTable:
 
 
 def _convert(value: Any, like: object) -> Any:
-    """Convert a value to the type of `like`; None if its type differs."""
+    """Convert a value to the type of `like`; return None if the conversion is not allowed."""
     if isinstance(value, (np.generic, np.ndarray)):
         value = value.tolist()
     if isinstance(like, (bool, str)):

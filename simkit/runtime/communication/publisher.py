@@ -64,15 +64,17 @@ class Publisher:
 
     @property
     def is_live(self) -> bool:
-        """True if each message is processed at once: by a callback, by a command input, or as a latched message."""
+        """True if each message is used at once: by a callback, by a command input, or because the topic is latched."""
         readers = self._readers
         return readers.is_called or readers.feeds or self.latched
 
     @property
     def patience(self) -> float:
-        """Number of newest messages that may be read later; 0 if no message may be deferred.
+        """Number of newest messages that the subscribers keep; 0 if the owner must publish each message at once.
 
-        The value is 0 for subscribers with a callback or a counter, and for several publishers on one topic.
+        The owner may defer its messages if the number is not 0. Deferred messages older than this number are not
+        needed. The number is 0 for a topic with a callback, a recorder, a counter, a command input or several
+        publishers, and for a latched topic.
         """
         readers = self._readers
         if self.is_live or readers.is_streamed or len(self._publishers) > 1:
@@ -101,8 +103,8 @@ class Publisher:
     def publish_later(self, make: Callable[[], Message], work: PendingWork | None = None) -> LazyMessage | None:
         """Publish the message that `make()` returns; `make` is called when the message is read.
 
-        If a subscriber has a callback, the message is made at once. On a latched topic without subscribers, the first
-        subscriber's read makes the message.
+        If a subscriber has a callback, the message is made at once. On a latched topic without subscribers, the message
+        is made when the first subscriber reads it.
 
         Args:
             make: function that returns the message.
@@ -143,7 +145,7 @@ class ExternalPublisher(Publisher):
             super().publish(message)
 
     def publish_later(self, make: Callable[[], Message], work: PendingWork | None = None) -> LazyMessage | None:
-        """Publish the message that `make()` returns; at once if there is a journal."""
+        """Publish the message that `make()` returns. If a journal is active, the message is made at once."""
         if self._bus.journal is None:
             return super().publish_later(make, work)
         self.publish(make())

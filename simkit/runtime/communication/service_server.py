@@ -3,7 +3,7 @@
     sim.call("/world/office/control", {"world_control": {"pause": True}})
     sim.offer("/robot/home", "std_srvs/srv/Trigger", lambda request: {"success": True})
 
-A bridge only has to forward them.
+A bridge to ROS 2 only has to forward requests and responses.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ class Service:
     Attributes:
         name: absolute name.
         type_name: service type, such as `std_srvs/srv/Trigger`.
-        handler: function from a request to a response: a message, a dict of its fields, or None for all zero.
+        handler: function that receives a request and returns the response: a message, a dict of its fields, or None for
+            a message whose fields are all zero.
         owner: plugin, sensor or None; the service exists as long as its owner.
         active: True if the owner is in the world.
         yields: True if another service of the same name may replace it.
@@ -70,7 +71,7 @@ class ServiceTable(EndpointTable[Service]):
         return service
 
     def offer_by_default(self, name: str, type_name: str, handler: ServiceHandler) -> None:
-        """Open a service that exists while no other service has its name."""
+        """Open a service that any other service of the same name replaces."""
         name = absolute_name(name)
         service = Service(name, type_name, handler, self._bus.owner)
         service.yields = True
@@ -87,7 +88,7 @@ class ServiceTable(EndpointTable[Service]):
 
         Args:
             name: name of the service; a missing leading slash is added.
-            request: message, dict of its fields, or None for all zero.
+            request: message, dict of its fields, or None for a message whose fields are all zero.
 
         Raises:
             ServiceError: no such service; the message suggests the closest name.

@@ -19,7 +19,7 @@ MAX_KEPT_MESSAGES: Final = 1_000_000
 """Number of newest messages that a subscription without `keep` keeps."""
 
 NO_MESSAGE = object()
-"""Replacement for a message that cannot be made."""
+"""Result of `LazyMessage.get` if the message cannot be made."""
 
 
 class PendingWork(Protocol):
@@ -35,7 +35,7 @@ class LazyMessage:
 
     Attributes:
         is_awaited: True if a reader keeps or records every message, so that the message will be read.
-        work: work on another thread that the message waits for; None without such work.
+        work: work on another thread that must end before the message can be made; None if there is none.
     """
 
     __slots__ = ("_make", "_message", "is_awaited", "work")
@@ -64,7 +64,7 @@ class SubscriptionFailures(Protocol):
     """Handling of a failed subscription."""
 
     def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
-        """Handle an exception of the callback, inside the `except` block."""
+        """Handle an exception of the callback. Call this inside the `except` block."""
 
     def report_full(self, topic: str) -> None:
         """Report that a subscription without `keep` has dropped messages."""
@@ -90,7 +90,7 @@ class TopicReaders:
     Attributes:
         readers: subscriptions.
         receivers: functions that receive a message, one for each subscription.
-        is_called: True if a subscription has a callback and does not only keep messages.
+        is_called: True if a subscription calls a function with each message.
         looks_at_all: True if a subscription keeps or records every message.
         is_streamed: True if a subscription receives each message when it is published, even if it is not made yet.
         feeds: True if the topic has command inputs.
@@ -120,9 +120,9 @@ class Subscription:
     """Received messages of a topic.
 
     Attributes:
-        messages: messages since the subscription: the last `keep`, or without `keep` the last million.
+        messages: messages received so far: the last `keep` of them, or the last million if `keep` is None.
         receive: function that receives a message.
-        callback: function that is called with each message; None for none.
+        callback: function that is called with each message, or None.
         on_error: policy for a callback that raises: "stop" stops the run, "drop" closes the subscription.
         is_called: True if there is a callback.
         keeps: largest number of messages that the subscription keeps.
@@ -165,7 +165,7 @@ class Subscription:
                 message.get()
 
     def close(self) -> None:
-        """Stop receiving; the received messages stay."""
+        """Stop receiving messages; the messages received so far stay available."""
         self._bus.unsubscribe(self)
 
     def _keep_and_call(self, message: Message) -> None:
@@ -177,7 +177,7 @@ class Subscription:
             else:
                 with journal.called_back(self):
                     self.callback(message)  # type: ignore[misc]  # as above
-        except Exception as error:  # noqa: BLE001 - what a user wrote may raise anything
+        except Exception as error:  # noqa: BLE001 - user code may raise anything
             self._bus.failures.subscriber_failed(self, error)
 
     def __deepcopy__(self, memo: dict[int, object]) -> Subscription:
@@ -185,7 +185,7 @@ class Subscription:
 
 
 class StreamSubscription(Subscription):
-    """Subscription that only calls back and keeps nothing, for recorders."""
+    """Subscription that calls a function with each message and keeps no message, for recorders."""
 
     def __init__(self, bus: SubscribingBus, topic: str, callback: Callback, takes_later: bool) -> None:
         super().__init__(bus, topic, callback, 0, "stop")

@@ -47,7 +47,7 @@ class TopicBus:
         refuses_clashes: raise an error when a publisher or listener of another type than the topic's is opened. While
             plugins are being loaded, one pass checks all of them together instead.
         revision: counter that changes with every change of readers and publishers.
-        aside: topics that recorders and counters exclude unless they are named.
+        aside: topics that recorders and counters ignore unless the user names them.
         unlisted: topics of `aside` that are only listed while they have subscribers.
         failures: handling of callbacks that raise, and of too many messages.
         journal: recorder of external inputs; None without one.
@@ -71,12 +71,15 @@ class TopicBus:
     # ------------------------------------------------------------------ publishers, listeners, subscriptions
 
     def passing(self, operation: str, **arguments: object) -> AbstractContextManager[Any]:
-        """Return a context manager for an operation that may be external; a journal, if there is one, records it."""
+        """Return the context manager in which an operation runs; an active journal records external operations."""
         return nullcontext() if self.journal is None else self.journal.passing(operation, arguments)
 
     @contextmanager
     def owned_by(self, owner: object) -> Iterator[None]:
-        """Make `owner` the owner of everything that is opened within the context; it is disabled with its owner."""
+        """Make `owner` the owner of all interfaces that are opened within the context.
+
+        The interfaces are disabled together with their owner.
+        """
         before, self.owner = self.owner, owner
         try:
             yield
@@ -110,7 +113,7 @@ class TopicBus:
 
         Args:
             topic: name of the topic; a missing leading slash is added.
-            types: accepted types; the first one is listed.
+            types: accepted types; `topics` lists the first one.
             callback: function that receives each message between two steps.
             depth: largest number of messages of the topic that wait for one step; the oldest are dropped. The largest
                 depth of the topic's listeners counts.
@@ -153,7 +156,8 @@ class TopicBus:
         Args:
             topic: name of the topic; a missing leading slash is added.
             callback: function that receives each message.
-            takes_later: allow a `LazyMessage` instead of a message; the callback may keep it.
+            takes_later: True if the callback accepts a `LazyMessage` instead of a message; it may store the
+                `LazyMessage`.
         """
         return self._add_reader(StreamSubscription(self, absolute_name(topic), callback, takes_later))
 
@@ -172,7 +176,7 @@ class TopicBus:
         self._tidy(end.topic)
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Enable only the publishers and listeners of these owners, and those without an owner."""
+        """Enable the publishers and listeners of these owners and those without an owner; disable the others."""
         living = {id(o) for o in owners}
         tables: tuple[Mapping[str, Endpoints], ...] = (self._publishers, self._listeners)
         for ends in (ends for table in tables for ends in table.values()):
@@ -187,7 +191,7 @@ class TopicBus:
             self.close(end)
 
     def endpoints(self, topic: str | None = None) -> Iterator[tuple[str, Publisher | Listener, tuple[str, ...], str]]:
-        """Yield topic, publisher or listener, its types and its verb ("publishes" or "takes").
+        """Yield tuples of topic, publisher or listener, ROS types, and "publishes" or "takes".
 
         Args:
             topic: absolute name of one topic; None for all topics.
@@ -207,7 +211,7 @@ class TopicBus:
     # ------------------------------------------------------------------ lists
 
     def topics(self) -> dict[str, str]:
-        """Return the ROS type names of all published and received topics, sorted by topic, without unlisted ones."""
+        """Return the ROS type names of all published or received topics, except unlisted topics, sorted by topic."""
         return {t: kind for t, kind in self.all_topics().items() if t not in self.unlisted or self.wanted(t)}
 
     def all_topics(self) -> dict[str, str]:
@@ -297,7 +301,7 @@ class TopicBus:
                 self.inbox.put(topic, message)
 
     def enqueue(self, call: Callable[[], None]) -> None:
-        """Call a function between two steps, in order with the queued commands."""
+        """Call a function between two steps, after the commands that are already queued."""
         self.inbox.put("", call)
 
     def deliver_inputs(self) -> None:
@@ -334,7 +338,7 @@ class TopicBus:
 
     @property
     def dropped(self) -> dict[str, int]:
-        """Numbers of command messages by topic that were dropped because too many came for one step."""
+        """Number of dropped command messages by topic. Messages are dropped if too many arrive for one step."""
         return dict(self.inbox.dropped)
 
     def _readers_of(self, topic: str) -> TopicReaders:

@@ -9,7 +9,7 @@ from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.runtime.communication.publisher import Listener, Publisher
 
 Side = tuple[str, Publisher | Listener, tuple[str, ...], str]
-"""Topic, publisher or listener, its types and its verb ("publishes" or "takes")."""
+"""Topic, publisher or listener, ROS types, and "publishes" or "takes"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +36,10 @@ class TopicEndpoint:
 def report_topic_conflicts(
     sides: Iterable[Side], diagnostics: Diagnostics, newcomers: Iterable[object] | None = None
 ) -> None:
-    """Report topics that a plugin shares with a plugin or a sensor under another type.
+    """Report each topic on which a plugin uses another type than another plugin or a sensor.
 
-    A ROS topic has one type. A plugin that publishes a sensor's topic is also reported if both types are the same.
+    A ROS topic has only one type. If a plugin and a sensor publish on one topic, the topic is reported even if their
+    types are equal.
 
     Args:
         sides: publishers and listeners of all enabled sensors and plugins.
@@ -102,7 +103,7 @@ def _endpoints_by_topic(sides: Iterable[Side]) -> dict[str, list[TopicEndpoint]]
 
 def _endpoint(end: Publisher | Listener, types: tuple[str, ...], does: str) -> TopicEndpoint:
     owner = end.owner
-    scene = getattr(owner, "scene", None)  # a sensor's
+    scene = getattr(owner, "scene", None)  # only sensors have one
     name = getattr(owner, "scoped", "") if scene is not None else getattr(owner, "name", "")
     where = getattr(scene if scene is not None else owner, "where", NOWHERE)
     kind = "sensor" if scene is not None else "plugin"

@@ -27,7 +27,7 @@ class TopicFailures:
         self._reports, self._now = reports, now
 
     def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
-        """Stop the run or close the subscription, as its policy requires; call it inside the `except` block."""
+        """Stop the run or close the subscription, as its policy requires. Call this inside the `except` block."""
         if isinstance(error, (PluginError, SimulationDiverged)) or is_guarded(subscription.callback):
             raise error
         topic, name = subscription.topic, callback_name(subscription.callback)

@@ -11,18 +11,18 @@ _NEAR_FACTOR: Final = 50.0
 solution."""
 
 _MAX_EXTRAPOLATION: Final = 100.0
-"""Largest ratio of the squares of extrapolation and residual; beyond it the plain iterate is used."""
+"""Largest ratio of the squared extrapolation to the squared residual; above it, the plain iterate is used."""
 
 
 class AndersonAcceleration:
     """Anderson acceleration of a fixed-point iteration, with the last two differences.
 
-    Plain iteration removes a tenth of the error per iteration with light wheels. With four wheels that share the load
-    of a stiff vehicle it removes 2 %, because a change of that share moves nothing.
+    Plain iteration removes a tenth of the error per iteration with light wheels. If four wheels share the load of a
+    stiff vehicle, it removes only 2 %, because load that changes from one wheel to another moves nothing.
 
     Attributes:
-        best: iterate with the smallest residual. It is used for contacts whose iteration does not converge: friction on
-            a lever can press harder the more it is pressed.
+        best: iterate with the smallest residual. It is used if the iteration does not converge. This happens if
+            friction on a lever increases its own normal force.
     """
 
     def __init__(self) -> None:
@@ -32,7 +32,7 @@ class AndersonAcceleration:
         self._results: list[list[float]] = []
 
     def has_come_near(self, tolerance: float) -> bool:
-        """Check whether the root mean square of the residual was ever within some tolerances, about g."""
+        """Check whether the root mean square of the residual was ever below `_NEAR_FACTOR` tolerances, about g."""
         return bool(self.best) and self._least < (_NEAR_FACTOR * tolerance) ** 2 * len(self.best)
 
     def next(self, iterate: list[float], result: list[float]) -> list[float]:

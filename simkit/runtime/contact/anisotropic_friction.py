@@ -57,7 +57,7 @@ class SlippingWheel:
 
 
 WheelSlips = Callable[[], list[Pair]]
-"""Function that returns each wheel's compliances across (along its axle) and ahead, per rate of rotation [m/N]."""
+"""Function that returns two compliances for each wheel, along its axle and ahead, per rate of rotation [m/N]."""
 
 
 class ContactRequest(NamedTuple):
@@ -77,7 +77,7 @@ class ShapedPhysics(Protocol):
 
 
 class AnisotropicFriction:
-    """Contacts of a simulation with directional friction or slip; without any, there is no cost.
+    """Contacts of a simulation with directional friction or slip. A world without such contacts loses no time.
 
     Args:
         physics: physics whose contacts are changed.
@@ -183,7 +183,7 @@ class _ModelFriction:
         return bool(self._rows) or self.surfaces.run
 
     def add_belts(self, owner: object, belts: Sequence[Belt]) -> None:
-        """Add the moving surfaces of a plugin, once."""
+        """Add the moving surfaces of a plugin; a second call has no effect."""
         if id(owner) not in self._belts:
             self._belts.add(id(owner))
             for belt in belts:
@@ -192,7 +192,7 @@ class _ModelFriction:
             self._arrange()
 
     def _rub(self, belt: Belt) -> None:
-        """Give the collisions of a belt the friction that its plugin requests."""
+        """Set the friction of a belt's collisions to the coefficients that its plugin requests."""
         if belt.friction is None:
             return
         for scoped in dict.fromkeys(self._names.geom_owner(geom)[1] for geom in belt.geoms):
@@ -216,7 +216,7 @@ class _ModelFriction:
         return [geom for geom in link.geoms if self._names.geom_owner(geom)[1] == collision.scoped]
 
     def add_wheels(self, owner: object, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
-        """Add the slipping wheels of a plugin, once."""
+        """Add the slipping wheels of a plugin; a second call has no effect."""
         if id(owner) in self._sources:
             return
         keys = []
@@ -304,7 +304,7 @@ class _ModelFriction:
 
 
 def _direction_link(name: str, link: str, names: NameMap) -> LinkBinding | None:
-    """Return the link in whose frame a direction is given, by its name in the scope of the collision's link.
+    """Return the link in whose frame a friction direction is given. The name is resolved in the scope of the collision.
 
     The result is None for the collision's own link.
     """

@@ -24,7 +24,8 @@ _MIN_ANGULAR_VELOCITY: Final = 0.03
 """Least angular velocity for the correction [rad/s]: at 1 m it is 0.9 mm/s²."""
 
 _MAX_RELATIVE_SHARE: Final = 0.2
-"""Largest relative angular velocity of two bodies that rotate together, as a fraction of their own."""
+"""Largest relative angular velocity of two bodies that rotate together, as a fraction of the slower one's.
+"""
 
 Point = tuple[float, float, float]
 
@@ -81,7 +82,7 @@ class CentripetalFriction:
         return found
 
     def correct(self, data: mujoco.MjData, carried: list[tuple[int, int, int]]) -> list[tuple[int, float]]:
-        """Subtract the term from the references of the tangents.
+        """Subtract the centripetal term from the references of the tangents.
 
         All contacts of a pair of bodies use the term at the position of their first contact.
 
@@ -90,7 +91,7 @@ class CentripetalFriction:
             carried: contacts from `find`.
 
         Returns:
-            Rows and their previous references.
+            Changed rows, each with its previous reference.
         """
         before: list[tuple[int, float]] = []
         contact, aref, damping = data.contact, data.efc_aref, data.efc_KBIP

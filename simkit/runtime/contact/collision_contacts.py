@@ -1,4 +1,4 @@
-"""Contacts of the engine by the collisions of the files that they belong to."""
+"""The engine's contacts, assigned to the collisions of the loaded files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ class CollisionTable:
     """Collisions of a compiled model, numbered in the order of their first geoms.
 
     Attributes:
-        names: scoped names by number; a geom without a collision in a file has its own name.
+        names: scoped names of the collisions by number. A geom that belongs to no collision of a file is listed under
+            its own name.
         of_geom: collision number by geom id, shape (ngeom + 1,); the last item is for index -1, no geom.
     """
 
@@ -78,8 +79,8 @@ class CollisionContacts:
 def find_contacts(model: mujoco.MjModel, data: mujoco.MjData, mine: Bools) -> CollisionContacts | None:
     """Return the contacts of selected geoms; None if there are none.
 
-    A contact exists if two surfaces touch or overlap, or if one pushes the other before that. Geoms that are only
-    within the engine's margin do not count.
+    Two surfaces have a contact if they touch or overlap, or if a force between them acts already before they touch.
+    Geoms that are only within the engine's margin do not count.
 
     Args:
         model: MuJoCo's model.

@@ -13,25 +13,25 @@ ARRAY_THRESHOLD: Final = 64
 """Least number of contacts for which arrays are faster than plain numbers; the results have the same bits."""
 
 EXIT_SPEED: Final = 0.05
-"""Largest speed [m/s] at which a contact releases or overlapping bodies separate: a hop of 0.13 mm."""
+"""Largest speed [m/s] at which a contact opens and overlapping bodies separate; at this speed, a body hops 0.13 mm."""
 
 DEEP_PENETRATION: Final = 1e-3
-"""Penetration [m] from which the separation is limited before it begins; a contact at rest has some micrometres."""
+"""Penetration [m] from which the separation speed is limited in advance; a contact at rest has some micrometres."""
 
 OPENING_SPEED: Final = 0.2 * EXIT_SPEED
-"""Least speed [m/s] of an opening contact."""
+"""Speed along the normal [m/s] above which a contact counts as opening."""
 
 CLOSING_SPEED: Final = -EXIT_SPEED
-"""Speed [m/s] below which a contact closes fast."""
+"""Speed along the normal [m/s] below which a contact counts as closing fast."""
 
 CLOSING_ACCURACY: Final = 2e-4
 """Allowed relative error of the requested acceleration of a contact that closes fast."""
 
 NO_FORCE: Final = -1e9
-"""Requested acceleration [m/s²] of a contact without force."""
+"""Requested acceleration [m/s²] that leaves a contact without force."""
 
 MIN_PENETRATION: Final = 1e-4
-"""Penetration [m] from which the impedance of a contact is considered."""
+"""Penetration [m] from which the tolerance of a contact depends on its impedance."""
 
 LIFT_FACTOR: Final = 10.0
 """Allowed lift of a contact, in units of the tolerance times (1 - d) / d of its impedance d."""
@@ -42,7 +42,7 @@ _RESTING_FACTOR: Final = 4.0
 
 @dataclass(slots=True)
 class ContactConditions:
-    """Quantities besides the state that the correction of contacts depends on.
+    """Quantities that determine the correction of contacts, in addition to the state.
 
     Attributes:
         step: length of a step [s].
@@ -51,7 +51,8 @@ class ContactConditions:
         closing: remaining approach speed [m/s] of each geom after its contact is stopped; None without speculative
             contacts.
         inner: numbers of contacts without force.
-        softest: largest time constant [s] of a rigid contact; a softer one, set by a `<kp>`, is not corrected.
+        softest: largest time constant [s] of a rigid contact. A softer contact, set by a `<kp>`, opens and closes
+            without a correction.
     """
 
     step: float

@@ -31,6 +31,15 @@ Floats = npt.NDArray[np.float64]
 
 
 CorrectedContact = tuple[int, list[float], float, float, bool, float]
+"""Contact whose normal reference is corrected.
+
+- Row of the normal.
+- Friction coefficients; empty if the contact does not slide.
+- Reference of the normal [m/s²].
+- Requested acceleration along the normal [m/s²]; NaN keeps the reference.
+- True for an exact rebound.
+- Tolerance of the reference [m/s²].
+"""
 
 
 class ContactCorrection:
@@ -38,10 +47,7 @@ class ContactCorrection:
 
     Args:
         data: MuJoCo's data.
-        contacts: tuple of each contact. It holds the row of its normal and its friction coefficients (empty if it does
-            not slide). It continues with the reference of the normal and the requested acceleration along it [m/s²];
-            NaN keeps the reference. The last items are True for an exact rebound, and the tolerance of the reference
-            [m/s²].
+        contacts: corrected contacts; see `CorrectedContact`.
         changed: other changed rows with their previous references.
     """
 
@@ -100,7 +106,7 @@ class ContactCorrection:
                     one = mu * (before[place] - accelerations[place] - softness[place] * force[place])
                     total += one * one
             if goal == goal:
-                # a closing contact is stopped, even beyond its own reference; an opening contact is only limited
+                # a closing contact may get a larger reference, so that it stops; an opening contact only a smaller one
                 wanted = goal + softness[row] * force[row]
                 normal = wanted if rebounds else max(normal, wanted) if normal < goal else min(normal, wanted)
                 most = max(most, CLOSING_ACCURACY * goal)
@@ -117,7 +123,7 @@ class ContactCorrection:
         return stays
 
     def settle(self) -> None:
-        """Use the references with the smallest residual; if it is large, use the engine's references."""
+        """Use the references with the smallest residual, or the engine's references if this residual is large."""
         if self._sequence is not None and not self._sequence.has_come_near(self._contacts[0][5]):
             self.restore()
         elif self._sequence is not None:
@@ -197,7 +203,7 @@ def find_correction(
                     for place in range(row + 1, row + dim):
                         changed.append((place, aref[place]))
                         data.efc_aref[place] = slower * aref[place]
-        if depth > MIN_PENETRATION:  # the impedance is near 1 there, so that less lift opens the contact
+        if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
             impedance = data.efc_KBIP.item(row, 2)
             tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
         if total > tolerance * tolerance:

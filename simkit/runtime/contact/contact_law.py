@@ -32,28 +32,26 @@ from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
 from simkit.runtime.contact.wheel_contacts import WheelContacts
 
 TOLERANCE: Final = 0.02
-"""Accuracy of the correction, in units of g: a contact opens from about 0.1 g, which its softness tolerates."""
+"""Accuracy of the correction, in units of g. Contacts are soft and open only at an error of about 0.1 g."""
 
 MAX_SOLUTIONS: Final = 10
 """Largest number of solutions per step; wheels much lighter than their load need several when they begin to skid."""
 
 MAX_STEP_WITH_EDGES: Final = 0.0025
-"""Largest step [s] at which a wheel without slip may touch with both its edges.
+"""Largest step [s] at which both edge contacts of a wheel keep friction of their own while the wheel does not slip.
 
-At 4 ms the edges of a TurtleBot3's wheels push against each other. They turn the robot by 0.6 degrees per metre
-straight ahead.
+In longer steps, the edge contacts of a wheel always share one friction point. Otherwise, at 4 ms, the edges of a
+TurtleBot3's wheels push against each other and turn the robot by 0.6 degrees per metre straight ahead.
 """
 
 QUIET_SPEED: Final = 1e-4
-"""Root sum square [m/s, rad/s] of the velocities along all constraints below which nothing slides."""
+"""Root of the sum of the squared velocities along all constraints [m/s, rad/s]; below it, no contact slides."""
 
 FAST_SPEED: Final = 0.5
-"""Least speed [m/s] of a body that may hit something within a time window of `window_length` steps.
+"""Speed [m/s] of a body above which the contact law is used, because the body may hit something within the window.
 
-A slower body that rolls touches the ground but does not slide.
-
-Below this speed the engine's own contacts throw a body back with a sixth of its speed, at most three times
-`EXIT_SPEED`.
+A rolling body needs this limit: it is neither in flight nor sliding, so the other checks do not detect it. Below this
+speed the engine's own contacts throw a body back with a sixth of its speed, at most three times `EXIT_SPEED`.
 """
 
 _MIN_GRAVITY: Final = 1.0  # [m/s²] scale of the tolerance in a world without gravity

@@ -20,7 +20,7 @@ Pair = tuple[float, float]
 SlippingContact = tuple[int, int, Pair]
 """Contact number, number of the slipping kinematic tree, and compliances along the two tangents [m/s/N]."""
 
-_STIFF_FACTOR = 4.0  # multiple of the contacts' inverse mass beside which an R dominates
+_STIFF_FACTOR = 4.0  # an R of this many inverse masses of the contacts dominates their motion
 # least compliance as a fraction of the larger of two, so that the softer tangent does not react slowly
 _MIN_COMPLIANCE_SHARE = 0.02
 
@@ -58,9 +58,9 @@ class ContactSlip:
                 terms[first + 1 + tangent, 1] = min(damping, most[tangent])
 
     def _yields(self, data: mujoco.MjData, soft: Sequence[SlippingContact], firsts: list[int]) -> dict[int, Numbers]:
-        """Return the summed inverse masses of each tree's contacts along their two tangents, as upper bounds [1/kg].
+        """Return upper bounds for the inverse mass of each tree's contacts along their two tangents [1/kg].
 
-        The sum of diagonal elements is at least as large as any eigenvalue.
+        The bound is a sum of diagonal elements, which is at least as large as any eigenvalue.
         """
         found: dict[int, Numbers] = {}
         if not soft:

@@ -1,4 +1,4 @@
-"""Contacts with friction of certain geoms: numbers and frames, as plain numbers or as arrays."""
+"""Contacts with friction of selected geoms: their indices and frames, as plain numbers or as arrays."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ AnyFrictionContacts = FrictionContacts | FrictionContactArrays
 
 
 def find_friction_contacts(data: mujoco.MjData, concerns: Sequence[bool]) -> AnyFrictionContacts | None:
-    """Return the contacts with friction of certain geoms; None if there are none.
+    """Return the contacts with friction of selected geoms; None if there are none.
 
     Args:
         data: MuJoCo's data with positions.

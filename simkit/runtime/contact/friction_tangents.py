@@ -23,12 +23,13 @@ Numbers = list[float]
 Pair = tuple[float, float]
 RowContact = tuple[int, int, int]
 RowContacts = list[RowContact] | Ints
-"""Contacts with a row: index among the found contacts, row number, and the other geom.
+"""Contacts that have a friction row: index among the found contacts, number of the row, and the other geom.
 
 An array of shape (k, 3) for `FrictionContactArrays`.
 """
 
-_MIN_TANGENT_SHARE = 1e-2  # least squared fraction of a direction along a surface; less counts as perpendicular
+# a direction whose squared fraction along a surface is smaller counts as perpendicular to the surface
+_MIN_TANGENT_SHARE = 1e-2
 
 
 @dataclass(slots=True)
@@ -72,7 +73,7 @@ class FrictionTangents:
         self._mus: Floats = np.array([row.mu for row in rows]).reshape(-1, 2)
 
     def find(self, found: AnyFrictionContacts) -> RowContacts:
-        """Return the contacts that have a row."""
+        """Return the contacts that have a friction row."""
         if isinstance(found, FrictionContacts):
             return self._find(found)
         first, second = self._rows_of[found.geoms].T
@@ -97,7 +98,7 @@ class FrictionTangents:
         Args:
             data: MuJoCo's data with positions.
             found: contacts.
-            places: contacts that have a row, from `find`.
+            places: contacts that have a friction row, from `find`.
             flow: contacts with moving surfaces.
         """
         if isinstance(found, FrictionContacts) and isinstance(places, list):

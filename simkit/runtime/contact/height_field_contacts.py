@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 _STEEPEST: Final = 0.866
-"""Cosine of 30°: a normal of an inner wall differs by more than that from all normals of the surrounding ground."""
+"""Cosine of 30°: the normal of an inner wall differs by more than 30° from all normals of the surrounding ground."""
 
 Normal = tuple[float, float, float]
 

@@ -39,7 +39,7 @@ class BeltMotion:
 
     Attributes:
         speed: speed [m/s]. A positive speed carries objects on top along x, where x, the axle and up are right-handed.
-        centre: centre of the circle along which contacts are carried [m], world frame; None for straight motion.
+        centre: centre of the circle along which the belt moves objects [m], world frame; None for straight motion.
     """
 
     speed: float

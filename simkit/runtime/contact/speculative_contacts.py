@@ -35,11 +35,13 @@ _GROWTH: Final = 2.0
 """Factor by which speeds may grow within a time window of `window_length` steps."""
 
 _MAX_TILTED_TRAVEL: Final = 3.0
-"""Travel of both bodies in a step, in half thicknesses; beyond it up to 13 of 100 tilted boxes and capsules pass
-through."""
+"""Largest common travel of two bodies in a step, in half thicknesses of both, that is reliably stopped.
+
+Beyond it up to 13 of 100 tilted boxes and capsules pass through.
+"""
 
 _SAFE_SHARE: Final = 0.25
-"""Remaining approach travel within the stopping time, as a fraction of half the thickness of both."""
+"""Distance that two bodies may still approach within the stopping time, as a fraction of half the thickness of both."""
 
 _MAX_DENSE_SIZE: Final = 20_000
 _MAX_PAIRS: Final = 4_000_000
@@ -51,14 +53,14 @@ _multiply = np.multiply
 
 
 class FastApproach(NamedTuple):
-    """Two geoms: `geom` may pass through `other` within the next time window of `window_length` steps.
+    """Pair of geoms: `geom` may pass through `other` within the next time window of `window_length` steps.
 
     Attributes:
         geom: fast geom.
         other: geom that it approaches.
         speed: approach speed of the fastest points [m/s].
         thickness: thickness of the thinner geom [m].
-        step: length of a step [s] that avoids the passage.
+        step: length of a step [s] with which `geom` does not pass through `other`.
         is_height_field: True if `other` is a height field.
     """
 
@@ -110,7 +112,7 @@ class FastBodyDetector:
         self._weigh()
 
     def _weigh(self) -> None:
-        """Compute weights of velocities with which `wants` quickly excludes fast bodies."""
+        """Compute the weights of velocities with which `wants` quickly detects that no body is fast."""
         model, nv = self.model, self.model.nv
         rows, dofs, lever = travel_bounds.velocity_levers(model, self._moving)
         share = lever * self._time / self._allowed[rows]
@@ -184,7 +186,7 @@ class FastBodyDetector:
     def _positions(self, data: mujoco.MjData) -> mujoco.MjData:
         """Compute positions and velocities of bodies in separate data.
 
-        Those in `data` are of its last forward pass.
+        The values in `data` belong to its last forward pass and may be older.
         """
         model = self.model
         scratch: mujoco.MjData | None = self._scratch

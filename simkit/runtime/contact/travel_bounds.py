@@ -39,7 +39,7 @@ def half_thickness(model: mujoco.MjModel) -> Floats:
 
 
 def rotational_symmetries(model: mujoco.MjModel) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-    """Return masks of the geoms that no rotation about their centre changes, and none about their z axis."""
+    """Return two masks of geoms: unchanged by all rotations about their centre, unchanged by all about their z axis."""
     size, kind = model.geom_size, model.geom_type
     is_round = np.isin(kind, _ROUND) | ((kind == _ELLIPSOID) & (size[:, 0] == size[:, 1]))
     return kind == _SPHERE, is_round
@@ -59,11 +59,11 @@ def can_touch(model: mujoco.MjModel, one: Ints, other: Ints) -> npt.NDArray[np.b
 
 
 def allowed_travel(model: mujoco.MjModel, half: Floats, geoms: Ints) -> Floats:
-    """Return the travel [m] up to which moving geoms pass through nothing.
+    """Return the travel [m] up to which moving geoms cannot pass through another geom.
 
     Two geoms can pass through each other if their common travel exceeds half the thickness of both. Therefore a geom
-    that meets moving geoms may travel half its own thickness. A geom that meets only static geoms may travel half the
-    thickness of the thinnest of them more.
+    that meets moving geoms may travel half its own thickness. A geom that meets only static geoms may travel further,
+    by half the thickness of the thinnest static geom.
     """
     kinds: dict[tuple[int, int], list[int]] = defaultdict(list)  # masks -> geoms
     for geom in np.flatnonzero(can_collide(model)).tolist():

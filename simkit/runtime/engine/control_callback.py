@@ -22,7 +22,7 @@ _Control = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
 
 
 class _Callback:
-    """Function that is called for one `MjData`.
+    """Function that is called in the forward passes of one `MjData`.
 
     Attributes:
         error: exception that the function raised; it cannot pass through the engine.

@@ -51,8 +51,8 @@ class Engine(EngineState):
         friction: contacts with directional friction or slip.
         fast_body_warnings: warnings about bodies that are too fast for the time step.
         loop: step loop.
-        render_thread: draw camera images beside the physics while no subscriber waits for them. It may change at any
-            time, because it changes no message.
+        render_thread: True to draw camera images on another thread during the physics, unless a subscriber waits for
+            them. The value may change at any time, because it has no effect on the messages.
         velocity_limit: function that returns the limit of a joint's axis [rad/s or m/s] by scoped name and axis number.
     """
 
@@ -82,7 +82,7 @@ class Engine(EngineState):
 
     @property
     def is_stepping(self) -> bool:
-        """True during a step, when a hook or a callback reads it."""
+        """True while the simulation makes a step, so when a hook or a callback reads this attribute."""
         return self.loop.is_running
 
     @property

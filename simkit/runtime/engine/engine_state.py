@@ -58,7 +58,7 @@ class EngineState:
 
     @property
     def tick(self) -> int:
-        """Number of the present step."""
+        """Number of steps from t = 0 to the present state."""
         return self.physics.tick
 
     @property

@@ -67,7 +67,7 @@ class AttachedSensor(Protocol):
         """Measure at a tick."""
 
     def take_held(self) -> None:
-        """Read all pending values of the present model."""
+        """Measure all pending samples, before the model changes."""
 
     def reset(self) -> None:
         """Reset the sensor to its initial state."""
@@ -173,7 +173,8 @@ class WorldStructure:
 
 
 FROM_FILE, FROM_PYTHON, FROM_SPAWN = range(3)
-"""Order of plugins: those of the file in document order, those made in Python, those of spawned models."""
+"""Order of plugins: from the file in document order, then made in Python, then from spawned models.
+"""
 
 
 def plugins_in_order(parts: Iterable[SensorsAndPlugins]) -> list[tuple[AttachedPlugin, ParentFinder]]:

@@ -19,7 +19,7 @@ from simkit.runtime.engine.physics_state import (
 )
 
 SKIPPED_STAGE = {CONTROL: int(mujoco.mjtStage.mjSTAGE_VEL), VELOCITY: int(mujoco.mjtStage.mjSTAGE_POS)}
-"""Last of MuJoCo's stages that is up to date, by the stage of the forward pass that is out of date."""
+"""Last MuJoCo stage that is up to date, by the first part of the forward pass that is out of date."""
 
 _AFTER_VELOCITIES = SKIPPED_STAGE[CONTROL]
 
@@ -44,8 +44,8 @@ class ForwardPass(PhysicsState):
         """Compute everything except accelerations for the state at this tick; the next step continues from there.
 
         Returns:
-            True if the velocities are up to date. False if all bodies are to be woken, or if the integrator is of
-            another kind.
+            True if the velocities are up to date. False if the next forward pass must wake all bodies, or if MuJoCo's
+            integrator cannot continue from computed velocities.
         """
         if self.stage < VELOCITY:
             return True

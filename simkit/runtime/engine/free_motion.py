@@ -21,7 +21,7 @@ MIN_CHAIN_LENGTH: Final = 8
 """Least number of passive joints in a row that make a tree a chain; arms have seven."""
 
 MIN_TURN: Final = 0.005
-"""Least rotation per step [rad] at which a body that may spin, outside a chain, is integrated here."""
+"""Least rotation per step [rad] at which this module integrates a body that may spin and is not in a chain."""
 
 MAX_SUBSTEP_TURN: Final = 0.05
 """Largest rotation of the fastest joint in a substep [rad]; 0.05 keeps the energy of 50 links within 0.03 %."""

@@ -1,4 +1,4 @@
-"""State of the physics between two steps: MuJoCo's model and data, which data is outdated, and divergence."""
+"""State of the physics between two steps: MuJoCo's model and data, the outdated parts of the data, and divergence."""
 
 from __future__ import annotations
 
@@ -88,11 +88,11 @@ class StepWindow(NamedTuple):
     """Step method up to the next check of the contacts.
 
     Attributes:
-        uses_law: the steps follow the contact law.
+        uses_law: True if the steps follow the contact law.
         until: tick of the next check of the contacts.
-        is_fast: the steps have speculative contacts.
+        is_fast: True if the steps have speculative contacts.
         fast_until: tick of the next check of the speeds.
-        probes: controls or forces have changed so much that contacts may begin to slide.
+        probes: True if controls or forces have changed so much that contacts may begin to slide.
         probed: controls at the last check of their effect, shape (nu,); empty for the present controls.
     """
 
@@ -113,9 +113,9 @@ class HeldState:
         model: MuJoCo's model of the state.
         values: state vector of MuJoCo (`mjSTATE_INTEGRATION`).
         request: contact changes that plugins requested at that tick, for `ContactShaper.shape`.
-        uses_law: the step follows the contact law; None if the state still has to decide.
-        is_fast: the step has speculative contacts; None if the state still has to decide.
-        probes: controls or forces changed before the step so much that contacts may begin to slide.
+        uses_law: True if the step follows the contact law; None if a check of the state must still decide this.
+        is_fast: True if the step has speculative contacts; None if a check of the state must still decide this.
+        probes: True if controls or forces changed before the step so much that contacts may begin to slide.
     """
 
     tick: int

@@ -1,8 +1,8 @@
 """Steps of the physics: advance MuJoCo's state without repeating forward passes.
 
 After `mj_step` the positions are one step ahead of all values computed from them. The first reader repeats the forward
-pass. The next step continues from that forward pass: integrating it and then stepping k-1 times gives the bits of k
-steps.
+pass. The next step continues from that forward pass. Integrating from there and then making k-1 steps gives the same
+bits as k steps.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Handling of plugins that raise: an exception stops the run, or disables the plugin from then on.
 
 `PluginFaults.guard` wraps every hook and callback of a plugin that is called during a run. A watcher on another thread
-finds the active call in the stack (`active_plugin_calls`), so a watcher makes plugin calls no slower.
+finds the active call in the stack (`active_plugin_calls`), so that the watcher does not slow down the calls.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class PluginInterfaces(Protocol):
     """Topics, services, actions and parameters of plugins."""
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Keep only the interfaces that these plugins and sensors opened in use."""
+        """Enable the interfaces that these plugins and sensors opened; disable the others."""
 
     def abandon(self, owner: object, reason: str) -> None:
         """Abort the requests and goals that a plugin is processing."""
@@ -84,7 +84,7 @@ class PluginFaults:
         return [*structure.all_sensors(), *(p for p in plugins if id(p) not in self._disabled)]
 
     def policy(self, plugin: AttachedPlugin) -> PluginErrorPolicy:
-        """Return the error policy of a plugin: that of the user, else of the file, else of the class."""
+        """Return the error policy of a plugin: the policy of the user, else of the file, else of the plugin's class."""
         return self.on_error or plugin.on_error or "stop"
 
     # ------------------------------------------------------------------ calling
@@ -143,7 +143,7 @@ class PluginFaults:
     def state_of(self, plugin: AttachedPlugin) -> AttachedState:
         """Return the state of a plugin for a snapshot.
 
-        A plugin that raises in `get_state` and is disabled gives None.
+        The state is None if the plugin raises in `get_state` and is therefore disabled.
         """
         try:
             return call_plugin(plugin, "get_state", plugin.get_state)
@@ -243,7 +243,7 @@ def active_plugin_calls(frame: FrameType | None) -> list[PluginCall]:
         if frame.f_code in codes:
             line = f"{now.f_code.co_filename}:{now.f_lineno} in {now.f_code.co_name}"
             names = frame.f_locals
-            if hasattr(names.get("plugin"), "where"):  # not a service without a plugin
+            if hasattr(names.get("plugin"), "where"):  # a service of user code has no plugin
                 found.append(PluginCall(names["plugin"], names["hook"], frame, line))
             now = frame.f_back
         frame = frame.f_back

@@ -121,7 +121,7 @@ class Scheduler:
         getattr(self, phase).add(task, timetable)
 
     def rewind(self, tick: int) -> None:
-        """Continue from `tick`: its readings are done, the commands before its step are not."""
+        """Continue from `tick`. The readings of this tick are done; the commands before the next step are still due."""
         self.before.rewind(max(tick - 1, 0))
         self.sense.rewind(tick)
         self.after.rewind(tick)

@@ -7,7 +7,7 @@ this module decides. A tree may sleep under these conditions, which make sleep i
 
 - The tree is in contact, or held by another constraint, and nothing drives or measures it.
 - The tree has stayed within 1 nm (1 nrad) for 0.1 s, twice, and moved no more the second time than the first. A tree
-  within 10 µm for 1 s, twice, also counts (the solver makes a pile tremble).
+  that has stayed within 10 µm for 1 s, twice, also counts, because the solver makes a pile tremble.
 - Every tree that it touches meets the same conditions.
 
 The windows lie on the grid of simulated time, so that chunks of steps, readers and processes make no difference.
@@ -28,9 +28,9 @@ RestState = tuple[Any, ...]
 RATE: Final = 10.0
 """Rate at which trees are observed [Hz]."""
 
-_STILL, _STILL_FLOOR = 1e-9, 1e-10  # [m or rad] between two observations
-_CALM, _CALM_FLOOR = 1e-5, 2e-6  # [m or rad] over `_LONG` observations
-_LONG = 10  # observations
+_STILL, _STILL_FLOOR = 1e-9, 1e-10  # largest motion at rest [m or rad] between two observations
+_CALM, _CALM_FLOOR = 1e-5, 2e-6  # largest motion at rest [m or rad] over `_LONG` observations
+_LONG = 10  # observations in the long window
 _TWICE = 2
 
 _LEAST_SPEED = 1e-3  # [m/s] below this speed the engine puts the selected trees to sleep
@@ -53,11 +53,11 @@ class Sleep:
         enabled: True if anything may sleep at all.
 
     Attributes:
-        watches: some tree could fall asleep, so that `look` must be called at `RATE`.
-        counts: something can sleep or rest; otherwise nothing here has to be checked.
-        is_drowsy: the next step is the one in which the engine puts the selected trees to sleep.
-        rests: every tree sleeps, and nothing has been changed since.
-        wants_all_awake: the next forward pass wakes everything.
+        watches: True if a tree could fall asleep, so that `look` must be called at `RATE`.
+        counts: True if a tree can sleep or the world can rest; otherwise this class has nothing to check.
+        is_drowsy: True if the engine puts the selected trees to sleep in the next step.
+        rests: True if every tree sleeps, and nothing has been changed since.
+        wants_all_awake: True if the next forward pass wakes everything.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, enabled: bool) -> None:
@@ -79,7 +79,7 @@ class Sleep:
         self.restrict(())
 
     def restrict(self, bodies: Iterable[int]) -> None:
-        """Keep the trees of these bodies awake always, besides the trees that an actuator drives."""
+        """Always keep the trees of these bodies awake, in addition to the trees that an actuator drives."""
         model = self._model
         self._may = np.isin(model.tree_sleep_policy, _MAY)
         for body in bodies:
@@ -204,7 +204,7 @@ class Sleep:
             self._rest = [(now, now.copy()) for now in self._places]
 
     def still_rests(self) -> bool:
-        """Check that nothing was written directly to the engine's data either."""
+        """Check that the world still rests: nothing was written directly to the engine's data."""
         for values in self._pushes:
             if values.any():
                 self.rests = False

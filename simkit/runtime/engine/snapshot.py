@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 class Snapshot:
     """State that `restore` brings back; made by `Simulation.snapshot`.
 
-    A snapshot that a hook or callback requests is taken at the end of the present step. The other tasks of that tick
-    belong to it, otherwise a restored run would not repeat. Until then only its attribute `owner` exists.
+    A snapshot that a hook or callback requests is taken at the end of the present step. The snapshot then includes the
+    other tasks of that tick; without them, a restored run would not repeat. Before the end of the step, the snapshot
+    has only the attribute `owner`.
 
     Attributes:
         tick: tick of the state.
@@ -83,7 +84,7 @@ class WaitingCommands(Protocol):
 
 
 class Snapshots:
-    """Functions that take and restore snapshots of a simulation.
+    """Functions to take and restore snapshots of a simulation.
 
     Args:
         owner: the simulation.
@@ -143,8 +144,8 @@ class Snapshots:
 
         Args:
             snapshot: snapshot of this simulation.
-            with_inbox: restore the commands that wait for the next step too. Without them, the restore only undoes a
-                failed change, and time continues.
+            with_inbox: True to restore the commands that wait for the next step too. False only undoes a failed change:
+                the waiting commands stay, and time continues.
         """
         engine = self._engine
         if snapshot.structure is not engine.structure:

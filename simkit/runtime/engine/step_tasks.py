@@ -37,14 +37,14 @@ class PluginGroup:
 
 
 GroupHook = Callable[[Sequence["AttachedPlugin"]], Callable[[PluginGroup], None]]
-"""Function that makes one function from several plugins, which calls a hook of all of them."""
+"""Function that receives several plugins and returns one function, which calls a hook of all these plugins."""
 
 HookTasks = Iterator[tuple[float | None, Task]]
 """Pairs of rate [Hz] and task."""
 
 
 def hook_tasks(faults: PluginFaults, plugins: Iterable[AttachedPlugin], hook: str) -> HookTasks:
-    """Yield the rates [Hz] and tasks for a hook of these plugins, in document order.
+    """Yield the rate [Hz] and the task of each hook, or of each group of hooks, in document order.
 
     Hooks of plugins of one class that are due together become one task, if the class also defines a class method with
     the hook's name and the suffix `_together`:
@@ -168,7 +168,7 @@ def fill_schedule(
 
     if coasting:
         scheduler.every(_LIMIT_RATE, _velocity_limiter(engine, coasting), "sense")
-    if engine.velocity_servos.are_there:  # before any command of the step, which has had no time to take effect
+    if engine.velocity_servos.are_there:  # before the commands of the step, which have had no time to take effect
         scheduler.every(velocity_servos.RATE, engine.velocity_servos.correct, "before")
     _report_shared_topics(engine)
     _group_sensors(engine)
@@ -197,7 +197,10 @@ def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[An
 
 
 def _velocity_limiter(engine: Engine, joints: Sequence[LimitedJoint]) -> Task:
-    """Return one task that enforces the velocity limits of joints; one product finds the joints beyond their limits."""
+    """Return one task that enforces the velocity limits of joints.
+
+    A scalar product shows quickly that no joint is near its limit.
+    """
     dofs = np.array([dof for joint in joints for dof in joint.mj_dofs], dtype=np.intp)
     owners = [joint for joint in joints for _ in joint.mj_dofs]
     # least limit of several axes; the joint checks each axis. Setting a limit makes a new schedule

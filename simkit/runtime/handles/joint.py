@@ -64,7 +64,7 @@ class Joint(Handle):
 
     @property
     def position(self) -> JointValue:
-        """Angle [rad] or length [m] of the child's joint frame in the parent's.
+        """Position of the child's joint frame in the parent's joint frame: angle [rad] or length [m].
 
         A ball joint has a rotation vector (3,), a planar joint x, y and angle, a floating joint x y z qw qx qy qz.
         """
@@ -83,7 +83,7 @@ class Joint(Handle):
 
     @property
     def velocity(self) -> JointValue:
-        """Velocity [rad/s] or [m/s]; that of a ball joint in the child's joint frame.
+        """Velocity [rad/s or m/s]. The velocity of a ball joint is in the child's joint frame.
 
         A floating joint has the velocity of the child's joint origin in the parent's joint frame (3), then the angular
         velocity in the child's joint frame (3).
@@ -135,7 +135,7 @@ class Joint(Handle):
     # ------------------------------------------------------------------ commands
 
     def set_position(self, position: float | Sequence[float] | Vector) -> None:
-        """Set the joint to a position once; poses that are read afterwards include it.
+        """Set the present position of the joint. Poses that are read afterwards include the change.
 
         Joints that mimic the joint follow.
 
@@ -161,7 +161,7 @@ class Joint(Handle):
         self._physics.changed_body(STALE, self._body)
 
     def set_velocity(self, velocity: float | Sequence[float] | Vector) -> None:
-        """Set the joint's velocity once.
+        """Set the present velocity of the joint.
 
         Raises:
             InputError: the joint closes a loop.
@@ -202,7 +202,7 @@ class Joint(Handle):
 
     @property
     def lower(self) -> JointValue:
-        """Lower limit; -inf without one; settable."""
+        """Lower limit [rad or m]; -inf if the joint has none; settable."""
         return self._range(0)
 
     @lower.setter
@@ -211,7 +211,7 @@ class Joint(Handle):
 
     @property
     def upper(self) -> JointValue:
-        """Upper limit; inf without one; settable."""
+        """Upper limit [rad or m]; inf if the joint has none; settable."""
         return self._range(1)
 
     @upper.setter
@@ -289,7 +289,7 @@ class Joint(Handle):
             )
 
     def _to_joint(self, stored: Vector) -> Vector:
-        """Convert the engine's velocities or efforts to the joint's own frame; only those of a ball joint differ."""
+        """Convert the engine's velocities or efforts to the joint's frame; only those of a ball joint change."""
         return mechanics.ball_rotation(self._binding, self._ball_quat()) @ stored if self._is_ball else stored
 
     def _from_joint(self, values: Vector) -> Vector:

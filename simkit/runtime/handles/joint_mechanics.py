@@ -51,7 +51,7 @@ def ball_rotation(binding: JointBinding, stored: Vector) -> Vector:
 
 
 def joint_position(binding: JointBinding, data: mujoco.MjData) -> Vector:
-    """Return the position [rad or m] of a joint in given data, one number per degree of freedom.
+    """Return the position [rad or m] of a joint in these data, one number per degree of freedom.
 
     The position of a ball joint is a rotation vector.
     """
@@ -63,7 +63,7 @@ def joint_position(binding: JointBinding, data: mujoco.MjData) -> Vector:
 
 
 def joint_velocity(binding: JointBinding, data: mujoco.MjData) -> Vector:
-    """Return the velocity [rad/s or m/s] of a joint in given data; that of a ball joint in the child's joint frame."""
+    """Return the velocity [rad/s or m/s] of a joint in these data, for a ball joint in the child's joint frame."""
     velocity = np.array(data.qvel[list(binding.dofs)])
     if binding.type == "ball" and binding.qpos:
         start = binding.qpos[0]
@@ -181,7 +181,10 @@ def update_loop_joints(engine: EngineState) -> None:
 
 
 def _loop_jacobian(engine: EngineState, binding: JointBinding) -> tuple[list[int], Vector, Vector]:
-    """Return a twin's degrees of freedom, Jacobian (6, k) in the joint's free coordinates, and their distribution."""
+    """Return a twin's degrees of freedom, its Jacobian (6, k) for the joint's k free coordinates, and a matrix (n, k).
+
+    The matrix converts velocities of the free coordinates to velocities of the n degrees of freedom.
+    """
     model, data, body = engine.mj_model, engine.mj_data, binding.moved_body
     hidden = [f for f in binding.followers if model.dof_bodyid[f.dof] == body]
     dofs = [*binding.dofs, *(f.dof for f in hidden)]
@@ -226,7 +229,8 @@ def transmitted_wrench(
         point: reference point of the torque [m], world frame.
 
     Returns:
-        Force [N] and torque [N·m]; zeros if the joint moves nothing (both links static, or the joint binds nothing).
+        Force [N] and torque [N·m]; zeros if the joint moves no body of the engine, for example if both links are
+        static.
     """
     body = binding.moved_body
     if body <= 0:

@@ -38,7 +38,7 @@ LightCourse = Callable[[int], LightState]
 
 @dataclass(frozen=True, slots=True)
 class LightMotion:
-    """Motion of a light: a function of time, or else a constant state."""
+    """Motion of a light: a function of time, or a constant state."""
 
     state: LightState
     course: LightCourse | None = None

@@ -91,11 +91,11 @@ class Link(Handle):
 
     @property
     def is_free(self) -> bool:
-        """True if the link moves freely, together with the links on its joints."""
+        """True if the link moves freely, together with the links that joints connect to it."""
         return int(self._binding.root_joint_qpos) >= 0
 
     def set_pose(self, pose: Pose) -> None:
-        """Move a free link with all links on its joints; velocities stay.
+        """Move a free link together with all links that joints connect to it; velocities stay the same.
 
         Raises:
             InputError: joints or the world hold the link; move its model, or set its joints.

@@ -74,7 +74,7 @@ class Model(Handle):
         return pose if self._is_canonical else pose @ self._in_canonical
 
     def set_pose(self, pose: Pose) -> None:
-        """Move the whole model; joint positions and velocities stay. A static model may be moved too."""
+        """Move the whole model; joint positions and velocities stay the same. A static model may be moved too."""
         self._check()
         if self.static:
             self._handles.make_movable(self.scoped.split("::")[0])
@@ -123,7 +123,7 @@ class Model(Handle):
         update_loop_joints(self._engine)
 
     def set_joint_positions(self, positions: Mapping[str, float | Sequence[float]]) -> None:
-        """Set several joints to positions once."""
+        """Set the present positions of several joints."""
         found = [(self.joint(name), value) for name, value in positions.items()]
         for joint, value in found:
             joint.set_position(value)

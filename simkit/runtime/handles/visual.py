@@ -192,7 +192,7 @@ class Labels(VisualProperty[int]):
 
 @dataclass(frozen=True, slots=True)
 class HeatSignature:
-    """Image on a surface by its texture coordinates; its red channel is the temperature.
+    """Image on a surface, placed by texture coordinates. The red channel gives the temperature.
 
     Attributes:
         coldest: temperature at red 0 [K].
