@@ -1,4 +1,4 @@
-"""The loop, the state and the handles, on small worlds."""
+"""Step loop, state and handles of small worlds."""
 
 import math
 import subprocess
@@ -48,7 +48,7 @@ def test_acceleration_of_a_falling_link_is_gravity_and_at_rest_zero():
 
 
 @pytest.mark.parametrize("chunks", [[400], [1] * 400, [7] * 57 + [1], [399, 1]])
-def test_however_the_steps_are_cut_and_read_the_bits_are_the_same(chunks):
+def test_chunks_of_steps_and_readings_do_not_change_any_bit(chunks):
     with load(SWING) as sim, load(SWING) as reference:
         sim.joint("m::hinge").set_position(1.0)
         reference.joint("m::hinge").set_position(1.0)
@@ -67,13 +67,13 @@ def test_a_state_that_is_set_is_read_back_without_a_step():
         np.testing.assert_allclose(sim.link("m::arm").pose.rpy, [0, math.pi / 2, 0], atol=1e-9)
 
 
-def test_several_joints_are_put_at_positions_at_once():
+def test_several_joint_positions_are_set_together():
     with load(SWING) as sim:
         sim.model("m").set_joint_positions({"hinge": 0.3})
         assert sim.joint("m::hinge").position == pytest.approx(0.3)
 
 
-def test_a_twist_given_to_a_model_is_that_of_its_origin_in_the_world():
+def test_the_twist_of_a_model_is_about_its_origin_in_the_world_frame():
     with load(BALL.format(extra="")) as sim:
         sim.model("ball").set_pose(simkit.Pose.from_rpy(0, 0, 5, 0.4, -0.2, 1.0))
         sim.model("ball").set_velocity((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))
@@ -82,7 +82,7 @@ def test_a_twist_given_to_a_model_is_that_of_its_origin_in_the_world():
 
 
 class Accelerometer(simkit.WorldPlugin):
-    """Keeps what it reads after every step."""
+    """Store the acceleration that it reads after every step."""
 
     def load(self, parent, params):
         self.link, self.read = parent.link("m::arm"), []
@@ -91,7 +91,7 @@ class Accelerometer(simkit.WorldPlugin):
         self.read.append(self.link.linear_acceleration)
 
 
-def test_a_hook_of_every_step_never_sees_a_bad_number():
+def test_a_hook_at_every_step_never_reads_nan_or_infinite_numbers():
     plugin = Accelerometer()
     with load(SWING, plugins=[plugin]) as sim:
         sim.step(5)
@@ -115,7 +115,7 @@ def test_an_effort_is_clipped_and_lasts_one_step():
         assert hinge.velocity < before
 
 
-def test_a_wrench_pushes_for_one_step():
+def test_a_wrench_acts_for_one_step():
     with load(BALL.format(extra="")) as sim:
         sim.link("ball::l").apply_wrench((20.0, 0, 0))
         sim.step(10)
@@ -130,7 +130,7 @@ def test_a_joint_carries_the_weight_below_it():
         np.testing.assert_allclose(torque, 0, atol=1e-3)
 
 
-def test_a_velocity_limit_set_through_the_handle_holds_at_every_step():
+def test_a_velocity_limit_set_on_the_handle_is_enforced_at_every_step():
     with load(SWING) as sim:
         hinge = sim.joint("m::hinge")
         hinge.set_position(1.5)
@@ -156,7 +156,7 @@ def test_a_restored_run_repeats_and_so_does_a_reset():
         assert sim.tick == 0 and hinge.position == 0.0
 
 
-def test_spawn_and_remove_leave_the_others_bits_alone():
+def test_spawn_and_remove_do_not_change_the_bits_of_other_models():
     with load(BALL.format(extra="")) as sim, load(BALL.format(extra="")) as alone:
         sim.step(50)
         ball = sim.model("ball")
@@ -172,7 +172,7 @@ def test_spawn_and_remove_leave_the_others_bits_alone():
             box.pose  # noqa: B018
 
 
-def test_a_snapshot_is_of_one_simulation_only():
+def test_a_snapshot_belongs_to_one_simulation():
     with load(BALL.format(extra="")) as sim, load(BALL.format(extra="")) as other:
         with pytest.raises(ValueError, match="another simulation"):
             other.restore(sim.snapshot())
@@ -180,7 +180,7 @@ def test_a_snapshot_is_of_one_simulation_only():
         assert other.tick == 3
 
 
-def test_restore_brings_back_what_was_removed_and_takes_away_what_was_spawned():
+def test_restore_undoes_removals_and_spawns():
     with load(BALL.format(extra="")) as sim:
         sim.spawn(BOX.format(name="box", x=3.0))
         sim.step(20)
@@ -200,7 +200,7 @@ def test_restore_brings_back_what_was_removed_and_takes_away_what_was_spawned():
 
 
 @pytest.mark.parametrize("place", [(0, 0, 1), "0 0 1", 3])
-def test_a_place_that_is_no_pose_is_an_error_that_says_what_is(place):
+def test_the_error_for_a_pose_of_another_type_shows_a_pose(place):
     with load(BALL.format(extra="")) as sim:
         for put in (
             lambda: sim.spawn(BOX.format(name="box", x=1.0), pose=place),
@@ -211,7 +211,7 @@ def test_a_place_that_is_no_pose_is_an_error_that_says_what_is(place):
         assert list(sim.models) == ["ball"]
 
 
-def test_a_spawned_name_that_is_taken_is_an_error():
+def test_a_spawn_with_an_existing_name_is_an_error():
     with load(BALL.format(extra="")) as sim, pytest.raises(simkit.LoadError, match="SK-LOAD-011"):
         sim.spawn(BOX.format(name="ball", x=1.0))
 
@@ -229,7 +229,7 @@ def test_a_model_whose_plugin_has_an_error_is_not_spawned():
         sim.step(10)
 
 
-def test_a_static_model_can_be_moved_and_still_carries():
+def test_a_static_model_can_be_moved_and_still_supports_bodies():
     table = """<model name="table"><static>true</static><link name="l"><collision name="c"><geometry><box>
       <size>1 1 0.2</size></box></geometry></collision></link></model>"""
     with load(BALL.format(extra=table)) as sim:
@@ -241,7 +241,7 @@ def test_a_static_model_can_be_moved_and_still_carries():
         np.testing.assert_allclose(sim.model("table").pose.position, 0, atol=1e-12)
 
 
-def test_switched_off_collisions_let_things_through():
+def test_bodies_pass_through_disabled_collisions():
     ground = """<model name="g"><static>true</static><link name="l"><collision name="c"><geometry><plane/></geometry>
       </collision></link></model>"""
     with load(BALL.format(extra=ground)) as sim:
@@ -267,7 +267,7 @@ def test_a_diverged_run_stops_with_the_joint_and_the_time():
         assert caught.value.exit_code == 3
 
 
-def test_an_unknown_name_names_the_closest():
+def test_the_error_for_an_unknown_name_suggests_the_closest_name():
     with load(SWING) as sim, pytest.raises(KeyError, match="m::hinge"):
         sim.joint("m::hinje")
 
@@ -280,7 +280,7 @@ def test_run_until_stops_when_the_condition_holds():
 
 
 class Counter(simkit.WorldPlugin):
-    """Counts its hooks."""
+    """Count the calls of its hooks."""
 
     before_step_rate = 100.0
 
@@ -294,7 +294,7 @@ class Counter(simkit.WorldPlugin):
         self.after.append(self.sim.tick)
 
 
-def test_hooks_run_at_their_rate_and_every_step_means_every_step():
+def test_hooks_run_at_their_rates_and_none_means_every_step():
     plugin = Counter()
     with load(BALL.format(extra=""), plugins=[plugin]) as sim:
         sim.step(25)
@@ -308,7 +308,7 @@ def test_hooks_run_at_their_rate_and_every_step_means_every_step():
 
 
 class Breaks(simkit.WorldPlugin):
-    """Raises in its third step."""
+    """Raise an exception in the third step."""
 
     def load(self, parent, params):
         pass
@@ -325,14 +325,14 @@ def test_a_plugin_that_raises_stops_the_run_with_its_name_and_time():
         assert isinstance(caught.value.__cause__, RuntimeError)
 
 
-def test_importing_simkit_loads_neither_the_engine_nor_gl():
+def test_importing_simkit_does_not_import_mujoco_or_opengl():
     heavy = "{'mujoco', 'OpenGL', 'rosbags', 'cv2', 'trimesh'}"
     code = f"import simkit, sys; bad = {heavy} & set(sys.modules); sys.exit(str(bad) if bad else 0)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 
-def test_a_reset_by_who_is_called_back_ends_its_tick() -> None:
+def test_a_reset_within_a_callback_ends_the_tick() -> None:
     imu = '<sensor name="{}" type="imu"><update_rate>100</update_rate><imu><angular_velocity><x><noise type="gaussian">'
     imu += "<stddev>1</stddev></noise></x></angular_velocity></imu></sensor>"
     text = f"""<sdf version="1.9"><world name="w"><model name="m"><static>true</static><link name="l">
@@ -359,7 +359,7 @@ def test_a_reset_by_who_is_called_back_ends_its_tick() -> None:
     assert numbers(reset_at=50) == [found for found in numbers(reset_at=-1) if found[0] <= 50]
 
 
-def test_a_plugin_that_resets_again_and_again_does_not_keep_a_run_from_its_end() -> None:
+def test_a_plugin_that_resets_repeatedly_does_not_prevent_the_end_of_a_run() -> None:
     class Episodes(simkit.WorldPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             pass
@@ -375,7 +375,7 @@ def test_a_plugin_that_resets_again_and_again_does_not_keep_a_run_from_its_end()
         assert (sim.engine.steps, sim.tick) == (150, 0)
 
 
-def test_several_models_are_spawned_at_once_or_none() -> None:
+def test_all_of_several_models_are_spawned_or_none() -> None:
     ball = '<sdf version="1.9"><model name="{}"><pose>0 0 {} 0 0 0</pose><link name="l"/></model></sdf>'
     with simkit.load('<sdf version="1.9"><world name="w"/></sdf>') as sim:
         sim.step(10)

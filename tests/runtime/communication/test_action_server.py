@@ -1,4 +1,4 @@
-"""Actions: goals that take time."""
+"""Goals of an action: execution, rejection, cancellation, snapshots and errors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
 
 
 class Counter(simkit.WorldPlugin):
-    """One number of the sequence a tenth of a second; a new goal pre-empts."""
+    """Append a number to the sequence every 0.1 s; a new goal aborts the previous goal."""
 
     after_step_rate = 10.0
 
@@ -55,7 +55,7 @@ def sim() -> Any:
         yield sim
 
 
-def test_a_goal_is_worked_on_and_ends_with_its_result(sim: Any) -> None:
+def test_a_goal_is_executed_and_ends_with_its_result(sim: Any) -> None:
     told: list[list[int]] = []
     ended: list[Any] = []
     goal = sim.send_goal("/fibonacci", {"order": 5}, lambda m: told.append(list(m.sequence)), ended.append)
@@ -86,7 +86,7 @@ def test_a_goal_is_cancelled_half_way(sim: Any) -> None:
     assert list(goal.result.sequence) == [0, 1, 1, 2]
 
 
-def test_a_plugin_may_go_on_though_it_is_asked_to_cancel(sim: Any) -> None:
+def test_a_plugin_may_refuse_a_cancel_request(sim: Any) -> None:
     goal = sim.send_goal("/fibonacci", {"order": 99})
     sim.step()
     goal.cancel()
@@ -103,7 +103,7 @@ def test_a_second_goal_pre_empts_the_first(sim: Any) -> None:
     assert second.status is GoalStatus.SUCCEEDED
 
 
-def test_a_restore_brings_back_how_far_the_goals_were(sim: Any) -> None:
+def test_a_restore_restores_the_status_of_the_goals(sim: Any) -> None:
     first = sim.send_goal("/fibonacci", {"order": 5})
     sim.run(0.15)
     half = sim.snapshot()
@@ -127,7 +127,7 @@ def test_a_goal_in_the_inbox_is_part_of_a_snapshot(sim: Any) -> None:
     assert goal.status is GoalStatus.SUCCEEDED
 
 
-def test_faults_name_the_action_and_what_is_allowed(sim: Any) -> None:
+def test_errors_name_the_action_and_the_expected_values(sim: Any) -> None:
     with pytest.raises(ActionError, match="did you mean '/fibonacci'"):
         sim.send_goal("/fibonaci")
     with pytest.raises(MessageError, match="did you mean 'order'"):
@@ -138,7 +138,7 @@ def test_faults_name_the_action_and_what_is_allowed(sim: Any) -> None:
         goal.succeed()
 
 
-def test_what_a_plugin_raises_on_a_goal_names_it() -> None:
+def test_an_exception_in_a_goal_callback_names_the_plugin() -> None:
     class Faulty(simkit.WorldPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             self.act("break", FIBONACCI, lambda goal: 1 / 0)
@@ -149,7 +149,7 @@ def test_what_a_plugin_raises_on_a_goal_names_it() -> None:
             sim.step()
 
 
-def test_what_the_one_who_sent_it_raises_is_not_the_plugins_fault(sim: Any) -> None:
+def test_an_exception_of_the_client_is_not_attributed_to_the_plugin(sim: Any) -> None:
     def on_feedback(message: Any) -> None:
         raise ValueError("too slow")
 
@@ -165,7 +165,7 @@ def test_what_the_one_who_sent_it_raises_is_not_the_plugins_fault(sim: Any) -> N
     assert goal.status is GoalStatus.SUCCEEDED and not any(d.code == "SK-PLUGIN-020" for d in sim.diagnostics)
 
 
-def test_a_goal_ends_when_the_model_behind_it_is_removed_and_goes_on_with_a_restore() -> None:
+def test_a_goal_is_aborted_with_its_removed_model_and_continues_after_a_restore() -> None:
     class OnModel(simkit.ModelPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             self.act("wait", FIBONACCI, lambda goal: None)
@@ -182,7 +182,7 @@ def test_a_goal_ends_when_the_model_behind_it_is_removed_and_goes_on_with_a_rest
         assert goal.status is GoalStatus.EXECUTING and goal.reason == ""
 
 
-def test_a_goal_that_was_taken_cannot_be_rejected_and_one_that_has_ended_has_no_feedback(sim: Any) -> None:
+def test_an_accepted_goal_cannot_be_rejected_and_an_ended_goal_sends_no_feedback(sim: Any) -> None:
     goal = sim.send_goal("/fibonacci", {"order": 3})
     sim.step()
     with pytest.raises(ActionError, match="was accepted already; abort it"):

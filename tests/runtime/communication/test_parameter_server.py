@@ -1,4 +1,4 @@
-"""Live parameters: typed, bounded, changed while the simulation runs."""
+"""Live parameters: types, bounds, and changes during the run."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def sim() -> Any:
         yield sim
 
 
-def test_a_change_from_outside_is_there_for_the_next_step(sim: Any) -> None:
+def test_a_change_between_steps_is_effective_in_the_next_step(sim: Any) -> None:
     tuner = _tuner(sim)
     sim.step(2)
     sim.set_parameter("/Tuner", "p_gain", 5)
@@ -45,7 +45,7 @@ def test_a_change_from_outside_is_there_for_the_next_step(sim: Any) -> None:
     assert tuner.seen == [2.0, 2.0, 5.0, 5.0]
 
 
-def test_the_plugin_is_told_of_a_change(sim: Any) -> None:
+def test_the_plugin_is_notified_of_a_change(sim: Any) -> None:
     sim.set_parameter("/Tuner", "speed", 2.5)
     assert _tuner(sim).told == [2.5]
 
@@ -65,7 +65,7 @@ def test_the_plugin_is_told_of_a_change(sim: Any) -> None:
         ("offset", (1.0, 2.0, "a"), "3 numbers"),
     ],
 )
-def test_a_value_that_is_not_allowed_changes_nothing_and_says_what_is(
+def test_an_invalid_value_changes_nothing_and_the_error_lists_the_allowed_values(
     sim: Any, name: str, value: Any, allowed: str
 ) -> None:
     before = sim.communication.parameters["/Tuner"][name].value
@@ -74,14 +74,14 @@ def test_a_value_that_is_not_allowed_changes_nothing_and_says_what_is(
     assert sim.communication.parameters["/Tuner"][name].value == before
 
 
-def test_an_unknown_node_or_parameter_is_an_error_that_names_the_closest(sim: Any) -> None:
+def test_the_error_for_an_unknown_node_or_parameter_suggests_the_closest_name(sim: Any) -> None:
     with pytest.raises(ParameterError, match="did you mean '/Tuner'"):
         sim.set_parameter("/Tunr", "p_gain", 1.0)
     with pytest.raises(ParameterError, match="did you mean 'p_gain'"):
         sim.set_parameter("/Tuner", "p_gian", 1.0)
 
 
-def test_a_reset_and_a_restore_bring_the_values_back(sim: Any) -> None:
+def test_a_reset_and_a_restore_restore_the_values(sim: Any) -> None:
     sim.set_parameter("/Tuner", "p_gain", 7.0)
     sim.step()
     seven = sim.snapshot()
@@ -92,7 +92,7 @@ def test_a_reset_and_a_restore_bring_the_values_back(sim: Any) -> None:
     assert sim.communication.parameters["/Tuner"]["p_gain"].value == 2.0
 
 
-def test_ros_reads_and_changes_them_by_its_own_services(sim: Any) -> None:
+def test_parameters_are_read_and_changed_by_the_services_of_ros(sim: Any) -> None:
     listed = sim.call("/Tuner/list_parameters").result.names
     assert listed == ["p_gain", "mode", "count", "on", "offset", "speed"]
     found = sim.call("/Tuner/get_parameters", {"names": ["p_gain", "mode", "nothing"]}).values
@@ -113,7 +113,7 @@ def test_ros_reads_and_changes_them_by_its_own_services(sim: Any) -> None:
     assert described.description == "gain [N·m/rad]"
 
 
-def test_the_first_value_is_the_files_own(tmp_path: Any) -> None:
+def test_the_initial_value_is_that_of_the_file(tmp_path: Any) -> None:
     (tmp_path / "tuner.py").write_text(
         "import simkit\n\n\nclass T(simkit.WorldPlugin):\n    filenames = ('libtuner.so',)\n\n"
         "    def load(self, parent, params):\n"
@@ -134,7 +134,7 @@ def test_the_first_value_is_the_files_own(tmp_path: Any) -> None:
     assert len([d for d in caught.value.diagnostics if d.code == "SK-PARAM-002"]) == 3
 
 
-def test_a_model_that_comes_under_the_name_of_one_that_went_has_its_node_and_a_restore_gives_it_back(
+def test_a_model_may_reuse_the_node_of_a_removed_model_until_a_restore(
     tmp_path: Any,
 ) -> None:
     (tmp_path / "tuned.py").write_text(
@@ -159,7 +159,7 @@ def test_a_model_that_comes_under_the_name_of_one_that_went_has_its_node_and_a_r
 
 
 @pytest.mark.parametrize(
-    ("default", "given", "taken"),
+    ("default", "value", "stored"),
     [
         (1.0, np.array([1.0, 2.0]), None),
         (1.0, 10**400, None),
@@ -171,16 +171,16 @@ def test_a_model_that_comes_under_the_name_of_one_that_went_has_its_node_and_a_r
         ((1.0, 2.0), np.array([3, 4]), (3.0, 4.0)),
     ],
 )
-def test_odd_values_are_taken_as_they_are_or_refused(default: Any, given: Any, taken: Any) -> None:
+def test_unusual_values_are_accepted_unchanged_or_rejected(default: Any, value: Any, stored: Any) -> None:
     class One(simkit.WorldPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             self.value = self.declare("value", default)
 
     with simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=[One()]) as sim:
-        if taken is None:
+        if stored is None:
             with pytest.raises(ParameterError, match="One value: found .*; expected"):
-                sim.set_parameter("/One", "value", given)
+                sim.set_parameter("/One", "value", value)
         else:
-            sim.set_parameter("/One", "value", given)
+            sim.set_parameter("/One", "value", value)
         now = sim.communication.parameters["/One"]["value"].value
-        assert now == (default if taken is None else taken) and type(now) is type(default)
+        assert now == (default if stored is None else stored) and type(now) is type(default)

@@ -1,4 +1,4 @@
-"""Services: requests in, responses back, with ROS's types."""
+"""Services: requests and responses with the types of ROS."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_a_service_answers_at_once_with_its_response_message() -> None:
         assert sim.communication.services.names()["/lamp/switch"] == "std_srvs/srv/SetBool"
 
 
-def test_a_message_is_taken_as_well_as_a_dict() -> None:
+def test_a_request_may_be_a_message_or_a_dict() -> None:
     with simkit.load(EMPTY, plugins=[lamp := Lamp()]) as sim:
         sim.call("lamp/switch", msgs.make("std_srvs/srv/SetBool_Request", data=True))
         assert lamp.is_on
@@ -44,17 +44,17 @@ def test_a_message_is_taken_as_well_as_a_dict() -> None:
             sim.call("lamp/switch", {"dta": True})
 
 
-def test_an_unknown_service_is_an_error_that_names_the_closest() -> None:
+def test_the_error_for_an_unknown_service_suggests_the_closest_name() -> None:
     with simkit.load(EMPTY, plugins=[Lamp()]) as sim, pytest.raises(ServiceError, match="did you mean '/lamp/switch'"):
         sim.call("/lamp/swich")
 
 
-def test_a_service_that_is_there_cannot_be_offered_again() -> None:
+def test_an_existing_service_cannot_be_offered_again() -> None:
     with simkit.load(EMPTY, plugins=[Lamp()]) as sim, pytest.raises(ServiceError, match="of plugin 'Lamp'"):
         sim.offer("/lamp/switch", "std_srvs/srv/SetBool", lambda request: None)
 
 
-def test_what_a_plugin_raises_in_a_service_names_the_plugin() -> None:
+def test_an_exception_in_the_service_of_a_plugin_names_the_plugin() -> None:
     class Faulty(simkit.WorldPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             self.offer("break", "std_srvs/srv/Empty", lambda request: 1 / 0)
@@ -63,7 +63,7 @@ def test_what_a_plugin_raises_in_a_service_names_the_plugin() -> None:
         sim.call("/break")
 
 
-def test_the_service_of_a_removed_model_goes_and_comes_back_with_a_restore(tmp_path: Path) -> None:
+def test_a_service_is_removed_with_its_model_and_restored_with_it(tmp_path: Path) -> None:
     (tmp_path / "homing.py").write_text(
         "import simkit\n\n\nclass Homing(simkit.ModelPlugin):\n    filenames = ('libhoming.so',)\n\n"
         "    def load(self, parent, params):\n"

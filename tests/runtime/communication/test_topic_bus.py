@@ -1,4 +1,4 @@
-"""Readings go out at once; commands wait for the next step."""
+"""Topic bus: messages reach subscribers at once, and command inputs before the next step."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from simkit.errors import MessageError
 from simkit.runtime.communication.topic_bus import TopicBus
 
 
-def test_a_subscriber_may_come_before_the_publisher():
+def test_a_subscriber_may_exist_before_the_publisher():
     bus = TopicBus()
     subscription = bus.subscribe("chatter")
     publisher = bus.advertise("/chatter", "std_msgs/msg/Float64")
@@ -18,7 +18,7 @@ def test_a_subscriber_may_come_before_the_publisher():
     assert not publisher.wanted
 
 
-def test_keep_bounds_what_a_subscription_remembers():
+def test_keep_limits_the_messages_of_a_subscription():
     bus = TopicBus()
     publisher = bus.advertise("/x", "std_msgs/msg/Float64")
     subscription = bus.subscribe("/x", keep=3)
@@ -27,13 +27,13 @@ def test_keep_bounds_what_a_subscription_remembers():
     assert [m.data for m in subscription.messages] == [7.0, 8.0, 9.0]
 
 
-def test_a_latched_topic_gives_its_last_message_to_who_comes_late():
+def test_a_latched_topic_sends_its_last_message_to_later_subscribers():
     bus = TopicBus()
     bus.advertise("/x", "std_msgs/msg/Float64", latched=True).publish(msgs.make("std_msgs/msg/Float64", data=4.0))
     assert bus.subscribe("/x").latest.data == 4.0
 
 
-def test_a_publisher_takes_a_dict_of_the_fields_of_its_type():
+def test_a_publisher_accepts_a_dict_of_the_fields_of_its_type():
     bus = TopicBus()
     publisher = bus.advertise("/x", "geometry_msgs/msg/Twist")
     subscription = bus.subscribe("/x")
@@ -53,7 +53,7 @@ def test_commands_arrive_in_order_and_only_when_delivered():
     assert got == [1.0, 2.0]
 
 
-def test_a_dict_takes_the_type_whose_fields_fit():
+def test_a_dict_becomes_a_message_of_the_type_whose_fields_fit():
     bus, got = TopicBus(), []
     bus.listen("/cmd_vel", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"], got.append)
     bus.publish("/cmd_vel", {"linear": {"x": 0.2}})
@@ -63,21 +63,21 @@ def test_a_dict_takes_the_type_whose_fields_fit():
     assert bus.topics() == {"/cmd_vel": "geometry_msgs/msg/Twist"}
 
 
-def test_an_unknown_topic_names_the_closest_one():
+def test_the_error_for_an_unknown_topic_suggests_the_closest_name():
     bus = TopicBus()
     bus.listen("/cmd_vel", ["geometry_msgs/msg/Twist"], lambda m: None)
     with pytest.raises(MessageError, match="/cmd_vel"):
         bus.publish("/cmd_vl", {"linear": {"x": 1.0}})
 
 
-def test_a_message_of_another_type_is_refused():
+def test_a_message_of_another_type_is_rejected():
     bus = TopicBus()
     bus.listen("/cmd_vel", ["geometry_msgs/msg/Twist"], lambda m: None)
     with pytest.raises(MessageError, match="Float64"):
         bus.publish("/cmd_vel", msgs.make("std_msgs/msg/Float64", data=1.0))
 
 
-def test_a_publisher_that_puts_messages_off_is_asked_before_anybody_looks_comes_or_goes():
+def test_deferred_messages_are_published_before_a_read_a_subscription_or_a_close():
     bus = TopicBus()
     publisher = bus.advertise("/x", "std_msgs/msg/Float64")
     waiting = []
@@ -101,7 +101,7 @@ def test_a_publisher_that_puts_messages_off_is_asked_before_anybody_looks_comes_
     assert [m.data for m in second.messages] == [2.0, 3.0]
 
 
-def test_patience_is_how_many_messages_anybody_will_look_at():
+def test_patience_is_the_number_of_messages_that_the_subscribers_keep():
     bus = TopicBus()
     publisher = bus.advertise("/x", "std_msgs/msg/Float64")
     assert publisher.patience == 0

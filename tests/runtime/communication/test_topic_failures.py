@@ -1,4 +1,4 @@
-"""What goes wrong on topics: subscribers that raise, two types on one, floods; snapshots in the midst of a step."""
+"""Failures on topics: subscribers that raise, type conflicts, too many messages, and snapshots during a step."""
 
 import numpy as np
 import pytest
@@ -35,13 +35,13 @@ def number(value):
 
 
 class Talker(simkit.WorldPlugin):
-    """Says how often it was called, and what it has heard."""
+    """Publish the number of its calls plus the sum of the received numbers."""
 
     after_step_rate = 100.0
 
     def load(self, parent, params):
         self.calls, self.heard = 0, 0.0
-        self.says = self.advertise("said", FLOAT)
+        self.publisher = self.advertise("said", FLOAT)
         self.listen("heard", FLOAT, self.on_heard)
 
     def on_heard(self, message):
@@ -49,7 +49,7 @@ class Talker(simkit.WorldPlugin):
 
     def after_step(self):
         self.calls += 1
-        self.says.publish(number(self.calls + self.heard))
+        self.publisher.publish(number(self.calls + self.heard))
         self.calls += 1
 
 
@@ -60,36 +60,36 @@ def on_imu(message):
     raise KeyError("no such wheel")
 
 
-def test_a_subscriber_that_raises_stops_the_run_with_its_topic_its_name_and_its_place():
+def test_a_subscriber_that_raises_stops_the_run_with_its_topic_name_and_line():
     sim = simkit.load(WORLD)
     sim.subscribe("/imu", on_imu)
-    told = r"'on_imu' \(.*test_topic_failures\.py:\d+\) of '/imu' raised at t=0"
-    with pytest.raises(SubscriberError, match=told) as e:
+    reported = r"'on_imu' \(.*test_topic_failures\.py:\d+\) of '/imu' raised at t=0"
+    with pytest.raises(SubscriberError, match=reported) as e:
         sim.step(10)
     assert e.value.exit_code == 4
     assert isinstance(e.value.__cause__, KeyError)
 
 
-def test_a_subscriber_to_a_plugin_is_not_taken_for_the_plugin():
+def test_an_exception_of_a_subscriber_is_not_attributed_to_the_publishing_plugin():
     sim = simkit.load(WORLD, plugins=[Talker()])
     sim.subscribe("/said", on_imu)
     with pytest.raises(SubscriberError, match="on_imu.*'/said'"):
         sim.run(0.1)
 
 
-def test_a_subscriber_that_raises_is_dropped_where_that_is_chosen_and_the_run_goes_on():
+def test_with_on_error_drop_a_subscriber_that_raises_is_closed_and_the_run_continues():
     sim = simkit.load(WORLD)
     faulty, sound = sim.subscribe("/imu", on_imu, on_error="drop"), sim.subscribe("/imu")
     sim.run(0.1)
     assert len(faulty.messages) == 1
-    assert len(sound.messages) == 21  # one after the first step as well
-    told = [d for d in sim.diagnostics if d.code == "SK-TOPIC-003"]
-    assert len(told) == 1
-    assert "'/imu'" in told[0].message
-    assert "no such wheel" in told[0].message
+    assert len(sound.messages) == 21  # 20 regular samples, and one after the first step
+    reported = [d for d in sim.diagnostics if d.code == "SK-TOPIC-003"]
+    assert len(reported) == 1
+    assert "'/imu'" in reported[0].message
+    assert "no such wheel" in reported[0].message
 
 
-def test_another_choice_is_refused():
+def test_an_unknown_on_error_policy_is_an_error():
     with pytest.raises(ValueError, match="'stop' or 'drop'"):
         simkit.load(WORLD).subscribe("/imu", on_imu, on_error="ignore")
 
@@ -105,7 +105,7 @@ def test_a_plugin_whose_input_raises_is_named():
         sim.step()
 
 
-def test_what_came_after_an_input_that_raised_waits_for_the_next_step():
+def test_commands_after_an_input_that_raised_wait_for_the_next_step():
     bus, got = TopicBus(), []
 
     def take(message):
@@ -122,10 +122,10 @@ def test_what_came_after_an_input_that_raised_waits_for_the_next_step():
     assert got == [1.0, 3.0]
 
 
-# ---------------------------------------------------------------------- floods
+# ---------------------------------------------------------------------- too many messages
 
 
-def test_of_too_many_messages_for_one_step_the_newest_are_kept_counted_and_reported_once():
+def test_a_full_queue_keeps_the_newest_messages_and_reports_dropped_ones_once():
     reports = Diagnostics()
     bus, got = TopicBus(reports), []
     bus.listen("/x", (FLOAT,), lambda m: got.append(m.data))
@@ -139,7 +139,7 @@ def test_of_too_many_messages_for_one_step_the_newest_are_kept_counted_and_repor
     assert f"more than {QUEUE_DEPTH} messages on '/x'" in next(iter(reports)).message
 
 
-def test_a_flood_on_one_topic_takes_nothing_from_another_nor_from_the_order():
+def test_too_many_messages_on_one_topic_do_not_affect_other_topics_or_the_order():
     bus, got = TopicBus(), []
     bus.listen("/flood", (FLOAT,), lambda m: got.append(m.data), depth=2)
     bus.listen("/rare", (FLOAT,), lambda m: got.append(-m.data))
@@ -152,7 +152,7 @@ def test_a_flood_on_one_topic_takes_nothing_from_another_nor_from_the_order():
     assert got == [4.0, -4.0, 5.0, 0.0]
 
 
-def test_a_hundred_thousand_messages_a_second_are_all_heard_where_they_come_step_by_step():
+def test_a_hundred_messages_in_every_step_are_all_received():
     sim = simkit.load(WORLD, plugins=[talker := Talker()])
     for _ in range(100):
         for _ in range(100):
@@ -162,7 +162,7 @@ def test_a_hundred_thousand_messages_a_second_are_all_heard_where_they_come_step
     assert not sim.communication.bus.dropped
 
 
-def test_messages_that_wait_are_in_a_snapshot_and_a_reset_forgets_them():
+def test_snapshots_contain_waiting_messages_and_a_reset_drops_them():
     sim = simkit.load(WORLD, plugins=[talker := Talker()])
     sim.publish("/heard", number(3))
     before = sim.snapshot()
@@ -190,10 +190,10 @@ def test_an_input_that_resets_ends_the_delivery():
     assert sim.tick == 1
 
 
-# ---------------------------------------------------------------------- who listens
+# ---------------------------------------------------------------------- subscriptions do not change the run
 
 
-def test_who_listens_how_and_whether_somebody_floods_changes_no_bit():
+def test_subscriptions_and_floods_of_messages_change_no_bit():
     def run(listen):
         sim = simkit.load(WORLD, plugins=[Talker()])
         listen(sim)
@@ -213,7 +213,7 @@ def test_who_listens_how_and_whether_somebody_floods_changes_no_bit():
     assert run(flood) == alone
 
 
-# ---------------------------------------------------------------------- snapshots in the midst of a step
+# ---------------------------------------------------------------------- snapshots during a step
 
 
 @pytest.mark.parametrize("topic", ["/imu", "/height", "/said"])
@@ -221,11 +221,11 @@ def test_a_run_restored_to_a_snapshot_taken_in_a_callback_repeats(topic):
     sim = simkit.load(WORLD, plugins=[talker := Talker()])
     taken = []
 
-    def snap(message):
+    def take_snapshot(message):
         if sim.time >= 0.05 and not taken:
             taken.append(sim.snapshot())
 
-    sim.subscribe(topic, snap)
+    sim.subscribe(topic, take_snapshot)
     heard = {t: sim.subscribe(t) for t in ("/imu", "/height", "/said")}
     sim.run(0.05)
     assert taken[0].tick == 50
@@ -241,28 +241,28 @@ def test_a_run_restored_to_a_snapshot_taken_in_a_callback_repeats(topic):
     assert {t: [msgs.serialize(m) for m in s.messages[counts[t] :]] for t, s in heard.items()} == first
 
 
-def test_a_snapshot_of_a_step_under_way_cannot_be_restored_before_its_end():
+def test_a_snapshot_requested_in_a_step_cannot_be_restored_before_the_step_ends():
     sim = simkit.load(WORLD)
 
-    def back(message):
+    def restore_own_snapshot(message):
         sim.restore(sim.snapshot())
 
-    sim.subscribe("/imu", back)
+    sim.subscribe("/imu", restore_own_snapshot)
     with pytest.raises(SubscriberError, match="in a step that has not ended"):
         sim.step()
 
 
-def test_a_snapshot_of_a_step_that_never_ended_says_so():
+def test_a_snapshot_requested_in_a_step_that_never_ended_cannot_be_restored():
     sim = simkit.load(WORLD)
     sim.step(10)
     before, taken = sim.snapshot(), []
 
-    def away(message):
+    def restore_earlier(message):
         if not taken:
             taken.append(sim.snapshot())
             sim.restore(before)
 
-    sim.subscribe("/imu", away)
+    sim.subscribe("/imu", restore_earlier)
     sim.step(10)
     assert not taken[0].is_complete
     with pytest.raises(ValueError, match="not ended"):
@@ -298,7 +298,7 @@ def clashing(tmp_path, **topics):
     return path
 
 
-def test_two_plugins_on_one_topic_with_different_types_are_an_error_with_both_places(tmp_path):
+def test_two_plugins_with_different_types_on_one_topic_are_an_error_with_both_lines(tmp_path):
     with pytest.raises(simkit.LoadError) as found:
         simkit.load(clashing(tmp_path, drive="x", joint="x"))
     (error,) = [d for d in found.value.diagnostics if d.severity == "error"]
@@ -310,7 +310,7 @@ def test_two_plugins_on_one_topic_with_different_types_are_an_error_with_both_pl
     assert "clash.sdf:7)" in error.message
 
 
-def test_what_one_plugin_publishes_another_cannot_take_as_something_else(tmp_path):
+def test_a_plugin_cannot_receive_a_topic_with_another_type_than_its_publisher(tmp_path):
     with pytest.raises(simkit.LoadError, match=r"SK-TOPIC-001.*takes .*Float64.*publishes nav_msgs/msg/Odometry"):
         simkit.load(clashing(tmp_path, odometry="x", joint="x"))
 
@@ -324,18 +324,18 @@ def test_a_plugin_and_a_sensor_with_different_types_are_an_error_and_with_one_ty
             self.imu = self.advertise("imu", "sensor_msgs/msg/Imu")
 
     with simkit.load(clashing(tmp_path), plugins=[Second()]) as sim:
-        (told,) = [d for d in sim.diagnostics if d.code.startswith("SK-TOPIC")]
-    assert (told.code, told.severity) == ("SK-TOPIC-006", "warning")
-    assert "clash.sdf:15" in told.message
+        (reported,) = [d for d in sim.diagnostics if d.code.startswith("SK-TOPIC")]
+    assert (reported.code, reported.severity) == ("SK-TOPIC-006", "warning")
+    assert "clash.sdf:15" in reported.message
 
 
-def test_all_clashes_are_told_in_one_pass(tmp_path):
+def test_all_type_conflicts_are_reported_in_one_pass(tmp_path):
     with pytest.raises(simkit.LoadError) as found:
         simkit.load(clashing(tmp_path, drive="x", joint="x", odometry="y", imu="y"))
     assert [d.code for d in found.value.diagnostics if d.severity == "error"] == ["SK-TOPIC-001"] * 2
 
 
-def test_a_spawned_model_that_clashes_is_refused_and_all_is_as_before(tmp_path):
+def test_a_spawned_model_with_a_type_conflict_is_rejected_and_all_changes_are_undone(tmp_path):
     drive = '<plugin filename="gz-sim-joint-controller-system" name="gz::sim::systems::JointController">'
     arm = (
         '<sdf version="1.9"><model name="arm"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent>a'
@@ -351,7 +351,7 @@ def test_a_spawned_model_that_clashes_is_refused_and_all_is_as_before(tmp_path):
         sim.step()
 
 
-def test_a_topic_that_a_plugin_opens_later_is_refused_where_it_has_another_type(tmp_path):
+def test_a_topic_that_a_plugin_opens_later_with_another_type_is_rejected(tmp_path):
     class Late(simkit.WorldPlugin):
         def load(self, parent, params):
             pass
@@ -359,12 +359,12 @@ def test_a_topic_that_a_plugin_opens_later_is_refused_where_it_has_another_type(
         def after_step(self):
             self.advertise("imu", "std_msgs/msg/Float64")
 
-    told = "uses std_msgs/msg/Float64 on '/imu'.*Imu"
-    with simkit.load(clashing(tmp_path), plugins=[Late()]) as sim, pytest.raises(simkit.SimkitError, match=told):
+    reported = "uses std_msgs/msg/Float64 on '/imu'.*Imu"
+    with simkit.load(clashing(tmp_path), plugins=[Late()]) as sim, pytest.raises(simkit.SimkitError, match=reported):
         sim.step()
 
 
-def test_two_plugins_of_one_type_share_a_topic_without_a_word(tmp_path):
+def test_two_plugins_share_a_topic_of_one_type_without_a_report(tmp_path):
     class Two(simkit.WorldPlugin):
         def load(self, parent, params):
             self.listen("cmd_vel", "geometry_msgs/msg/Twist", lambda m: None)

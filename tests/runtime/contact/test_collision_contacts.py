@@ -1,4 +1,4 @@
-"""What counts as a contact."""
+"""Conditions under which two geoms have a contact, and the wrenches of contacts."""
 
 from __future__ import annotations
 
@@ -35,27 +35,27 @@ def test_overlapping_balls_touch() -> None:
     assert found.wrenches[0, 0] > 0
 
 
-def test_what_comes_near_is_no_contact_until_it_is_pushed() -> None:
-    """Within the gap the engine lists a pair without a force; within the margin it pushes already."""
+def test_a_nearby_ball_has_a_contact_only_if_a_force_acts_on_it() -> None:
+    """Within the gap the engine lists a contact without a force; within the margin a force already acts."""
     model, data = two_balls(0.205, gap="0.01")
     assert data.ncon == 1
     assert find_contacts(model, data, EITHER) is None
     model, data = two_balls(0.205, margin="0.01")
     found = find_contacts(model, data, EITHER)
     assert found is not None and found.depths == pytest.approx([-0.005]) and found.wrenches[0, 0] > 0
-    data.qvel[6] = 100.0  # it flies off: within the margin, and no force
+    data.qvel[6] = 100.0  # the ball moves away: it is within the margin, but no force acts
     mujoco.mj_forward(model, data)
     assert data.ncon == 1
     assert find_contacts(model, data, EITHER) is None
 
 
-def test_others_contacts_do_not_count() -> None:
+def test_contacts_of_other_geoms_are_ignored() -> None:
     model, data = two_balls(0.19)
     assert find_contacts(model, data, np.zeros(3, bool)) is None
 
 
 @pytest.mark.parametrize("cone", ["pyramidal", "elliptic"])
-def test_the_wrenches_are_those_that_move_the_bodies(cone: str) -> None:
+def test_contact_wrenches_match_the_accelerations_of_the_bodies(cone: str) -> None:
     model, data = two_balls(0.199, condim="6")
     model.opt.cone = getattr(mujoco.mjtCone, f"mjCONE_{cone.upper()}")
     data.qvel[:] = np.linspace(-0.3, 0.4, 12)

@@ -1,4 +1,4 @@
-"""What slides stays in contact and obeys Coulomb's law, what hits stops, what overlaps parts slowly."""
+"""Contact law: sliding bodies obey Coulomb's law, hitting bodies stop, overlapping bodies separate slowly."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ SHAPES = {  # shape, height of its origin, roll
 
 
 def slide(sim: Any, name: str, speed: float, seconds: float, direction: float = 0.0) -> tuple[float, float, float]:
-    """Set a body in motion; the share of steps in contact, its highest rise [m] and the way it went [m]."""
+    """Set a body in motion; return the fraction of steps with a contact, the highest rise [m] and the travel [m]."""
     model = sim.model(name)
     model.set_velocity((speed * math.cos(direction), speed * math.sin(direction), 0.0), (0.0, 0.0, 0.0))
     start, height = model.pose.position.copy(), float(model.pose.position[2])
@@ -64,7 +64,7 @@ def slide(sim: Any, name: str, speed: float, seconds: float, direction: float = 
 
 @pytest.mark.parametrize("step", [0.0005, 0.001, 0.002, 0.004])
 @pytest.mark.parametrize(("friction", "speed"), [(0.05, 1.0), (0.5, 3.0), (1.0, 10.0), (2.0, 20.0)])
-def test_a_box_that_slides_keeps_contact_and_stops_where_coulomb_says(
+def test_a_sliding_box_keeps_contact_and_stops_at_the_distance_of_coulombs_law(
     friction: float, speed: float, step: float
 ) -> None:
     with simkit.load(world(ground(), body("b", FLAT, "0 0 0.03 0 0 0", friction), step=step)) as sim:
@@ -73,7 +73,7 @@ def test_a_box_that_slides_keeps_contact_and_stops_where_coulomb_says(
         contact, rise, way = slide(sim, "b", speed, seconds)
         assert contact == 1.0
         assert rise < 5e-6
-        # the integrator moves with the velocity at the end of a step: v dt / 2 less in all
+        # the integrator uses the velocity at the end of a step, so the total travel is v dt / 2 shorter
         lost = friction * G * seconds * step / 2.0
         assert way == pytest.approx(speed * seconds - friction * G * seconds**2 / 2.0 - lost, rel=1e-3)
 
@@ -82,7 +82,7 @@ def test_a_box_that_slides_keeps_contact_and_stops_where_coulomb_says(
 @pytest.mark.parametrize("direction", [0.0, 0.7])
 def test_every_shape_slides_with_the_same_friction_in_every_direction(shape: str, direction: float) -> None:
     geometry, height, roll = SHAPES[shape]
-    across = direction if shape in ("box", "cylinder on its end") else math.pi / 2  # the others would roll
+    across = direction if shape in ("box", "cylinder on its end") else math.pi / 2  # else the shape would roll
     with simkit.load(world(ground(), body("b", geometry, f"0 0 {height} {roll} 0 0"))) as sim:
         sim.run(0.2)
         contact, rise, way = slide(sim, "b", 5.0, 0.5, across)
@@ -93,7 +93,7 @@ def test_every_shape_slides_with_the_same_friction_in_every_direction(shape: str
         assert math.atan2(velocity[1], velocity[0]) == pytest.approx(across, abs=1e-3)
 
 
-def test_a_ball_that_slides_ends_rolling_at_five_sevenths_of_its_speed() -> None:
+def test_a_sliding_ball_finally_rolls_at_five_sevenths_of_its_speed() -> None:
     ball = body("b", "<sphere><radius>0.1</radius></sphere>", "0 0 0.1 0 0 0", inertia=0.4 * 0.01)
     with simkit.load(world(ground(), ball)) as sim:
         sim.run(0.2)
@@ -102,7 +102,7 @@ def test_a_ball_that_slides_ends_rolling_at_five_sevenths_of_its_speed() -> None
         assert sim.link("b::l").linear_velocity[0] == pytest.approx(5.0 * 5.0 / 7.0, rel=1e-3)
 
 
-def test_a_plate_that_spins_stays_on_the_ground() -> None:
+def test_a_spinning_plate_stays_on_the_ground() -> None:
     with simkit.load(world(ground(), body("b", FLAT, "0 0 0.03 0 0 0", inertia=0.015))) as sim:
         sim.run(0.2)
         sim.model("b").set_velocity((0, 0, 0), (0, 0, 50.0))
@@ -111,7 +111,7 @@ def test_a_plate_that_spins_stays_on_the_ground() -> None:
             sim.step()
             heights.append(float(sim.mj_data.qpos[2]))
         assert max(heights) - min(heights) < 1e-5
-        # the four corners, 0.212 m from the middle, hold with mu m g at that lever
+        # friction acts at the four corners, 0.212 m from the middle: a torque of mu m g times this lever
         assert sim.link("b::l").angular_velocity[2] == pytest.approx(
             50.0 - 0.5 * G * 0.15 * math.sqrt(2) / 0.015 * 0.5, rel=2e-3
         )
@@ -129,13 +129,13 @@ def test_a_stack_slides_as_one_and_its_upper_box_slides_on_the_lower() -> None:
         sim.model("high").set_velocity((3, 0, 0), (0, 0, 0))
         before = sim.link("high::l").linear_velocity[0]
         sim.run(0.05)
-        # between the two the smaller coefficient counts
+        # the smaller coefficient of both boxes acts between them
         assert before - sim.link("high::l").linear_velocity[0] == pytest.approx(0.2 * G * 0.05, rel=1e-2)
         assert sim.model("high").pose.position[2] == pytest.approx(0.09, abs=2e-5)
 
 
 @pytest.mark.parametrize("condim", [4, 6])
-def test_torsion_and_rolling_friction_lift_nothing_either(condim: int, tmp_path: Path) -> None:
+def test_torsional_and_rolling_friction_do_not_lift_the_ball(condim: int, tmp_path: Path) -> None:
     path = tmp_path / "world.xml"
     path.write_text(
         f"""<mujoco><option cone="elliptic" impratio="100" integrator="implicitfast" timestep="0.001"/>
@@ -157,13 +157,15 @@ def test_torsion_and_rolling_friction_lift_nothing_either(condim: int, tmp_path:
         sim.mj_data.qpos[3:] = [1, 0, 0, 0]
         sim.engine.physics.changed(STALE)
         sim.run(0.2)
-        # a torque of 0.02 m times the weight on 0.004 kg m²
+        # torsional friction: 0.02 m times the weight, on an inertia of 0.004 kg m²
         assert sim.mj_data.qvel[5] == pytest.approx(20.0 - 0.02 * 9.81 / 0.004 * 0.2, rel=0.01)
 
 
 @pytest.mark.parametrize("cone", ["elliptic", "pyramidal"])
 @pytest.mark.parametrize("integrator", ["implicitfast", "implicit", "Euler", "RK4"])
-def test_it_holds_under_every_integrator_and_both_cones(integrator: str, cone: str, tmp_path: Path) -> None:
+def test_sliding_follows_the_law_with_every_integrator_and_both_cones(
+    integrator: str, cone: str, tmp_path: Path
+) -> None:
     path = tmp_path / "world.xml"
     path.write_text(
         f"""<mujoco><option cone="{cone}" impratio="100" integrator="{integrator}" timestep="0.001"/>
@@ -185,7 +187,7 @@ def test_it_holds_under_every_integrator_and_both_cones(integrator: str, cone: s
 
 
 @pytest.mark.parametrize("step", [0.001, 0.002])
-def test_a_cube_that_falls_comes_to_rest_at_once(step: float) -> None:
+def test_a_falling_cube_comes_to_rest_without_a_bounce(step: float) -> None:
     cube = body("b", "<box><size>0.05 0.05 0.05</size></box>", "0 0 1.6 0 0 0", mass=0.1, inertia=4.2e-5)
     with simkit.load(world(ground(), cube, step=step)) as sim:
         speeds = []
@@ -197,7 +199,7 @@ def test_a_cube_that_falls_comes_to_rest_at_once(step: float) -> None:
         assert abs(speeds[-1]) < 1e-3
 
 
-def test_cubes_that_overlap_part_slowly_and_none_sinks_into_the_ground() -> None:
+def test_overlapping_cubes_separate_slowly_and_do_not_sink_into_the_ground() -> None:
     cube = "<box><size>1 1 1</size></box>"
     first, second = (body(n, cube, p, inertia=1 / 6) for n, p in (("a", "0 0 .5 0 0 0"), ("b", ".1 .1 .6 0 0 0")))
     with simkit.load(world(ground(), first, second)) as sim:
@@ -211,7 +213,7 @@ def test_cubes_that_overlap_part_slowly_and_none_sinks_into_the_ground() -> None
         assert fastest < 0.2
 
 
-def test_a_world_can_ask_for_the_engines_own_contacts() -> None:
+def test_a_world_can_use_the_engines_own_contacts() -> None:
     box = body("b", FLAT, "0 0 0.03 0 0 0")
     with simkit.load(world(ground(), box, physics="<contact_law>mujoco</contact_law>")) as sim:
         sim.run(0.2)
@@ -223,7 +225,7 @@ def test_a_world_can_ask_for_the_engines_own_contacts() -> None:
 
 
 def test_a_wheel_turns_on_the_spot_about_the_middle_of_its_tread() -> None:
-    """Two wheels of 4 cm that roll in opposite directions, with a drag: on one edge they would turn 14 % too slowly."""
+    """If the two wheels of 4 cm width rolled on one edge, the robot would turn 14 % too slowly."""
     wheels = "".join(
         f"""<link name="{n}"><pose>0 {y} 0.1 -1.5707963267948966 0 0</pose><inertial><mass>0.5</mass><inertia>
         <ixx>2e-3</ixx><iyy>2e-3</iyy><izz>3e-3</izz></inertia></inertial><collision name="c"><geometry><cylinder>
@@ -253,7 +255,7 @@ def test_a_wheel_turns_on_the_spot_about_the_middle_of_its_tread() -> None:
 
 
 def test_a_box_slides_down_an_even_height_map_over_the_borders_of_its_cells(tmp_path: Path) -> None:
-    """The engine's prisms have inner walls, and one of them stopped it."""
+    """Regression: an inner wall between the prisms of MuJoCo's height field stopped the box."""
     image = pytest.importorskip("PIL.Image")
     image.fromarray(np.tile(np.linspace(65535, 0, 33).round().astype(np.uint16), (33, 1))).save(tmp_path / "ramp.png")
     tilt = math.atan(8.0 / 32.0)
@@ -270,7 +272,7 @@ def test_a_box_slides_down_an_even_height_map_over_the_borders_of_its_cells(tmp_
         assert way == pytest.approx((math.sin(tilt) - 0.1 * math.cos(tilt)) * G * 2.0, rel=5e-3)
 
 
-def test_a_command_that_makes_wheels_slip_lifts_nothing_in_its_first_step(tmp_path: Path) -> None:
+def test_a_command_that_makes_wheels_slip_does_not_lift_them_in_its_first_step(tmp_path: Path) -> None:
     path = tmp_path / "world.xml"
     path.write_text(
         """<mujoco><option cone="elliptic" impratio="100" integrator="implicitfast" timestep="0.001"/>
@@ -296,7 +298,7 @@ def test_a_command_that_makes_wheels_slip_lifts_nothing_in_its_first_step(tmp_pa
 
 
 def test_a_surface_with_a_stiffness_of_its_own_stays_soft() -> None:
-    """Of 1 kg on 2000 N/m: a hit at 2 m/s takes many steps, where a rigid contact takes one."""
+    """A hit at 2 m/s on a surface of 2000 N/m stops 1 kg within many steps; a rigid contact needs one step."""
     soft = "<contact><ode><kp>2000</kp><kd>1</kd></ode></contact></surface>"
     ball = body("b", "<sphere><radius>0.1</radius></sphere>", "0 0 0.31 0 0 0").replace("</surface>", soft)
     with simkit.load(world(ground(), ball)) as sim:

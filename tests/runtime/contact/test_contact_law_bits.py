@@ -1,4 +1,4 @@
-"""The contact law gives the same bits however a run is divided, whoever reads, and after every way back."""
+"""The contact law gives the same bits for each division of a run, with readers, and after restore and reset."""
 
 from __future__ import annotations
 
@@ -129,8 +129,8 @@ def readings(sim: simkit.Simulation) -> list[str]:
     return [repr(sensor.latest) for sensor in sim.contents.sensors.values()]
 
 
-def look(sim: simkit.Simulation) -> None:
-    """Read in one of several ways, or not at all."""
+def read_randomly(sim: simkit.Simulation) -> None:
+    """Make one of several readings, or none."""
     random.choice(
         (
             lambda: None,
@@ -147,7 +147,7 @@ def look(sim: simkit.Simulation) -> None:
 
 
 @pytest.mark.parametrize("name", WORLDS)
-def test_chunks_and_readers_make_no_difference(name: str) -> None:
+def test_chunks_of_steps_and_readers_do_not_change_any_bit(name: str) -> None:
     random.seed(3)
     alone = WORLDS[name]()
     states = [bits(alone)]
@@ -159,7 +159,7 @@ def test_chunks_and_readers_make_no_difference(name: str) -> None:
         while sim.tick < STEPS:
             sim.step(min(1 if reads else random.choice((2, 3, 7, 8, 9, 31)), STEPS - sim.tick))
             if reads:
-                look(sim)
+                read_randomly(sim)
             assert bits(sim) == states[sim.tick]
         assert readings(sim) == readings(alone)
 
@@ -182,7 +182,7 @@ def test_a_run_restored_to_any_tick_of_a_window_repeats(name: str) -> None:
             sim.engine.physics.changed(VELOCITY)
             sim.step(count)
             sim.restore(here)
-            look(sim)
+            read_randomly(sim)
             sim.step(count)
             assert bits(sim) == states[tick + count]
             sim.restore(here)
@@ -220,15 +220,15 @@ def test_a_change_within_a_window_gives_the_same_bits_with_readers_and_after_a_r
             sim.restore(here)
         for _ in range(1 if how == "alone" else 40):
             if how == "read":
-                look(sim)
+                read_randomly(sim)
             sim.step(40 if how == "alone" else 1)
         found.append((bits(sim), readings(sim)))
     assert found[0] == found[1] == found[2]
 
 
 @pytest.mark.parametrize("name", WORLDS)
-def test_a_held_state_is_measured_as_the_state_was(name: str) -> None:
-    """Accelerations and forces of a held state that is looked at later are those that the step had, to the bit."""
+def test_a_stored_state_gives_the_accelerations_and_forces_of_its_step(name: str) -> None:
+    """A stored state that is read later has the same accelerations and forces as its step, bit for bit."""
     sim, live = WORLDS[name](), WORLDS[name]()
     held = []
     for _ in range(60):
@@ -243,8 +243,8 @@ def test_a_held_state_is_measured_as_the_state_was(name: str) -> None:
             assert np.array_equal(got, expected)
 
 
-def test_a_held_state_has_the_controls_of_its_tick() -> None:
-    """Also where the engine's controls are written to directly before anybody measures it."""
+def test_a_stored_state_has_the_controls_of_its_tick() -> None:
+    """A direct write to the engine's controls, before the stored state is measured, has no effect on it."""
     sim = simkit.load("""<mujoco><worldbody><body><joint name="j" axis="0 1 0"/><geom size="0.1" mass="1"/></body>
     </worldbody><actuator><motor joint="j"/></actuator></mujoco>""")
     sim.step(3)
@@ -255,11 +255,11 @@ def test_a_held_state_has_the_controls_of_its_tick() -> None:
     assert sim.engine.physics.data_of(held).qacc[0] == 0.0
 
 
-# ---------------------------------------------------------------------- one law
+# ---------------------------------------------------------------------- plain numbers, arrays and fleets
 
 
 @pytest.mark.parametrize("name", ["sliding", "bouncing", "fast"])
-def test_few_and_many_contacts_give_the_same_bits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_plain_numbers_and_arrays_give_the_same_bits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     found = set()
     for many in (0, 10**9):
         monkeypatch.setattr(contact_law, "ARRAY_THRESHOLD", many)
@@ -271,7 +271,7 @@ def test_few_and_many_contacts_give_the_same_bits(name: str, monkeypatch: pytest
 
 
 @pytest.mark.parametrize("condim", [1, 4, 6])
-def test_few_and_many_contacts_with_other_friction_give_the_same_bits(
+def test_plain_numbers_and_arrays_give_the_same_bits_with_every_friction_dimension(
     condim: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = set()
@@ -284,7 +284,7 @@ def test_few_and_many_contacts_with_other_friction_give_the_same_bits(
     assert len(found) == 1
 
 
-def test_a_robot_turns_in_a_fleet_as_it_does_alone() -> None:
+def test_a_robot_in_a_fleet_moves_like_a_single_robot() -> None:
     fleet = simkit.load(world(*(robot(f"robot_{i}", 1.5 * i) for i in range(8))))
     alone = simkit.load(world(robot("robot_0", 0.0)))
     assert mujoco.mj_isSparse(fleet.mj_model)
@@ -293,11 +293,11 @@ def test_a_robot_turns_in_a_fleet_as_it_does_alone() -> None:
         drive(sim)
         sim.run(0.6)
     one, other = fleet.model("robot_0").pose, alone.model("robot_0").pose
-    assert np.allclose(one.position, other.position, atol=1e-4)  # the solver's tolerance is shared by all islands
+    assert np.allclose(one.position, other.position, atol=1e-4)  # all islands share the solver's tolerance
     assert np.allclose(one.quaternion, other.quaternion, atol=1e-4)
 
 
-def test_with_the_engines_own_contacts_a_run_has_the_bits_of_the_bare_engine() -> None:
+def test_with_the_engines_own_contacts_a_run_has_the_bits_of_mujoco() -> None:
     models = body("a", "0 0 0.1 0 0 0"), body("b", "0 2 0.3 0.3 0.2 0", surface=BOUNCE), WALL
     sim = simkit.load(world(*models, head="<simkit:contact_law>mujoco</simkit:contact_law>"))
     sim.model("a").set_velocity((40, 0, 0), (0, 0, 0.5))
@@ -309,10 +309,10 @@ def test_with_the_engines_own_contacts_a_run_has_the_bits_of_the_bare_engine() -
     assert data.qpos.tobytes() == sim.mj_data.qpos.tobytes()
 
 
-# ---------------------------------------------------------------------- what depends on the past
+# ---------------------------------------------------------------------- effects of earlier steps
 
 
-def test_a_chain_that_slept_moves_alike_whether_or_not_somebody_reads_first() -> None:
+def test_a_chain_that_slept_moves_the_same_with_and_without_a_reader() -> None:
     found = []
     for reads in (False, True):
         sim = simkit.load(world(chain("0 0 0.03 0 0 0", root=""), body("a", "0 5 0.1 0 0 0")))
@@ -326,7 +326,7 @@ def test_a_chain_that_slept_moves_alike_whether_or_not_somebody_reads_first() ->
     assert found[0] == found[1]
 
 
-def test_what_collides_again_after_a_spawn_does_not_pass_through_a_wall() -> None:
+def test_a_body_whose_collisions_are_enabled_after_a_spawn_does_not_pass_a_wall() -> None:
     sim = simkit.load(world(WALL, body("a", "0 0 0.5 0 0 0", 0.04)))
     sim.link("a::l").collisions_enabled = False
     sim.step(3)
@@ -338,7 +338,7 @@ def test_what_collides_again_after_a_spawn_does_not_pass_through_a_wall() -> Non
     assert sim.model("a").pose.position[0] < 1.0
 
 
-def test_reading_again_and_again_between_two_steps_takes_no_more_memory() -> None:
+def test_repeated_readings_between_two_steps_need_no_more_memory() -> None:
     sim = turning()
     sim.step(400)
     base, used = sim.link("robot::base"), []
@@ -350,7 +350,7 @@ def test_reading_again_and_again_between_two_steps_takes_no_more_memory() -> Non
     assert used[0] == used[2]
 
 
-def test_a_spawn_while_servos_have_no_strength_leaves_their_corrections_in_bounds() -> None:
+def test_a_spawn_while_servos_have_no_gain_keeps_their_corrections_limited() -> None:
     sim = turning()
     sim.step(203)
     gains = sim.engine.touch("actuator_gainprm")
@@ -365,7 +365,7 @@ def test_a_spawn_while_servos_have_no_strength_leaves_their_corrections_in_bound
 
 
 @pytest.mark.parametrize("speed", [1e9, math.nan])
-def test_a_chain_that_diverges_says_so_and_leaves_the_options_as_they_were(speed: float) -> None:
+def test_a_diverging_chain_is_reported_and_the_engine_options_are_restored(speed: float) -> None:
     sim = swinging()
     option = sim.mj_model.opt
     before = option.timestep, option.integrator, option.disableflags, option.enableflags
@@ -423,7 +423,7 @@ def test_worlds_under_runge_kutta_step_on_several_threads_while_others_load() ->
     assert mujoco.get_mjcb_control() is None
 
 
-def test_a_callback_of_the_users_own_is_called_in_the_stages_too() -> None:
+def test_a_control_callback_of_the_user_is_called_in_the_stages_too() -> None:
     sim = simkit.load(mjcf("RK4"))
     push(sim)
     calls = []
@@ -440,7 +440,7 @@ def test_a_callback_of_the_users_own_is_called_in_the_stages_too() -> None:
     assert all(calls.count(tick) >= 4 for tick in range(4))
 
 
-def test_an_interrupt_within_a_stage_comes_out_and_leaves_no_callback(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupt_within_a_stage_is_raised_and_removes_the_callback(monkeypatch: pytest.MonkeyPatch) -> None:
     sim = simkit.load(mjcf("RK4"))
     push(sim)
     sim.step(3)

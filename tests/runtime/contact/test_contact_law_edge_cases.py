@@ -1,4 +1,4 @@
-"""Contacts that meet an odd moment of the contact law: at rest exactly on a surface, or while another body is fast."""
+"""Edge cases of the contact law: bodies exactly on a surface, and hits within a window."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def world(*models: str, step: float = 0.001) -> str:
 
 
 @pytest.mark.parametrize("step", [0.0005, 0.001, 0.002, 0.004])
-def test_a_ball_that_begins_exactly_on_the_ground_slides_without_lift(step: float) -> None:
-    """Its distance is zero, so the engine lists a contact that bears nothing yet."""
+def test_a_ball_that_starts_exactly_on_the_ground_slides_without_lift(step: float) -> None:
+    """The distance is zero, so the engine lists a contact that has no force yet."""
     ball = body("b", "<sphere><radius>0.11</radius></sphere>", "0 0 0.11 0 0 0", mu=0.2)
     with simkit.load(world(PLANE, ball, step=step)) as sim:
         sim.model("b").set_velocity((5, 0, 0), (0, -60, 0))
@@ -38,8 +38,8 @@ def test_a_ball_that_begins_exactly_on_the_ground_slides_without_lift(step: floa
 
 @pytest.mark.parametrize("step", [0.001, 0.002, 0.004])
 @pytest.mark.parametrize("others", [0, 70])
-def test_what_lands_on_a_plane_while_another_body_is_fast_does_not_sink(step: float, others: int) -> None:
-    """Both ways to compute the law: on plain numbers for few contacts, on arrays for many."""
+def test_a_box_that_lands_on_a_plane_while_another_body_is_fast_does_not_sink(step: float, others: int) -> None:
+    """The law is computed on plain numbers for few contacts and on arrays for many."""
     box = "<box><size>0.2 0.2 0.2</size></box>"
     ball = body("fast", "<sphere><radius>0.02</radius></sphere>", "5 0 5 0 0 0")
     rest = [body(f"r{i}", box, f"{-1 - i} 0 0.1 0 0 0") for i in range(others // 4)]
@@ -51,13 +51,13 @@ def test_what_lands_on_a_plane_while_another_body_is_fast_does_not_sink(step: fl
             sim.model("fast").set_velocity((120, 0, 0), (0, 0, 0))
             sim.step()
             lowest = min(lowest, float(sim.model("b").pose.position[2]))
-        assert lowest > 0.1 - 3.5 * step  # it arrives at 3.4 m/s, and a hit is noticed below the surface
+        assert lowest > 0.1 - 3.5 * step  # the box arrives at 3.4 m/s, and a hit is detected below the surface
         assert sim.model("b").pose.position[2] == pytest.approx(0.1, abs=1e-4)
 
 
 @pytest.mark.parametrize("phase", range(8))
-def test_a_ball_that_rolls_into_a_wall_stops_whichever_step_it_hits_in(phase: int) -> None:
-    """It touches the ground all the time and slides nowhere before; each phase is another step of a window."""
+def test_a_ball_that_rolls_into_a_wall_stops_in_every_step_of_a_window(phase: int) -> None:
+    """Before the hit, the ball touches the ground and does not slide. Each phase hits in another step of a window."""
     wall = """<model name="barrier"><static>true</static><pose>1.1 0 1 0 0 0</pose><link name="l"><collision name="c">
       <geometry><box><size>0.2 2 2</size></box></geometry></collision></link></model>"""
     ball = body("b", "<sphere><radius>0.1</radius></sphere>", f"{0.7 + 0.005 * phase} 0 0.1 0 0 0")

@@ -1,4 +1,4 @@
-"""A heightmap carries bodies and is seen by rays, at the heights of its picture."""
+"""A heightmap supports bodies and is detected by rays at the heights of its image."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SIDE, HEIGHT = 8.0, 2.0
 
 
 def ramp(folder: Path) -> Path:
-    """Grey values that rise along x from black to white, on a square of 33 pixels."""
+    """Save a square image of 33 pixels whose grey values rise along x from black to white."""
     from PIL import Image
 
     path = folder / "ramp.png"
@@ -47,11 +47,11 @@ def test_a_ball_rests_against_the_slope_and_a_ray_measures_it(tmp_path: Path) ->
     ball = sim.model("ball")
     sim.run(0.35)
     x, y, z = ball.pose.position
-    # its centre lies one radius off the slope, along the normal
+    # the centre of the ball is one radius from the slope, along the normal
     off = (z - (x + SIDE / 2) * slope) / np.hypot(1.0, slope)
     assert off == pytest.approx(0.1, abs=0.02)
     sim.run(1.0)
-    assert ball.pose.position[0] < x - 0.2  # it rolls down
+    assert ball.pose.position[0] < x - 0.2  # the ball rolls down
     assert ball.pose.position[1] == pytest.approx(y, abs=0.02)
     distance = float(sim.sensor("eye::l::s").latest.ranges[0])
     assert distance == pytest.approx(3.0 - (2.0 + SIDE / 2) * slope, abs=0.02)

@@ -1,4 +1,4 @@
-"""What starts inside something else comes out slowly, and then touches like anything else."""
+"""Bodies that overlap at the start separate slowly and then have normal contacts."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_a_box_in_the_ground_rises_slowly_and_stays(depth: float, mass: float) -
     assert "SK-PHYS-024" in [d.code for d in sim.diagnostics]
 
 
-def test_once_out_its_contact_is_that_of_any_other() -> None:
+def test_after_the_separation_the_contact_has_normal_parameters() -> None:
     sim = simkit.load(world(GROUND, box("b", 0.45)))
     other = simkit.load(world(GROUND, box("b", 0.5)))
     sim.run(5.0)
@@ -45,14 +45,14 @@ def test_once_out_its_contact_is_that_of_any_other() -> None:
         assert getattr(sim.mj_model, field).tolist() == getattr(other.mj_model, field).tolist(), field
 
 
-def test_it_slides_meanwhile_with_the_friction_that_the_files_give() -> None:
+def test_an_overlapping_box_has_the_friction_of_the_file() -> None:
     sim = simkit.load(world(GROUND, box("b", 0.45)))
     sim.run(0.01)
     pair = next(c for c in sim.mj_data.contact)
     assert float(pair.friction[0]) == pytest.approx(1.0)
 
 
-def test_a_reset_and_a_snapshot_bring_the_softness_back() -> None:
+def test_a_restore_and_a_reset_repeat_the_separation() -> None:
     sim = simkit.load(world(GROUND, box("b", 0.45)))
     sim.run(0.2)
     middle, snapshot = float(sim.model("b").pose.position[2]), sim.snapshot()
@@ -67,7 +67,7 @@ def test_a_reset_and_a_snapshot_bring_the_softness_back() -> None:
     assert float(sim.model("b").pose.position[2]) == end
 
 
-def test_a_model_spawned_into_another_comes_out_slowly_too() -> None:
+def test_a_model_spawned_into_another_model_separates_slowly() -> None:
     sim = simkit.load(world(GROUND, box("a", 0.5)))
     sim.run(0.5)
     sim.spawn(f'<sdf version="1.9">{box("b", 1.45)}</sdf>')
@@ -79,7 +79,7 @@ def test_a_model_spawned_into_another_comes_out_slowly_too() -> None:
     assert sim.model("b").pose.position[2] == pytest.approx(1.5, abs=3e-3)
 
 
-def test_what_is_spawned_into_another_may_have_a_sensor() -> None:
+def test_a_model_spawned_into_another_model_may_have_a_sensor() -> None:
     sim = simkit.load(world(GROUND, box("a", 0.5)))
     sensor = '<sensor name="s" type="imu"><update_rate>100</update_rate></sensor>'
     sim.spawn(f'<sdf version="1.9">{box("b", 1.45)}</sdf>'.replace("</link>", f"{sensor}</link>"))
@@ -87,6 +87,6 @@ def test_what_is_spawned_into_another_may_have_a_sensor() -> None:
     assert sim.sensor("b::l::s").latest.header.stamp.nanosec == 100_000_000
 
 
-def test_bodies_that_only_touch_are_left_as_they_are() -> None:
+def test_touching_bodies_keep_their_contact_parameters() -> None:
     sim = simkit.load(world(GROUND, box("a", 0.499), box("b", 1.497)))
     assert not (sim.mj_model.geom_priority == 2**31 - 1).any()

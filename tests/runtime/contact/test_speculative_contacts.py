@@ -1,4 +1,4 @@
-"""What is so fast that it could pass through things within one step stops at them, and nothing else is changed."""
+"""Bodies that could pass through an obstacle within one step stop at it, and nothing else changes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def world(*models: str, step: float = 0.001, gravity: str = "0 0 0") -> str:
 def shoot(
     text: str, speed: float, quaternion: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0), **more: object
 ) -> simkit.Simulation:
-    """A world in which model `b` flies along x, run until it must have met what stands there."""
+    """Run a world in which model `b` flies along x, until the model must have hit the obstacle."""
     sim = simkit.load(text, **more)
     turn = tuple(np.array(quaternion) / np.linalg.norm(quaternion))
     sim.model("b").set_pose(simkit.Pose(sim.model("b").pose.position, turn))
@@ -56,7 +56,7 @@ def codes(sim: simkit.Simulation) -> list[str]:
     return [d.code for d in sim.diagnostics if d.code == "SK-PHYS-031"]
 
 
-# ---------------------------------------------------------------------- it stops
+# ---------------------------------------------------------------------- fast bodies stop
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -64,14 +64,14 @@ def codes(sim: simkit.Simulation) -> list[str]:
 def test_a_fast_body_does_not_pass_through_a_wall(shape: str, speed: float, thickness: float) -> None:
     sim = shoot(world(wall(thickness), body("b", SHAPES[shape])), speed)
     assert sim.model("b").pose.position[0] < 0.0
-    # what is left of the impact: an ordinary soft contact leaves 2.4 m/s at 18 m/s
+    # remaining speed after the impact: an ordinary soft contact leaves 2.4 m/s at 18 m/s
     assert abs(sim.link("b::l").linear_velocity[0]) < max(3.0, 0.02 * speed)
 
 
 @pytest.mark.parametrize("shape", ["box", "cylinder"])
 @pytest.mark.parametrize("step", [0.0005, 0.001, 0.002])
 @pytest.mark.parametrize("travel", [0.015, 0.04, 0.07])
-def test_a_body_that_strikes_with_an_edge_does_not_pass(shape: str, step: float, travel: float) -> None:
+def test_a_body_that_hits_a_wall_with_an_edge_does_not_pass_through(shape: str, step: float, travel: float) -> None:
     sim = shoot(world(wall(0.01), body("b", SHAPES[shape]), step=step), travel / step, TILTED)
     assert sim.model("b").pose.position[0] < 0.0
 
@@ -83,29 +83,29 @@ def test_a_fast_body_bounces_with_its_restitution(shape: str, speed: float, rest
     bounce = f"<restitution_coefficient>{restitution}</restitution_coefficient><threshold>0</threshold>"
     surface = f"</geometry><surface><bounce>{bounce}</bounce></surface>"
     sim = shoot(world(wall(0.01), body("b", SHAPES[shape])).replace("</geometry>", surface), speed)
-    # exact for what strikes flat: the whole impulse falls into one step
+    # exact for a flat hit, because the whole impulse acts within one step
     assert sim.link("b::l").linear_velocity[0] == pytest.approx(-restitution * speed, rel=2e-3)
 
 
-def test_two_fast_bodies_that_meet_do_not_pass_through_each_other() -> None:
+def test_two_fast_bodies_do_not_pass_through_each_other() -> None:
     sim = simkit.load(world(body("a", SHAPES["ball"], "-1 0 0 0 0 0"), body("b", SHAPES["ball"], "1 0 0 0 0 0")))
     sim.model("a").set_velocity((60, 0, 0), (0, 0, 0))
     sim.model("b").set_velocity((-47, 0, 0), (0, 0, 0))
     sim.run(0.05)
     a, b = (sim.model(name).pose.position[0] for name in "ab")
     assert a < b
-    # equal masses, nothing bounces: both go on with the mean of their velocities, to the rest of the impact
+    # equal masses without bounce: both continue with the mean of their velocities, except for a rest of the impact
     speeds = [sim.link(f"{name}::l").linear_velocity[0] for name in "ab"]
     assert sum(speeds) == pytest.approx(13.0, abs=1e-6)
     assert speeds[1] - speeds[0] < 3.0
 
 
-def test_a_long_rod_that_spins_strikes_a_thin_post() -> None:
+def test_a_long_spinning_rod_hits_a_thin_post() -> None:
     rod = body("b", "<box><size>1 0.01 0.01</size></box>", "0 0 0 0 0 0", 0.01)
     sim = simkit.load(
         world(rod, fixed("<box><size>0.01 0.01 0.4</size></box>").replace("<link", "<pose>0 0.45 0 0 0 0</pose><link"))
     )
-    sim.model("b").set_velocity((0, 0, 0), (0, 0, 150))  # its ends at 75 m/s
+    sim.model("b").set_velocity((0, 0, 0), (0, 0, 150))  # the ends of the rod move at 75 m/s
     for _ in range(40):
         sim.step()
         if abs(sim.link("b::l").angular_velocity[2]) < 140.0:
@@ -113,7 +113,7 @@ def test_a_long_rod_that_spins_strikes_a_thin_post() -> None:
     assert sim.tick <= 12  # a quarter of a turn takes 10.5 steps
 
 
-def test_a_velocity_set_in_the_middle_of_a_window_counts_at_once() -> None:
+def test_a_velocity_set_in_the_middle_of_a_window_takes_effect_at_once() -> None:
     sim = simkit.load(world(wall(0.01), body("b", SHAPES["ball"], "-0.05 0.03 0.02 0 0 0")))
     sim.step(3)
     sim.model("b").set_velocity((40, 0, 0), (0, 0, 0))
@@ -121,13 +121,13 @@ def test_a_velocity_set_in_the_middle_of_a_window_counts_at_once() -> None:
     assert sim.model("b").pose.position[0] < 0.0
 
 
-def test_a_wall_of_a_mesh_that_is_not_convex_stops_what_is_fast(tmp_path: Path) -> None:
+def test_a_wall_with_a_non_convex_mesh_stops_a_fast_body(tmp_path: Path) -> None:
     trimesh = pytest.importorskip("trimesh")
     parts = [trimesh.creation.box((0.01, 2, 2)), trimesh.creation.box((0.01, 2, 2))]
     parts[1].apply_translation((0.5, 0, 0))
     parts.append(trimesh.creation.icosphere(2, 0.1))
     parts[2].apply_translation((0.25, 0, 0))
-    parts[2].vertices[:, 1] += 2.0 * (parts[2].vertices[:, 0] - 0.25) ** 2 * 20  # bent: not convex
+    parts[2].vertices[:, 1] += 2.0 * (parts[2].vertices[:, 0] - 0.25) ** 2 * 20  # a bent wall, so not convex
     trimesh.util.concatenate(parts).export(tmp_path / "wall.stl")
     path = tmp_path / "world.sdf"
     path.write_text(world(fixed("<mesh><uri>wall.stl</uri></mesh>"), body("b", SHAPES["ball"])))
@@ -136,7 +136,7 @@ def test_a_wall_of_a_mesh_that_is_not_convex_stops_what_is_fast(tmp_path: Path) 
     assert codes(sim) == []
 
 
-def test_a_sleeping_board_wakes_and_is_not_passed() -> None:
+def test_a_fast_body_wakes_a_sleeping_board_and_does_not_pass_through_it() -> None:
     ground = fixed("<plane><normal>0 0 1</normal><size>20 20</size></plane>")
     board = body("board", "<box><size>0.1 0.4 0.4</size></box>", "0 0 0.2 0 0 0", 0.01)
     ball = body("b", SHAPES["ball"], "-5 0 0.02 0 0 0")
@@ -150,10 +150,10 @@ def test_a_sleeping_board_wakes_and_is_not_passed() -> None:
     assert sim.link("board::l").linear_velocity[0] > 1.0
 
 
-# ---------------------------------------------------------------------- it is off where nothing is fast
+# ---------------------------------------------------------------------- disabled without fast bodies
 
 
-def test_windows_are_on_only_while_something_fast_comes_near() -> None:
+def test_speculative_contacts_are_enabled_only_while_a_fast_body_is_near() -> None:
     sim = simkit.load(world(wall(0.01), body("b", SHAPES["ball"], "-3 0.03 0.02 0 0 0")))
     sim.model("b").set_velocity((40, 0, 0), (0, 0, 0))
     on = []
@@ -161,9 +161,9 @@ def test_windows_are_on_only_while_something_fast_comes_near() -> None:
     for _ in range(160):
         sim.step()
         on.append(bool(sim.mj_model.opt.enableflags & SPECULATIVE_FLAG))
-    assert not any(on[: 2 * window])  # it is 1.7 m away then, and a window takes it 1.3 m at twice its speed
+    assert not any(on[: 2 * window])  # 1.7 m from the wall; a window at twice the speed is 1.3 m
     assert any(on)
-    assert not any(on[-2 * window :])  # it rests at the wall
+    assert not any(on[-2 * window :])  # the ball rests at the wall
 
 
 @pytest.mark.parametrize(("speed", "is_fast"), [(12.0, False), (13.0, True)])
@@ -174,7 +174,7 @@ def test_the_limit_is_a_quarter_of_both_thicknesses_in_a_step(speed: float, is_f
     assert sim.engine.physics.fast_bodies.wants(sim.mj_data) is is_fast
 
 
-def test_a_plane_and_a_ball_that_spins_want_nothing() -> None:
+def test_a_plane_and_a_spinning_ball_need_no_speculative_contacts() -> None:
     plane = fixed("<plane><normal>0 0 1</normal><size>10 10</size></plane>")
     sim = simkit.load(world(plane, body("b", SHAPES["ball"], "0 0 1 0 0 0")))
     sim.model("b").set_velocity((0, 0, -300), (500, 0, 0))
@@ -184,7 +184,7 @@ def test_a_plane_and_a_ball_that_spins_want_nothing() -> None:
     assert not sim.engine.physics.fast_bodies.wants(sim.mj_data)
 
 
-def test_what_turns_on_a_joint_counts_by_the_speed_of_its_end() -> None:
+def test_the_speed_of_a_body_on_a_joint_is_that_of_its_farthest_point() -> None:
     arm = """<model name="arm"><joint name="fix" type="fixed"><parent>world</parent><child>base</child></joint>
       <link name="base"/><joint name="j" type="revolute"><parent>base</parent><child>blade</child>
       <axis><xyz>0 0 1</xyz></axis></joint><link name="blade"><pose>0.5 0 0 0 0 0</pose><inertial><mass>1</mass>
@@ -193,13 +193,13 @@ def test_what_turns_on_a_joint_counts_by_the_speed_of_its_end() -> None:
     arm = arm.replace('<link name="base"/>', '<link name="base"><inertial><mass>1</mass></inertial></link>')
     sim = simkit.load(world(arm, wall(0.01).replace("<link", "<pose>0.9 0.6 0 0 0 1.57</pose><link")))
     joint, wants = sim.joint("arm::j"), sim.engine.physics.fast_bodies.wants
-    joint.set_velocity(2.0)  # the end at 2 m/s: 2 mm of the 5 mm in a step
+    joint.set_velocity(2.0)  # the end moves at 2 m/s: 2 mm per step, of 5 mm allowed
     assert not wants(sim.mj_data)
     joint.set_velocity(20.0)
     assert wants(sim.mj_data)
 
 
-def test_slow_things_have_the_bits_of_a_run_without_any_look() -> None:
+def test_slow_bodies_have_the_same_bits_as_without_the_detector() -> None:
     text = world(wall(0.01), body("b", SHAPES["box"], "-0.3 0.03 0.02 0.3 0.2 0.1"), gravity="0 0 -9.8")
     runs = []
     for looks in (True, False):
@@ -211,7 +211,7 @@ def test_slow_things_have_the_bits_of_a_run_without_any_look() -> None:
     assert runs[0] == runs[1]
 
 
-# ---------------------------------------------------------------------- the same bits, whoever asks
+# ---------------------------------------------------------------------- the same bits with readers
 
 
 def _pair() -> simkit.Simulation:
@@ -226,7 +226,7 @@ def _bits(sim: simkit.Simulation) -> bytes:
 
 
 @pytest.mark.parametrize("chunks", [[1] * 60, [7] * 8 + [4], [13, 1, 1, 40, 5]])
-def test_chunks_and_readers_make_no_difference(chunks: list[int]) -> None:
+def test_chunks_of_steps_and_readers_do_not_change_any_bit(chunks: list[int]) -> None:
     whole = _pair()
     whole.step(60)
     for reads in (False, True):
@@ -255,10 +255,10 @@ def test_a_run_restored_in_the_middle_of_a_window_repeats(tick: int) -> None:
     assert _bits(sim) == once
 
 
-# ---------------------------------------------------------------------- what cannot be helped is told
+# ---------------------------------------------------------------------- warnings
 
 
-def test_a_height_map_that_may_be_passed_is_told_once_a_pair(tmp_path: Path) -> None:
+def test_a_height_map_that_a_body_may_pass_is_reported_once_per_pair(tmp_path: Path) -> None:
     from PIL import Image
 
     Image.fromarray(np.full((33, 33), 128, np.uint8)).save(tmp_path / "flat.png")
@@ -276,17 +276,17 @@ def test_a_height_map_that_may_be_passed_is_told_once_a_pair(tmp_path: Path) -> 
     assert found.severity == "warning"
     assert "b::l::c may pass through the height map wall::l::c" in found.message
     assert "200 m/s" in found.message
-    # (0.04 + 0.1) / 4 m at 200 m/s take 0.175 ms
+    # a travel of (0.04 + 0.1) / 4 m at 200 m/s takes 0.175 ms
     assert found.hint == "<max_step_size>0.0001</max_step_size>"
 
 
-def test_a_body_with_edges_that_is_far_too_fast_is_told_and_a_ball_is_not() -> None:
+def test_a_box_that_is_far_too_fast_is_reported_but_a_ball_is_not() -> None:
     assert codes(shoot(world(wall(0.01), body("b", SHAPES["ball"])), 300)) == []
     assert len(codes(shoot(world(wall(0.01), body("b", SHAPES["box"])), 300))) == 1
     assert codes(shoot(world(wall(0.01), body("b", SHAPES["box"])), 40)) == []
 
 
-def test_nothing_is_told_of_what_flies_past() -> None:
+def test_a_body_that_flies_past_is_not_reported() -> None:
     sim = simkit.load(world(wall(0.01), body("b", SHAPES["box"])))
     sim.model("b").set_velocity((0, 0, 300), (0, 0, 0))
     sim.run(0.05)

@@ -1,4 +1,4 @@
-"""Long chains without damping keep their energy; tops and tumbling bodies turn as theory has it."""
+"""Long chains without damping keep their energy; tops and tumbling bodies rotate as in theory."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MASS = 0.1  # [kg] of a link
 
 
 def chain(links: int, length: float, step: float = 0.001, axis: str = "", more: str = "") -> str:
-    """A chain that starts horizontally, its first joint at the origin of the world."""
+    """Return a world with a chain that starts horizontally, with its first joint 20 m above the origin."""
     inertia = MASS * length**2 / 12
     text = ""
     for i in range(links):
@@ -30,7 +30,7 @@ def chain(links: int, length: float, step: float = 0.001, axis: str = "", more: 
 
 
 def step(model: mujoco.MjModel, data: mujoco.MjData, motion: FreeMotionIntegrator | None) -> None:
-    """One step of the engine with the correction of free motion."""
+    """Make one step of the engine, corrected by the integrator of free motion."""
     if motion is not None:
         motion.prepare(data)
     mujoco.mj_step(model, data)
@@ -39,7 +39,7 @@ def step(model: mujoco.MjModel, data: mujoco.MjData, motion: FreeMotionIntegrato
 
 
 @pytest.mark.parametrize("length", [0.1, 0.5])
-def test_fifty_links_that_fall_keep_their_energy(length: float) -> None:
+def test_a_falling_chain_of_fifty_links_keeps_its_energy(length: float) -> None:
     sim = simkit.load(chain(50, length))
     model, data = sim.mj_model, sim.mj_data
     motion = FreeMotionIntegrator.of(model)
@@ -74,12 +74,12 @@ def test_a_robot_beside_a_chain_keeps_its_bits() -> None:
 
 
 @pytest.mark.parametrize("kind", ["damping", "friction"])
-def test_joints_with_damping_or_friction_are_no_free_chain(kind: str) -> None:
+def test_joints_with_damping_or_friction_do_not_form_a_free_chain(kind: str) -> None:
     axis = f"<dynamics><{kind}>0.01</{kind}></dynamics>"
     assert FreeMotionIntegrator.of(simkit.load(chain(20, 0.1, axis=axis)).mj_model) is None
 
 
-def test_a_chain_as_long_as_an_arm_is_left_to_the_engine() -> None:
+def test_the_engine_integrates_a_chain_as_short_as_an_arm() -> None:
     assert FreeMotionIntegrator.of(simkit.load(chain(7, 0.1)).mj_model) is None
     assert FreeMotionIntegrator.of(simkit.load(chain(8, 0.1)).mj_model) is not None
 
@@ -88,7 +88,7 @@ def test_a_chain_as_long_as_an_arm_is_left_to_the_engine() -> None:
 
 
 def spinner(inertia: tuple[float, float, float], height: float, tilt: float, joint: str, gravity: float) -> str:
-    """One link of 1 kg with its centre of mass `height` above its origin."""
+    """Return a world with one link of 1 kg, whose centre of mass is `height` [m] above its origin."""
     x, y, z = inertia
     return f"""<sdf version="1.9"><world name="w"><gravity>0 0 {-gravity}</gravity><model name="m">
     <pose>0 0 0 0 {tilt} 0</pose><link name="l"><inertial><pose>0 0 {height} 0 0 0</pose><mass>1</mass><inertia>
@@ -96,7 +96,7 @@ def spinner(inertia: tuple[float, float, float], height: float, tilt: float, joi
 
 
 @pytest.mark.parametrize("spin", [200.0, 300.0, 400.0])
-def test_a_top_precesses_at_the_speed_of_theory(spin: float) -> None:
+def test_a_top_precesses_at_the_theoretical_speed(spin: float) -> None:
     """Steady precession P of a heavy top: I cos(tilt) P² − I₃ spin P + m g h = 0."""
     tilt, height, across, along, gravity = 0.5, 0.1, 0.002, 0.002, 9.8
     joint = '<joint name="j" type="ball"><parent>world</parent><child>l</child></joint>'
@@ -104,7 +104,7 @@ def test_a_top_precesses_at_the_speed_of_theory(spin: float) -> None:
     model, data, motion = sim.mj_model, sim.mj_data, FreeMotionIntegrator.of(sim.mj_model)
     linear = along * spin
     quadratic = (across + height**2 - along) * math.cos(tilt)
-    # with the spin of the body frame the gyroscopic term is I₃ (spin + P cos(tilt))
+    # `spin` is that of the body frame, so the gyroscopic term is I₃ (spin + P cos(tilt))
     total = math.sqrt(linear**2 - 4.0 * quadratic * gravity * height)
     precession = (linear - total) / (2.0 * quadratic)
     data.qvel[:3] = (-precession * math.sin(tilt), 0.0, spin + precession * math.cos(tilt))
@@ -120,7 +120,7 @@ def test_a_top_precesses_at_the_speed_of_theory(spin: float) -> None:
     assert turned / 3.0 == pytest.approx(precession, rel=1e-3)
 
 
-def test_a_tennis_racket_flips_when_eulers_equations_have_it() -> None:
+def test_a_tennis_racket_flips_at_the_times_of_eulers_equations() -> None:
     inertia, start = np.array([0.01, 0.02, 0.028]), np.array([0.01, 10.0, 0.01])
     sim = simkit.load(spinner((0.01, 0.02, 0.028), 0.0, 0.0, "", 0.0))
     model, data, motion = sim.mj_model, sim.mj_data, FreeMotionIntegrator.of(sim.mj_model)
@@ -135,13 +135,13 @@ def test_a_tennis_racket_flips_when_eulers_equations_have_it() -> None:
     for one in found:
         step(model, data, motion)
         one[:] = data.qvel[3:]
-    assert np.abs(found - wanted).max() < 0.01  # it flips three times, from 10 to -10 rad/s
+    assert np.abs(found - wanted).max() < 0.01  # the body flips three times, between 10 and -10 rad/s
     energy, momentum = (inertia * found**2).sum(axis=1), np.linalg.norm(inertia * found, axis=1)
     assert np.ptp(energy) < 1e-5 * energy[0]
     assert np.ptp(momentum) < 1e-5 * momentum[0]
 
 
-def test_a_slow_body_and_one_that_may_touch_are_left_to_the_engine() -> None:
+def test_the_engine_integrates_slow_bodies_and_bodies_with_collisions() -> None:
     world = spinner((0.01, 0.02, 0.028), 0.0, 0.0, "", 9.8)
     sim, plain = simkit.load(world), simkit.load(world)
     motion = FreeMotionIntegrator.of(sim.mj_model)

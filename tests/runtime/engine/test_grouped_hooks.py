@@ -1,4 +1,4 @@
-"""Robots of one kind work together: the same bits, the same order and the same snapshots as each for itself."""
+"""Grouped hooks and sensor batches give the same bits, order and snapshots as separate plugins and sensors."""
 
 import numpy as np
 import pytest
@@ -54,7 +54,7 @@ HEAD = """
 
 
 def robot(i, **parts):
-    """Robots on a ring, close enough to see each other."""
+    """Return the `i`-th robot of a ring, in which the lidars detect the neighbouring robots."""
     given = {"imu": NOISY_IMU, "ray_noise": NOISE, "layers": "", "drive": "", "more": "", "turn": 0.0, "radius": 0.05}
     angle = 2 * np.pi * i / COUNT
     place = {"x": 1.5 * np.cos(angle), "y": 1.5 * np.sin(angle), "yaw": 0.3 * (i + 1)}
@@ -66,14 +66,14 @@ def world(count=COUNT, **parts):
     return HEAD + "".join(robot(i, **parts) for i in range(count)) + "</world></sdf>"
 
 
-def commanded(sim):
+def command_robots(sim):
     for topic in sim.topics():
         if topic.startswith("/cmd_"):
             sim.publish(topic, {"linear": {"x": 0.2}, "angular": {"z": 0.1 * int(topic[-1])}})
 
 
-def heard(sim, log, **how):
-    """Logs every message of every robot in the order in which they come."""
+def log_messages(sim, log, **how):
+    """Log every message of every robot in the order of arrival."""
     for topic in sorted(sim.topics()):
         if topic.startswith(("/imu_", "/scan_", "/odom_", "/tf")) and not topic.endswith("points"):
             sim.subscribe(topic, lambda m, topic=topic: log.append((topic, msgs.serialize(m))), **how)
@@ -82,8 +82,8 @@ def heard(sim, log, **how):
 def run(source, duration=0.12, change=lambda sim: None):
     log = []
     with simkit.load(source, seed=3) as sim:
-        heard(sim, log)
-        commanded(sim)
+        log_messages(sim, log)
+        command_robots(sim)
         change(sim)
         sim.run(duration)
         truths = [msgs.serialize(s.truth) for s in sim.contents.sensors.values()]
@@ -92,21 +92,21 @@ def run(source, duration=0.12, change=lambda sim: None):
 
 
 @pytest.fixture
-def apart(monkeypatch):
-    """Gives a function that does something with everybody working alone."""
+def ungrouped(monkeypatch):
+    """Return a function that calls another function without groups of plugins or batches of sensors."""
 
-    def alone(call, *args, **kwargs):
+    def call_ungrouped(call, *args, **kwargs):
         with monkeypatch.context() as patch:
             patch.setattr(sensor_batch, "MIN_MEMBERS", 10_000)
             patch.setattr(step_tasks, "MIN_GROUP_SIZE", 10_000)
             return call(*args, **kwargs)
 
-    return alone
+    return call_ungrouped
 
 
 @pytest.fixture
 def by_numpy(monkeypatch):
-    """Lidars cast in NumPy, as they do among more than 64 moving bodies."""
+    """Compute lidar rays with NumPy, as with more than 64 moving bodies."""
     from simkit.sensors.rays import ray_fan
 
     monkeypatch.setattr(ray_fan, "MAX_MOVING_BODIES", 0)
@@ -133,32 +133,32 @@ KINDS = {
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_together_and_alone_give_the_same_messages_in_the_same_order(kind, apart, by_numpy):
+def test_grouped_and_single_plugins_give_the_same_messages_in_the_same_order(kind, ungrouped, by_numpy):
     source = world(**KINDS[kind])
     with simkit.load(source) as sim:
         assert batch_sizes(sim) == [COUNT] * (2 * COUNT)
-    assert run(source) == apart(run, source)
+    assert run(source) == ungrouped(run, source)
 
 
-def test_robots_that_differ_work_with_their_like_and_give_the_same(apart, by_numpy):
+def test_different_robots_are_grouped_by_kind_and_give_the_same_messages(ungrouped, by_numpy):
     parts = [
         robot(i, radius=0.05 + 0.001 * (i % 3), turn=0.2 * (i % 2), imu="<imu/>" if i % 3 else NOISY_IMU)
         for i in range(COUNT)
     ]
     source = HEAD + "".join(parts) + "</world></sdf>"
-    assert run(source) == apart(run, source)
+    assert run(source) == ungrouped(run, source)
 
 
-def test_imus_whose_bias_wanders_work_alone(apart):
+def test_imus_with_a_dynamic_bias_are_not_grouped(ungrouped):
     drift = NOISE.replace("</noise>", "<dynamic_bias_stddev>0.1</dynamic_bias_stddev>"
                           "<dynamic_bias_correlation_time>1</dynamic_bias_correlation_time></noise>")  # fmt: skip
     source = world(imu=f"<imu><angular_velocity><x>{drift}</x></angular_velocity></imu>")
     with simkit.load(source) as sim:
         assert all(s.batch is None for s in sim.contents.sensors.values() if s.kind == "imu")
-    assert run(source) == apart(run, source)
+    assert run(source) == ungrouped(run, source)
 
 
-def test_one_robot_sees_and_feels_the_same_whoever_is_read_besides(by_numpy):
+def test_the_messages_of_a_robot_do_not_depend_on_other_subscriptions(by_numpy):
     def only(sim_log, sim):
         sim.subscribe("/imu_2", lambda m: sim_log.append(msgs.serialize(m)))
         sim.subscribe("/scan_2", lambda m: sim_log.append(msgs.serialize(m)))
@@ -167,19 +167,19 @@ def test_one_robot_sees_and_feels_the_same_whoever_is_read_besides(by_numpy):
     for others in (False, True):
         log = []
         with simkit.load(world(), seed=3) as sim:
-            commanded(sim)
+            command_robots(sim)
             if others:
-                heard(sim, [])
+                log_messages(sim, [])
             only(log, sim)
             sim.run(0.12)
         logs.append(log)
     assert logs[0] == logs[1]
 
 
-# ---------------------------------------------------------------------- whatever happens in between
+# ---------------------------------------------------------------------- changes during the run
 
 
-def test_a_subscriber_that_moves_a_robot_is_seen_by_those_that_come_after_it(apart, by_numpy):
+def test_sensors_sampled_after_a_subscriber_has_moved_a_robot_measure_the_new_pose(ungrouped, by_numpy):
     def change(sim):
         def push(message):
             if abs(sim.time - 0.05) < 1e-9:
@@ -190,11 +190,11 @@ def test_a_subscriber_that_moves_a_robot_is_seen_by_those_that_come_after_it(apa
         sim.subscribe("/imu_1", push)
 
     source = world()
-    assert run(source, change=change) == apart(run, source, change=change)
+    assert run(source, change=change) == ungrouped(run, source, change=change)
     assert run(source, change=change) != run(source)
 
 
-def test_changes_of_rate_spawns_and_removals_on_the_way_change_nothing(apart, by_numpy):
+def test_rate_changes_spawns_and_removals_give_the_same_messages(ungrouped, by_numpy):
     def change(sim):
         sim.run(0.0503)
         sim.sensor("robot_1::base::imu").set_rate(100)
@@ -204,14 +204,14 @@ def test_changes_of_rate_spawns_and_removals_on_the_way_change_nothing(apart, by
         sim.remove("robot_2")
 
     source = world()
-    assert run(source, change=change) == apart(run, source, change=change)
+    assert run(source, change=change) == ungrouped(run, source, change=change)
 
 
-def test_a_restored_run_repeats_and_a_reset_one_begins_anew(by_numpy):
+def test_a_restored_run_repeats_and_a_reset_run_starts_again(by_numpy):
     log = []
     with simkit.load(world(), seed=3) as sim:
-        heard(sim, log)
-        commanded(sim)
+        log_messages(sim, log)
+        command_robots(sim)
         sim.run(0.1037)
         snapshot, before = sim.snapshot(), len(log)
         sim.run(0.1)
@@ -222,15 +222,15 @@ def test_a_restored_run_repeats_and_a_reset_one_begins_anew(by_numpy):
         assert log == first
         del log[:]
         sim.reset()
-        commanded(sim)
+        command_robots(sim)
         sim.run(0.2037)
         assert log[-len(first) :] == first
 
 
-def test_a_snapshot_taken_together_is_that_taken_alone(apart):
+def test_snapshots_of_grouped_and_single_plugins_are_equal(ungrouped):
     def state():
         with simkit.load(world(), seed=3) as sim:
-            commanded(sim)
+            command_robots(sim)
             sim.run(0.1037)
             sim.snapshot()
             sim.run(0.05)
@@ -238,19 +238,19 @@ def test_a_snapshot_taken_together_is_that_taken_alone(apart):
             states = [p.get_state()["_odometry"] for p in drives]
             return [(s.reckoning, s.twist, s._at, s._noted, s._recent) for s in states]
 
-    assert state() == apart(state)
+    assert state() == ungrouped(state)
 
 
-def test_a_reset_from_within_a_callback_ends_the_tick_for_all():
+def test_a_reset_within_a_callback_ends_the_tick_for_all_plugins():
     with simkit.load(world()) as sim:
         seen = []
 
-        def back(message):
+        def reset_at_third_call(message):
             seen.append(sim.tick)
             if len(seen) == 3:
                 sim.reset()
 
-        sim.subscribe("/imu_1", back)
+        sim.subscribe("/imu_1", reset_at_third_call)
         later = sim.subscribe("/imu_4", lambda m: None)
         sim.step(10)
         stamps = [msgs.stamp_ns(m.header.stamp) // 1_000_000 for m in later.messages]
@@ -261,24 +261,24 @@ def test_a_reset_from_within_a_callback_ends_the_tick_for_all():
 # ---------------------------------------------------------------------- faults
 
 
-def test_of_many_the_one_that_raises_is_named():
+def test_the_error_names_the_plugin_of_the_group_that_raised():
     with simkit.load(world()) as sim:
         drives = [p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "DiffDrive"]
-        drives[3]._servos = None  # breaks it
-        commanded(sim)
+        drives[3]._servos = None  # makes the plugin raise
+        command_robots(sim)
         with pytest.raises(PluginError) as found:
             sim.step(3)
         assert found.value.where == str(drives[3].where)
 
 
-def test_a_subscriber_that_raises_stops_the_run_from_within_the_fleet_too():
+def test_a_subscriber_that_raises_within_a_group_stops_the_run():
     with simkit.load(world()) as sim:
         sim.subscribe("/odom_3", lambda m: 1 / 0)
         with pytest.raises(SubscriberError, match="'/odom_3'.*division"):
             sim.run(0.1)
 
 
-def test_a_class_of_ones_own_may_work_together_and_a_class_below_it_does_not():
+def test_a_plugin_class_may_define_a_group_hook_which_a_derived_class_does_not_use():
     class Counter(simkit.WorldPlugin):
         calls, runs = 0, 0
 

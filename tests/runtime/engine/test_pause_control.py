@@ -1,4 +1,4 @@
-"""What it means that a world is paused: for who keeps it running, and for a script."""
+"""Effects of a pause on the code that keeps a world running, and on a script."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class PausesAt(simkit.WorldPlugin):
             self.sim.paused = True
 
 
-def test_who_keeps_a_world_running_stands_still_while_it_is_paused_and_goes_on_when_it_is_resumed() -> None:
+def test_advance_stops_while_the_world_is_paused_and_continues_after_a_resume() -> None:
     with simkit.load(BALL) as sim:
         sim.control.pausing.advance(10)
         sim.paused = True
@@ -42,7 +42,7 @@ def test_who_keeps_a_world_running_stands_still_while_it_is_paused_and_goes_on_w
         assert (sim.tick, sim.paused) == (20, False)
 
 
-def test_a_script_goes_as_far_as_it_says_and_the_world_is_as_paused_as_before() -> None:
+def test_a_script_reaches_its_target_in_a_paused_world_which_stays_paused() -> None:
     with simkit.load(BALL) as sim:
         sim.paused = True
         sim.step(3)
@@ -50,7 +50,7 @@ def test_a_script_goes_as_far_as_it_says_and_the_world_is_as_paused_as_before() 
         assert (sim.tick, sim.paused) == (10, True)
 
 
-def test_steps_that_were_asked_for_are_done_and_add_up_and_then_it_pauses() -> None:
+def test_requested_steps_add_up_and_then_the_world_pauses() -> None:
     with simkit.load(BALL) as sim, sim.control.pausing.served():
         sim.control.pausing.step(5)
         sim.control.pausing.advance(2)
@@ -60,7 +60,7 @@ def test_steps_that_were_asked_for_are_done_and_add_up_and_then_it_pauses() -> N
         assert (sim.tick, sim.paused) == (9, True)
 
 
-def test_a_run_to_a_time_ends_at_the_first_tick_that_is_not_before_it() -> None:
+def test_a_run_to_a_time_ends_at_the_first_tick_at_or_after_it() -> None:
     with simkit.load(BALL) as sim:
         sim.control.pausing.run_to(12_300_001)
         sim.control.pausing.advance(1000)
@@ -76,16 +76,16 @@ def test_a_hook_that_pauses_ends_a_served_run_with_its_step() -> None:
         assert (sim.tick, sim.paused) == (40, True)
     with simkit.load(BALL, plugins=[PausesAt(40, "before_step")]) as sim:
         sim.control.pausing.advance(1000)
-        assert (sim.tick, sim.paused) == (41, True)  # the step it was called for is done
+        assert (sim.tick, sim.paused) == (41, True)  # the step of this hook is still made
 
 
-def test_a_hook_that_pauses_does_not_keep_a_script_from_its_end() -> None:
+def test_a_hook_that_pauses_does_not_stop_a_script() -> None:
     with simkit.load(BALL, plugins=[PausesAt(40)]) as sim:
         sim.run(0.1)
         assert (sim.tick, sim.paused) == (100, True)
 
 
-def test_pauses_leave_no_trace_in_the_bits() -> None:
+def test_pauses_do_not_change_any_bit() -> None:
     with simkit.load(BALL) as straight, simkit.load(BALL, plugins=[PausesAt(40)]) as paused:
         straight.run(0.1)
         while paused.tick < 100:
@@ -95,7 +95,7 @@ def test_pauses_leave_no_trace_in_the_bits() -> None:
         assert np.array_equal(straight.mj_data.qvel, paused.mj_data.qvel)
 
 
-def test_snapshots_and_reset_cover_it() -> None:
+def test_snapshots_and_reset_include_the_pause_state() -> None:
     with simkit.load(BALL) as sim:
         sim.step(5)
         sim.control.pausing.step(3)
@@ -109,7 +109,7 @@ def test_snapshots_and_reset_cover_it() -> None:
         assert (sim.tick, sim.paused) == (0, False)
 
 
-def test_who_watches_is_told_of_every_change_and_of_nothing_else() -> None:
+def test_on_change_reports_every_change_and_nothing_else() -> None:
     heard: list[bool] = []
     with simkit.load(BALL) as sim:
         sim.control.pausing.on_change(lambda: heard.append(sim.paused))
@@ -121,7 +121,7 @@ def test_who_watches_is_told_of_every_change_and_of_nothing_else() -> None:
 
 
 @pytest.mark.parametrize("begin", [0, 5])
-def test_who_keeps_a_world_running_has_their_turn_when_a_hook_goes_back(begin: int) -> None:
+def test_advance_returns_when_a_hook_resets(begin: int) -> None:
     class Again(simkit.WorldPlugin):
         after_step_rate = 100.0
 

@@ -1,4 +1,4 @@
-"""What still runs when Python ends."""
+"""Simulations that still run when Python ends."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ print("done")
 """
 
 
-def test_a_simulation_on_a_daemon_thread_ends_with_the_program_without_a_word() -> None:
+def test_a_simulation_on_a_daemon_thread_ends_silently_with_the_program() -> None:
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, timeout=120, check=False

@@ -1,4 +1,4 @@
-"""A draw depends on the seed, the name, the channel and the sample's index, and on nothing else."""
+"""A draw depends only on the seed, the name, the channel and the sample's index."""
 
 import numpy as np
 
@@ -9,20 +9,20 @@ def draws(stream, indices):
     return np.array([stream.normal(i).copy() for i in indices])
 
 
-def test_a_skipped_sample_shifts_nothing():
+def test_a_skipped_sample_does_not_shift_the_following_samples():
     every = draws(RandomStreams(3).stream("m::l::s", "noise", 6), range(1000))
     some = draws(RandomStreams(3).stream("m::l::s", "noise", 6), [0, 999, 500, 7])
     np.testing.assert_array_equal(some, every[[0, 999, 500, 7]])
 
 
-def test_streams_of_other_names_channels_and_seeds_differ():
+def test_streams_with_different_names_channels_and_seeds_differ():
     base = draws(RandomStreams(1).stream("a", "x", 4), range(50))
     for seed, name, channel in ((1, "b", "x"), (1, "a", "y"), (2, "a", "x"), (-1, "a", "x")):
         other = RandomStreams(seed).stream(name, channel, 4)
         assert np.abs(draws(other, range(50)) - base).min() > 1e-9
 
 
-def test_another_stream_leaves_the_first_one_alone():
+def test_draws_from_one_stream_do_not_affect_another_stream():
     streams = RandomStreams(1)
     first = streams.stream("a", "x", 4)
     before = first.normal(0).copy()
@@ -48,7 +48,7 @@ def test_uniform_draws_fill_plus_and_minus_one_evenly_and_by_index_alone():
     assert not np.array_equal(stream.normal(5), stream.uniform(5))
 
 
-def test_reseeding_reaches_streams_that_are_already_out():
+def test_reseeding_changes_existing_streams_too():
     streams = RandomStreams(1)
     stream = streams.stream("a", "x", 2)
     stream.normal(0)

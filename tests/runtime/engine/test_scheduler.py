@@ -1,4 +1,4 @@
-"""Who is due when: by rates that repeat, and by those that repeat too late to be remembered."""
+"""Due ticks of tasks, for rates with a common cycle and for rates whose cycle is too long to store."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from simkit.runtime.engine.scheduler import Scheduler
 from simkit.runtime.engine.simulated_time import Clock
 
 
-def _note(called: list[tuple[int, int]], number: int, tick: int) -> None:
+def _record_call(called: list[tuple[int, int]], number: int, tick: int) -> None:
     called.append((tick, number))
 
 
@@ -30,7 +30,7 @@ def test_every_task_is_called_at_its_own_ticks_in_the_order_of_addition(
     scheduler = Scheduler(clock)
     called: list[tuple[int, int]] = []
     for number, rate in enumerate(rates):
-        scheduler.every(rate, partial(_note, called, number), "sense")
+        scheduler.every(rate, partial(_record_call, called, number), "sense")
     scheduler.rewind(0)
     last = 5000
     grids = [clock.grid(rate or 0.0, from_start=True) for rate in rates]
@@ -51,7 +51,7 @@ def test_every_task_is_called_at_its_own_ticks_in_the_order_of_addition(
     assert called == expected
 
 
-def test_after_a_rewind_it_goes_on_from_there() -> None:
+def test_after_a_rewind_the_schedule_continues_from_that_tick() -> None:
     scheduler = Scheduler(Clock(0.001))
     scheduler.every(30.0, lambda tick: None, "sense")
     scheduler.every(200.0, lambda tick: None, "sense")

@@ -18,7 +18,7 @@ def test_thirty_hertz_at_a_millisecond_gives_thirty_samples_in_every_second():
 
 
 @pytest.mark.parametrize("rate", [200.0, 62.5, 30.0, 7.0, 0.3])
-def test_next_walks_the_same_ticks_as_counting(rate):
+def test_next_and_index_agree_on_the_ticks(rate):
     grid = Clock(0.002).grid(rate)
     assert grid is not None
     tick, walked = 0, []

@@ -1,4 +1,4 @@
-"""What rests is left out of the physics until something reaches it, and nobody can tell."""
+"""Bodies at rest sleep until another body reaches them, without any measurable effect."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TABLE = """<model name="table"><static>true</static><pose>5 0 0.5 0 0 0</pose><l
 <geometry><box><size>1 1 0.1</size></box></geometry></collision></link></model>"""
 BOX = "<box><size>0.4 0.4 0.4</size></box>"
 BALL = "<sphere><radius>0.1</radius></sphere>"
-ASLEEP = 0.5  # [s] by which a box that starts at rest sleeps
+ASLEEP = 0.5  # [s] time after which a box that starts at rest sleeps
 
 
 def body(name: str, place: str, shape: str = BOX, inside: str = "", surface: str = "") -> str:
@@ -33,7 +33,7 @@ def world(*parts: str, gravity: str = "0 0 -9.8") -> str:
 
 
 def asleep(sim: simkit.Simulation) -> list[str]:
-    """Names of the models that sleep."""
+    """Return the names of the models that sleep."""
     data = sim.engine.physics.fresh()
     links = {name: sim.engine.names.links[f"{name}::l"].body for name in sim.models}
     return [name for name, b in links.items() if b and sim.engine.physics.sleep.is_asleep(b, data)]
@@ -46,10 +46,10 @@ def state(sim: simkit.Simulation) -> bytes:
 TWO = (GROUND, body("a", "0 0 0.2"), body("b", "2 0 0.2"))
 
 
-# ---------------------------------------------------------------------- who sleeps
+# ---------------------------------------------------------------------- bodies that fall asleep
 
 
-def test_boxes_at_rest_fall_asleep_where_they_are_and_time_goes_on() -> None:
+def test_boxes_at_rest_fall_asleep_at_their_poses_and_time_continues() -> None:
     sim = simkit.load(world(*TWO))
     sim.run(ASLEEP)
     assert asleep(sim) == ["a", "b"]
@@ -63,7 +63,7 @@ def test_boxes_at_rest_fall_asleep_where_they_are_and_time_goes_on() -> None:
 
 
 @pytest.mark.parametrize("loaded", [(GROUND,), (GROUND, body("a", "0 0 0.2"))])
-def test_what_is_spawned_into_a_world_with_one_body_or_none_falls_asleep_too(loaded: tuple[str, ...]) -> None:
+def test_a_model_spawned_into_a_world_with_one_body_or_none_falls_asleep(loaded: tuple[str, ...]) -> None:
     sim = simkit.load(world(*loaded))
     for name, x in (("b", 2.0), ("c", 4.0)):
         model = f'<sdf version="1.9">{body(name, "0 0 0.2")}</sdf>'
@@ -72,10 +72,10 @@ def test_what_is_spawned_into_a_world_with_one_body_or_none_falls_asleep_too(loa
     assert asleep(sim) == sorted(name for name in sim.models if name != "ground")
     sim.reset()
     sim.run(ASLEEP)
-    assert asleep(sim) == []  # one tree alone is stepped without islands, as after loading
+    assert asleep(sim) == []  # a single tree is stepped without islands, as after loading
 
 
-def test_sleeping_moves_nothing_that_can_be_measured() -> None:
+def test_sleep_changes_no_measurable_position() -> None:
     with_sleep, without = (simkit.load(world(*TWO), sleep=sleep) for sleep in (True, False))
     for sim in (with_sleep, without):
         sim.run(5.0)
@@ -83,7 +83,7 @@ def test_sleeping_moves_nothing_that_can_be_measured() -> None:
     assert np.abs(with_sleep.mj_data.qpos - without.mj_data.qpos).max() < 1e-9
 
 
-def test_engine_time_is_added_up_step_by_step_also_while_all_sleep() -> None:
+def test_the_engines_time_advances_step_by_step_even_while_all_bodies_sleep() -> None:
     with_sleep, without = (simkit.load(world(*TWO), sleep=sleep) for sleep in (True, False))
     for sim in (with_sleep, without):
         sim.run(3.0)
@@ -91,7 +91,7 @@ def test_engine_time_is_added_up_step_by_step_also_while_all_sleep() -> None:
 
 
 @pytest.mark.parametrize("overrides", [("physics.sleep=false",), ("a.allow_auto_disable=false",)])
-def test_whoever_does_not_want_it_says_so(overrides: tuple[str, ...]) -> None:
+def test_sleep_can_be_disabled_for_the_world_and_for_a_model(overrides: tuple[str, ...]) -> None:
     sim = simkit.load(world(*TWO), overrides=overrides)
     sim.run(2.0)
     assert "a" not in asleep(sim)
@@ -104,7 +104,7 @@ def test_a_model_that_may_not_be_disabled_stays_awake() -> None:
     assert asleep(sim) == ["b"]
 
 
-def test_a_robot_with_a_sensor_never_sleeps_nor_does_what_it_touches() -> None:
+def test_a_robot_with_a_sensor_and_the_bodies_that_touch_it_never_sleep() -> None:
     imu = '<sensor name="imu" type="imu"><update_rate>100</update_rate></sensor></link>'
     robot = body("robot", "0 0 0.2").replace("</link>", imu)
     sim = simkit.load(world(GROUND, robot, body("on_it", "0 0 0.6"), body("b", "2 0 0.2")))
@@ -113,7 +113,7 @@ def test_a_robot_with_a_sensor_never_sleeps_nor_does_what_it_touches() -> None:
     assert sim.sensor("robot::l::imu").latest.linear_acceleration.z == pytest.approx(9.8, abs=1e-3)
 
 
-def test_a_reading_is_the_same_whether_taken_at_once_or_later_beside_sleepers() -> None:
+def test_an_immediate_and_a_later_reading_beside_sleeping_bodies_are_equal() -> None:
     imu = '<sensor name="imu" type="imu"><update_rate>100</update_rate></sensor></link>'
     source = world(GROUND, body("robot", "0 0 0.2").replace("</link>", imu), body("a", "3 0 0.2"), body("b", "2 0 0.2"))
     at_once, later = simkit.load(source), simkit.load(source)
@@ -130,10 +130,10 @@ def test_a_reading_is_the_same_whether_taken_at_once_or_later_beside_sleepers() 
     assert state(at_once) == state(later)
 
 
-# ---------------------------------------------------------------------- who must not
+# ---------------------------------------------------------------------- bodies that must stay awake
 
 
-def test_a_satellite_drifting_at_a_tenth_of_a_millimetre_a_second_drifts_on() -> None:
+def test_a_satellite_that_drifts_at_a_tenth_of_a_millimetre_per_second_does_not_stop() -> None:
     sim = simkit.load(world(body("a", "0 0 0"), body("b", "9 0 0"), gravity="0 0 0"))
     sim.model("a").set_velocity((1e-4, 0, 0))
     sim.run(20.0)
@@ -142,12 +142,12 @@ def test_a_satellite_drifting_at_a_tenth_of_a_millimetre_a_second_drifts_on() ->
 
 def test_a_ball_at_the_top_of_a_slow_throw_comes_down() -> None:
     sim = simkit.load(world(body("a", "0 0 5", BALL), body("b", "9 0 5", BALL), gravity="0 0 -0.001"))
-    sim.model("a").set_velocity((0, 0, 1e-3))  # on top after a second, for which a speed limit would stop it
+    sim.model("a").set_velocity((0, 0, 1e-3))  # at the top after 1 s, where a speed limit would stop it
     sim.run(4.0)
     assert sim.model("a").pose.position[2] == pytest.approx(5 + 4e-3 - 0.008, abs=1e-5)
 
 
-def test_a_slow_roller_rolls_on() -> None:
+def test_a_slowly_rolling_body_does_not_stop() -> None:
     sim = simkit.load(world(GROUND, body("a", "0 0 0.1", BALL), body("b", "9 0 0.1", BALL)))
     sim.run(0.1)
     sim.model("a").set_velocity((1e-4, 0, 0), (0, 1e-3, 0))
@@ -156,7 +156,7 @@ def test_a_slow_roller_rolls_on() -> None:
     assert sim.model("a").pose.position[0] == pytest.approx(2e-3, rel=0.05)
 
 
-def test_a_slow_slider_without_friction_slides_on() -> None:
+def test_a_slowly_sliding_body_without_friction_does_not_stop() -> None:
     ice = "<surface><friction><ode><mu>0</mu><mu2>0</mu2></ode></friction></surface>"
     sim = simkit.load(world(GROUND, body("a", "0 0 0.2", surface=ice), body("b", "9 0 0.2")))
     sim.run(0.1)
@@ -165,7 +165,7 @@ def test_a_slow_slider_without_friction_slides_on() -> None:
     assert sim.model("a").pose.position[0] == pytest.approx(1e-2, rel=1e-3)
 
 
-def test_a_pendulum_is_not_caught_at_its_turning_point_nor_near_upright() -> None:
+def test_a_pendulum_does_not_fall_asleep_at_its_turning_point_or_near_upright() -> None:
     pendulum = """<model name="pendulum"><pose>{x} 0 3 0 0 0</pose><link name="l"><pose>0 0 {z} 0 0 0</pose><inertial>
 <mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial></link>
 <joint name="j" type="revolute"><parent>world</parent><child>l</child><pose>0 0 {up} 0 0 0</pose>
@@ -180,11 +180,11 @@ def test_a_pendulum_is_not_caught_at_its_turning_point_nor_near_upright() -> Non
         sim.run(8.0)
         trajectories.append((sim.joint("pendulum::j").position, sim.joint("upright::j").position))
     assert trajectories[0] == trajectories[1]
-    assert abs(trajectories[0][1]) > 1.0  # it has fallen
+    assert abs(trajectories[0][1]) > 1.0  # the pendulum has fallen
 
 
-def test_a_box_that_tips_over_ever_faster_from_almost_nothing_is_not_stopped() -> None:
-    # balanced on a narrow foot, off by a micrometre
+def test_a_box_that_begins_to_tip_over_very_slowly_is_not_stopped() -> None:
+    # balanced on a narrow foot, with an offset of one micrometre
     foot = '<model name="post"><static>true</static><pose>0 0 0.5 0 0 0</pose><link name="l"><collision name="c">'
     foot += "<geometry><sphere><radius>0.5</radius></sphere></geometry></collision></link></model>"
     sim = simkit.load(world(GROUND, foot, body("a", "0.000001 0 1.2"), body("b", "9 0 0.2")))
@@ -197,7 +197,7 @@ def test_a_box_that_tips_over_ever_faster_from_almost_nothing_is_not_stopped() -
 # ---------------------------------------------------------------------- waking
 
 
-def test_a_sleeper_hit_by_a_ball_wakes_and_moves_as_if_it_had_never_slept() -> None:
+def test_a_sleeping_box_that_a_ball_hits_moves_as_if_it_had_never_slept() -> None:
     poses = []
     slippery = "<surface><friction><ode><mu>0.01</mu><mu2>0.01</mu2></ode></friction></surface>"
     for sleep in (True, False):
@@ -210,7 +210,7 @@ def test_a_sleeper_hit_by_a_ball_wakes_and_moves_as_if_it_had_never_slept() -> N
         sim.run(0.3)
         poses.append(sim.mj_data.qpos.copy())
     assert np.abs(poses[0] - poses[1]).max() < 1e-6
-    assert abs(poses[0][0]) > 1e-3  # it was pushed
+    assert abs(poses[0][0]) > 1e-3  # the box was pushed
 
 
 def test_removing_the_table_under_a_sleeping_cup_makes_it_fall() -> None:
@@ -224,7 +224,7 @@ def test_removing_the_table_under_a_sleeping_cup_makes_it_fall() -> None:
     assert sim.model("cup").pose.position[2] == pytest.approx(0.2, abs=1e-3)
 
 
-def test_moving_the_table_away_makes_the_cup_fall_and_back_at_reset_it_stands() -> None:
+def test_moving_the_table_away_makes_the_cup_fall_and_a_reset_puts_it_back() -> None:
     sim = simkit.load(world(GROUND, TABLE, body("cup", "5 0 0.75"), body("b", "2 0 0.2")))
     sim.run(ASLEEP)
     sim.model("table").set_pose(simkit.Pose((9, 9, 0.5)))
@@ -244,20 +244,20 @@ def test_switching_off_the_table_s_collisions_or_the_cup_s_makes_it_fall() -> No
         assert sim.model("cup").pose.position[2] < 0.6
 
 
-def test_a_model_spawned_onto_a_sleeper_pushes_it() -> None:
+def test_a_model_spawned_onto_a_sleeping_body_pushes_it() -> None:
     sim = simkit.load(world(*TWO))
     sim.run(ASLEEP)
     sim.spawn(f'<sdf version="1.9">{body("c", "0.1 0 2.6")}</sdf>')
     sim.run(0.6)
     assert asleep(sim) == ["a", "b"]
     sim.run(0.1)
-    assert asleep(sim) == ["b"]  # it is hit after 0.64 s
+    assert asleep(sim) == ["b"]  # the box is hit after 0.64 s
     sim.run(3.0)
     assert sim.model("c").pose.position[2] == pytest.approx(0.6, abs=0.01)
     assert asleep(sim) == ["a", "b", "c"]
 
 
-def test_gravity_that_changes_wakes_all() -> None:
+def test_a_change_of_gravity_wakes_all_bodies() -> None:
     sim = simkit.load(world(*TWO))
     sim.run(ASLEEP)
     sim.mj_model.opt.gravity[:] = (0, 0, 1.0)
@@ -265,7 +265,7 @@ def test_gravity_that_changes_wakes_all() -> None:
     assert sim.model("a").pose.position[2] == pytest.approx(0.7, abs=1e-2)
 
 
-def test_what_is_set_on_a_sleeper_acts_at_once() -> None:
+def test_a_value_set_on_a_sleeping_body_takes_effect_at_once() -> None:
     sim = simkit.load(world(*TWO))
     sim.run(ASLEEP)
     sim.link("a::l").apply_wrench((0, 0, 1000.0))
@@ -285,7 +285,7 @@ def test_what_is_set_on_a_sleeper_acts_at_once() -> None:
     assert sim.model("a").pose.position[2] == pytest.approx(1.0 - 0.049, abs=2e-3)
 
 
-def test_what_is_written_to_the_engine_s_own_objects_is_seen_too() -> None:
+def test_direct_writes_to_the_engines_data_wake_bodies() -> None:
     sim = simkit.load(world(*TWO))
     sim.run(ASLEEP)
     sim.mj_data.qvel[2] = 2.0
@@ -293,7 +293,7 @@ def test_what_is_written_to_the_engine_s_own_objects_is_seen_too() -> None:
     assert sim.model("a").pose.position[2] == pytest.approx(0.2 + 0.2 - 0.049, abs=2e-3)
 
 
-def test_a_hook_or_a_command_goes_on_as_ever_while_all_sleep() -> None:
+def test_hooks_and_commands_work_as_usual_while_all_bodies_sleep() -> None:
     class Kick(simkit.WorldPlugin):
         before_step_rate = 1.0
         calls = 0
@@ -315,7 +315,7 @@ def test_a_hook_or_a_command_goes_on_as_ever_while_all_sleep() -> None:
     assert len(clock.messages) == 310
 
 
-def test_the_wrench_on_a_sleeper_s_joint_is_that_of_rest_and_reading_it_wakes_nobody() -> None:
+def test_reading_the_wrench_on_a_joint_of_a_sleeping_body_wakes_no_body() -> None:
     inertia = "<inertia><ixx>0.02</ixx><iyy>0.02</iyy><izz>0.02</izz></inertia>"
     rig = f"""<model name="rig"><pose>0 0 0.2 0 0 0</pose><link name="l"><inertial><mass>1</mass>{inertia}</inertial>
 <collision name="c"><geometry>{BOX}</geometry></collision></link><link name="top"><pose>0 0 0.3 0 0 0</pose>
@@ -335,7 +335,7 @@ def test_the_wrench_on_a_sleeper_s_joint_is_that_of_rest_and_reading_it_wakes_no
 EVENTS = (*TWO, body("ball", "0.1 0 6", BALL), body("c", "-3 0 0.3"), body("d", "-3.1 0 0.75"))
 
 
-def test_chunks_and_readers_change_no_bits() -> None:
+def test_chunks_of_steps_and_readers_change_no_bits() -> None:
     whole, single, read = (simkit.load(world(*EVENTS)) for _ in range(3))
     whole.run(3.0)
     for _ in range(3000):
@@ -350,7 +350,7 @@ def test_chunks_and_readers_change_no_bits() -> None:
 
 
 @pytest.mark.parametrize("when", [0.05, 0.3, 0.301, 1.09, 1.2, 2.5])
-def test_a_run_restored_while_some_sleep_repeats_its_bits(when: float) -> None:
+def test_a_run_restored_while_some_bodies_sleep_repeats_its_bits(when: float) -> None:
     sim = simkit.load(world(*EVENTS))
     sim.run(when)
     snapshot = sim.snapshot()
@@ -410,7 +410,7 @@ print(sim.mj_data.qpos.tobytes().hex())"""
     assert len(outputs) == 1 and len(outputs.pop()) > 100
 
 
-def test_a_pile_falls_asleep_and_stands_where_it_stood() -> None:
+def test_a_pile_falls_asleep_without_moving() -> None:
     rows = [body(f"p{i}_{j}", f"0 {0.42 * j + 0.21 * i} {0.2 + 0.4 * i}") for i in range(3) for j in range(3 - i)]
     sim = simkit.load(world(GROUND, *rows))
     reference = simkit.load(world(GROUND, *rows), sleep=False)
@@ -420,7 +420,7 @@ def test_a_pile_falls_asleep_and_stands_where_it_stood() -> None:
     assert np.abs(sim.mj_data.qpos - reference.mj_data.qpos).max() < 2e-4
 
 
-def test_lidar_rays_hit_sleepers() -> None:
+def test_lidar_rays_hit_sleeping_bodies() -> None:
     lidar = """<sensor name="s" type="lidar"><update_rate>10</update_rate><lidar><scan><horizontal><samples>1</samples>
 <min_angle>0</min_angle><max_angle>0</max_angle></horizontal></scan><range><min>0.1</min><max>10</max></range></lidar>
 </sensor></link>"""

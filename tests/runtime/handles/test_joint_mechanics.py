@@ -1,4 +1,4 @@
-"""Each kind of joint moves as mechanics has it; loops close; what follows, follows."""
+"""Each type of joint moves as in theory; loops stay closed; mimic joints follow their leaders."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def link(name: str, pose: str = "0 0 0 0 0 0", mass: float = 2.0, moments: str =
 
 
 def joint(name: str, kind: str, parent: str, child: str, *axes: str, pose: str = "", more: str = "") -> str:
-    """A joint; an axis is `x y z` with what else belongs into it after a `|`."""
+    """Return a joint; an axis is `x y z`, optionally followed by `|` and further elements of the axis."""
     text = ""
     for tag, axis in zip(("axis", "axis2"), axes, strict=False):
         xyz, _, rest = axis.partition("|")
@@ -42,7 +42,7 @@ def world(*content: str, gravity: str = "", name: str = "m", more: str = "") -> 
 
 
 def one(kind: str, *axes: str, more: str = "", pose: str = "", gravity: str = WEIGHTLESS, com: str = "") -> Any:
-    """A link `b` on a joint `j` to the world, without gravity."""
+    """Load a link `b` on a joint `j` to the world, without gravity."""
     return simkit.load(
         world(link("b", com=com), joint("j", kind, "world", "b", *axes, more=more, pose=pose), gravity=gravity)
     )
@@ -59,7 +59,7 @@ def test_a_constant_effort_accelerates_evenly(kind: str, inertia: float) -> None
         j.set_effort(0.6)
         sim.step()
     assert j.velocity == pytest.approx(0.6 / inertia * 0.5, rel=1e-9)
-    # the integrator is of first order: half a step's advance is its error
+    # the integrator is of first order: its error is half the travel of one step
     assert j.position == pytest.approx(0.5 * 0.6 / inertia * 0.25, rel=3e-3)
 
 
@@ -85,7 +85,7 @@ def test_friction_slows_down_evenly_and_then_holds() -> None:
     assert abs(j.velocity) < 1e-3
 
 
-def test_a_spring_swings_at_its_own_frequency_about_its_reference() -> None:
+def test_a_spring_oscillates_at_its_natural_frequency_about_its_reference() -> None:
     spring = (
         "0 0 1|<dynamics><spring_stiffness>12</spring_stiffness><spring_reference>0.2</spring_reference></dynamics>"
     )
@@ -129,7 +129,7 @@ def test_a_ball_joint_turns_about_the_given_vector_in_the_joint_frame() -> None:
     for _ in range(100):
         j.set_effort((0, 0, 0.3))
         sim.step()
-    # the inertial's axes are the joint's, so 0.3 kg m² turn about its z
+    # the inertial frame and the joint have the same axes, so the inertia about z is 0.3 kg m²
     assert j.velocity == pytest.approx((0, 0, 0.1), abs=1e-6)
     assert j.effort == pytest.approx((0, 0, 0.3))
 
@@ -148,7 +148,7 @@ def test_a_screw_advances_by_its_pitch_under_load() -> None:
     j, b = sim.joint("m::j"), sim.link("m::b")
     worst = 0.0
     for _ in range(2000):
-        j.set_effort(0.4)  # against a weight of 19.6 N, whose torque on the thread is 0.156 N m
+        j.set_effort(0.4)  # the weight of 19.6 N has a torque of 0.156 N m on the thread
         sim.step()
         z = float(b.pose.position[2])
         if abs(j.position) > 0.5:
@@ -177,7 +177,7 @@ def test_planar_joints_slide_and_turn(tmp_path: Any) -> None:
 URDF_MASS = '<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>'
 
 
-def test_a_floating_joint_below_a_moving_link_lets_its_child_go() -> None:
+def test_the_child_of_a_floating_joint_below_a_moving_link_moves_freely() -> None:
     text = f"""<robot name="r"><link name="base">{URDF_MASS}</link><link name="arm">{URDF_MASS}</link>
     <link name="bird">{URDF_MASS}</link>
     <joint name="hinge" type="continuous"><origin xyz="0 0 1"/><parent link="base"/><child link="arm"/>
@@ -200,7 +200,7 @@ def test_a_floating_joint_below_a_moving_link_lets_its_child_go() -> None:
     before, snapshot = float(bird.pose.position[2]), sim.snapshot()
     sim.run(0.5)
     fallen = float(bird.pose.position[2])
-    assert fallen == pytest.approx(before - G / 8, abs=0.5 * G * 0.5 * 1e-3 + 1e-4)  # half a step too far
+    assert fallen == pytest.approx(before - G / 8, abs=0.5 * G * 0.5 * 1e-3 + 1e-4)  # half a step's travel too far
     sim.restore(snapshot)
     sim.run(0.5)
     assert float(bird.pose.position[2]) == fallen
@@ -208,7 +208,7 @@ def test_a_floating_joint_below_a_moving_link_lets_its_child_go() -> None:
         air.set_effort((0, 0, 0, 0, 0, 0))
 
 
-# ------------------------------------------------------------------ turned round
+# ------------------------------------------------------------------ reversed joints
 
 
 @pytest.mark.parametrize(
@@ -222,7 +222,7 @@ def test_a_floating_joint_below_a_moving_link_lets_its_child_go() -> None:
         ("screw", ("0 0 1",), 1.2),
     ],
 )
-def test_a_joint_whose_child_hangs_on_the_world_keeps_its_meaning(kind: str, axes: Any, position: Any) -> None:
+def test_a_joint_reads_the_same_with_a_fixed_parent_and_a_fixed_child(kind: str, axes: Any, position: Any) -> None:
     a, b = link("a", "0.3 0.1 0 0.2 0 0"), link("b", "0.5 0 0.7 0 0.3 0.1")
     j = joint("j", kind, "a", "b", *axes, pose="0.1 0.2 0 0.1 0.2 0.3")
     apart = []
@@ -272,12 +272,12 @@ def test_a_gearbox_keeps_its_ratio_under_load() -> None:
     worst = 0.0
     for _ in range(2000):
         first.set_effort(3.0)
-        second.set_effort(0.5)  # a load against the turning
+        second.set_effort(0.5)  # a load against the rotation
         sim.step()
         if abs(first.position) > 0.1:
             worst = max(worst, abs(second.position / first.position / -4.0 - 1.0))
     assert worst < 1e-3
-    # 3 - 4 · 0.5 N m turn 0.3 + 16 · 0.3 kg m²
+    # a torque of 3 - 4 · 0.5 N m accelerates an inertia of 0.3 + 16 · 0.3 kg m²
     assert first.velocity == pytest.approx(1.0 / (17 * 0.3) * 2.0, rel=2e-3)
     first.set_position(0.25)
     assert second.position == pytest.approx(-1.0)
@@ -302,7 +302,7 @@ def test_mimics_follow_through_chains_and_kinds_and_second_axes() -> None:
         ),
     )
     cross, slide, last = (sim.joint(f"m::{n}") for n in ("cross", "slide", "last"))
-    # before the first step they stand where the law says
+    # the mimic joints have their positions before the first step
     assert slide.position == pytest.approx(0.1 - 0.5 * 0.2)
     assert last.position == pytest.approx(0.05)
     worst = 0.0
@@ -319,7 +319,7 @@ def test_mimics_follow_through_chains_and_kinds_and_second_axes() -> None:
     assert last.position == pytest.approx(-3 * 0.3 + 0.05)
 
 
-def test_a_follower_s_limits_hold_its_leader() -> None:
+def test_the_limits_of_a_mimic_joint_limit_its_leader() -> None:
     sim = simkit.load(
         world(
             link("b"),
@@ -353,7 +353,7 @@ def hinge(name: str, kind: str, parent: str, child: str, at: Any, axis: str = "0
 
 
 def linkage(kind: str = "revolute", axis: str = "0 1 0") -> str:
-    """Crank A-B, coupler B-C, rocker D-C; the joint at C closes the loop."""
+    """Return a four-bar linkage: crank A-B, coupler B-C, rocker D-C; the joint at C closes the loop."""
     return world(
         bar("crank", A, B, 1.0),
         bar("coupler", B, C, 2.0),
@@ -366,7 +366,10 @@ def linkage(kind: str = "revolute", axis: str = "0 1 0") -> str:
 
 
 def angles(crank: float) -> tuple[float, float]:
-    """Turns of coupler and rocker [rad] about y for one of the crank, by the law of cosines, on the file's branch."""
+    """Return the angles of coupler and rocker [rad] about y for an angle of the crank, by the law of cosines.
+
+    Of the two solutions, this is the one in which the file starts.
+    """
     b = np.array((0.4 * math.sin(crank), 0.4 * math.cos(crank)))
     to_d = np.array(D) - b
     far, long, short = float(np.hypot(*to_d)), math.hypot(1.0, 0.4), 0.8
@@ -402,7 +405,7 @@ def test_a_four_bar_linkage_stays_closed_under_load_and_its_loop_joint_reads_the
     assert sum(sim.mj_model.body_mass) == pytest.approx(4.0)
 
 
-def test_a_loop_joint_is_read_but_not_set_and_follows_when_the_others_are() -> None:
+def test_a_loop_joint_cannot_be_set_but_follows_the_other_joints() -> None:
     sim = simkit.load(linkage())
     c = sim.joint("m::c")
     with pytest.raises(InputError, match="closes a loop"):
@@ -415,7 +418,7 @@ def test_a_loop_joint_is_read_but_not_set_and_follows_when_the_others_are() -> N
     crank = sim.joint("m::a")
     crank.set_velocity(0.0)
     sim.step()
-    assert abs(c.velocity) < 0.5  # nothing was torn
+    assert abs(c.velocity) < 0.5  # the loop is still closed
     assert crank.position == pytest.approx(0.8, abs=1e-3)
 
 
@@ -445,8 +448,8 @@ def test_a_loop_joint_has_limits_damping_and_effort_like_any_other() -> None:
         ("screw", "1 0 0", "<screw_thread_pitch>0.2</screw_thread_pitch>", ("x", "rx")),
     ],
 )
-def test_a_loop_joint_of_any_kind_holds_what_it_should(kind: str, axis: str, more: str, free: Any) -> None:
-    """A body on six loose axes of its own is held by the loop joint alone, and pushed every way."""
+def test_a_loop_joint_of_any_type_constrains_the_right_directions(kind: str, axis: str, more: str, free: Any) -> None:
+    """Push a body in every direction; only the loop joint constrains the body, which has six free axes of its own."""
     rail = [link(n, mass=0.5, moments="0.05 0.05 0.05") for n in "pqrst"]
     axes = ("prismatic", "1 0 0"), ("prismatic", "0 1 0"), ("prismatic", "0 0 1"), ("revolute", "1 0 0")
     axes = *axes, ("revolute", "0 1 0"), ("revolute", "0 0 1")
@@ -488,7 +491,7 @@ def pair(kind: str = "revolute", axis: str = "0 0 1") -> str:
     return f'<sdf version="1.9"><world name="w">{WEIGHTLESS}{models}{tie}</world></sdf>'
 
 
-def test_a_joint_of_the_world_ties_two_models_until_one_is_removed() -> None:
+def test_a_joint_of_the_world_connects_two_models_until_one_is_removed() -> None:
     sim = simkit.load(pair())
     tie, a, b = sim.joint("tie"), sim.link("a::l"), sim.link("b::l")
     for _ in range(500):
@@ -512,7 +515,7 @@ def test_a_joint_of_the_world_ties_two_models_until_one_is_removed() -> None:
     assert sim.joint("tie").position == pytest.approx(0.0, abs=1e-9)
 
 
-def test_setting_one_of_two_tied_models_elsewhere_does_not_throw_the_joint_off() -> None:
+def test_moving_one_of_two_connected_models_does_not_break_the_joint() -> None:
     sim = simkit.load(pair())
     sim.model("a").set_pose(simkit.Pose.from_rpy(1, -1, 1, 0, 0, math.pi / 2))
     assert sim.joint("tie").position == pytest.approx(-math.pi / 2, abs=1e-9)

@@ -1,4 +1,4 @@
-"""Lights that are moved: their handles, and what is drawn of them."""
+"""Moved lights: their handles, and their poses for the renderer."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def opened(*parts: str) -> simkit.Simulation:
 
 
 def drawn(sim: simkit.Simulation) -> tuple[np.ndarray, np.ndarray]:
-    """Position and direction of the only light, in the world, as the renderer has them."""
+    """Return position and direction of the only light for the renderer, world frame."""
     data = sim.engine.physics.fresh()
     return data.light_xpos[0].copy(), data.light_xdir[0].copy()
 
 
 @pytest.mark.parametrize("others", [(), (BALL,)], ids=["all at rest", "something moves"])
-def test_a_moved_light_of_the_world_is_drawn_where_its_handle_says(others: tuple[str, ...]) -> None:
+def test_a_moved_light_of_the_world_is_drawn_at_the_pose_of_its_handle(others: tuple[str, ...]) -> None:
     with opened(SUN, *others) as sim:
         sim.run(0.1)
         sim.light("sun").set_pose(Pose.from_rpy(1, 2, 3, 1, 0, 0))
@@ -47,7 +47,7 @@ def test_a_moved_light_of_the_world_is_drawn_where_its_handle_says(others: tuple
         np.testing.assert_allclose(drawn(sim)[1], (0, 0, -1), atol=1e-12)
 
 
-def test_a_light_on_a_static_link_stays_there_over_a_reset_and_goes_with_the_link() -> None:
+def test_a_light_on_a_static_link_keeps_its_pose_in_a_reset_and_moves_with_the_link() -> None:
     with opened(POST) as sim:
         light = sim.light("post::l::lamp")
         for _ in range(2):
@@ -63,7 +63,7 @@ def test_a_light_on_a_static_link_stays_there_over_a_reset_and_goes_with_the_lin
         np.testing.assert_allclose(drawn(sim)[0], (5, 0, 4))
 
 
-def test_a_light_follows_a_course_until_it_is_set_elsewhere() -> None:
+def test_a_light_follows_a_course_until_its_pose_is_set() -> None:
     def course(time_ns: int) -> LightState:
         return LightState(Pose((time_ns * 1e-9, 0, 0)), on=time_ns < 500_000_000, irradiance=7.0)
 
