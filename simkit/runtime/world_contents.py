@@ -212,7 +212,7 @@ class WorldContents:
         return self.spawner.read(source).name
 
     def pose_in_file(self, source: object) -> Pose:
-        """Return the pose of a model in the world, as given in its file.
+        """Return the world pose that the file of a model gives.
 
         Raises:
             LoadError: the source has errors.

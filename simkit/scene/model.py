@@ -238,7 +238,7 @@ class SceneJoint:
         type: revolute, continuous, prismatic, fixed, ball, universal, revolute2, screw, gearbox, floating, planar.
         parent_link, child_link: scoped link names; the parent can be `world`.
         axes: axes of the joint. A planar joint has the axes x and y of its plane, then the rotation about its normal.
-        thread_pitch: screw only: metres per turn (gz convention of the file already applied).
+        thread_pitch: screw only: metres per turn, already converted from Gazebo's convention in the file.
         gearbox_ratio, gearbox_reference: gearbox only; the reference is a scoped link name.
         safety, calibration: data of a URDF joint, for controllers.
     """

@@ -57,8 +57,8 @@ class OnDemandTasks:
         Args:
             topics: ROS types by topic.
             rate: publishing rate [Hz].
-            make: function that receives a topic and returns its message. It may also return a function that makes the
-                message when a subscriber reads the message.
+            make: function that receives a topic and returns its message. Instead of the message, it may return a
+                function, which is called when a subscriber reads the message.
             is_aside: True if recorders and counters ignore the topics unless the user names them.
             is_listed: True if the lists of topics contain these topics even without subscribers.
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Endpoint(Protocol):
-    """Service or action; it exists as long as its owner.
+    """Service or action, which exists as long as its owner.
 
     Attributes:
         name: absolute name.

@@ -188,10 +188,10 @@ class _ModelFriction:
             self._belts.add(id(owner))
             for belt in belts:
                 self.surfaces.add(belt)
-                self._rub(belt)
+                self._set_belt_friction(belt)
             self._arrange()
 
-    def _rub(self, belt: Belt) -> None:
+    def _set_belt_friction(self, belt: Belt) -> None:
         """Set the friction of a belt's collisions to the coefficients that its plugin requests."""
         if belt.friction is None:
             return
@@ -274,7 +274,7 @@ class _ModelFriction:
         self._contacts.turn(data, found, places, flow)
         surfaces.carry(data, found.frames)
         mujoco.mj_makeConstraint(model, data)
-        soft = self._soft(data, found, places, wheels) if self._may_slip else []
+        soft = self._slipping_contacts(data, found, places, wheels) if self._may_slip else []
         is_elliptic = model.opt.cone == _ELLIPTIC
         if is_elliptic and soft:
             self._softness.soften(data, soft)
@@ -286,7 +286,7 @@ class _ModelFriction:
             for number, _, slip in soft:
                 self._softness.soften_pyramid(data, number, slip)
 
-    def _soft(
+    def _slipping_contacts(
         self, data: mujoco.MjData, found: AnyFrictionContacts, places: RowContacts, wheels: list[list[Pair]]
     ) -> list[tuple[int, int, Pair]]:
         """Return the slipping contacts with their kinematic trees and compliances [m/s/N]."""

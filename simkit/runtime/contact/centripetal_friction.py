@@ -119,4 +119,5 @@ class CentripetalFriction:
     def _bias(self, data: mujoco.MjData, point: npt.NDArray[np.float64], body: int) -> npt.NDArray[np.float64]:
         """Return the velocity-dependent acceleration of a point of a body [m/s²], world frame."""
         mujoco.mj_jacDot(self._model, data, self._jacobian, None, point, body)
-        return self._jacobian @ data.qvel
+        bias: npt.NDArray[np.float64] = self._jacobian @ data.qvel
+        return bias

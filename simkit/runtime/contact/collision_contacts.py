@@ -76,7 +76,7 @@ class CollisionContacts:
     wrenches: Floats
 
 
-def find_contacts(model: mujoco.MjModel, data: mujoco.MjData, mine: Bools) -> CollisionContacts | None:
+def find_contacts(model: mujoco.MjModel, data: mujoco.MjData, selected: Bools) -> CollisionContacts | None:
     """Return the contacts of selected geoms; None if there are none.
 
     Two surfaces have a contact if they touch or overlap, or if a force between them acts already before they touch.
@@ -85,14 +85,14 @@ def find_contacts(model: mujoco.MjModel, data: mujoco.MjData, mine: Bools) -> Co
     Args:
         model: MuJoCo's model.
         data: MuJoCo's data with a complete forward pass.
-        mine: mask of the selected geoms, shape (ngeom + 1,).
+        selected: mask of the selected geoms, shape (ngeom + 1,).
     """
     if not data.ncon:
         return None
     contact = data.contact
     pairs = contact.geom
     # for a few contacts, Python numbers are faster than arrays
-    rows = any_of(mine.take(pairs), axis=1).nonzero()[0]
+    rows = any_of(selected.take(pairs), axis=1).nonzero()[0]
     if not rows.size:
         return None
     acts = contact.efc_address[rows]

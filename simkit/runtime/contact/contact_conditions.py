@@ -68,9 +68,9 @@ def rebound(data: mujoco.MjData, number: int, speed: float, around: ContactCondi
 
     A bouncing contact has the damping d (1 + e) / dt (`simkit.compiler.contact_friction.bounce_solref`), which reverses
     the speed within a step. The step that detects a hit begins below the surface, by up to the travel of one step. The
-    integrator keeps the energy u² / 2 + q u - g depth in flight, with q = g dt / 2. After the hit it becomes e² times
-    its value at the surface. Friction has the same damping: without the fraction 1 / (1 + e), a hit would reverse the
-    slip as well.
+    integrator keeps the energy u² / 2 + q u - g depth in flight, with q = g dt / 2. After the hit, this energy is e²
+    times its value at the surface. Friction has the same damping. Its references are multiplied by 1 / (1 + e), because
+    otherwise a hit would reverse the slip as well.
 
     Returns:
         Acceleration [m/s²] and fraction; the acceleration is NaN for a contact that is too slow to rebound.

@@ -55,7 +55,7 @@ class ContactCorrection:
         self._data, self._aref, self._contacts, self._changed = data, data.efc_aref, contacts, changed
         self._before: list[float] = []
         self._softness: list[float] = []
-        self._asked: list[float] = []
+        self._requested: list[float] = []
         self._sequence: AndersonAcceleration | None = None
 
     def guess(self, moves: Floats) -> None:
@@ -64,12 +64,10 @@ class ContactCorrection:
         Args:
             moves: estimate of J a, shape (nefc,).
         """
-        accelerations, aref, asked = moves.tolist(), self._aref, self._asked
+        accelerations, aref, requested = moves.tolist(), self._aref, self._requested
         self._before = before = aref.tolist()
         for row, mus, normal, goal, _, _ in self._contacts:
-            if (
-                len(mus) == 2
-            ):  # unrolled, because nearly all contacts have two tangents: saves a third of the loop's time
+            if len(mus) == 2:  # unrolled for the usual two tangents: saves a third of the loop's time
                 one = mus[0] * (before[row + 1] - accelerations[row + 1])
                 other = mus[1] * (before[row + 2] - accelerations[row + 2])
                 total = one * one + other * other
@@ -80,7 +78,7 @@ class ContactCorrection:
                     total += one * one
             now = (normal if goal != goal else goal) - math.sqrt(total)
             aref[row] = now
-            asked.append(now)
+            requested.append(now)
 
     def correct(self, moves: Floats, forces: Floats) -> bool:
         """Set references from a solution; return True if they stay within the tolerances.
@@ -92,8 +90,8 @@ class ContactCorrection:
         accelerations, force, before, softness = moves.tolist(), forces.tolist(), self._before, self._softness
         if not softness:
             self._softness = softness = self._data.efc_R.tolist()
-        given, stays = [], True
-        for (row, mus, normal, goal, rebounds, most), last in zip(self._contacts, self._asked, strict=True):
+        results, stays = [], True
+        for (row, mus, normal, goal, rebounds, most), last in zip(self._contacts, self._requested, strict=True):
             if len(mus) == 2:
                 place = row + 1
                 one = mus[0] * (before[place] - accelerations[place] - softness[place] * force[place])
@@ -111,14 +109,14 @@ class ContactCorrection:
                 normal = wanted if rebounds else max(normal, wanted) if normal < goal else min(normal, wanted)
                 most = max(most, CLOSING_ACCURACY * goal)
             now = normal - math.sqrt(total)
-            given.append(now)
+            results.append(now)
             if abs(now - last) > most:
                 stays = False
         if not stays:
             if self._sequence is None:
                 self._sequence = AndersonAcceleration()
-            self._asked, aref = self._sequence.next(self._asked, given), self._aref
-            for (row, _, _, _, _, _), now in zip(self._contacts, self._asked, strict=True):
+            self._requested, aref = self._sequence.next(self._requested, results), self._aref
+            for (row, _, _, _, _, _), now in zip(self._contacts, self._requested, strict=True):
                 aref[row] = now
         return stays
 
@@ -174,9 +172,8 @@ def find_correction(
                 one = mus[place - 1] * slip[row + place]
                 total += one * one
         speed, depth = velocity[row], -distance[number]
-        if (
-            CLOSING_SPEED <= speed <= OPENING_SPEED and depth <= MIN_PENETRATION
-        ):  # neither closing nor opening: the most frequent case
+        # neither closing nor opening: the most frequent case
+        if CLOSING_SPEED <= speed <= OPENING_SPEED and depth <= MIN_PENETRATION:
             if total > square:
                 found.append((row, mus[: dim - 1], aref[row], nothing, False, around.tolerance))
             continue
@@ -256,14 +253,14 @@ class ArrayContactCorrection:
         self._before: Floats = self._aref[edges]
         self._tangents: Floats = self._before
         self._compliance: Floats = self._softness[places]
-        self._asked: Floats = normals
+        self._requested: Floats = normals
         self._sequence = AndersonAcceleration()
 
     def guess(self, moves: Floats) -> None:
         """Set references as `ContactCorrection.guess` does."""
         self._tangents = self._aref[self._places]
         normals = np.where(self._has_goal, self._goals, self._normals)
-        self._ask(normals - _lift(self._tangents - moves[self._places], self._mu, self._is_pyramid))
+        self._set_references(normals - _lift(self._tangents - moves[self._places], self._mu, self._is_pyramid))
 
     def correct(self, moves: Floats, forces: Floats) -> bool:
         """Set references as `ContactCorrection.correct` does."""
@@ -278,16 +275,16 @@ class ArrayContactCorrection:
             normals = np.where(self._has_goal, np.where(self._rebounds, wanted, limited), normals)
             most = np.where(self._has_goal, np.maximum(most, CLOSING_ACCURACY * self._goals), most)
         now = normals - size
-        if (np.abs(now - self._asked) <= most).all():
+        if (np.abs(now - self._requested) <= most).all():
             return True
-        now = np.array(self._sequence.next(self._asked.tolist(), now.tolist()))
-        self._ask(now)
+        now = np.array(self._sequence.next(self._requested.tolist(), now.tolist()))
+        self._set_references(now)
         return False
 
     def settle(self) -> None:
         """Choose references as `ContactCorrection.settle` does."""
         if self._sequence.has_come_near(float(self._tolerances[0])):
-            self._ask(np.array(self._sequence.best))
+            self._set_references(np.array(self._sequence.best))
         else:
             self.restore()
 
@@ -297,8 +294,8 @@ class ArrayContactCorrection:
         for row, reference in self._changed:
             self._aref[row] = reference
 
-    def _ask(self, normals: Floats) -> None:
-        self._asked = normals
+    def _set_references(self, normals: Floats) -> None:
+        self._requested = normals
         changes = self._before + (normals - self._normals)[:, None]
         self._aref[self._edges] = changes if self._is_pyramid else normals[:, None]
 

@@ -128,7 +128,7 @@ class ContactLaw:
         """
         if not self._is_on:
             return False
-        if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._finds(data))):
+        if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._needs_correction(data))):
             return True
         return self._has_flying(data) or self._has_fast(data) or bool(self._carried.find(data))
 
@@ -175,7 +175,7 @@ class ContactLaw:
                 data.efc_aref[row] = reference
         return found is not None
 
-    def _finds(self, data: mujoco.MjData) -> bool:
+    def _needs_correction(self, data: mujoco.MjData) -> bool:
         """Check whether a contact needs a correction; the references stay unchanged."""
         found = self._find(data, None)
         if found is None:

@@ -35,7 +35,9 @@ class ContactSlip:
         """Make the friction of elliptic contacts soft."""
         contact, step = data.contact, float(self.model.opt.timestep)
         firsts, dims, frictions = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
-        yields = self._yields(data, [one for one in soft if not _is_isotropic(one[2], frictions[one[0]])], firsts)
+        inverse_masses = self._inverse_masses(
+            data, [one for one in soft if not _is_isotropic(one[2], frictions[one[0]])], firsts
+        )
         all_r, all_d, terms, mus = data.efc_R, data.efc_D, data.efc_KBIP, contact.mu
         for number, tree, slip in soft:
             first, friction = firsts[number], frictions[number][: dims[number] - 1]
@@ -46,7 +48,7 @@ class ContactSlip:
             if _is_isotropic(slip, friction):
                 base = max(base, slip[0] / step)
             else:
-                both = yields[tree]
+                both = inverse_masses[tree]
                 base = max(base, _shared_resistance(slip, by_friction, both, step))
                 most = [(y + base * by) / (y * step) for y, by in zip(both, by_friction[:2], strict=True)]
             resistance = [base * by for by in by_friction]
@@ -57,7 +59,9 @@ class ContactSlip:
                 damping = resistance[tangent] / one if one > 0.0 else math.inf
                 terms[first + 1 + tangent, 1] = min(damping, most[tangent])
 
-    def _yields(self, data: mujoco.MjData, soft: Sequence[SlippingContact], firsts: list[int]) -> dict[int, Numbers]:
+    def _inverse_masses(
+        self, data: mujoco.MjData, soft: Sequence[SlippingContact], firsts: list[int]
+    ) -> dict[int, Numbers]:
         """Return upper bounds for the inverse mass of each tree's contacts along their two tangents [1/kg].
 
         The bound is a sum of diagonal elements, which is at least as large as any eigenvalue.
@@ -74,11 +78,11 @@ class ContactSlip:
             unit[place] = 0.0
         solved = np.empty_like(along)
         mujoco.mj_solveM(model, data, solved, along)
-        given = [float(one @ other) for one, other in zip(along, solved, strict=True)]
+        responses = [float(one @ other) for one, other in zip(along, solved, strict=True)]
         for index, (_, tree, _) in enumerate(soft):
             both = found.setdefault(tree, [1e-12, 1e-12])
-            both[0] += given[2 * index]
-            both[1] += given[2 * index + 1]
+            both[0] += responses[2 * index]
+            both[1] += responses[2 * index + 1]
         return found
 
     def soften_pyramid(self, data: mujoco.MjData, number: int, slip: Pair) -> None:
@@ -103,7 +107,7 @@ def _is_isotropic(slip: Pair, friction: Sequence[float]) -> bool:
     return slip[0] == slip[1] and friction[0] == friction[1]
 
 
-def _shared_resistance(slip: Pair, by_friction: Numbers, yields: Numbers, step: float) -> float:
+def _shared_resistance(slip: Pair, by_friction: Numbers, inverse_masses: Numbers, step: float) -> float:
     """Return R of the first tangent for two tangents with different slip.
 
     A larger R, compared with the inverse mass S of the contacts, lets the softer tangent reach its slip sooner. The
@@ -113,14 +117,14 @@ def _shared_resistance(slip: Pair, by_friction: Numbers, yields: Numbers, step: 
     Args:
         slip: compliances of both tangents [m/s/N].
         by_friction: R of each tangent relative to the first one.
-        yields: inverse masses along the tangents [1/kg].
+        inverse_masses: inverse masses along the tangents [1/kg].
         step: length of a step [s].
     """
     wanted = [one / step / by for one, by in zip(slip, by_friction[:2], strict=True)]
     softer = int(wanted[1] > wanted[0])
     stiffer = 1 - softer
     least = max(slip[stiffer], _MIN_COMPLIANCE_SHARE * slip[softer])
-    room = yields[stiffer] * step - least
-    exact = least * yields[stiffer] / room / by_friction[stiffer] if room > 0.0 else math.inf
-    soft_enough = min(wanted[softer], _STIFF_FACTOR * yields[softer] / by_friction[softer], exact)
+    room = inverse_masses[stiffer] * step - least
+    exact = least * inverse_masses[stiffer] / room / by_friction[stiffer] if room > 0.0 else math.inf
+    soft_enough = min(wanted[softer], _STIFF_FACTOR * inverse_masses[softer] / by_friction[softer], exact)
     return max(min(wanted), soft_enough)

@@ -109,9 +109,9 @@ class FastBodyDetector:
         self._scratch: Any = None
         self._data: mujoco.MjData | None = None
         self._velocities_now = np.zeros(0)
-        self._weigh()
+        self._compute_weights()
 
-    def _weigh(self) -> None:
+    def _compute_weights(self) -> None:
         """Compute the weights of velocities with which `wants` quickly detects that no body is fast."""
         model, nv = self.model, self.model.nv
         rows, dofs, lever = travel_bounds.velocity_levers(model, self._moving)
@@ -142,7 +142,7 @@ class FastBodyDetector:
         terms = _multiply(self._velocities_now, self._rooted, self._terms)
         if terms.dot(terms) <= 1.0 or self._is_slow(self._velocities_now):
             return False
-        return self._meets(data)
+        return self._has_fast_pair(data)
 
     def _is_slow(self, velocities: Floats) -> bool:
         """Check that no geom can be fast, by the sum over its chain of joints."""
@@ -151,7 +151,7 @@ class FastBodyDetector:
             return bool((self._share @ speeds).max() <= 1.0)
         return bool(np.add.reduceat(speeds * self._weights, self._starts).max() <= 1.0)
 
-    def _meets(self, data: mujoco.MjData) -> bool:
+    def _has_fast_pair(self, data: mujoco.MjData) -> bool:
         """Check whether a fast geom may pass through another within a time window of `window_length` steps."""
         model, moving = self.model, self._moving
         scratch = self._positions(data)
@@ -165,7 +165,7 @@ class FastBodyDetector:
             return True
         all_speeds, all_linear = np.zeros(model.ngeom), np.zeros((model.ngeom, 3))
         all_speeds[moving], all_linear[moving] = speeds, linear
-        one, other = self._near(scratch.geom_xpos, fast, all_speeds)
+        one, other = self._find_reachable_pairs(scratch.geom_xpos, fast, all_speeds)
         if not len(one):
             return False
         half, both = self._half, all_speeds[one] + all_speeds[other]
@@ -180,7 +180,7 @@ class FastBodyDetector:
         if not keep.any():
             return False
         if self.on_approach is not None:
-            self._find_helpless(scratch, one[keep], other[keep], both[keep], all_linear)
+            self._report_unstoppable(scratch, one[keep], other[keep], both[keep], all_linear)
         return True
 
     def _positions(self, data: mujoco.MjData) -> mujoco.MjData:
@@ -220,7 +220,7 @@ class FastBodyDetector:
         turning: Floats = np.sqrt(np.einsum("ij,ij->i", spin, spin)) * self._spin_radius
         return linear, turning
 
-    def _near(self, places: Floats, fast: Ints, speeds: Floats) -> tuple[Ints, Ints]:
+    def _find_reachable_pairs(self, places: Floats, fast: Ints, speeds: Floats) -> tuple[Ints, Ints]:
         """Find pairs of a fast geom and a geom that it may reach, even after bounces.
 
         The pairs are those for the next time window of `window_length` steps.
@@ -235,12 +235,12 @@ class FastBodyDetector:
             (distance <= reach + radius[None, others]) & travel_bounds.can_touch(model, fast[:, None], others[None])
         )
         one, other = fast[rows], others[columns]
-        local = self._inside(places[one], other)
+        local = self._to_box_frames(places[one], other)
         gap = np.linalg.norm(np.maximum(np.abs(local) - model.geom_aabb[other, 3:], 0.0), axis=1)
         keep = (gap <= reach[rows, columns]) & (one != other)
         return one[keep], other[keep]
 
-    def _inside(self, points: Floats, geoms: Ints) -> Floats:
+    def _to_box_frames(self, points: Floats, geoms: Ints) -> Floats:
         """Transform world points to the frames of the bounding boxes of geoms."""
         scratch = self._scratch
         turned = scratch.geom_xmat[geoms].reshape(-1, 3, 3)
@@ -250,7 +250,7 @@ class FastBodyDetector:
 
     # ------------------------------------------------------------------ unstoppable approaches
 
-    def _find_helpless(self, scratch: mujoco.MjData, one: Ints, other: Ints, both: Floats, linear: Floats) -> None:
+    def _report_unstoppable(self, scratch: mujoco.MjData, one: Ints, other: Ints, both: Floats, linear: Floats) -> None:
         """Report approaching pairs that speculative contacts do not reliably stop."""
         model, step, half = self.model, float(self.model.opt.timestep), self._half
         together = half[one] + half[other]
@@ -273,7 +273,7 @@ class FastBodyDetector:
         The check assumes straight motion within a time window of `window_length` steps.
         """
         model = self.model
-        start = self._inside(scratch.geom_xpos[one], other)
+        start = self._to_box_frames(scratch.geom_xpos[one], other)
         turned = scratch.geom_xmat[other].reshape(-1, 3, 3)
         way = np.einsum("nji,nj->ni", turned, linear[one] - linear[other]) * (self._window * model.opt.timestep)
         box = model.geom_aabb[other, 3:] + model.geom_rbound[one][:, None]

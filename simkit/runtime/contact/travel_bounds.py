@@ -120,9 +120,10 @@ def is_filtered(model: mujoco.MjModel, one: int, other: int) -> bool:
 
 
 def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Floats]:
-    """Return rows of (index in `geoms`, degree of freedom, lever): surface points move by at most lever · |velocity|.
+    """Return rows of (index in `geoms`, degree of freedom, lever): the lever is the largest speed per joint velocity.
 
-    The lever is 1 for a translation and a length [m] for a rotation, over all configurations.
+    Surface points of the geom have at most the speed lever · |velocity|, in all configurations. The lever is 1 for a
+    translation and a length [m] for a rotation.
     """
     rows: list[Ints] = []
     dofs: list[Ints] = []

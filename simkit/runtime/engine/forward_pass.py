@@ -129,10 +129,10 @@ class ForwardPass(PhysicsState):
     def fresh_accelerations(self) -> mujoco.MjData:
         """Return the data with a forward pass, body accelerations and the forces between bodies.
 
-        The forces of the last step are included, even if they are applied for one step only. They caused the motion, so
-        a joint under a motor does not appear to be in free fall.
+        The forces of the last step are included, even if they are applied for one step only. These forces caused the
+        present motion. Without them, a link that a motor holds would appear to be in free fall.
         """
-        if self.shows_applied and self._has_passed():
+        if self.shows_applied and self._has_expired_forces():
             return self.data_of(self.hold())
         data = self.fresh()
         if self._accelerations_tick != self.tick:
@@ -149,7 +149,7 @@ class ForwardPass(PhysicsState):
             self._check_controls()
         if self._held is None or self._held.tick != self.tick:
             values, data = np.empty(self._held_size), self.data
-            if self.shows_applied and self._has_passed():
+            if self.shows_applied and self._has_expired_forces():
                 applied, pushed = data.qfrc_applied.copy(), data.xfrc_applied.copy()
                 data.qfrc_applied += self.last_applied
                 data.xfrc_applied += self.last_pushed
@@ -207,6 +207,6 @@ class ForwardPass(PhysicsState):
         finally:
             set_speculative(self.model, self._is_fast)
 
-    def _has_passed(self) -> bool:
+    def _has_expired_forces(self) -> bool:
         """Check whether the last step had one-shot forces and the next step has none."""
         return not self.one_shot and bool(self.last_applied.any() or self.last_pushed.any())

@@ -31,7 +31,7 @@ class EngineWarnings:
         self._texts: list[str] = []
 
     def record(self, text: str) -> None:
-        """Store a text; an exception here would end the interpreter."""
+        """Store the text of a warning. An exception in this method would end the interpreter."""
         if len(self._texts) < 8:
             self._texts.append(text)
 
@@ -332,7 +332,7 @@ def set_speculative(model: mujoco.MjModel, is_on: bool) -> None:
 
 
 def _accelerations_by_control(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
-    """Return the acceleration of the driven body per unit of each control [m/s²], shape (nu,)."""
+    """Return the acceleration of the driven body for a change of each control by 1 [m/s²], shape (nu,)."""
     found = np.zeros(model.nu)
     for i in range(model.nu):
         if model.actuator_trntype[i] == mujoco.mjtTrn.mjTRN_JOINT:

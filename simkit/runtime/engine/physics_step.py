@@ -62,7 +62,7 @@ class Physics(ForwardPass):
         if sleep.watches and sleep.notice_gravity():
             self.changed(STALE)
         if sleep.rests and sleep.still_rests():
-            self._rest(count)
+            self._advance_time(count)
             return
         if self.one_shot:
             self._run(1)
@@ -93,7 +93,7 @@ class Physics(ForwardPass):
         else:
             self.advance(1)
 
-    def _rest(self, count: int) -> None:
+    def _advance_time(self, count: int) -> None:
         """Advance the time alone, with the same floating-point sum as the engine."""
         data, step = self.data, self.clock.timestep
         if count < _SHORT_RUN:

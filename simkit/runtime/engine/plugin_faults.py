@@ -199,7 +199,7 @@ class PluginFaults:
 
 
 def release_servos(engine: EngineState, plugin: AttachedPlugin) -> None:
-    """Release the joints that a plugin's servos and motors hold; a restore or reset undoes it."""
+    """Release the joints that a plugin's servos and motors hold; a restore or reset restores the servos and motors."""
     present = {ref.name for record in engine.structure.builder.records.values() for ref in record.actuators}
     refs = [ref for ref in plugin._actuators if ref.name in present]
     if refs:

@@ -59,12 +59,12 @@ class Agenda:
         if self._cycle and tick > 1:  # the first tick has additional samples of sensors
             planned = self._plan.get(tick % self._cycle)
             if planned is None:
-                planned = self._plan[tick % self._cycle] = self._work_out(tick)
+                planned = self._plan[tick % self._cycle] = self._compute_due(tick)
             self.next = tick + planned[1]
             return planned[0]
         return self._by_heap(tick)
 
-    def _work_out(self, tick: int) -> tuple[list[Task], int]:
+    def _compute_due(self, tick: int) -> tuple[list[Task], int]:
         """Return the tasks that are due at `tick`, and the number of ticks to the next due tick."""
         due = [task for task, grid in self._tasks if grid is None or grid.next(tick - 1) == tick]
         return due, min(grid.next(tick) for _, grid in self._tasks if grid is not None) - tick
@@ -89,7 +89,7 @@ class Agenda:
 
 
 def _common_cycle(timetables: Sequence[Timetable]) -> int:
-    """Return the number of ticks after which all timetables repeat; 0 if it is too long or does not exist."""
+    """Return the number of ticks after which all timetables repeat; 0 if the cycle is too long or does not exist."""
     periods = [grid.cycle for grid in timetables if isinstance(grid, TickGrid)]
     if not periods or len(periods) < len(timetables):
         return 0

@@ -131,12 +131,12 @@ class Sleep:
         rests = (self._still >= _TWICE) | (self._calm >= _TWICE)
         ready = self._may & rests & ~asleep & (data.tree_island >= 0)
         if ready.any():
-            ready[self._pushed()] = False
+            ready[self._trees_with_forces()] = False
         if ready.any():
             data.tree_asleep[ready] = _READY
             self.is_drowsy = True
 
-    def _pushed(self) -> npt.NDArray[np.intp]:
+    def _trees_with_forces(self) -> npt.NDArray[np.intp]:
         """Return the trees that a force is applied to."""
         model, data = self._model, self._data
         bodies, dofs = np.flatnonzero(data.xfrc_applied.any(axis=1)), np.flatnonzero(data.qfrc_applied)

@@ -257,10 +257,11 @@ def _report_shared_topic(engine: Engine, sensor: AttachedSensor, topic: str, oth
         message = f"sensors {other!r} and {sensor.scoped!r} publish on one topic, {topic!r}"
     if len(kinds) > 1:
         message = f"{message}: {' and '.join(sorted(kinds))}, but a ROS topic has only one type"
-        engine.reports.warning("SK-SENSOR-128", message, where, "give each a topic of its own")
+        engine.reports.warning("SK-SENSOR-128", message, where, "give each message its own topic")
     elif kinds == {_CAMERA_INFO}:
-        hint = "give each a <camera_info_topic> if subscribers must distinguish them by more than the frame"
+        hint = "give each camera a <camera_info_topic> if subscribers must distinguish them by more than the frame"
         engine.reports.note("SK-SENSOR-127", message, where, hint)
     else:
-        own = "camera a name" if other == sensor.scoped else "a <topic>"
-        engine.reports.warning("SK-SENSOR-027", message, where, f"give each {own} of its own, or leave it out")
+        owner, item = ("camera", "name") if other == sensor.scoped else ("sensor", "<topic>")
+        hint = f"give each {owner} its own {item}, or remove the {item} of each {owner}"
+        engine.reports.warning("SK-SENSOR-027", message, where, hint)

@@ -120,7 +120,7 @@ class VelocityServos:
     @property
     def are_there(self) -> bool:
         """True if the simulation has a servo to correct."""
-        return bool(self._bound())
+        return bool(self._bound_servos())
 
     def command(self, ref: ActuatorRef, velocity: float) -> None:
         """Set the target velocity of a servo [rad/s or m/s]."""
@@ -133,14 +133,14 @@ class VelocityServos:
     def is_commanded(self, actuators: Iterable[int]) -> bool:
         """Check whether one of these actuators of the engine has a nonzero command."""
         controls = self._engine.mj_data.ctrl
-        commands = {row.index: row.servo.command for row in self._bound()}
+        commands = {row.index: row.servo.command for row in self._bound_servos()}
         return any(commands.get(int(i), controls[i]) != 0.0 for i in actuators)
 
     # ------------------------------------------------------------------ correction
 
     def correct(self, tick: int) -> None:
         """Update the corrections from the commands and velocities up to now."""
-        rows, engine = self._bound(), self._engine
+        rows, engine = self._bound_servos(), self._engine
         physics, is_changed = engine.physics, False
         data, timestep = physics.data, engine.clock.timestep
         if "actuator_gainprm" in engine.originals:
@@ -151,7 +151,7 @@ class VelocityServos:
             load = 0.0
             ticks = tick - servo.tick
             if 0 < ticks <= self._longest:
-                load = _unmet_load(row, (position - servo.position) / (ticks * timestep), velocity)
+                load = _uncompensated_load(row, (position - servo.position) / (ticks * timestep), velocity)
             servo.tick, servo.position, servo.velocity, servo.last_command = tick, position, velocity, servo.command
             if load:
                 is_changed = True
@@ -169,7 +169,7 @@ class VelocityServos:
                 row.servo.correction = 0.0
                 engine.mj_data.ctrl[row.index] = row.servo.command
 
-    def _bound(self) -> list[_BoundServo]:
+    def _bound_servos(self) -> list[_BoundServo]:
         """Return the servos with their indices in the engine's present model."""
         engine, model = self._engine, self._engine.physics.model
         if self._model is not model:
@@ -198,7 +198,7 @@ class VelocityServos:
         self._model = None
 
 
-def _unmet_load(row: _BoundServo, mean: float, velocity: float) -> float:
+def _uncompensated_load(row: _BoundServo, mean: float, velocity: float) -> float:
     """Return the load / kv that a servo did not compensate in the last period.
 
     Args:

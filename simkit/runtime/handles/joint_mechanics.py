@@ -198,7 +198,7 @@ def _loop_jacobian(engine: EngineState, binding: JointBinding) -> tuple[list[int
 
 
 def _loop_error(engine: EngineState, binding: JointBinding) -> Vector:
-    """Return the difference from the twin to its link: shift [m] and rotation vector [rad], world frame."""
+    """Return the shift [m] and the rotation vector [rad] that move the twin to its link, world frame."""
     data, link, twin = engine.mj_data, engine.names.link(binding.carried).body, binding.moved_body
     turn = np.zeros(3)
     apart = quat_multiply(data.xquat[link], quat_conjugate(data.xquat[twin]))
@@ -210,7 +210,8 @@ def _body_velocity(engine: EngineState, body: int) -> Vector:
     model, data = engine.mj_model, engine.mj_data
     jacobian = np.zeros((6, model.nv))
     mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
-    return jacobian @ data.qvel
+    velocity: Vector = jacobian @ data.qvel
+    return velocity
 
 
 def transmitted_wrench(

@@ -80,7 +80,8 @@ class Link(Handle):
             return out[3:]
         data = physics.fresh_accelerations()
         mujoco.mj_objectAcceleration(self._physics.model, data, _BODY, self._body, out, 0)
-        return out[3:] + self._physics.model.opt.gravity
+        acceleration: Vector = out[3:] + self._physics.model.opt.gravity
+        return acceleration
 
     @property
     def mass(self) -> float:

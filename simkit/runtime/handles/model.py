@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Model(Handle):
-    """Model with its links, joints and nested models by their own names; `::` separates nested names.
+    """Model with its links, joints and nested models by name. Names of deeper elements are joined with `::`.
 
     Attributes:
         static: True for a static model in the file.
