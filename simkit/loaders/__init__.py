@@ -1,9 +1,9 @@
 """Loaders: convert model and world files, or XML text, into a `Scene`.
 
-The input is a path, a bundled name or XML text, with a `Resolver` for the files that it refers to. The output is a
-`Scene` and one diagnostic for every mistake. XML is used in this package only. No loader imports MuJoCo, builds a
-model or raises an exception for a user's mistake. The caller passes MuJoCo's parser, which MJCF needs, and the reader
-of meshes. `sdf` knows no other format. `urdf` and `mjcf` use the readers of `sdf`, and all of them use `resources`.
+The input is a path, a bundled name or XML text, with a `Resolver` that finds referenced files. The output is a `Scene`
+and one diagnostic for every mistake. XML is used in this package only. No loader imports MuJoCo, builds a model or
+raises an exception for a user's mistake. The caller passes MuJoCo's parser, which MJCF needs, and the reader of meshes.
+`sdf` knows no other format. `urdf` and `mjcf` use the readers of `sdf`. All three packages use `resources`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = ["Document", "LoadRequest", "Loader", "Resolver", "find_document", "lo
 
 @lru_cache(maxsize=1)
 def loader_kinds() -> Mapping[str, type[Loader]]:
-    """Return every loader by the root element that it reads."""
+    """Return the loader classes by the names of the root elements that they read."""
     return Kinds("simkit.loaders", "simkit.loaders", Loader, lambda cls: cls.roots, ("roots",))  # type: ignore[type-abstract]
 
 
@@ -59,11 +59,11 @@ def load_scene(
         resolver: finds the files that the source refers to.
         diagnostics: receives every problem; a user's mistake never raises.
         xacro_args: arguments of a xacro file.
-        base: "auto", "fixed" or "floating", for a bare model.
+        base: "auto", "fixed" or "floating", for a bare model (a file with one model and no world).
         name: replaces the name of a bare model.
         pose: replaces the pose of a bare model [m], in the world frame.
         as_model: reads the file as one model, even if the file could also be a world.
-        mesh_reader: returns the triangles of a mesh, for automatic inertia; without it a mesh has no volume.
+        mesh_reader: returns the triangles of a mesh, to compute its inertia; without a reader, meshes have no volume.
         mjcf_parser: returns MuJoCo's parser, which MJCF files need (`simkit.compiler.mjcf_parser.MjcfParser`).
 
     Returns:
@@ -128,7 +128,7 @@ def _document(source: str | os.PathLike[str], diagnostics: Diagnostics) -> Docum
         found = Diagnostics()
         model = model_file(path, Where(str(path)), found)
         if model is None and (bundled := find_bundled_world(str(source)) or find_bundled_model(str(source))):
-            return parse_file(bundled, diagnostics)  # the folder has the same name by chance, such as a reference run
+            return parse_file(bundled, diagnostics)  # the folder only has the name of a bundled file
         diagnostics.extend(found)
         return None if model is None else parse_file(model, diagnostics)
     if not path.exists():

@@ -18,12 +18,12 @@ This page is generated from the tables in `simkit/loaders`; do not edit it. Attr
 
 - **used**: has the meaning that the format defines.
 - **approximated**: is read, and simkit does something similar.
-- **ignored**: configures another engine or Gazebo's windows; one note (`SK-SDF-010`) lists all of a file.
+- **ignored**: configures another engine or Gazebo's windows; one note (`SK-SDF-010`) lists all of them.
 - **not simulated**: has no effect; each one causes a warning (`SK-SDF-012`).
 
-Every other name is unknown and causes a warning with line and closest name: `SK-SDF-011` for an element, `SK-SDF-037`
-for an attribute, `SK-SDF-038` for text where only elements are allowed. Names with a prefix (`gz:…`) belong to the
-plugin or sensor that reads them.
+Every other name is unknown and causes a warning with line and closest known name: `SK-SDF-011` for an element,
+`SK-SDF-037` for an attribute, `SK-SDF-038` for text where only elements are allowed. Names with a prefix (`gz:…`)
+belong to the plugin or sensor that reads them.
 """
 
 
@@ -55,10 +55,10 @@ def _link(row: Row) -> str:
 
 
 def urdf_elements() -> list[tuple[str, str]]:
-    """Return URDF's own table as pairs of element path and use.
+    """Return the table of URDF's elements as pairs: path of the element, and its use in simkit.
 
     A path lists element names from `<robot>` down; `@name` is an attribute. `gazebo[link]`, `gazebo[joint]` and
-    `gazebo[robot]` are the `<gazebo>` extensions that refer to a link, to a joint, or to nothing.
+    `gazebo[robot]` are the `<gazebo>` extensions that refer to a link, to a joint, or to the whole robot.
     """
     with Path(__file__).with_name("urdf").joinpath("elements.csv").open(encoding="utf-8", newline="") as file:
         return [(line["path"], line["becomes"]) for line in csv.DictReader(file)]

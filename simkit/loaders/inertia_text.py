@@ -22,9 +22,9 @@ class WrittenInertia:
     Attributes:
         link: name of the link.
         line: line number of its `<inertia>`.
-        mass: mass [kg]; 1 if the file gives none (SDF), 0 in URDF.
+        mass: mass [kg]; 1 if the file gives no mass.
         values: ixx, iyy, izz, ixy, ixz, iyz [kg·m²] in the axes of its `<inertial>`.
-        spans: byte range of each number that the file contains.
+        spans: byte range of each number in the file, by name (`ixx`, ...); missing numbers have none.
         end: byte position at which a missing number can be inserted.
         is_urdf: true if the numbers are attributes (URDF), false if they are elements (SDF).
     """
@@ -38,14 +38,14 @@ class WrittenInertia:
     end: int = -1
 
     @property
-    def six(self) -> tuple[float, float, float, float, float, float]:
+    def moments(self) -> tuple[float, float, float, float, float, float]:
         """Moments ixx, iyy, izz, ixy, ixz, iyz [kg·m²] in the axes of the `<inertial>`."""
         a, b, c, d, e, f = (self.values[k] for k in MOMENT_NAMES)
         return a, b, c, d, e, f
 
 
 class _InertiaFinder:
-    """Handler of expat's events that records the byte positions of all inertias."""
+    """Recorder of the byte positions of all inertias in a file, from the events of the XML parser expat."""
 
     def __init__(self, data: bytes) -> None:
         self.data, self.stack = data, list[str]()

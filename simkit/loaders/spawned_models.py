@@ -37,7 +37,9 @@ class SpawnedModel:
     name: str | None = None
 
     def pose(self, own: Pose) -> Pose | None:
-        """Return the pose in the world, or None to keep the pose of the file; x, y, yaw alone keep its height and tilt.
+        """Return the pose in the world, or None to keep the pose of the file.
+
+        `x, y, yaw` keeps height, roll and pitch of the file's pose; `x, y, z, yaw` keeps roll and pitch.
 
         Args:
             own: pose that the model's own file gives.
@@ -86,7 +88,7 @@ def add_spawned_models(
         spawned_models: the additional models, in this order.
         resolver: finds files.
         diagnostics: receives every problem.
-        load_model: reads a model, given source, diagnostics, name and pose.
+        load_model: function that reads a model from its source; it also gets diagnostics, name and pose.
         xacro_args: arguments of xacro files.
     """
     world = scene.world
@@ -98,7 +100,7 @@ def add_spawned_models(
         found = Diagnostics()
         own = _file_pose(spawn.source, resolver, xacro_args)
         model = load_model(spawn.source, found, name=spawn.name, pose=spawn.pose(own), xacro_args=xacro_args)
-        found.pass_on(diagnostics)  # also passes on what plugins later report about their own parameters
+        found.pass_on(diagnostics)  # plugins report problems of their parameters later; these are passed on too
         if model is None:
             continue
         if model.name in {*(m.name for m in models), *(a.name for a in world.actors)}:

@@ -34,7 +34,7 @@ class AssetFolder:
         self._placed: dict[Path, str] = {}
 
     def add(self, file: Path) -> str:
-        """Copy a file and its companions; return its path relative to the folder's parent, with `/`.
+        """Copy a file and the files that it refers to; return its path relative to the folder's parent, with `/`.
 
         Raises:
             OSError: a file cannot be copied.

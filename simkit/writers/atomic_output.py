@@ -30,7 +30,7 @@ def check_file(path: Path, *, overwrite: bool) -> None:
 
 
 def write_obstacle(path: Path) -> str:
-    """Return the reason reason a path cannot be created; empty if it can. Missing parent folders are no obstacle."""
+    """Return the reason why a path cannot be created, or an empty text. Missing parent folders are not a reason."""
     parent = path.absolute().parent
     while not parent.exists():
         parent = parent.parent
@@ -176,10 +176,10 @@ def _has_ended(process: str) -> bool:
 
 
 def check_writable(path: str | os.PathLike[str] | None) -> None:
-    """Check that `write_atomically` can write a file, before the work for its content.
+    """Check that `write_atomically` can write a file, before its content is computed.
 
     Args:
-        path: file to write; None for none.
+        path: file to write; None if no file is written.
 
     Raises:
         InputError: SK-CLI-016 the path is not writable.

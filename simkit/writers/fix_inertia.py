@@ -66,7 +66,7 @@ class InertiaFixes:
     def write(self, target: Path) -> int:
         """Write the source with corrected values and all other bytes unchanged; return the number of changed links.
 
-        The file is complete before it gets its name.
+        The file is first written under a temporary name, so an error leaves no incomplete file.
 
         Raises:
             InputError: SK-CLI-016 the file is not writable.
@@ -121,7 +121,7 @@ def _scene_files(scene: Scene) -> list[Path]:
 
 def _fix_inertia(file: Path, inertia: WrittenInertia) -> InertiaFix | None:
     """Return the correction of an inertia; None if it is valid, or if the link has no mass."""
-    original = Inertial(inertia.mass, (0.0, 0.0, 0.0), inertia.six)
+    original = Inertial(inertia.mass, (0.0, 0.0, 0.0), inertia.moments)
     if inertia.mass <= 0:
         return None
     found = repair_inertia(original, slack=_SLACK)

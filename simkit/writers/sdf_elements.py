@@ -36,7 +36,7 @@ from simkit.writers.xml_text import (
 )
 
 UriOf = Callable[[Path, str], str]
-"""Function from a file and its original URI to the URI to write."""
+"""Function that returns the URI to write, given a file and its original URI."""
 
 
 def inertial(value: Inertial) -> Params | None:

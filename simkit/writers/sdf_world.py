@@ -56,7 +56,7 @@ def sdf_text(scene: Scene, diagnostics: Diagnostics, uri_of: UriOf | None = None
     Args:
         scene: worlds, or one bare model or light.
         diagnostics: collector of a warning for each feature that SDF does not support.
-        uri_of: function from a file and its original URI to the URI to write; None keeps all URIs.
+        uri_of: function that returns the URI to write, given a file and its original URI; None keeps all URIs.
     """
     return document(_Writer(diagnostics, uri_of or _original_uri).root(scene))
 
@@ -241,18 +241,18 @@ def _actor(actor: SceneActor) -> Params:
     return element("actor", children, name=actor.name)
 
 
-def _trajectory(way: Trajectory) -> Params:
+def _trajectory(trajectory: Trajectory) -> Params:
     points = [
         element("waypoint", [*field_elements(w, "time"), pose(w.pose) or element("pose", "0 0 0 0 0 0")])
-        for w in way.waypoints
+        for w in trajectory.waypoints
     ]
-    tension = {"tension": numbers((way.tension,))} if way.tension else {}
-    return element("trajectory", points, id=str(way.id), type=way.type, **tension)
+    tension = {"tension": numbers((trajectory.tension,))} if trajectory.tension else {}
+    return element("trajectory", points, id=str(trajectory.id), type=trajectory.type, **tension)
 
 
-def _animation(move: Animation) -> Params:
-    children = [text_element("filename", move.uri), *field_elements(move, "scale", "interpolate_x")]
-    return element("animation", children, name=move.name)
+def _animation(animation: Animation) -> Params:
+    children = [text_element("filename", animation.uri), *field_elements(animation, "scale", "interpolate_x")]
+    return element("animation", children, name=animation.name)
 
 
 def _world_joint(model: SceneModel, canonical: str) -> Params:

@@ -107,7 +107,7 @@ class WorldCollector:
         return place
 
     def _collect_folder(self, path: Path) -> PurePosixPath:
-        """Collect a whole folder, such as one of material scripts."""
+        """Collect a whole folder, such as a folder of material scripts."""
         path = absolute_path(path)
         target = self._target_path(path)
         for source in sorted(p for p in path.rglob("*") if p.is_file() and not p.is_symlink()):
@@ -120,7 +120,7 @@ class WorldCollector:
                 self._copy(source, target / source.name)
 
     def _target_path(self, path: Path) -> PurePosixPath:
-        """Return the path of a file: as below the world's folder, else in the folder of its model or package."""
+        """Return the target path of a file: the same path as below the world's folder, else a path below `models`."""
         if path.is_relative_to(self.home):
             return PurePosixPath(path.relative_to(self.home).as_posix())
         known = next((root for root in self._roots if path.is_relative_to(root)), None)
@@ -185,7 +185,7 @@ class WorldCollector:
                         yield reference, new
 
     def _collected_path(self, reference: str, element: Params, parent: str, folder: Path) -> PurePosixPath | None:
-        """Collect the file of a URI and return its path; None if the URI means no existing file."""
+        """Collect the file of a URI and return its path; None if the URI names no existing file."""
         uri = turtlebot3_uri(reference, element.where, Diagnostics()) or reference
         path, _ = self.resolver.search(uri, folder)
         if path is None:

@@ -1,4 +1,4 @@
-"""What `inspect --json` prints."""
+"""Output of `simkit inspect --json`."""
 
 from __future__ import annotations
 

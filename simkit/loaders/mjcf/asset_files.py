@@ -38,7 +38,7 @@ def placeholder(kind: str) -> tuple[str, bytes]:
 
 
 def read_asset(path: Path, kind: str, where: Where, diagnostics: Diagnostics) -> bytes:
-    """Read a file; return no bytes, with an error recorded, if it is unreadable, too large or of the wrong kind."""
+    """Read a file; return empty bytes, with an error recorded, if it is unreadable, too large or of the wrong kind."""
     try:
         data = read_bounded(path, MAX_BYTES)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Compiled MJCF file: its elements by name and owner, and the placement of a model that is read from it."""
+"""Compiled MJCF file: its elements by name and by body, and the pose and names of each model in the file."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class ModelPlacement:
     """Bodies of a file that form one model, and the poses and names of this model.
 
     Attributes:
-        roots: ids of its top-level bodies.
+        roots: ids of the model's top-level bodies.
         has_world: true if the content of the world body belongs to the model.
         frame: pose of the model frame in the file's world.
         pose_world: pose of the model frame in the world.
-        prefix: prefix of its names in the compiled world.
-        strip: beginning of the file's names that is removed in the scene's names.
+        prefix: prefix of the model's names in the compiled world.
+        strip: prefix of the names in the file; the names in the scene do not have it.
     """
 
     name: str
@@ -53,8 +53,8 @@ class CompiledFile:
     """MJCF file with MuJoCo's compiled model, and the elements of each body.
 
     Args:
-        source: the file.
-        compiled: its specification, model and initial state.
+        source: the MJCF text with its files.
+        compiled: MuJoCo's specification, model and initial state for this text.
     """
 
     def __init__(self, source: MjcfText, compiled: CompiledMjcf) -> None:
@@ -72,7 +72,7 @@ class CompiledFile:
         self.bodies_of = _ids_by_owner(model.body_rootid)
 
     def name(self, kind: str, number: int) -> str:
-        """Return the name of an element of the compiled model."""
+        """Return the name of an element, by MuJoCo's object type (`BODY`, `GEOM`, ...) and the element's id."""
         return self.compiled.name(kind, number)
 
     @property
@@ -90,7 +90,7 @@ class CompiledFile:
         return Pose(self.data.xpos[body], self.data.xquat[body])
 
     def where(self, kind: str, name: str) -> Where:
-        """Return the line of a named element."""
+        """Return file and line of a named element; `kind` is MuJoCo's element type (`body`, `geom`, ...)."""
         element = getattr(self.spec, kind)(name)
         found = _LINE.search(element.info) if element is not None else None
         return self.source.where(int(found[1])) if found is not None else self.source.root.where
@@ -105,7 +105,7 @@ class CompiledFile:
 
 
 def _ids_by_owner(owners: npt.NDArray[np.int32]) -> dict[int, list[int]]:
-    """Group element ids by the id of their owner."""
+    """Group element ids by the id of the body or joint that each element belongs to."""
     found: dict[int, list[int]] = {}
     for number, owner in enumerate(owners.tolist()):
         found.setdefault(owner, []).append(number)
@@ -113,7 +113,7 @@ def _ids_by_owner(owners: npt.NDArray[np.int32]) -> dict[int, list[int]]:
 
 
 def _engine_settings(source: MjcfText) -> dict[str, Where]:
-    """Return the engine settings in the file with their lines: options, flags and other global elements."""
+    """Return file and line of each engine setting, by its name: options, flags and other global elements."""
     found: dict[str, Where] = {}
     for element in source.root.children:
         if element.name == "option":

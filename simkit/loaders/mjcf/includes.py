@@ -52,7 +52,7 @@ def gather_files(root: Params, path: Path | None, resolver: Resolver, diagnostic
 
 
 class _FileGatherer:
-    """Collector for one model file; attached models have their own collectors with the same `shared` state."""
+    """Collector of the files of one model; each attached model has its own collector with the same `shared` state."""
 
     def __init__(self, shared: _SharedFiles, path: Path | None, chain: tuple[Path, ...] = ()) -> None:
         self.shared, self.path = shared, path
@@ -110,7 +110,9 @@ class _FileGatherer:
             return []
         if path.resolve() in self.included:
             hint = "use <asset><model .../></asset> and <attach .../> for several copies"
-            include.error("SK-MJCF-006", f"{name} is included twice; MJCF allows this only once", hint)
+            # `include.error` would report past `diagnostics`, and the file with this error would be compiled
+            message = f"{name} is included twice; MJCF allows this only once"
+            diagnostics.error("SK-MJCF-006", message, include.where, hint)
             return []
         self.included.add(path.resolve())
         document = parse_file(path, diagnostics)
@@ -133,7 +135,7 @@ class _FileGatherer:
                 self._note_origins(child, model)
 
     def _search(self, name: str, where: Where, folders: tuple[Path | None, ...]) -> Path | None:
-        """Find a file beside the main file, else beside the file that names it; otherwise record an error."""
+        """Find a file in the first of several folders that contains it; otherwise record an error."""
         resolver = self.shared.resolver
         for folder in folders:
             path, _ = resolver.search(name, folder)
@@ -148,7 +150,7 @@ class _FileGatherer:
     # ------------------------------------------------------------------ files
 
     def _settings(self, root: Params) -> None:
-        """Read the asset folders from the compiler elements, and remove these attributes from MuJoCo's text."""
+        """Read the asset folders from the `<compiler>` elements, and remove these attributes from the tree."""
         for element in root.children:
             if element.name != "compiler":
                 continue
@@ -169,7 +171,7 @@ class _FileGatherer:
             stack += reversed(element.children)
 
     def _asset(self, element: Params, attribute: str) -> None:
-        """Read the file that an attribute names into memory, and set the attribute to its name there."""
+        """Read the file of an attribute into memory, and set the attribute to the file's name in memory."""
         written = element.attributes[attribute]
         if element.name == "model":
             self._model(element, written)
@@ -217,14 +219,15 @@ class _FileGatherer:
         return name
 
     def _model(self, element: Params, written: str) -> None:
-        """Read an attached model in the same way as the main file, and set its name in memory."""
+        """Read an attached model like the main file, and set the attribute `file` to the model's name in memory."""
         diagnostics = self.shared.diagnostics
         element.attributes["file"] = "missing.xml"
         path = self._search(written, element.where, (self.folder,))
         if path is None:
             return
         if path.resolve() in self.chain or len(self.chain) >= MAX_MODEL_DEPTH:
-            diagnostics.error("SK-MJCF-006", f"the model {written} attaches itself", element.where)
+            problem = f"attaches itself, or is nested in more than {MAX_MODEL_DEPTH - 1} models"
+            diagnostics.error("SK-MJCF-006", f"the model {written} {problem}", element.where)
             return
         document = parse_file(path, diagnostics)
         if document is None:

@@ -17,16 +17,26 @@ _TYPES: Final = {_BALL: "ball", _SLIDE: "prismatic"}
 
 
 def read_joints(
-    file: CompiledFile, body: int, placed: ModelPlacement, place: Pose, found: MjcfElements
+    file: CompiledFile, body: int, placed: ModelPlacement, file_pose: Pose, found: MjcfElements
 ) -> list[SceneJoint]:
-    """Return the joints that carry a body; a rigidly attached body gets a fixed joint."""
+    """Return the joints between a body and its parent.
+
+    A body without joints gets a fixed joint. A free joint is not returned: `found.free` receives its name.
+
+    Args:
+        file: the compiled file.
+        body: id of the body.
+        placed: the model that the body belongs to.
+        file_pose: pose of the file's world in the world.
+        found: receives the names of the joints.
+    """
     model = file.model
     child, parent = file.scoped_link(body, placed), file.scoped_link(int(model.body_parentid[body]), placed)
     if int(model.body_parentid[body]) == 0:
         parent = "world"
     numbers = list(range(model.body_jntadr[body], model.body_jntadr[body] + model.body_jntnum[body]))
     is_free = bool(numbers) and int(model.jnt_type[numbers[0]]) == _FREE
-    pose, where = place @ file.pose(body), file.where("body", file.name("BODY", body))
+    pose, where = file_pose @ file.pose(body), file.where("body", file.name("BODY", body))
     if is_free and placed.base != "fixed":
         found.free[child] = file.name("JOINT", numbers[0])
         return []

@@ -50,7 +50,7 @@ class MjcfFile:
         plugins: tuple[ScenePlugin, ...] = (),
         where: Where | None = None,
     ) -> SceneModel:
-        """Return the whole file as one model, with the file's world at `pose_world`."""
+        """Return the whole file as one model; `pose_world` is the pose of the file's world."""
         content = self.content
         placed = ModelPlacement(
             name,
@@ -99,7 +99,7 @@ class MjcfLoader(IncludableLoader):
 
 @dataclass
 class IncludedMjcf(IncludedModel):
-    """Model in MuJoCo's own format that an SDF file includes; its names are frames, and its content is fixed."""
+    """MJCF model that an SDF file includes. The SDF file can use the model's frames, but not change its content."""
 
     version: ClassVar[tuple[int, int]] = (1, 7)  # in SDF 1.7, a name that contains `::` is one name
     fixed_content: ClassVar[tuple[str, str, str]] = ("SK-MJCF-015", "a model in MuJoCo's own format", "")
@@ -127,7 +127,10 @@ def _parser(mjcf_parser: Callable[[], MjcfParser] | None) -> MjcfParser:
 def _open_mjcf(
     document: Document, resolver: Resolver, diagnostics: Diagnostics, parser: MjcfParser, as_model: bool = True
 ) -> MjcfFile | None:
-    """Read a file with all its included and asset files; return None, with errors recorded, if it is unusable."""
+    """Read a file with all its included and asset files; return None, with errors recorded, if it is unusable.
+
+    With `as_model`, the file becomes one model, even if it could also be a world.
+    """
     found = Diagnostics()
     root, path = document.root, document.path
     gathered = gather_files(root, path, resolver, found)
@@ -201,8 +204,8 @@ def _surroundings_of(file: MjcfFile, models: tuple[SceneModel, ...]) -> SceneWor
 def _world_models(file: MjcfFile) -> list[SceneModel]:
     """Return the content of the world body as one static model, and each top-level body as a model.
 
-    Bodies of one included file form one model with that file's name. Bodies whose names have the same beginning up to
-    `::` also form one model.
+    Bodies of one included file form one model with that file's name. Bodies with the same prefix before `::` in their
+    names also form one model.
     """
     content, origins = file.content, file.content.source.origins
     groups: dict[tuple[str, str], list[int]] = {}
@@ -235,7 +238,7 @@ def _free_name(name: str, used_names: set[str]) -> str:
 
 
 def _report_base(model: SceneModel, request: LoadRequest) -> None:
-    """Report the effect of the base that the caller selected."""
+    """Report the effect of `base`, which the caller has selected."""
     if request.base == "fixed" and any(j.type == "fixed" and j.parent_link == "world" for j in model.joints):
         message = f"model {model.name!r} is fixed to the world, because of base='fixed'"
         request.diagnostics.note("SK-MJCF-012", message, model.where)

@@ -137,7 +137,7 @@ class ModelReader:
         return Material(ambient=(r, gr, b, a), diffuse=(r, gr, b, a))
 
     def _shape(self, g: int) -> tuple[Geometry, Pose]:
-        """Return the shape of a geom and its pose in the link; for a mesh, the pose of the axes in its file."""
+        """Return the shape of a geom and its pose in the link; for a mesh, the pose of the mesh file's own axes."""
         model = self._model
         pose = Pose(model.geom_pos[g], model.geom_quat[g])
         a, b, c = (float(s) for s in model.geom_size[g])
@@ -162,7 +162,7 @@ class ModelReader:
         return primitives.get(kind, shapes.Empty()), pose
 
     def _asset(self, kind: str, name: str) -> tuple[Path, str]:
-        """Return the user's file of an asset; for an asset inside the model, the model's file and the asset's name."""
+        """Return file and URI of an asset; for an asset without a file, the path of the MJCF file and `#NAME`."""
         source = self._file.source
         asset = getattr(self._file.spec, kind)(name)
         key = asset.file if asset is not None else ""

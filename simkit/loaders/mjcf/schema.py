@@ -1,4 +1,4 @@
-"""Check of element and attribute names against MuJoCo's own table, which reports all unknown names at once.
+"""Check of element and attribute names against MuJoCo's own table. The check reports all unknown names at once.
 
 MuJoCo's reader stops at the first unknown name. The table comes from MuJoCo itself and is therefore always up to date.
 """
@@ -86,7 +86,7 @@ def _check_children(element: Params, kind: _ElementKind, table: _ElementKind) ->
 
 
 def _own_name(element: Params, name: str) -> str:
-    """Return `body` or `default` if the element may contain its own kind under that name, else an empty name."""
+    """Return `name` if a child of that name is the same kind of element (a body or a default), else an empty text."""
     if name == "body" and element.name in ("worldbody", "body", *_PREPROCESSED):
         return "body"
     return "default" if name == "default" and element.name == "default" else ""

@@ -46,7 +46,7 @@ def check_bounds(root: Params) -> None:
 
 
 def _elements(root: Params) -> Iterator[tuple[Params, int]]:
-    """Yield every element with the number of its copies by `<replicate>`, `<composite>` and `<flexcomp>`."""
+    """Yield every element with the number of copies that `<replicate>`, `<composite>` and `<flexcomp>` create of it."""
     stack = [(root, 1)]
     while stack:
         element, times = stack.pop()
@@ -99,7 +99,7 @@ def _check(element: Params, name: str, text: str) -> None:
 def _size_limits() -> dict[tuple[str, str], tuple[int, int | None]]:
     """Return the limits by element (`*`: any element) and attribute: largest number, and largest product of numbers.
 
-    A height field and a texture have the second number of the product in another attribute.
+    The two factors for a height field are `nrow` and `ncol`, and for a texture `width` and `height`.
     """
     with Path(__file__).with_name("size_limits.csv").open(encoding="utf-8", newline="") as file:
         rows = itertools.islice(csv.reader(file), 1, None)

@@ -8,7 +8,7 @@ import select
 import stat
 from pathlib import Path
 
-PIPE_TIMEOUT = 10.0  # [s] without data from the writer of a pipe
+PIPE_TIMEOUT = 10.0  # [s] longest wait for data from a pipe
 
 
 def read_bounded(path: Path, most: int) -> bytes:
@@ -34,7 +34,7 @@ def _read_pieces(handle: int, most: int, *, is_pipe: bool) -> bytes:
     pieces, left = [], most + 1
     while left > 0:
         if is_pipe and not select.select([handle], [], [], PIPE_TIMEOUT)[0]:
-            raise OSError(errno.ETIMEDOUT, f"nothing came through the pipe for {PIPE_TIMEOUT:g} s")
+            raise OSError(errno.ETIMEDOUT, f"the pipe had no data for {PIPE_TIMEOUT:g} s")
         piece = os.read(handle, min(left, 1 << 24))
         if not piece:
             break

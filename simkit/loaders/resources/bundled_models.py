@@ -68,9 +68,10 @@ def bundled_names() -> list[str]:
 
 
 def turtlebot3_uri(uri: str, where: Where, diagnostics: Diagnostics) -> str | None:
-    """Replace the URI `model://turtlebot3` by that of the robot that `TURTLEBOT3_MODEL` names.
+    """Replace the URI `model://turtlebot3` by the URI of the robot in the environment variable `TURTLEBOT3_MODEL`.
 
-    An unset variable selects the waffle, with a note. An unknown robot is an error that lists the known ones.
+    An unset variable selects the waffle, with a note. For an unknown robot, the function returns None and records an
+    error that lists the known robots. Every other URI is returned unchanged.
     """
     if uri != _URI:
         return uri
@@ -86,7 +87,7 @@ def turtlebot3_uri(uri: str, where: Where, diagnostics: Diagnostics) -> str | No
 
 
 def turtlebot3_name(name: str, diagnostics: Diagnostics) -> str | None:
-    """Replace the bare name `turtlebot3` by that of the robot that `TURTLEBOT3_MODEL` names."""
+    """Replace the bare name `turtlebot3` by the name of the robot in `TURTLEBOT3_MODEL`; other names stay the same."""
     if name != "turtlebot3":
         return name
     uri = turtlebot3_uri(_URI, Where(name), diagnostics)

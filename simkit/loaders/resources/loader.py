@@ -45,9 +45,9 @@ class MjcfText:
         text: the XML text for MuJoCo.
         models: attached models, by the names that the text uses.
         assets: all other files, by the names that the text uses.
-        lines: place in the user's files of every line of the text and of the models that it attaches.
+        lines: file and line in the user's files, first for each line of the attached models, then of the text.
         origins: top-level body -> name of the model whose file the body was included from.
-        files: name among the assets -> (file, URI as written).
+        files: name in `assets` -> (path of the file, URI as written).
         file: the outermost file, or None for XML given as text.
     """
 
@@ -61,7 +61,7 @@ class MjcfText:
     file: str | None
 
     def where(self, line: int) -> Where:
-        """Return the place in the user's files of a line of the text."""
+        """Return the user's file and line for a line number of the text."""
         return self.lines[line - 1] if 0 < line <= len(self.lines) else self.root.where
 
 
@@ -116,8 +116,8 @@ class MjcfParser(Protocol):
         Args:
             file: the file and everything that it refers to.
             diagnostics: receives every problem.
-            in_axes_of_file: keeps the frame that the file gives to a body with a free joint, even if the file aligns
-                such bodies with their inertia.
+            in_axes_of_file: true to keep the frames of free bodies as the file gives them, even if the file requests
+                frames that are aligned with the inertia.
         """
         ...
 
@@ -134,7 +134,7 @@ class LoadRequest:
         base: "auto", "fixed" or "floating", for a bare model.
         name, pose: replacements for the name and the pose of a bare model.
         as_model: true to read the file as one model, even if the file could also be a world.
-        mesh_reader: returns the triangles of a mesh, for automatic inertia; without it a mesh has no volume.
+        mesh_reader: returns the triangles of a mesh, to compute its inertia; without a reader, meshes have no volume.
         mjcf_parser: returns MuJoCo's parser, which MJCF files need; called only for such a file.
         loaders: loader of every root element, for included files.
     """

@@ -15,7 +15,7 @@ NEWEST_SDF = (1, 12)
 def model_file(folder: Path, where: Where, diagnostics: Diagnostics) -> Path | None:
     """Return the file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`.
 
-    A folder without either is searched for one robot in URDF, or one model in MJCF.
+    A folder without these two files is searched for one robot in URDF, or one model in MJCF.
     """
     for manifest in (folder / "model.config", folder / "manifest.xml"):
         if not is_file(manifest):
@@ -61,7 +61,7 @@ def _listed_files(root: Params) -> list[tuple[tuple[int, int], str]]:
 
 
 def _mjcf_models(folder: Path) -> list[Path]:
-    """Return the MJCF files that can be the model of a folder: the one with its name, else all but the scenes."""
+    """Return the MJCF files that can be a folder's model: the file with its name, else all except `scene*.xml`."""
     try:
         files = sorted(f for f in folder.glob("*.xml") if f.name not in ("package.xml", "manifest.xml") and is_file(f))
     except OSError:

@@ -26,8 +26,8 @@ def package_folders(
 ) -> Iterator[Path]:
     """Yield folders that can be the package, the most likely first; they need not exist.
 
-    The order: the folder given by the user; the package that contains the file, its siblings, and packages beside
-    those; the search paths; packages further below the search paths.
+    The order: the folder given by the user; the package that contains the file, its siblings, and packages near these
+    siblings; the search paths; packages further below the search paths.
 
     Args:
         name: name of the package.
@@ -76,7 +76,7 @@ def package_name(folder: Path) -> str:
 
 
 def _nearby_packages(name: str, folder: Path) -> Iterator[Path]:
-    """Yield the package around a file, its siblings, and existing packages beside them and in the folders above."""
+    """Yield candidates near a file: the package that contains it, a sibling, and packages up to three levels above."""
     home = enclosing_package(folder)
     if home is None:
         return
@@ -97,7 +97,10 @@ def _nearby_packages(name: str, folder: Path) -> Iterator[Path]:
 
 
 def _packages_below(path: Path) -> dict[str, Path]:
-    """Return every package below a folder by its name, as ROS searches `ROS_PACKAGE_PATH`; the nearest one is used."""
+    """Return every package below a folder by its name, as ROS searches `ROS_PACKAGE_PATH`.
+
+    If several packages have the same name, the nearest one is returned.
+    """
     found: dict[str, Path] = {}
     level, seen = [path], 0
     for _ in range(_SEARCH_DEPTH):

@@ -46,11 +46,11 @@ class Resolver:
     """Finder of files and folders by URI.
 
     Args:
-        paths: folders for `model://`, `package://` and relative URIs, searched before those of the environment.
+        paths: folders for `model://`, `package://` and relative URIs, searched before those of environment variables.
         base: folder of the loaded file; searched last.
         missing_meshes: reports any unusable mesh as a warning only, even if its URI is refused. This setting allows
             inspecting a file without its meshes.
-        anywhere: lets absolute paths and `..` leave the folders named above.
+        anywhere: allows absolute paths and `..` outside these folders.
         package_paths: folder of each ROS package that the caller knows; searched before all other folders.
     """
 
@@ -110,7 +110,7 @@ class Resolver:
 
         Args:
             uri: `model://`, `package://`, `file://`, `https://` (local caches only), or a path.
-            where: place in the input file, for the report.
+            where: file and line of the URI, for messages.
             diagnostics: receives the problems.
             relative_to: folder of the file that contains the URI.
         """
@@ -147,7 +147,7 @@ class Resolver:
     def find_package(self, name: str, relative_to: Path | None) -> tuple[Path | None, list[Path]]:
         """Return the folder of a ROS package, and every searched path.
 
-        Files in a package that was found may be read from then on.
+        After the call, files in the folder of the found package may also be read.
         """
         if not is_bare_name(name):
             return None, []
@@ -214,7 +214,10 @@ class Resolver:
             yield folder / inside
 
     def _renamed_checkout_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for `package://name/a/b` below the folders above the file, for a renamed checkout."""
+        """Yield candidates for `package://name/a/b`: the path `a/b` in the folders above the file.
+
+        This finds a package in a folder with another name, such as a renamed checkout.
+        """
         inside = rest.strip("/").partition("/")[2]
         if relative_to is None or "/" not in inside or enclosing_package(absolute_path(relative_to)) is not None:
             return  # the enclosing package already defines the name
@@ -224,7 +227,7 @@ class Resolver:
                 yield ancestor / inside
 
     def _find_relocated(self, path: Path, relative_to: Path | None) -> Path | None:
-        """Find an absolute path of another machine by its last components, below a package that exists here."""
+        """Search the last components of an absolute path from another machine, in packages that exist here."""
         parts = path.parts
         for position in range(len(parts) - 2, 0, -1):
             name = parts[position]

@@ -21,7 +21,7 @@ def package_uri(uri: str) -> str:
 
 
 def is_relocated(uri: str, found: Path) -> bool:
-    """Check whether an absolute path, or a package, was found under another name."""
+    """Check whether the file of an absolute path or of a package was found in another folder than the URI names."""
     scheme, _, rest = uri.partition("://")
     if scheme == "package":
         return rest.split("/")[0] not in found.parts
@@ -30,7 +30,7 @@ def is_relocated(uri: str, found: Path) -> bool:
 
 
 def absolute_path(path: Path) -> Path:
-    """Return the absolute path without `..`; links stay, because the user can choose a workspace of links."""
+    """Return the absolute path without `..`; symbolic links stay, because a workspace can consist of links."""
     return Path(os.path.abspath(path))  # noqa: PTH100 - resolve() would follow links
 
 
@@ -45,7 +45,7 @@ def leaves_folder(rest: str) -> bool:
 
 
 def first_existing(candidates: Iterable[Path]) -> tuple[Path | None, list[Path]]:
-    """Return the first candidate that exists, and the candidates that were checked; later ones are not generated."""
+    """Return the first candidate that exists, and the candidates up to it; later candidates are not generated."""
     looked: dict[Path, None] = {}
     for candidate in candidates:
         if candidate not in looked:
@@ -105,7 +105,7 @@ def is_folder(path: Path) -> bool:
 
 
 def is_small_integer(text: str) -> bool:
-    """Check whether a text is an integer of less than 10 digits (`int` accepts neither `²` nor thousands of digits)."""
+    """Check whether a text is an integer of fewer than 10 digits; `int` fails for `²` and for 5000 digits."""
     return text.isascii() and text.isdigit() and len(text) < 10
 
 

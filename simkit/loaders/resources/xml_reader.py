@@ -38,17 +38,17 @@ _FOREIGN_SIGNATURES: Final[tuple[tuple[bytes, str], ...]] = (
 )
 _FOREIGN_ROOTS: Final = {
     "COLLADA": "a mesh (COLLADA); name it in the <uri> of a <mesh>",
-    "launch": "a ROS launch file; name the world or robot that it loads",
-    "package": "a package.xml; name a model in its folder",
-    "model": "a model without its <sdf>, or a model.config; put <sdf version='1.9'> around it, or name its folder",
+    "launch": "a ROS launch file; load the world or robot that the launch file names",
+    "package": "a package.xml; load a model in its folder",
+    "model": "a model without its <sdf>, or a model.config; put <sdf version='1.9'> around it, or load its folder",
     "world": "a world without the <sdf> around it; put <sdf version='1.9'> around it",
     "sdformat": "it is spelt <sdf>",
-    "mujocoinclude": "a part of an MJCF file; name the file that includes it",
+    "mujocoinclude": "a part of an MJCF file; load the file that includes this part",
     "svg": "a drawing (SVG)",
     "html": "a web page",
     "OpenDRIVE": "a road map (OpenDRIVE)",
     "osm": "a map (OpenStreetMap)",
-    "srdf": "a semantic description; name the URDF that it belongs to",
+    "srdf": "a semantic description; load the URDF that it belongs to",
 }
 
 
@@ -81,7 +81,7 @@ def _describe_content(data: bytes) -> str:
     if head.startswith((b"v ", b"o ", b"mtllib ", b"# Blender")) or b"\nv " in head:
         return "an OBJ mesh"
     if head.startswith(b"world: ") or b"\nworld: " in head:
-        return "a scenario; simkit golden record, certify, bundle and grade take one"
+        return "a scenario, the input of simkit golden record, certify, bundle and grade"
     if b"\0" in head:
         return "a binary file"
     if b"<" not in data:
@@ -146,7 +146,7 @@ class _TreeBuilder:
         body = data if data.startswith((b"\xff\xfe", b"\xfe\xff")) else data.lstrip()
         self.offset = data[: len(data) - len(body)].count(b"\n")
         self.parser.Parse(body, True)
-        # the parser and this object refer to each other; without this, the tree would live until garbage collection
+        # the parser and this object refer to each other: the tree would stay in memory until garbage collection
         root, self.root = self.root, None
         return root
 
@@ -226,7 +226,7 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
 
 
 def _without_comments(data: bytes) -> bytes | None:
-    """Return the text without comments and declaration, as lenient readers parse it; None if it has neither."""
+    """Return the text without comments and declaration, which lenient readers ignore; None if both are missing."""
     plain = _COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), data)
     plain = _DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), plain)
     return plain if plain != data else None

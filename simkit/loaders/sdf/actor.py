@@ -10,7 +10,7 @@ from simkit.scene import Animation, PersonLook, SceneActor, Trajectory, Waypoint
 
 
 def read_actor(element: Params, name: str, pose_world: Pose) -> SceneActor:
-    """Return an actor whose pose is already resolved."""
+    """Return an actor; its pose in the world is already known."""
     element.child("pose")
     skin, script = element.block("skin"), element.block("script")
     return SceneActor(

@@ -3,8 +3,10 @@
 The report of unread names and `docs/elements.md` use this table.
 
 A table belongs to one element (`link`). The path of a row starts at this element (`velocity_decay/linear`, `@name`).
-The content of a row's element can be described `like` another table's. A row `*` says that a plugin or sensor reads
-further names. A test loads a file with all elements and compares the names that were read with these rows.
+If another table describes the content of the row's element, the column `like` names that table. A row `*` means that
+plugins or sensors can read names that the table does not list.
+
+A test loads a file with all elements and compares the names that were read with these rows.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from pathlib import Path
 
 
 class Use(Enum):
-    """Use of an element, in the words of the file and of the page."""
+    """Use of an element in simkit; the values are the words in `elements.csv` and in `docs/elements.md`."""
 
     USED = "used"
     APPROXIMATED = "approximated"
@@ -38,8 +40,8 @@ class Row:
     Attributes:
         path: path from the table's own element: names joined with `/`, with `@` before an attribute.
         use: use of the element.
-        becomes: use of the element, described in words.
-        like: table that describes its content; empty if this table also describes its content.
+        becomes: description of this use.
+        like: table that describes the element's content; empty if the rows of this table describe the content.
     """
 
     path: str
@@ -96,7 +98,7 @@ class Schema:
         return self.rows.get(f"{place}/{name}")
 
     def read_elements(self, place: str) -> dict[str, str]:
-        """Return every element at a place that is read, with the place of its content."""
+        """Return the elements at a place that simkit reads: name -> place of the element's content."""
         if place not in self._read_at:
             rows = {name: self.row(place, name) for name in self._elements.get(place, ()) if ":" not in name}
             read = {name: row for name, row in rows.items() if row is not None and row.use.read}
@@ -117,7 +119,7 @@ class Schema:
         return [n[1:] for n in self._children.get(place, ()) if n.startswith("@")]
 
     def has_text(self, place: str) -> bool:
-        """Check whether an element with children can also have text (some elements could in old versions)."""
+        """Check whether an element at a place can have text as well as children, as some elements in old versions."""
         return f"{place}/#text" in self.rows
 
     def is_open(self, place: str) -> bool:
@@ -131,7 +133,7 @@ class Schema:
 
 @functools.cache
 def sdf_elements() -> Schema:
-    """Return the tables of SDF, which are read once."""
+    """Return the tables of SDF from `elements.csv`, which is read once."""
     rows: dict[str, list[Row]] = {}
     open_tables = set()
     with Path(__file__).with_name("elements.csv").open(encoding="utf-8", newline="") as file:

@@ -71,7 +71,7 @@ def _known_action(element: Params, action: str) -> bool:
 def _find_element(
     entity: Params, path: str, tag: str, name_of: IncludedName
 ) -> tuple[Params | None, Params, str | None] | None:
-    """Return the owner and the element of a path, and the rest of the path inside a nested include.
+    """Return the parent element, the element of a path, and the rest of the path if the element is a nested include.
 
     A name can contain `::` itself (files before 1.8), so every name that the path begins with is tried, longest first.
     """
@@ -101,7 +101,7 @@ def _name(element: Params, name_of: IncludedName) -> str:
 
 
 def _known_paths(entity: Params, name_of: IncludedName, prefix: str = "", depth: int = 3) -> list[str]:
-    """Return the valid ids of the first levels, for a hint."""
+    """Return the valid values of `element_id` of the first three levels, for a hint."""
     if depth == 0:
         return []
     found = []
@@ -147,7 +147,7 @@ def _change_element(action: str, change: Params, owner: Params | None, target: P
 
 
 def _child_actions(change: Params, target: Params) -> None:
-    """Apply an element without an action, each of whose children has its own action."""
+    """Apply a change without an action; each child of the change has its own action."""
     for child in change.children:
         action = child.attributes.get("action")
         if action is None:

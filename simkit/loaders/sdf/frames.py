@@ -27,12 +27,12 @@ class Frame:
         scope: scope in which the frame's references are looked up; None for the root of a scope.
         pose: pose relative to `relative_to`, as written.
         relative_to: name of the base frame, as written; empty for the default of its kind.
-        attached_to: frame that it moves with: a frame's `attached_to`, a joint's child; empty for the default.
-        inside: scope of a model's own names.
+        attached_to: name of the frame that it moves with: `attached_to` of a frame, `<child>` of a joint; or empty.
+        inside: scope with the names inside a model; None for all other frames.
         placement: frame inside a model that the model's pose applies to; empty for the model frame.
         pose_where: place of its pose in the file, if it has one.
         carrier: link (or world) that it moves with, once this is known.
-        adrift: true if it moves with no link; this error has been reported.
+        is_unattached: true if it moves with no link; this error has been reported.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Frame:
     resolved: Pose | None = None
     pose_where: Where | None = None
     carrier: Frame | None = None
-    adrift: bool = False
+    is_unattached: bool = False
 
     @property
     def default_base(self) -> str:
@@ -149,15 +149,15 @@ class Scope:
         return pose
 
     def body(self, path: str, where: Where, owner: str) -> Frame | None:
-        """Return the link (or the world) that a named frame moves with; None, with an error recorded, without one."""
+        """Return the link (or the world) that a named frame moves with; None, with an error recorded, if missing."""
         seen: dict[int, Frame] = {}
         found = self._follow_attachment(path, where, owner, seen)
         for frame in seen.values():
-            frame.carrier, frame.adrift = found, found is None
+            frame.carrier, frame.is_unattached = found, found is None
         return found
 
     def _follow_attachment(self, path: str, where: Where, owner: str, seen: dict[int, Frame]) -> Frame | None:
-        """Search the link for `body`, and store every frame on the way in `seen`."""
+        """Follow the attachments from a named frame to its link, and store the visited frames in `seen`."""
         scope: Scope = self
         while True:
             frames = scope.chain(path)
@@ -165,7 +165,7 @@ class Scope:
                 scope.report_unknown(path, f"{owner}: the frame", where)
                 return None
             frame = frames[-1] if frames else None
-            if frame is not None and frame.adrift:
+            if frame is not None and frame.is_unattached:
                 return None
             if frame is not None and id(frame) in seen:
                 text = f"{frame.kind} {frame.scoped!r} is attached to itself"

@@ -129,7 +129,7 @@ def _heightmap(element: Params, file: SdfFile, workspace: Workspace) -> Geometry
 
 
 def _polylines(elements: list[Params]) -> Geometry | None:
-    """Return one shape from several outlines; the height is that of the first outline."""
+    """Return one shape from several outlines. The height of the first outline is used."""
     outlines = [outline for element in elements if (outline := _outline(element)) is not None]
     height = _positive(elements[0], "height", 1.0)
     for element in elements[1:]:

@@ -38,7 +38,7 @@ def read_inertial(
         name: name of the link, for messages.
         collisions: collisions of the link.
         densities: density of each collision [kg/m³]; None if not given.
-        static: reports faults only as warnings, because static models do not move.
+        static: true for a static model; its faults are only warnings, because the model does not move.
         mesh_reader: returns the triangles of meshes; without it a mesh has no volume.
     """
     block = link.child("inertial")
@@ -102,7 +102,7 @@ def _automatic(
     densities: Sequence[float | None],
     mesh_reader: MeshReader | None,
 ) -> Inertial:
-    """Return the mass properties of the collision solids; a mass in the file scales them."""
+    """Return the mass properties of the collision solids; a `<mass>` in the file scales the computed values."""
     common = block.number("density", _WATER, minimum=0, maximum=_MAX_MOMENT)
     parts = []
     for collision, density in zip(collisions, densities, strict=True):

@@ -31,13 +31,13 @@ _NO_LIMIT = 1e15
 
 
 def joint_link_name(joint: Params, name: str) -> str:
-    """Return the text of `<parent>` or `<child>`; before 1.2 the name was an attribute."""
+    """Return the link name in `<parent>` or `<child>`; SDF before 1.2 has this name in the attribute `link`."""
     found = joint.child(name)
     return "" if found is None else found.value or found.attribute("link").strip()
 
 
 def read_joints(parts: Iterable[NamedElement], model: str) -> tuple[SceneJoint, ...]:
-    """Return the joints whose frames are known; a joint without two valid links is an error and is left out.
+    """Return the joints; a joint without two valid links is an error and is left out.
 
     Args:
         parts: named joint elements.
@@ -110,7 +110,7 @@ def _axes(part: NamedElement, kind: str, pose_world: Pose) -> tuple[Axis, ...]:
     for index, name in enumerate(("axis", "axis2")):
         has_axis = part.element.has(name)
         if index >= AXES[kind] or (kind == "gearbox" and index == 1 and not has_axis):
-            continue  # the report on unused elements lists an axis without meaning for this joint type
+            continue  # the report on unused elements lists axes that this joint type does not have
         if not has_axis:
             part.element.warning("SK-SDF-026", f"{kind} joint {part.name!r} has no <{name}>; 0 0 1 is used")
         axes.append(_axis(part, part.element.block(name), kind, pose_world))
@@ -151,7 +151,10 @@ def _optional_non_negative(block: Params, name: str) -> float | None:
 
 
 def _direction(part: NamedElement, element: Params) -> Vec3:
-    """Return the unit axis in the joint frame; `expressed_in` can name another frame, before 1.5 the model frame."""
+    """Return the unit axis in the joint frame.
+
+    The file can give the axis in another frame: the frame `expressed_in`, or before SDF 1.5 the model frame.
+    """
     x, y, z = element.vector3("xyz", (0.0, 0.0, 1.0))
     xyz = element.child_or_self("xyz")
     length = math.hypot(x, y, z)
@@ -171,9 +174,9 @@ def _direction(part: NamedElement, element: Params) -> Vec3:
     return vec3(part.scope.resolve(part.frame).inverse().rotate(source.rotate(unit)))
 
 
-def _position_limit(limit: Params, name: str, none: float) -> float:
+def _position_limit(limit: Params, name: str, default: float) -> float:
     """Return a position limit; an absolute value of at least 1e15 means no limit."""
-    value = limit.number(name, none, finite=False)
+    value = limit.number(name, default, finite=False)
     return math.copysign(math.inf, value) if abs(value) >= _NO_LIMIT else value
 
 
@@ -190,7 +193,7 @@ def _mimic(part: NamedElement, element: Params) -> Mimic | None:
     leader = block.attribute("joint")
     frames = part.scope.chain(leader)
     if not leader or not frames or frames[-1].kind != "joint":
-        part.scope.report_unknown(leader, f"joint {part.name!r} mimics a joint that", block.where)
+        part.scope.report_unknown(leader, f"joint {part.name!r}: the mimicked joint", block.where)
         return None
     return Mimic(
         joint=frames[-1].scoped,

@@ -21,7 +21,7 @@ from simkit.scene.geometry import vec3
 
 
 def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspace: Workspace) -> SceneLink:
-    """Return a link whose frame is known.
+    """Return a link; the poses of all frames must be resolved.
 
     Args:
         part: the named `<link>` element.
@@ -87,7 +87,10 @@ def _collision(
 
 
 def _with_friction_frame(surface: Surface, part: NamedElement, element: Params, link: str) -> Surface:
-    """Return the surface with `<fdir1>` in a link's frame: the link that the frame named in the file moves with."""
+    """Return the surface with the friction direction `<fdir1>` in the frame of a link.
+
+    If the file gives the direction in another frame, it is converted to the link that this frame moves with.
+    """
     name = surface.fdir1_frame
     if not name:
         return surface

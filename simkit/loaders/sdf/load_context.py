@@ -29,8 +29,8 @@ class IncludedModel(abc.ABC):
 
     Attributes:
         version: SDF version of `frames`.
-        frames: an `<sdf>` with the model's links, joints and frames, for references of the including file.
-        fixed_content: code, reason and hint of the error that such a model cannot be merged or changed.
+        frames: an `<sdf>` with the model's links, joints and frames, to which the including file can refer.
+        fixed_content: code, reason and hint of the error for an include that merges or changes the model.
     """
 
     version: ClassVar[tuple[int, int]]
@@ -115,7 +115,11 @@ class Workspace:
         return Workspace(self.resolver, Diagnostics(), loaders=self.loaders, mjcf_parser=self.mjcf_parser)
 
     def open(self, path: Path, where: Where, chain: tuple[str, ...]) -> SdfFile | None:
-        """Read an included file, only once even if it is included repeatedly; return None with an error recorded."""
+        """Read an included file; a file that is included repeatedly is parsed once.
+
+        Returns:
+            The file, or None, with an error recorded, if the file is unusable.
+        """
         key = str(path.resolve())
         if key in chain:
             trail = " -> ".join(Path(p).name for p in (*chain[chain.index(key) :], key))
@@ -166,7 +170,7 @@ class Workspace:
         return SdfFile(root, version, folder, chain)
 
     def count_model(self, where: Where) -> bool:
-        """Count one more model and check whether the limit is kept."""
+        """Count one more model; return false above `MAX_MODELS`, with one error for the whole load."""
         self.models += 1
         if self.models == MAX_MODELS + 1:
             self.diagnostics.error("SK-SDF-016", f"more than {MAX_MODELS} models", where)
@@ -191,7 +195,7 @@ class NamedElement:
     def pose_of(self, inner: Params, what: str) -> Pose:
         """Return the pose of an element inside a link (or joint) in that link's frame.
 
-        Its `relative_to` can name another frame.
+        The element's `relative_to` can name another frame.
         """
         pose, base = read_pose(inner)
         if not base:
@@ -208,7 +212,7 @@ class EntitySource:
 
     Attributes:
         pose, relative_to: pose and its base frame, as written in the include or else in the element itself.
-        static: value that an include sets; None if the include sets none.
+        static: `<static>` of the include; None if the include has no such element.
         placement: frame of the model that the pose applies to; empty for the model frame.
         plugins: plugins that the include adds.
         merge: true if its content becomes part of the including model.

@@ -105,7 +105,7 @@ def read_colour(block: Params, name: str, default: Colour) -> Colour:
 
 
 def _workflow(block: Params) -> Params:
-    """Return the most complete block of `<pbr>`: with a texture before without, metal before specular."""
+    """Return the first block of `<pbr>` with a texture, else the first block; `<metal>` precedes `<specular>`."""
     pbr = block.block("pbr")
     workflows = [*pbr.all("metal"), *pbr.all("specular")]
     with_texture = [w for w in workflows if _has_content(w, "albedo_map")]

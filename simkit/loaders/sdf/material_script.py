@@ -184,7 +184,10 @@ def _scale(values: list[str]) -> tuple[float, float] | None:
 
 
 def _colour(values: list[str], most: int) -> Colour | None:
-    """Parse three or four numbers; the last of four numbers of a specular colour is its shininess."""
+    """Parse red, green, blue and alpha (by default 1) from the first `most` numbers.
+
+    `most` is 3 for a specular colour of four numbers, because its last number is the shininess.
+    """
     try:
         numbers = [min(1.0, max(0.0, float(v))) for v in values[:most]]
     except ValueError:

@@ -124,14 +124,14 @@ def _report_non_model(source: EntitySource, workspace: Workspace) -> None:
 
 
 def merge_model(draft: ModelDraft, source: EntitySource, scope: Scope, workspace: Workspace, base: str = MODEL) -> None:
-    """Add the content of an included model to `draft`; a new frame at the included model's pose is its root.
+    """Add the content of an included model to `draft`. A new frame at its pose replaces its model frame.
 
     Args:
         draft: the including model.
         source: the included model.
         scope: scope of the including model.
         workspace: state of the load.
-        base: frame that its pose is relative to if the include names none.
+        base: frame that the pose is relative to if the include names no frame.
     """
     name = f"_merged__{source.name}__{MODEL}"
     pose = source.pose
@@ -168,7 +168,7 @@ def _report_lost(source: EntitySource, workspace: Workspace) -> None:
 
 
 def _choose_canonical(draft: ModelDraft, element: Params, workspace: Workspace) -> None:
-    """Select the canonical link: the named one, else the first link, else that of the first nested model."""
+    """Select the canonical link: the named link, else the first link, else the canonical link of a nested model."""
     scope = draft.scope
     canonical = element.attribute("canonical_link")
     frames = scope.chain(canonical) if canonical else None

@@ -1,4 +1,4 @@
-"""`<population>`: many copies of one model, placed by a rule, as Gazebo Classic expands it.
+"""Reader of `<population>`: many copies of one model, at positions from a rule, as in Gazebo Classic.
 
 Random positions come from a separate stream, whose seed is the names of the world and the population. The same file
 therefore gives the same positions in every process, and one population never changes another.
@@ -44,9 +44,9 @@ class _Region:
 
 
 def population_sources(population: Params, world: str, file: SdfFile, workspace: Workspace) -> list[EntitySource]:
-    """Return the copies, named `model_clone_0`, `model_clone_1`, ...; none, with errors, without a valid region.
+    """Return the copies, named `model_clone_0`, `model_clone_1`, ...; an empty list if the population is invalid.
 
-    A copy stands upright at its point. As in Gazebo, the model's own `<pose>` is ignored.
+    Each copy is upright: its roll, pitch and yaw are 0. As in Gazebo, the model's own `<pose>` is ignored.
     """
     diagnostics = workspace.diagnostics
     name = read_name(population, diagnostics, file.version)
@@ -97,7 +97,10 @@ def _points(population: Params, name: str, stream: str, pose: Pose) -> Points | 
 
 
 def _turn_points(points: Points | None, pose: Pose, corner: Points) -> Points | None:
-    """Rotate points about the population's pose, the middle of a box (Gazebo does not rotate the half size)."""
+    """Rotate and move points to the population's pose.
+
+    `corner` is the half size of a box, whose middle is at the pose. As in Gazebo, it is subtracted without rotation.
+    """
     if points is None:
         return None
     return points @ pose.matrix.T + (np.asarray(pose.position) - corner)
@@ -146,7 +149,7 @@ def _line(size: tuple[float, float, float], count: int, axis: int) -> Points:
 
 
 def _evenly_spread(region: _Region, count: int, stream: np.random.Generator) -> Points:
-    """Return evenly spread points: the means of as many clusters of random points of the region (Lloyd's algorithm)."""
+    """Return evenly spread points: the means of `count` clusters of random points in the region (Lloyd's algorithm)."""
     cloud = region.random_points(max(_SAMPLES, 4 * count), stream)
     centres = cloud[:count].copy()
     if count > 500:  # more centres make clusters of few points, whose means are not spread better than the points

@@ -112,7 +112,7 @@ def report_unapplied(draft: ModelDraft) -> None:
     moved = [e for e, frame in matched if e.has("pose") and _is_different(e.pose("pose"), world_pose(frame))]
     if moved:
         names = ", ".join(link.attribute("name") for link in moved[:5])
-        message = f"{owner}: the saved poses of {names} are not applied; its joints start at zero"
+        message = f"{owner}: the saved poses of {names} need other joint positions; all joints start at zero"
         moved[0].warning(_CODE, message)
     moving = [link for link, _ in matched if _has_motion(link)]
     if moving:

@@ -1,4 +1,4 @@
-"""Reader of `<sensor>`: elements that all kinds share. All others stay in the parameters for the kind's own module."""
+"""Reader of `<sensor>`: the elements of every sensor type. Elements of one type stay in `params` for its module."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def read_sensors(
         part: the link or joint.
         scoped: name of the link or joint from the world down.
         link_world: pose in the world of the link, or of the joint's child link.
-        in_link: pose of the joint's frame in its child link.
+        in_link: pose of the joint in its child link; the identity for a link.
     """
     return tuple(
         _sensor(e, name, scoped, part.frame.kind == "joint", in_link @ part.pose_of(e, f"sensor {name!r}"), link_world)

@@ -19,7 +19,7 @@ Outline = Sequence[tuple[float, float]]
 def solid_of(shape: Geometry) -> Solid | None:
     """Return volume [m³], centroid [m] and moments [m⁵] about the centroid, in the shape's frame.
 
-    A shape without volume returns None.
+    The result is None for a shape without volume.
     """
     centre = np.zeros(3)
     match shape:
@@ -75,7 +75,7 @@ def solid_of_triangles(parts: Iterable[Triangles]) -> Solid | None:
 
 
 def _about_centroid(volume: float, centre: Floats, second: Floats) -> Solid:
-    """Convert the integral of position times position, which has the sign of the volume, to moments."""
+    """Return a solid from its signed volume, its centroid, and the signed integral of position times position."""
     sign = math.copysign(1.0, volume)
     inner = sign * (second - volume * np.outer(centre, centre))
     return abs(volume), centre, np.trace(inner) * np.eye(3) - inner

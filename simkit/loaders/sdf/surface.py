@@ -53,7 +53,7 @@ def _direction_frame(ode: Params) -> str:
 
 
 def _friction(block: Params, name: str, default: float) -> float:
-    """Return a coefficient; old files use a negative number for the default."""
+    """Return a friction coefficient; a negative number, which means the default in old files, becomes the default."""
     return _non_negative(block, name, default, finite=False)
 
 

@@ -1,4 +1,4 @@
-"""Report on elements without effect: names that the format does not have, and elements without effect in simkit.
+"""Report on elements without effect: names that are unknown in SDF, and elements that simkit does not use.
 
 The tables in `simkit.loaders.sdf.element_table` define the known names and their use.
 """
@@ -19,7 +19,7 @@ _MAX_REPORTED = 500
 
 
 def report_unread(root: Params, place: str = "sdf") -> None:
-    """Report the elements of a tree without effect: a warning for each unknown name, one note for Gazebo's settings.
+    """Report elements without effect in a tree: a warning for each unknown name, one note for Gazebo's settings.
 
     Args:
         root: root of the tree.
@@ -43,7 +43,7 @@ class _UnreadReport:
     count: int = 0
 
     def warn(self, code: str, where: Where, make_message: Callable[[], tuple[str, str]]) -> None:
-        """Record one warning with text and hint; above the limit, one last warning replaces all others."""
+        """Record one warning with text and hint; after 500 warnings, one last warning replaces the remaining ones."""
         self.count += 1
         if self.count <= _MAX_REPORTED:
             text, hint = make_message()

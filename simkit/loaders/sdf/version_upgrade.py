@@ -12,7 +12,7 @@ _REFERENCES = {"pose": "relative_to", "xyz": "expressed_in"}
 
 
 def nest_flattened_models(root: Params, version: tuple[int, int]) -> Params:
-    """Convert the name groups of every model to nested models, in place; newer files stay the same."""
+    """Convert elements with names such as `arm::link` to a nested model `arm`, in place, in files before SDF 1.8."""
     if version < FIRST_NESTED:
         for element in (root, *(c for c in root.children if c.name == "world")):
             for child in element.children:
@@ -45,7 +45,7 @@ def _unflatten(model: Params) -> None:
 
 
 def _use_model_frame(frame: Params, name: str, model: Params) -> None:
-    """Use the frame that replaced the group's own model frame: its pose and the link that it moves with."""
+    """Copy pose and canonical link to a nested model from `frame`, which replaced its model frame in old files."""
     attached = frame.attributes.get("attached_to", "").removeprefix(f"{name}::")
     if attached:
         model.attributes["canonical_link"] = attached
@@ -56,7 +56,7 @@ def _use_model_frame(frame: Params, name: str, model: Params) -> None:
 
 
 def _strip_group_name(element: Params, prefix: str) -> None:
-    """Remove the group's name from every reference into the group."""
+    """Remove the prefix of a nested model (`arm::`) from all references inside an element."""
     for key in ("attached_to", _REFERENCES.get(element.name, "")):
         if key and key in element.attributes:
             element.attributes[key] = element.attributes[key].removeprefix(prefix)

@@ -147,7 +147,7 @@ def _add_entity(source: EntitySource, content: _WorldContent, workspace: Workspa
 
 
 def _merge_into_world(source: EntitySource, content: _WorldContent, workspace: Workspace) -> None:
-    """Add the content of an included model to the world, which can have no links or grippers of its own."""
+    """Add the content of an included model to the world; a model with links or grippers is an error."""
     for kind in ("link", "gripper"):
         for part in source.element.all(kind):
             part.mark_all_read()

@@ -32,8 +32,8 @@ def read_physics(world: Params) -> tuple[Physics, Vec3]:
     gravity = world.vector3("gravity", inside)
     step = block.number("max_step_size", _old_step(block), maximum=_LONGEST)
     if step < _SHORTEST:
-        allowed = "it must be positive" if step <= 0 else f"it must be at least {_SHORTEST:g} s (time has nanoseconds)"
-        block.error("SK-PARAM-002", f"found <max_step_size>{step:g}</max_step_size>, {allowed}")
+        allowed = "a positive number" if step <= 0 else f"at least {_SHORTEST:g} s, because time is in nanoseconds"
+        block.error("SK-PARAM-002", f"found <max_step_size>{step:g}</max_step_size>; expected {allowed}")
         step = 0.001
     law = block.choice("contact_law", CONTACT_LAWS, "simkit")
     factor = max(0.0, _real_time_factor(block, step))
@@ -41,20 +41,20 @@ def read_physics(world: Params) -> tuple[Physics, Vec3]:
 
 
 def _contacts(block: Params) -> int:
-    """Return the maximum number of contacts of one pair: 20 as in Gazebo, also if the file has -1."""
+    """Return the maximum number of contacts of one pair of collisions; by default and for -1 it is 20, as in Gazebo."""
     count = block.integer("max_contacts", 20, minimum=-1)
     return 20 if count < 0 else count
 
 
 def _real_time_factor(block: Params, step: float) -> float:
-    """Return the real-time factor; a file with only an update rate gives it as update rate times step."""
+    """Return the real-time factor; if the file gives only an update rate, the factor is update rate times step."""
     rate = block.number("real_time_update_rate", block.number("update_rate", 0.0, minimum=0.0), minimum=0.0)
     has_rate = block.has("real_time_update_rate") or block.has("update_rate")
     return block.number("real_time_factor", rate * step if has_rate else 1.0)
 
 
 def _old_step(block: Params) -> float:
-    """Return the step [s] in the spelling before 1.4."""
+    """Return the step [s] from `<dt>`, the spelling before SDF 1.4."""
     for engine in block.children:
         for holder in (engine, *engine.children):
             if engine.name in ("ode", "bullet") and any(c.name == "dt" for c in holder.children):

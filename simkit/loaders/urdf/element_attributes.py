@@ -139,7 +139,7 @@ def extension_text(element: Params) -> str:
 
 
 def extension_boolean(element: Params) -> bool:
-    """Return the value of true, yes, 1 or false, no, 0; any other text is an error."""
+    """Return true for true, yes and 1, and false for false, no and 0; any other text is an error."""
     found = extension_text(element).lower()
     if found not in ("true", "yes", "1", "false", "no", "0"):
         element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}; expected true or false")

@@ -33,7 +33,7 @@ class GazeboExtensions:
         return self.merged.get(name) or Params("gazebo", diagnostics=self.diagnostics)
 
     def report_unknown(self, links: Iterable[str], joints: Iterable[str]) -> None:
-        """Warn about each reference to an unknown name; Gazebo ignores them without a message."""
+        """Warn about each reference to an unknown name; Gazebo ignores such references without a message."""
         self.kinds = {**dict.fromkeys(joints, "joint"), **dict.fromkeys(links, "link")}
         names = list(self.kinds)
         for name, blocks in self._blocks.items():

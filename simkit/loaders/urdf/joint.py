@@ -27,7 +27,7 @@ _FIXED_DEFAULTS = ("preserveFixedJoint", "disableFixedJointLumping")  # no effec
 
 
 def read_joint(draft: RobotDraft, joint: JointDraft) -> SceneJoint:
-    """Return a joint whose links have poses."""
+    """Return a joint; the poses of its links must be known."""
     element, name = joint.element, joint.name
     extension = draft.extensions.of(name)
     pose = draft.links_world[joint.child]

@@ -73,7 +73,7 @@ def _elements_by_name(draft: RobotDraft, kind: str) -> dict[str, Params]:
 
 
 def _joint(draft: RobotDraft, name: str, element: Params) -> JointDraft | None:
-    """Return a joint with both links; None, with its errors recorded, if it joins no two links."""
+    """Return a joint with its type and two links; None, with errors recorded, if one of these is invalid."""
     kind = text_attribute(element, "type")
     if kind not in TYPES:
         hint = did_you_mean(kind, TYPES)

@@ -106,7 +106,7 @@ def _moment(inertia: Params, key: str, link: str) -> float:
 def unique_names(elements: list[Params], link: str, kind: str) -> list[str]:
     """Return the names of a link's collisions or visuals, as Gazebo generates them.
 
-    An unnamed one is called `<link>_<kind>`, `<link>_<kind>_1`, ...
+    Elements without a name are called `<link>_<kind>`, `<link>_<kind>_1`, ...
     """
     written = [text_attribute(element, "name") for element in elements]
     reserved = {name for name in written if name}
@@ -138,7 +138,7 @@ def _collisions(draft: RobotDraft, link: str, element: Params, extension: Params
 
 
 def _surface(extension: Params) -> Surface:
-    """Return contact properties: first SDF's elements in `<collision>`, then Gazebo's short elements."""
+    """Return contact properties from SDF's elements in `<collision>`; Gazebo's short elements override them."""
     surface = Surface()
     for block in extension.all("collision"):
         surface = read_surface(block)

@@ -50,7 +50,7 @@ class UrdfLoader(IncludableLoader):
 
 @dataclass
 class IncludedRobot(IncludedModel):
-    """Robot that an SDF file includes: its names as frames for the SDF readers, and later its model at their pose."""
+    """Robot that an SDF file includes: first its links and joints as frames, later the model at its resolved pose."""
 
     version: ClassVar[tuple[int, int]] = _SDF_VERSION
     fixed_content: ClassVar[tuple[str, str, str]] = (

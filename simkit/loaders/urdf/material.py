@@ -23,7 +23,7 @@ from simkit.scene.model import Colour
 
 @dataclass
 class Materials:
-    """Named materials of one robot: those of the robot itself, and those that a visual defines."""
+    """Named materials of one robot: materials in `<robot>`, and materials that a visual defines."""
 
     draft: RobotDraft
     named: dict[str, Material] = field(default_factory=dict)
@@ -75,7 +75,7 @@ class Materials:
             self.named[name] = found
 
     def _read(self, element: Params) -> Material | None:
-        """Return the colour and texture in an element; None if it has neither."""
+        """Return the colour and texture in an element; None if both are missing."""
         colour, texture = element.child("color"), element.child("texture")
         rgba: Colour | None = None
         if colour is not None:

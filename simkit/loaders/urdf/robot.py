@@ -84,7 +84,7 @@ def build_robot(
         pose: pose of its root link in the world; None for the pose in its file, or the origin.
         base: "auto", "fixed" or "floating".
         static: true if it is static; None for the value in its file.
-        is_included: true if an SDF file includes it, whose joints can fix it to the world.
+        is_included: true if an SDF file includes the robot; a joint of that file can fix the robot to the world.
     """
     robot = draft.extensions.robot
     draft.scoped = scoped(outer, draft.name)
@@ -131,7 +131,7 @@ def build_robot(
 def _fixed_base_reason(draft: RobotDraft, links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> str:
     """Return the reason why the base cannot float; empty if it can.
 
-    Gazebo removes such links. PyBullet also fixes the base of a robot without mass.
+    Gazebo removes links without mass. PyBullet also fixes the base of a robot without mass.
     """
     heavy = {link.scoped for link in links if link.inertial.mass > 0}
     if not heavy:
@@ -154,7 +154,7 @@ def _fixed_base_reason(draft: RobotDraft, links: tuple[SceneLink, ...], joints: 
 
 
 def _choose_base(draft: RobotDraft, base: str, is_included: bool, fixed_reason: str) -> str:
-    """Apply Gazebo's rule: a robot whose root link is named `world` is fixed to the world; any other floats.
+    """Apply Gazebo's rule: a robot whose root link is named `world` is fixed; every other robot floats.
 
     A robot that cannot float, because of `fixed_reason`, is fixed.
     """
@@ -185,7 +185,7 @@ def _report_frames(draft: RobotDraft, links: tuple[SceneLink, ...]) -> None:
 
 
 def _check_force_sensors(links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> None:
-    """Report a force_torque sensor on a joint without mass and collisions below it, which would always read zero."""
+    """Report force_torque sensors that would always read zero: no mass and no collision is below their joint."""
     by_name = {link.scoped: link for link in links}
     below: dict[str, list[str]] = {}
     for joint in joints:

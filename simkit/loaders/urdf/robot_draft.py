@@ -68,7 +68,7 @@ class RobotFiles:
 
 @dataclass(frozen=True, slots=True)
 class JointDraft:
-    """Joint with known links: plain link names, and its origin in the parent link's frame."""
+    """Joint between two existing links; `origin` is its pose in the parent link."""
 
     name: str
     element: Params
@@ -80,13 +80,13 @@ class JointDraft:
 
 @dataclass
 class RobotDraft:
-    """Robot during reading.
+    """State of a robot while its file is read.
 
     Attributes:
         scoped: name from the world down.
         pose: pose of the robot (its root link) in the world.
         scope: names that the SDF readers of the extensions look up: links, joints, frames.
-        links, joints: elements and joints by plain name, in document order.
+        links, joints: `<link>` elements and joints by name without scope, in document order.
         links_world: pose of each link in the world.
     """
 
@@ -113,7 +113,7 @@ class RobotDraft:
         return scoped(self.scoped, *names)
 
     def part(self, link: str, extension: Params, joint: str = "") -> NamedElement:
-        """Return the extension of a link, or of a joint with this child link, in the form for the SDF readers."""
+        """Return the `<gazebo>` block of a link, or of a joint with this child link, as input for the SDF readers."""
         frame = self.scope.names[link]
         frame = replace(frame, kind="joint") if joint else frame
         return NamedElement(joint or link, extension, frame, self.scope, self.file)

@@ -35,7 +35,7 @@ _KEPT = frozenset(("transmission", "ros2_control", "gazebo"))
 
 
 def report_unread(robot: Params, extensions: GazeboExtensions) -> None:
-    """Report a warning for each unknown element or attribute, one note for other tools, and Gazebo's as for SDF."""
+    """Report a warning for each unknown name, one note for names of other tools, and Gazebo's elements as in SDF."""
     notes: _Places = defaultdict(list)
     warnings: _Warnings = defaultdict(list)
     for element in _read_elements(robot):

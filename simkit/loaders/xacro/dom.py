@@ -54,7 +54,7 @@ def place_of(node: minidom.Element | None) -> Where:
 
 
 def to_params(top: Any, diagnostics: Diagnostics) -> Params:
-    """Convert the tree to `Params`; an element without its own file and line has those of its parent."""
+    """Convert the tree to `Params`; an element without a known file and line gets those of its parent."""
     root = _params(top, place_of(top), diagnostics)
     stack: list[tuple[minidom.Element, Params]] = [(top, root)]
     while stack:

@@ -115,7 +115,7 @@ class _Expansion:
         for name in self.given:
             if name not in self.declared:
                 known = ", ".join(sorted(self.declared)) or "none"
-                message = f"the file has no argument {name!r}; it has {known}"
+                message = f"the file has no argument {name!r}, so its value has no effect; known are {known}"
                 hint = did_you_mean(name, self.declared)
                 self.diagnostics.warning("SK-XACRO-004", message, self.document.root.where, hint)
 
@@ -149,7 +149,7 @@ class _Expansion:
         return call
 
     def _count_work(self, eval_all: Callable[..., None], handle_macro_call: Callable[..., bool]) -> None:
-        """Replace xacro's functions by ones that limit the number of elements and store the current file and line."""
+        """Replace two functions of xacro by functions that also count elements and store the current file and line."""
 
         def visit(node: minidom.Element, macros: Names, symbols: Names) -> None:
             self._enter_element(node, 1)
@@ -326,7 +326,7 @@ class _Expansion:
 
 
 class _MissingFile(OSError):
-    """Error that marks an include as missing, so that xacro accepts this if the include is `optional`."""
+    """Error for a missing include; xacro accepts this type of error if the include is `optional`."""
 
     def __init__(self, error: MissingError) -> None:
         super().__init__(str(error))

@@ -46,7 +46,7 @@ class Budget:
         return value
 
     def weigh(self, *values: object) -> int:
-        """Count all items and texts inside nested values, repeated ones repeatedly, and spend as many steps."""
+        """Return the number of items in nested values, and spend as many steps; shared items count every time."""
         weight, stack = 0, list(values)
         while stack:
             item = stack.pop()

@@ -99,7 +99,7 @@ class FileAccess:
     def package_folder(self, name: str, folder: Path | None) -> str:
         """Return the folder of a package, or `package://name` with a note if the package is not found.
 
-        Files that use the name without opening a file can then still be loaded.
+        A robot that opens no file of the package can then still be loaded.
         """
         if name not in self._packages:
             found, tried = self.resolver.find_package(name, folder)

@@ -21,7 +21,7 @@ _LOCK = threading.Lock()
 _COUNT = itertools.count()
 _DEFAULT = r"\$\{.*?\}|\$\(.*?\)|(?:'[^']*'|\"[^\"]*\"|[^\s'\"])+|"
 MACRO_ARGUMENT = re.compile(r"^\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(" + _DEFAULT + r")(?:\s+|$)(.*)", re.DOTALL)
-"""Pattern of a macro's parameter with its default: a corrected copy of xacro's, which can take exponential time."""
+"""Pattern of a macro's parameter with its default. The original pattern in xacro can take exponential time."""
 
 
 def import_private_xacro() -> XacroModule:

@@ -74,7 +74,7 @@ def write(folder: Path, files: dict[str, str | bytes]) -> Path:
     return folder / next(iter(files))
 
 
-# ---------------------------------------------------------------------- what a file means
+# ---------------------------------------------------------------------- content of the scene
 
 
 def test_a_file_with_one_free_body_is_a_model_in_a_world_with_the_options_of_the_file() -> None:
@@ -192,7 +192,7 @@ def test_the_angle_unit_of_the_file_is_applied() -> None:
         assert model.links[0].pose_world.rpy[2] == pytest.approx(np.pi / 2)
 
 
-# ---------------------------------------------------------------------- the files that it names
+# ---------------------------------------------------------------------- asset files and included files
 
 
 def test_a_mesh_is_found_by_the_folder_that_the_compiler_element_names(tmp_path: Path) -> None:
@@ -254,13 +254,21 @@ def test_a_file_is_included_once(tmp_path: Path) -> None:
     assert {d.code for d in errors_of(path)} == {"SK-MJCF-006"}
 
 
+def test_a_file_that_includes_another_twice_is_not_compiled(tmp_path: Path) -> None:
+    twice = '<mujoco><include file="b.xml"/><include file="b.xml"/></mujoco>'
+    body = '<mujoco><worldbody><body name="b"><geom size="1"/></body></worldbody></mujoco>'
+    scene, diagnostics = scene_of(write(tmp_path, {"a.xml": twice, "b.xml": body}))
+    assert [d.code for d in diagnostics if d.severity == "error"] == ["SK-MJCF-006"]
+    assert scene.model is None and not scene.worlds
+
+
 def test_a_file_that_attaches_itself_is_an_error(tmp_path: Path) -> None:
     text = """<mujoco><asset><model name="me" file="a.xml"/></asset><worldbody><body name="b"><geom size="1"/>
       <attach model="me" body="b" prefix="x"/></body></worldbody></mujoco>"""
     assert {d.code for d in errors_of(write(tmp_path, {"a.xml": text}))} == {"SK-MJCF-006"}
 
 
-# ---------------------------------------------------------------------- bad files
+# ---------------------------------------------------------------------- invalid files
 
 
 def test_all_unknown_names_are_reported_in_one_pass_with_the_closest_name(tmp_path: Path) -> None:
@@ -348,7 +356,7 @@ def test_an_image_whose_header_declares_too_many_pixels_is_refused(tmp_path: Pat
 
 
 def test_the_search_for_the_range_of_a_muscle_has_a_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without any solver iteration the arm below flies apart, and the engine would measure its muscle for ever."""
+    """The muscle below has no `lengthrange`, so MuJoCo must measure the range; here 0.01 s is too short for this."""
     monkeypatch.setattr("simkit.compiler.mjcf_parser.RANGE_TIMEOUT", 0.01)
     text = """<mujoco><worldbody><body><joint name="j" range="-1 1" limited="true"/><geom size=".1" pos="1 0 0"/></body>
       </worldbody><actuator><muscle joint="j"/></actuator></mujoco>"""

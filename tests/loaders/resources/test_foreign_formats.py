@@ -11,7 +11,7 @@ import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.xml_reader import parse_file
 
-SCENARIO = "a scenario; simkit golden record, certify, bundle and grade take one"
+SCENARIO = "a scenario, the input of simkit golden record, certify, bundle and grade"
 LFS = "a pointer of Git LFS; the content was not fetched (git lfs pull)"
 
 
@@ -58,7 +58,7 @@ def test_an_error_about_another_format_names_this_format(tmp_path: Path, content
     [
         ("<COLLADA/>", "a mesh (COLLADA); name it in the <uri> of a <mesh>"),
         ("<world name='w'/>", "a world without the <sdf> around it; put <sdf version='1.9'> around it"),
-        ("<launch/>", "a ROS launch file; name the world or robot that it loads"),
+        ("<launch/>", "a ROS launch file; load the world or robot that the launch file names"),
         ("<robto/>", "did you mean 'robot'?"),
     ],
 )

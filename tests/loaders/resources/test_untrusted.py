@@ -19,8 +19,8 @@ import simkit
 from simkit.loaders.resources.bounded_file import read_bounded
 
 ROOT = Path(__file__).resolve().parents[3]
-WIDE = int(os.environ.get("SIMKIT_WIDEST", "200000"))  # elements beside each other; a million take 20 s a format
-SECONDS = 60  # on a busy machine; nearly all take one
+WIDE = int(os.environ.get("SIMKIT_WIDEST", "200000"))  # siblings; a million of them take 20 s for each format
+SECONDS = 60  # time limit on a busy machine; nearly all files take 1 s
 LARGEST = 2 << 30  # [bytes]
 WORLD = '<sdf version="1.9"><world name="w">{}</world></sdf>'
 MODEL = WORLD.format('<model name="m"><static>{}</static>{}</model>')
@@ -39,7 +39,7 @@ PICTURE_MODEL = (
 
 @pytest.fixture
 def opened(tmp_path: Path) -> Callable[..., tuple[int, str]]:
-    """opened(command, file, *options) -> exit code and what was printed, of `simkit` in a process of its own."""
+    """Return a function opened(command, file, *options) that runs `simkit` and returns its exit code and output."""
 
     def _opened(command: str, file: object, *options: object) -> tuple[int, str]:
         done = subprocess.run(
@@ -83,7 +83,7 @@ def errors(source: object, **options: object) -> list[str]:
     return [d.code for d in simkit.check(source, **options) if d.severity == "error"]  # type: ignore[arg-type]
 
 
-# ---------------------------------------------------------------------- what is no file
+# ---------------------------------------------------------------------- paths that are not files
 
 
 @pytest.mark.parametrize(
@@ -139,7 +139,7 @@ def test_a_file_without_read_permission_is_an_error(write, tmp_path):
         file.parent.chmod(0o700)
 
 
-# ---------------------------------------------------------------------- where files may lie
+# ---------------------------------------------------------------------- folders outside the resource folders
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,7 @@ def test_a_xacro_file_cannot_read_outside_its_folders_or_run_code(write, line):
 
 
 def test_a_link_inside_a_folder_is_followed_as_in_a_workspace_of_links(write, tmp_path):
-    """Whoever can put a link there could have put the file; what it leads to is what it should be, or refused."""
+    """The target of a link is read like a file in the folder: here one target is a model, and the other is refused."""
     write("elsewhere/robot.sdf", '<sdf version="1.9"><model name="far"><link name="l"/></model></sdf>')
     write("secret.txt", "password")
     write("models/m/model.config", "<model><sdf version='1.9'>model.sdf</sdf></model>")
@@ -210,7 +210,7 @@ def test_a_link_inside_a_folder_is_followed_as_in_a_workspace_of_links(write, tm
     assert not any("password" in str(d) for d in found)
 
 
-# ---------------------------------------------------------------------- circles and bombs
+# ---------------------------------------------------------------------- circular includes, expanding entities
 
 
 def test_circular_includes_through_other_formats_are_an_error(write, tmp_path):
@@ -252,7 +252,7 @@ def test_entities_are_refused_in_every_format(declared, root):
 
 @pytest.mark.parametrize("name", ["model.config", "parts.xacro", "package.xml", "inner.xml"])
 def test_entities_are_refused_in_every_referenced_file(write, tmp_path, name):
-    """None of these can make memory of ten thousand million words."""
+    """The entity in the file would expand to ten thousand million words."""
     bomb = f"{LAUGHS}]><x>&j;</x>"
     write(f"m/{name}", bomb)
     write("m/w.sdf", WORLD.format("<include><uri>model://m</uri></include>"))
@@ -425,5 +425,5 @@ def test_invalid_topic_names_are_refused_or_corrected(tmp_path, topic):
 
 
 def test_the_memory_of_this_process_stays_small():
-    """All of the above that ran in it, with the engine and its libraries."""
+    """The limit applies to all tests above that ran in this process, together with MuJoCo and other libraries."""
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 < LARGEST

@@ -17,7 +17,7 @@ BOX = '<sdf version="1.9"><model name="box"><link name="l"><inertial><mass>3</ma
 
 @pytest.fixture
 def arm(load, write):
-    """arm(changes) -> the changed arm, an untouched one beside it, and the errors."""
+    """Return a function arm(changes) that returns the changed arm, an unchanged arm, and the errors."""
     root = write("models/arm/model.sdf", ARM).parents[1]
     write("models/box/model.sdf", BOX)
 

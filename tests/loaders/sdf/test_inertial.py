@@ -23,7 +23,7 @@ def collision(shape: str, pose: str = "0 0 0 0 0 0", name: str = "c", density: s
 
 
 def mass_of(text: str):
-    """Return the inertial that the package computes with its own reader of meshes."""
+    """Return the inertial of the first link, read with the mesh reader of `simkit.compiler`, and the diagnostics."""
     from simkit.compiler.meshes.mesh_reader import load_mesh
 
     diagnostics = Diagnostics()
@@ -82,7 +82,7 @@ def test_solids_have_the_analytic_inertia(shape, mass, com, moments):
 def test_a_capsule_lies_between_its_cylinder_and_the_longer_one():
     inertial, _ = mass_of(link(collision("<capsule><radius>1</radius><length>2</length></capsule>")))
     caps, body = 4 / 3 * PI * W, 2 * PI * W
-    # two half balls, each with its centre 3/8 r above the rim
+    # each half ball has its centre of mass 3/8 of the radius above its flat side
     half = caps / 2
     side = body * 7 / 12 + 2 * (half * (0.4 - 9 / 64) + half * (1 + 3 / 8) ** 2)
     near(inertial, caps + body, (0, 0, 0), (side, side, body / 2 + 0.4 * caps, 0, 0, 0))
@@ -155,7 +155,7 @@ def test_a_mesh_is_integrated_with_its_positive_or_negative_scale(tetrahedron, s
     assert not [d for d in found if d.severity != "note"]
     a, b, c = scale
     volume = abs(a * b * c) / 6
-    # of the tetrahedron 0, a, b, c about its centre: integral of xx is 3 a^2 V / 80, of xy is -a b V / 80
+    # about the centre of the tetrahedron 0, a, b, c, the integral of xx is 3 a^2 V / 80, and that of xy is -a b V / 80
     xx, yy, zz = (3 * s * s * volume / 80 * W for s in scale)
     xy, xz, yz = (s * volume / 80 * W for s in (a * b, a * c, b * c))
     near(inertial, volume * W, (a / 4, b / 4, c / 4), (yy + zz, xx + zz, xx + yy, xy, xz, yz))

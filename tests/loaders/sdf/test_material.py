@@ -55,7 +55,7 @@ material Own/Open { technique { pass { diffuse 0 0 1
 
 @pytest.fixture
 def read(tmp_path):
-    """Reads a model with one visual; returns its material and what was diagnostics."""
+    """Return a function read(material) that loads a model with one visual, and returns material and diagnostics."""
     scripts = tmp_path / "paints" / "materials" / "scripts"
     scripts.mkdir(parents=True)
     (scripts / "own.material").write_text(OGRE)

@@ -198,7 +198,7 @@ def test_a_population_without_a_valid_region_is_an_error(load, rest, expected_te
     assert wrong and expected_text in wrong[0].message + wrong[0].hint
 
 
-# ---------------------------------------------------------------------------------------------------- the rest
+# ---------------------------------------------------------------------- actors, saved states, surroundings
 
 
 def test_an_actor_is_read_in_full(load):

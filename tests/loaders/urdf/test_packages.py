@@ -30,7 +30,7 @@ def package(write, path: str, name: str = "") -> Path:
 
 
 def found_mesh(load, file, paths=()) -> str:
-    """Return the content of the mesh that a robot found, which is the path of its package in these tests."""
+    """Return the content of the mesh that a robot uses; in these tests, the content is the path of its package."""
     scene, found = load(file, paths)
     assert not errors(found), errors(found)
     shapes = scene.model.links[0].visuals

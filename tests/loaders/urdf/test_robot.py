@@ -314,7 +314,7 @@ def test_loading_a_robot_is_deterministic(load):
     assert [(x.scoped, x.pose_world) for x in first.links] == [(x.scoped, x.pose_world) for x in second.links]
 
 
-# ------------------------------------------------------------------ what other readers pass over
+# ------------------------------------------------------------------ faults that other readers ignore
 
 
 def test_a_mass_without_moments_is_a_point_mass_and_moments_without_mass_are_ignored(load):

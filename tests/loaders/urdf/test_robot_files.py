@@ -98,7 +98,7 @@ SMALL = [p for p in robots() if p.name in ("panda.urdf", "ur3_robot.urdf", "solo
 @pytest.mark.skipif(not SMALL, reason="example-robot-data is not installed")
 @pytest.mark.parametrize("file", SMALL, ids=lambda p: p.stem)
 def test_poses_agree_with_yourdfpy_at_any_configuration(file):
-    """yourdfpy reckons forward kinematics on its own."""
+    """The library yourdfpy computes the poses of the links independently."""
     yourdfpy = pytest.importorskip("yourdfpy")
     reference = yourdfpy.URDF.load(str(file), load_meshes=False, build_scene_graph=True, mesh_dir=str(file.parent))
     folder = next(p for p in file.parents if p.name == "robots" or (p / "robots").is_dir())
@@ -158,7 +158,7 @@ _PIECES = (
 
 
 def damaged(text: str, generator: random.Random) -> str:
-    """Return the text with some attributes exchanged, lines removed or repeated, and invalid fragments inserted."""
+    """Return the text with exchanged attributes, removed or repeated lines, or inserted invalid pieces."""
     for _ in range(generator.randint(1, 6)):
         position = generator.randrange(len(text))
         kind = generator.randrange(4)

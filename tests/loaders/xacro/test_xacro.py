@@ -99,7 +99,7 @@ def plain_xml(element):
     return (element.tag, text, sorted(element.attrib.items()), [plain_xml(c) for c in element])
 
 
-# ---------------------------------------------------------------------- what it means
+# ---------------------------------------------------------------------- values of the expansion
 
 
 def test_a_file_expands_to_the_same_elements_as_with_xacro_itself(write, capsys):
@@ -226,7 +226,7 @@ def test_the_macro_calls_that_led_to_a_mistake_are_listed(load):
     assert "in <xacro:inner> of <text>:3; in <xacro:outer> of <text>:4" in problem.message
 
 
-# ---------------------------------------------------------------------- what it may read and cost
+# ---------------------------------------------------------------------- permitted files and limits
 
 
 @pytest.mark.parametrize(
