@@ -10,8 +10,8 @@ from xml.parsers import expat
 
 from simkit.loaders.resources.bounded_file import read_bounded
 from simkit.loaders.resources.xml_reader import MAX_BYTES
+from simkit.loaders.sdf.inertial import MOMENT_NAMES
 
-MOMENT_NAMES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _SDF_DEFAULTS = {"ixx": 1.0, "iyy": 1.0, "izz": 1.0, "ixy": 0.0, "ixz": 0.0, "iyz": 0.0}
 
 

@@ -19,7 +19,7 @@ MOST_FILES = 100_000
 
 
 class AssetFolder:
-    """Folder for copies of files and of the files that they refer to, each once.
+    """Folder with one copy of each added file, and of each file that an added file refers to.
 
     Files that refer to each other keep their relative positions, so that a mesh finds its textures.
 

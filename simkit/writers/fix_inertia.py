@@ -12,7 +12,8 @@ from simkit.compiler.refused_inertias import format_moments, repair_inertia
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 from simkit.loaders import Resolver, load_scene
-from simkit.loaders.inertia_text import MOMENT_NAMES, WrittenInertia, find_inertias, replace_numbers
+from simkit.loaders.inertia_text import WrittenInertia, find_inertias, replace_numbers
+from simkit.loaders.sdf.inertial import MOMENT_NAMES
 from simkit.scene import Inertial, Scene
 
 _SLACK = 1e-6  # relative to the largest moment; tolerance for rounded values in files

@@ -161,7 +161,7 @@ class _Assets:
 
 
 def _file_stem(name: str) -> str:
-    """Convert a name to a file name without suffix that every system accepts."""
+    """Convert a name to a file name (without suffix) that is valid on every operating system."""
     return re.sub(r"[^A-Za-z0-9_-]+", "_", name.rsplit("/", 1)[-1].partition(".")[0]).strip("_")[:80] or "asset"
 
 

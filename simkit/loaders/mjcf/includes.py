@@ -1,4 +1,4 @@
-"""Bundle of an MJCF file with all files that it includes or refers to, in memory, so that MuJoCo opens no file.
+"""Collection of an MJCF file and all files that it includes or refers to in memory, so that MuJoCo opens no file.
 
 Includes are replaced by their content, and asset files are read, only inside the resource folders. The text for MuJoCo
 has one element per line. A line number in MuJoCo's messages can therefore be converted to the user's file and line.

@@ -106,7 +106,7 @@ class Schema:
         return self._read_at[place]
 
     def content_place(self, place: str, name: str) -> str:
-        """Return the place of a child's content."""
+        """Return the place that describes the content of a child."""
         row = self.row(place, name)
         return row.like if row is not None and row.like else f"{place}/{name}"
 

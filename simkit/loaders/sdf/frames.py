@@ -198,7 +198,7 @@ class Scope:
         self.diagnostics.error(code, f"{what} {path!r} does not exist here (known: {known})", where, hint)
 
     def all_names(self) -> list[str]:
-        """Return the names that can be used here, including nested names one level down."""
+        """Return the names in this scope, and the names directly inside its models (`model::name`)."""
         nested = [f"{n}::{inner}" for n, f in self.names.items() if f.inside for inner in f.inside.names]
         return [*self.names, *nested]
 

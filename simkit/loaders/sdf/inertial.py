@@ -51,11 +51,11 @@ def read_inertial(
     pose, moments = block.pose("pose"), block.block("inertia")
     values = [moments.number(k, float(k[1] == k[2]), minimum=-_MAX_MOMENT, maximum=_MAX_MOMENT) for k in MOMENT_NAMES]
     _check(name, mass, values, block, static)
-    return Inertial(mass, vec3(pose.position), turned_moments(values, pose), True)
+    return Inertial(mass, vec3(pose.position), rotated_moments(values, pose), True)
 
 
-def turned_moments(values: Sequence[float], pose: Pose) -> Moments:
-    """Convert moments and products of inertia from the axes of a pose to the frame in which the pose is given."""
+def rotated_moments(values: Sequence[float], pose: Pose) -> Moments:
+    """Rotate moments and products of inertia from the axes of `pose` to the frame that contains the pose."""
     if pose.quaternion[0] != 1.0:
         turn = pose.matrix
         return moments_of(turn @ _matrix(values) @ turn.T)

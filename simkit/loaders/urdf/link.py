@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from simkit.loaders.sdf.inertial import MOMENT_NAMES, turned_moments
+from simkit.loaders.sdf.inertial import MOMENT_NAMES, rotated_moments
 from simkit.loaders.sdf.light import read_lights
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensors
@@ -87,7 +87,7 @@ def _inertial(name: str, link: Params) -> Inertial:
         report_bad_value(mass, "value", f"at most {HEAVIEST:g} kg")
         kilograms = 1.0
     values = [0.0 if inertia is None else _moment(inertia, key, name) for key in MOMENT_NAMES]
-    return Inertial(kilograms, vec3(pose.position), turned_moments(values, pose), True)
+    return Inertial(kilograms, vec3(pose.position), rotated_moments(values, pose), True)
 
 
 def _moment(inertia: Params, key: str, link: str) -> float:

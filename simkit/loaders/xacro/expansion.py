@@ -334,7 +334,7 @@ class _MissingFile(OSError):
 
 
 def _inner_error(error: BaseException) -> BaseException:
-    """Return the expansion's own error inside an exception of xacro."""
+    """Return simkit's own error if an exception of xacro contains one, else the inner or the given exception."""
     inner: object = getattr(error, "exc", None)
     if isinstance(inner, _MissingFile):
         return inner.error
@@ -351,7 +351,7 @@ def _table_names(symbols: object) -> set[str]:
 
 
 def _literals(arguments: Mapping[str, str]) -> dict[str, Value]:
-    """Return arguments as numbers and booleans if possible, for `$(eval ...)`."""
+    """Convert arguments to numbers and booleans if possible, for `$(eval ...)`."""
     found: dict[str, Value] = {}
     for name, text in arguments.items():
         value: Value = text

@@ -18,7 +18,7 @@ class ExpansionError(Exception):
 
 
 class BoundError(ExpansionError):
-    """Expansion that exceeds a limit, which lies far above the needs of any robot."""
+    """Expansion that exceeds a limit; each limit is far above the needs of a robot."""
 
 
 class Budget:
