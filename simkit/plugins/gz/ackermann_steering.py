@@ -37,8 +37,8 @@ _SIDES = ("left", "right")
 class AckermannOdometry(TravelOdometry):
     """Odometry of the middle of the unsteered axle, from the mean wheel angle and the mean steering angle.
 
-    The stored angles are those of the left and right wheel and of the left and right steering joint. The twist is that
-    of the last step, as in Gazebo.
+    Each sample has four angles [rad]: left wheel, right wheel, left steering joint and right steering joint. The twist
+    is the motion of the last step, as in Gazebo.
 
     Args:
         radius: Radius of the wheels [m].
@@ -86,11 +86,12 @@ class AckermannSteeringOptions(SpeedLimitOptions):
 
 
 class AckermannSteering(TwistDrive):
-    """Steers two front wheels and drives wheels behind them (or all) from `/model/<model>/cmd_vel`.
+    """Steers two front wheels, and drives the rear wheels or all wheels, with commands from `/model/<model>/cmd_vel`.
 
-    With `<steering_only>` the plugin only steers. The angle comes on `/model/<model>/steer_angle`, or with
-    `<use_actuator_msg>` as position number `<actuator_number>` on `/actuators`. The odometry is computed from the wheel
-    angles and the steering angles; it starts at zero, in the middle of the rear axle.
+    With `<steering_only>` the plugin only steers. It then reads the steering angle from `/model/<model>/steer_angle`.
+    With `<use_actuator_msg>` the angle is position number `<actuator_number>` of a message on `/actuators`. The
+    odometry is computed from the wheel angles and the steering angles. The odometry starts at zero, and its frame is in
+    the middle of the rear axle.
     """
 
     endpoints = (
@@ -124,7 +125,7 @@ class AckermannSteering(TwistDrive):
     def _prepare_steering(
         self, name: str, scene: SceneModel, params: Params, builder: SpecBuilder
     ) -> list[tuple[str, ActuatorRef]]:
-        """Return the steering joints of one side with their servos."""
+        """Add a velocity servo to each steering joint of one side; return the joints with their servos."""
         elements = params.all(name)
         if not elements:
             params.text(name, required=True)
@@ -151,7 +152,7 @@ class AckermannSteering(TwistDrive):
         self.open_odometry(parent, params)
 
     def _read_rest_of_gains(self, params: Params) -> None:
-        """Read the other numbers of the steering controller.
+        """Read the integral, derivative, limit and offset parameters of the steering controller.
 
         Gazebo resets this controller at every step, so its i and d gains act as additional proportional gains.
         """
@@ -196,11 +197,11 @@ class AckermannSteering(TwistDrive):
             self.once.not_finite()
 
     def before_step(self) -> None:
-        """Advance the limited command by one step, and set the speeds of wheels and steering."""
+        """Advance the limited command by one step, and set the speeds of the wheels and of the steering joints."""
         if not self._only:
             self._odometry.note(joint_angles((*self._wheels, *self._turners)))
         forward, turn = self.next_speeds()
-        if self._only:  # the second value is then the steering angle
+        if self._only:  # the second value of the command is then the steering angle
             turn = max(-self._limit, min(self._limit, turn))
             self._last = (forward, turn)
             angles = steering_angles(math.tan(turn), self._base, self._separation)
@@ -216,7 +217,7 @@ class AckermannSteering(TwistDrive):
                     self.sim.engine.set_control(servo, speed)
 
     def _slope_of(self, forward: float, turn: float) -> float:
-        """Return the tangent of the steering angle of a virtual middle wheel, within the limit.
+        """Return the tangent of the steering angle, within its limit, of a virtual wheel between the front wheels.
 
         Args:
             forward: Forward speed [m/s].
@@ -227,12 +228,12 @@ class AckermannSteering(TwistDrive):
         tightest = self._base / math.sin(self._limit)
         radius = forward / turn
         if forward == 0.0 or abs(radius) < tightest:
-            # at zero speed it steers as for forward motion
+            # at zero speed the wheels are steered as for forward motion
             radius = math.copysign(tightest, turn if forward == 0.0 else radius)
         return self._base / radius
 
     def _drive(self, forward: float, slope: float) -> None:
-        """Set the speeds of the driven wheels; the outer wheels turn faster."""
+        """Set the speeds of the driven wheels; in a curve the outer wheels turn faster than the inner wheels."""
         share = self._separation * slope / (2 * self._base)
         for side, part in enumerate((1 - share, 1 + share)):
             rim = forward * part
@@ -242,7 +243,7 @@ class AckermannSteering(TwistDrive):
                     self.sim.engine.set_control(motor, rim / self._radius)
 
     def _correction(self, error: float) -> float:
-        """Return the steering speed for an error of the steering angle [rad]."""
+        """Return the steering speed [rad/s] that corrects an error of the steering angle [rad]."""
         i, least, most = self._integral
         summed = i * error * self.period
         if most >= least:

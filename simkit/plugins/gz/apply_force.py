@@ -69,11 +69,12 @@ class ApplyLinkWrenchOptions(Options):
 
 
 class ApplyLinkWrench(WorldPlugin):
-    """Pushes links at their centre of mass, or models at that of their canonical link, in the world frame.
+    """Applies wrenches in the world frame at the centre of mass of a link, or of a model's canonical link.
 
-    `<persistent>` elements and messages on `/world/<world>/wrench/persistent` push at every step. They end when a
-    message on `/world/<world>/wrench/clear` names the entity. A message on `/world/<world>/wrench` pushes in the next
-    step only. A missing entity is pushed as soon as it exists. Messages contain the name or the id of an entity.
+    A `<persistent>` element, or a message on `/world/<world>/wrench/persistent`, applies a wrench at every step. This
+    wrench ends when a message on `/world/<world>/wrench/clear` names the entity. A message on `/world/<world>/wrench`
+    applies a wrench in the next step only. If an entity does not exist yet, its persistent wrenches start as soon as
+    the entity exists. Messages contain the name or the id of an entity.
     """
 
     options = OptionsOf(ApplyLinkWrenchOptions)
@@ -106,7 +107,7 @@ class ApplyLinkWrench(WorldPlugin):
         return wrench
 
     def _target(self, name: str, kind: int) -> Link | None:
-        """Return the link for a name: an exact match, or the first whose scoped name ends with `::<name>`."""
+        """Return the link that a name refers to: an exact match, or the first scoped name that ends with `::<name>`."""
         tables = self.sim.contents.handles.tables
         if kind != _MODEL:
             link = _find_entity(tables["link"], name)
@@ -187,7 +188,11 @@ class ApplyLinkWrench(WorldPlugin):
         return name, _TYPES[kind]
 
     def _set_wrenches(self, *, are_applied: bool = False) -> None:
-        """Set the sum of all persistent wrenches; it is repeated at every step only while an entity is missing."""
+        """Set the sum of all persistent wrenches.
+
+        While an entity is missing, `before_step` calls this method at every step. Otherwise one call is enough, because
+        the engine applies the wrenches until they change.
+        """
         total: dict[str, Vector] = {}
         is_missing = False
         for wrench in self._persistent:
@@ -224,8 +229,8 @@ class ApplyJointForceOptions(Options):
 class ApplyJointForce(ModelPlugin):
     """Applies the effort [N·m or N] of the last message to the first axis of a joint, at every step.
 
-    Commands come on `/model/<model>/joint/<joint>/cmd_force`. The effort is added to the efforts of plugins before this
-    one in the file. A later plugin that sets an effort of its own replaces it, as in Gazebo.
+    The topic of the commands is `/model/<model>/joint/<joint>/cmd_force`. The effort is added to the efforts of earlier
+    plugins in the file. A later plugin that sets the joint's effort replaces this sum, as in Gazebo.
     """
 
     endpoints = (listens("/model/{model}/joint/{joint_name}/cmd_force", DOUBLE),)

@@ -43,9 +43,9 @@ class BuoyancyOptions(Options):
 
 
 class Buoyancy(BuoyancyBase, WorldPlugin):
-    """Fills the world with a fluid, or with horizontal layers of several, and lifts links by their collisions' volume.
+    """Fills the world with one fluid or with horizontal layers of fluids, and lifts links by their collisions' volume.
 
-    `<enable>` limits the effect to the named models and links.
+    If the file has `<enable>` elements, only the models and links that they name are lifted.
     """
 
     options = OptionsOf(BuoyancyOptions)
@@ -76,7 +76,8 @@ class Buoyancy(BuoyancyBase, WorldPlugin):
         if params.has("uniform_fluid_density"):
             if graded.is_given:
                 graded.params.mark_all_read()
-                message = "found both <uniform_fluid_density> and <graded_buoyancy>: the first is used, as in Gazebo"
+                fault = "found both <uniform_fluid_density> and <graded_buoyancy>"
+                message = f"{fault}: <uniform_fluid_density> is used, as in Gazebo"
                 params.diagnostics.warning("SK-PLUGIN-111", message, graded.params.where)
             return Fluid((self.options.uniform_fluid_density,))
         if not graded.is_given:
@@ -92,6 +93,6 @@ class Buoyancy(BuoyancyBase, WorldPlugin):
 
 
 def _scopes(link: str) -> list[str]:
-    """Return the scoped name of a link and those of the models around it."""
+    """Return the scoped names of a link and of all models that contain it."""
     parts = link.split("::")
     return ["::".join(parts[:count]) for count in range(1, len(parts) + 1)]

@@ -38,10 +38,11 @@ class DetachableJointOptions(Options):
 
 
 class DetachableJoint(ModelPlugin):
-    """Attaches a link of another model to a link of this one; messages detach it and attach it again.
+    """Attaches a link of another model to a link of this model; messages detach and attach the two links.
 
-    The links keep their relative pose of the moment of attachment. A missing child model is attached as soon as it
-    exists. Each change is published on the output topic, as "attached" or "detached".
+    Attached links keep the relative pose that they had at the moment of attachment. If the child model does not exist
+    yet, its link is attached as soon as the model exists. Each change is published on the output topic, as "attached"
+    or "detached".
     """
 
     endpoints = (
@@ -72,7 +73,7 @@ class DetachableJoint(ModelPlugin):
         found = {m.scoped: m for top in models for m in top.all_models()}
         name = self._own if self._child_model == "__model__" else self._child_model
         named = [m for scoped, m in found.items() if scoped == name or scoped.endswith("::" + name)]
-        # among several models of that name, prefer one inside this model
+        # if several models have that name, prefer a model inside this model
         inner = [m for m in named if m.scoped == name or m.scoped.startswith(self._own)] or named[:1]
         links = [link.scoped for m in inner for link in m.all_links() if link.scoped.endswith("::" + self._child_link)]
         if links:
@@ -144,7 +145,7 @@ class DetachableJoint(ModelPlugin):
         return True
 
     def _set_pace(self) -> None:
-        """Run at every step only while a child is to be attached."""
+        """Call `before_step` at every step while a child link waits for its attachment, otherwise not at all."""
         set_before_step_rate(self, None if self._shall_attach and not self._is_attached else NEVER)
 
     def _publish_state(self, state: str) -> None:

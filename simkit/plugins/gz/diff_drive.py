@@ -54,9 +54,10 @@ class DiffDriveOptions(SpeedLimitOptions):
 class DiffDrive(TwistDrive):
     """Drives the wheels from `/model/<model>/cmd_vel`, and publishes wheel odometry on `/model/<model>/odometry`.
 
-    The odometry is that of the first pair of wheels. It starts at zero, at the point between them; its twist is the
-    mean over the last ten steps. Two options are simkit's own. `<publish_ground_truth>` publishes the true pose on
-    `/model/<model>/ground_truth/odom`. `<odometry_noise>` adds errors to the odometry, with their covariance.
+    The odometry is computed from the first pair of wheels. Its pose starts at zero and describes the point between
+    these wheels. Its twist is the mean over the last ten steps. Two options do not exist in Gazebo.
+    `<publish_ground_truth>` publishes the true pose on `/model/<model>/ground_truth/odom`. `<odometry_noise>` adds
+    errors to the odometry, with their covariance.
     """
 
     options = OptionsOf(DiffDriveOptions)
@@ -155,11 +156,12 @@ class DriveFleet:
         self._rows: list[Vector] = []
         self._odometries = [drive._odometry for drive in drives]
         for odometry in self._odometries:
-            odometry.catch_up()  # with the angles that the previous fleet holds
+            odometry.catch_up()  # with the angles that the previous fleet has stored for this drive
             odometry.noter = self.hand_over
         self._radius = np.array([odometry._radius for odometry in self._odometries])
         self._separation = np.array([odometry._separation for odometry in self._odometries])
-        self._reckoned: tuple[Vector, list[Vector]] | None = None  # integrated angles, and those of the steps before
+        # wheel angles after the last integration, and at the steps before
+        self._reckoned: tuple[Vector, list[Vector]] | None = None
         self._twists: list[tuple[float, float]] = []
 
     def holds(self, drives: Sequence[DiffDrive]) -> bool:
@@ -174,7 +176,7 @@ class DriveFleet:
     def before_step(self, rota: Iterable[DiffDrive]) -> None:
         """Run `DiffDrive.before_step` for all drives."""
         if self._drives[0]._odometry is not self._odometries[0]:
-            for drive in rota:  # a state was restored, and the schedule is not renewed yet
+            for drive in rota:  # a state was restored, and the schedule still has the fleet of the old odometry objects
                 drive.before_step()
             return
         self._rows.append(self._physics.data.qpos.take(self._wheels))
@@ -208,10 +210,11 @@ class DriveFleet:
                 return
 
     def _take_over(self) -> bool:
-        """Take over the integration from the odometries.
+        """Copy the state of the odometries into the fleet, which then continues their integration.
 
         Returns:
-            False if the odometries differ in their number of stored steps, or if one has noise.
+            False if the fleet cannot integrate: the odometries have different numbers of stored steps, or one has
+                noise.
         """
         if self._reckoned is not None:
             return True
@@ -228,7 +231,7 @@ class DriveFleet:
         return True
 
     def _reckon(self) -> None:
-        """Do the work of `WheelOdometry.reckon` for all drives."""
+        """Integrate the odometry of all drives, with the same results as `WheelOdometry.reckon`."""
         assert self._reckoned is not None
         (last, recent), rows = self._reckoned, self._rows
         mean, step = MEAN_STEPS, self._odometries[0]._step
@@ -248,7 +251,7 @@ class DriveFleet:
     # ------------------------------------------------------------------ results for the odometries
 
     def hand_over(self) -> None:
-        """Give every odometry the angles and results that the fleet holds for it."""
+        """Copy the fleet's stored angles and results into the odometry of each drive."""
         held, self._reckoned = self._reckoned, None
         if held is not None:
             ends, before = held[0].reshape(-1, 2).tolist(), np.stack(held[1]).reshape(len(held[1]), -1, 2)
@@ -263,13 +266,13 @@ class DriveFleet:
 
 
 def fleet_of(drives: Sequence[DiffDrive]) -> DriveFleet:
-    """Return the fleet that reads the wheels of these drives, or `SeparateReadings` if there is no single one."""
+    """Return the fleet of exactly these drives, or `SeparateReadings` if there is no such fleet."""
     noter = getattr(drives[0]._odometry.noter, "__self__", None)
     return noter if isinstance(noter, DriveFleet) and noter.holds(drives) else SeparateReadings(drives)
 
 
 class SeparateReadings(DriveFleet):
-    """Drives that publish in the same step but belong to a larger fleet, so that each is read separately."""
+    """Drives that publish in the same step but are only a part of a fleet; each drive's wheels are read separately."""
 
     def __init__(self, drives: Sequence[DiffDrive]) -> None:
         self._drives = list(drives)
@@ -283,7 +286,7 @@ class SeparateReadings(DriveFleet):
 
 
 def _attitude(yaw: float) -> tuple[float, float, float, float]:
-    """Return `quat_from_rpy` of a yaw alone, as (w, x, y, z), with the same signs of its zeros."""
+    """Return the quaternion (w, x, y, z) of a yaw angle [rad]; every bit is as from `quat_from_rpy`."""
     cos, sin = math.cos(yaw / 2), math.sin(yaw / 2)
     return cos + 0.0 * sin, 0.0 * cos - 0.0 * sin, 0.0 * cos + 0.0 * sin, sin - 0.0 * cos
 

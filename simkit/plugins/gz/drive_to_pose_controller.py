@@ -28,12 +28,13 @@ TARGETS: Final = ("geometry_msgs/msg/PoseArray", "geometry_msgs/msg/PoseStamped"
 
 
 class DriveToPoseController(ModelPlugin):
-    """Drives a robot to a pose with twist commands: it turns to the position, drives there, and turns to the heading.
+    """Drives a robot to a pose: the robot turns towards the target, drives there, and turns to the target's heading.
 
-    The target comes on `/model/<model>/cmd_pose`, and the pose of the robot on `/model/<model>/pose`, from an odometry
-    publisher. The speeds are the errors times `<linear_p_gain>` and `<angular_p_gain>`. Only one of the two is active
-    at a time; it is published at every step on `/model/<model>/cmd_vel`. An error within `<linear_deviation>` or
-    `<angular_deviation>` counts as zero. The final pose is published on `/model/<model>/reached_pose`. The four numbers
+    The plugin reads the target from `/model/<model>/cmd_pose`, and the pose of the robot from `/model/<model>/pose`,
+    which an odometry publisher publishes. The forward speed is the distance times `<linear_p_gain>`; the turning rate
+    is the angle error times `<angular_p_gain>`. At most one of these two speeds is not zero. Both are published at
+    every step as a twist on `/model/<model>/cmd_vel`. An error within `<linear_deviation>` or `<angular_deviation>`
+    counts as zero. The final pose is published on `/model/<model>/reached_pose`. The two gains and the two deviations
     are live parameters.
     """
 
@@ -77,17 +78,17 @@ class DriveToPoseController(ModelPlugin):
             self.once.not_finite("a target")
         else:
             self._target = target
-            self._check_ends()
+            self._warn_about_missing_plugins()
             self._set_pace()
 
     def _on_pose(self, message: PoseMessage) -> None:
         found = _first_pose(message)
-        place = None if found is None else _planar(found)
-        if place is not None:
-            self._robot_pose, self._pose = place, found
+        planar = None if found is None else _planar(found)
+        if planar is not None:
+            self._robot_pose, self._pose = planar, found
 
-    def _check_ends(self) -> None:
-        """Warn if no plugin publishes the pose of the robot, or if no plugin subscribes to its speeds."""
+    def _warn_about_missing_plugins(self) -> None:
+        """Warn if no plugin publishes the robot's pose, or if no plugin subscribes to the published speeds."""
         topics = self.sim.topics()
         if self._robot_pose is None and self._pose_topic not in topics:
             message = f"no publisher on {self._pose_topic} gives the robot's pose, so the robot does not start"
@@ -99,7 +100,7 @@ class DriveToPoseController(ModelPlugin):
             self.once.warn("SK-PLUGIN-132", "speed", message, hint)
 
     def _set_pace(self) -> None:
-        """Run at every step only while there is a target."""
+        """Call `after_step` at every step while there is a target, otherwise not at all."""
         set_after_step_rate(self, NEVER if self._target is None else None)
 
     # ------------------------------------------------------------------ driving
@@ -117,13 +118,13 @@ class DriveToPoseController(ModelPlugin):
                 self._reached.publish(_as_pose(self._pose))
             self._set_pace()
 
-    def _errors(self, target: Planar, place: Planar) -> tuple[float, float]:
-        """Return the distance [m] and the angle [rad] to go; at most one of them is not zero."""
-        x, y = target[0] - place[0], target[1] - place[1]
+    def _errors(self, target: Planar, robot: Planar) -> tuple[float, float]:
+        """Return the remaining distance [m] and the remaining angle [rad]; at most one of them is not zero."""
+        x, y = target[0] - robot[0], target[1] - robot[1]
         distance = math.hypot(x, y)
         is_there = distance <= self._position_tolerance.value
         heading = target[2] if is_there else math.atan2(y, x)
-        turn = math.remainder(heading - place[2], math.tau)
+        turn = math.remainder(heading - robot[2], math.tau)
         if abs(turn) > self._angle_tolerance.value:
             return 0.0, turn
         return (0.0 if is_there else distance), 0.0
@@ -138,16 +139,16 @@ def _first_pose(message: PoseMessage) -> PoseMessage:
     return getattr(message, "pose", message)
 
 
-def _place_and_turn(pose: PoseMessage) -> tuple[PoseMessage, PoseMessage]:
+def _position_and_rotation(pose: PoseMessage) -> tuple[PoseMessage, PoseMessage]:
     return (pose.position, pose.orientation) if hasattr(pose, "position") else (pose.translation, pose.rotation)
 
 
 def _planar(pose: PoseMessage) -> Planar | None:
-    """Return x, y and yaw, or None for NaN or infinite values.
+    """Return x [m], y [m] and yaw [rad] of a pose; None if a number is NaN or infinite.
 
     A quaternion of zeros, as in an empty message, counts as no rotation.
     """
-    place, turn = _place_and_turn(pose)
+    place, turn = _position_and_rotation(pose)
     quaternion = (turn.w, turn.x, turn.y, turn.z)
     yaw = float(rpy_from_quat(quaternion)[2]) if any(quaternion) else 0.0
     found = float(place.x), float(place.y), yaw
@@ -155,7 +156,7 @@ def _planar(pose: PoseMessage) -> Planar | None:
 
 
 def _as_pose(pose: PoseMessage) -> PoseMessage:
-    place, turn = _place_and_turn(pose)
+    place, turn = _position_and_rotation(pose)
     return msgs.make(
         POSE,
         position={"x": place.x, "y": place.y, "z": place.z},

@@ -27,7 +27,7 @@ Phase = Literal["idle", "moving", "opening", "waiting", "closing"]
 DOUBLE: Final = "std_msgs/msg/Float64"
 INT: Final = "std_msgs/msg/Int32"
 _FARTHEST: Final = 1e6
-"""Largest opening of a door [m]; the upper limit of an axis without limits is larger."""
+"""Largest opening of a door [m]. A larger upper limit means that the axis has no limit."""
 _CABIN_WITHIN: Final = 0.15  # position tolerance of the cabin [m]
 _DOOR_WITHIN: Final = 0.02  # position tolerance of a door [m]
 _AT_REST: Final = 0.01  # largest speed that counts as rest [m/s]
@@ -49,13 +49,15 @@ class ElevatorOptions(Options):
 
 
 class Elevator(ModelPlugin):
-    """Moves the cabin to the floor that comes on `<cmd_topic>`, opens the door there, waits, and closes it.
+    """Moves the cabin to the floor in a message on `<cmd_topic>`, opens the door there, waits, and closes the door.
 
     Links `floor_0`, `floor_1`, … mark the heights of the joint `lift`. Joints `door_0`, `door_1`, … are open at their
-    upper limit and closed at 0. A JointPositionController moves each joint; its target is published on
-    `/model/<model>/joint/<joint>/0/cmd_pos`. A lidar on `/model/<model>/<door joint>/lidar` whose first range is short
-    keeps the open door from closing. A command while a door closes adds a stop, in between if it is on the way. A
-    command before that is stored until the door closes. The floor nearest to the cabin is published on `<state_topic>`.
+    upper limit and closed at 0. Each joint needs a JointPositionController, which reads its target from
+    `/model/<model>/joint/<joint>/0/cmd_pos`. A lidar on `/model/<model>/<door joint>/lidar` can measure the doorway:
+    the door stays open while the first range is short. The elevator has a list of stops. Commands that arrive before
+    the door starts to close are stored; they become stops when the door starts to close. Commands that arrive while the
+    door closes become stops at once. A stop that is on the way to a later stop is inserted before that stop. The floor
+    nearest to the cabin is published on `<state_topic>`.
     """
 
     endpoints = (
@@ -130,7 +132,7 @@ class Elevator(ModelPlugin):
         target = int(message.data)
         if not 0 <= target < len(self._heights):
             top = len(self._heights) - 1
-            self.once.left_out(f"floor {target}", f"there is no floor {target}, floors are 0 to {top}")
+            self.once.left_out(f"floor {target}", f"there is no floor {target}; the floors are 0 to {top}")
         elif self._phase == "idle":
             self._add_stop(target)
             self._at = self.floor
@@ -145,14 +147,14 @@ class Elevator(ModelPlugin):
             self._stored_commands = [*self._stored_commands, target]
 
     def _add_stop(self, target: int) -> None:
-        """Add a floor to the stops: before the first stop that lies beyond it, else at the end."""
+        """Insert a floor before the first stop that is reached after passing this floor, else at the end."""
         if target in self._targets:
             return
         before = self.floor
-        for place, stop in enumerate(self._targets):
+        for index, stop in enumerate(self._targets):
             low, high = min(before, stop), max(before, stop)
             if low <= target < high:
-                self._targets = [*self._targets[:place], target, *self._targets[place:]]
+                self._targets = [*self._targets[:index], target, *self._targets[index:]]
                 return
             before = stop
         self._targets = [*self._targets, target]
@@ -188,7 +190,7 @@ class Elevator(ModelPlugin):
         elif phase == "opening":
             self._send(1 + self._at, self._open[self._at])
         elif phase == "waiting":
-            self._open_door()
+            self._restart_wait()
         elif phase == "closing":
             self._send(1 + self._at, 0.0)
             commands, self._stored_commands = self._stored_commands, []
@@ -207,15 +209,15 @@ class Elevator(ModelPlugin):
         mover.publish(msgs.make(DOUBLE, data=position))
 
     def _has_waited(self) -> bool:
-        """Check whether the door has been open long enough since the doorway was last blocked."""
+        """Check whether the doorway is free, and the waiting time since its last blockage is over."""
         is_blocked, now = self._blocked[self._at], self.sim.time_ns
         if self._was_blocked and not is_blocked:
-            self._open_door()
+            self._restart_wait()
         self._was_blocked = is_blocked
         return not is_blocked and now >= self._until_ns
 
-    def _open_door(self) -> None:
-        """Restart the time that the door stays open."""
+    def _restart_wait(self) -> None:
+        """Restart the time [ns] for which the door stays open."""
         self._until_ns = self.sim.time_ns + round(self.options.open_door_wait_duration * 1e9)
         self._was_blocked = False
 
@@ -223,5 +225,5 @@ class Elevator(ModelPlugin):
         return abs(axis.position - target) <= within and abs(axis.velocity) <= _AT_REST
 
     def _set_pace(self) -> None:
-        """Run only while the elevator is not idle."""
+        """Call `after_step` at `<update_rate>` while the elevator is in use, and not at all while it is idle."""
         set_after_step_rate(self, NEVER if self._phase == "idle" else self.options.update_rate)

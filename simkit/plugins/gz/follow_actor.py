@@ -40,13 +40,14 @@ class FollowActorOptions(Options):
 
 
 class FollowActor(ModelPlugin):
-    """Makes its actor walk after `<target>`, a model or a link, in place of its script.
+    """Makes the actor follow `<target>`, a model or a link, instead of the actor's script.
 
     The actor walks straight towards the target at `<velocity>`, and faces it, while the planar distance is between
-    `<min_distance>` and `<max_distance>`. Otherwise the actor stands. The direction is decided 50 times a second of
-    simulated time, and the position follows from it for every instant in between. The animation of a skin
-    (`<animation>`, else the first) advances by `<animation_x_vel>` seconds per metre. simkit's own figure moves its
-    legs in step with that distance. A missing target is followed as soon as it exists.
+    `<min_distance>` and `<max_distance>`. Otherwise the actor does not move. The walking direction is updated 50 times
+    per second of simulated time; between two updates the actor walks straight on. For an actor with a skin,
+    `<animation>` (default: the first animation) advances by `<animation_x_vel>` seconds per metre walked. An actor
+    without a skin is drawn as simkit's own figure, whose legs also move with the distance walked. If the target does
+    not exist yet, the actor follows it as soon as it exists.
     """
 
     options = OptionsOf(FollowActorOptions)
@@ -83,11 +84,11 @@ class FollowActor(ModelPlugin):
         self._x, self._y, self._z = pose.position.tolist()
         self._yaw = float(pose.rpy[2])
         self._travel = 0.0  # distance walked so far [m]
-        # time of the last decision, direction from then on, and largest distance to walk [m]
+        # time of the last update, walking direction since then, and largest distance to walk in this direction [m]
         self._since_ns, self._way, self._left = self.sim.time_ns, (0.0, 0.0), 0.0
         self._is_following = True
         self._shown = (math.nan, 0.0, 0.0, False)
-        self.before_step_rate = None  # the first decision is immediate, later ones follow the rate
+        self.before_step_rate = None  # the first update is in the next step, later updates follow the rate
         if self._find() is None:
             models = sorted(self.sim.contents.handles.tables["model"])
             message = f"plugin {self.name!r}: there is no model or link {self._target!r} to follow yet"
@@ -97,8 +98,8 @@ class FollowActor(ModelPlugin):
         self.sim.engine.reschedule()
 
     def before_step(self) -> None:
-        """Update the actor's position, and decide its next direction."""
-        gone = self._gone()
+        """Update the actor's position and its walking direction."""
+        gone = self._distance_since_update()
         self._x, self._y = self._x + gone * self._way[0], self._y + gone * self._way[1]
         self._travel += gone
         self._since_ns, self._left = self.sim.time_ns, 0.0
@@ -107,8 +108,8 @@ class FollowActor(ModelPlugin):
             self.before_step_rate = _RATE
             self.sim.engine.reschedule()
 
-    def _gone(self) -> float:
-        """Return the distance walked since the last decision [m]."""
+    def _distance_since_update(self) -> float:
+        """Return the distance walked since the last update of the direction [m]."""
         return min(self._left, self.options.velocity * (self.sim.time_ns - self._since_ns) * 1e-9)
 
     def _aim(self) -> None:
@@ -144,7 +145,7 @@ class FollowActor(ModelPlugin):
 
     def move_scenery(self) -> None:
         """Set the actor's pose for the current simulated time."""
-        gone = self._gone()
+        gone = self._distance_since_update()
         x, y, travel = self._x + gone * self._way[0], self._y + gone * self._way[1], self._travel + gone
         goes, sim = self._left > gone, self.sim
         data, places = sim.mj_data, sim.engine.names.shared(f"actor {id(self)}", self._find_bodies)

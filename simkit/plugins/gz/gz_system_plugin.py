@@ -37,7 +37,7 @@ _STATELESS: Final = (type(threading.Lock()), type(threading.RLock()), types.Modu
 
 
 class GzSystem(Plugin):
-    """Plugin that wraps a system of Gazebo. Its state is that of the system.
+    """Plugin that runs a system of Gazebo. The state of the plugin is the state of the system.
 
     Args:
         system: Object or module with some of the hooks; None if a subclass finds it in `find_system`.
@@ -55,7 +55,8 @@ class GzSystem(Plugin):
         self._initial_system = system
         self.system: System = None
         self._calls: dict[str, Callable[..., None]] = {}
-        self._outside: set[str] = set()  # attributes that snapshots do not contain
+        # names of attributes that cannot be copied, so that snapshots do not contain them
+        self._outside: set[str] = set()
         self._hub: Any = None  # state shared by all systems of the simulation
 
     # ------------------------------------------------------------------ simkit's hooks
@@ -150,7 +151,10 @@ class GzSystem(Plugin):
         return {"variables": state, "entities": shared}
 
     def set_state(self, state: Mapping[str, Any]) -> None:
-        """Restore a state from `get_state`; attributes added since are deleted, uncopied ones keep their values."""
+        """Restore a state from `get_state`.
+
+        Attributes that the system added later are deleted. Attributes that cannot be copied keep their values.
+        """
         if not state:
             return
         memo: dict[int, object] = {id(self): self, id(self.system): self.system}
@@ -170,7 +174,7 @@ class GzSystem(Plugin):
 
 
 def line_of(error: BaseException) -> str:
-    """Return the place in the user's code that raised an exception, as ` at file:line`."""
+    """Return the location in the user's code that raised an exception, as ` at file:line`."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if not f.filename.startswith(_OWN)]
     return f" at {frames[-1].filename}:{frames[-1].lineno}" if frames else ""
 

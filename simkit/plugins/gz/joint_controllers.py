@@ -29,13 +29,14 @@ class JointControllerOptions(JointCommandOptions):
 
 
 class JointController(JointCommander):
-    """Turns one or more joints, about their first axis, at a commanded velocity [rad/s or m/s].
+    """Moves the first axis of one or more joints at a commanded velocity [rad/s or m/s].
 
-    By default the efforts, within their limits, bring the joints to the velocity within one step. With
-    `<use_force_commands>`, a PID on the velocity of the first joint gives the effort of all joints; `<disable_braking>`
-    then suppresses efforts that slow them down. Commands come on `/model/<model>/joint/<joint>/cmd_vel`, on
-    `<sub_topic>` below the model or on `<topic>`, or as one of many actuators (`<use_actuator_msg>`,
-    `<actuator_number>`). The numbers of the PID are live parameters.
+    By default the joints reach the velocity within one step, by efforts within their limits. With
+    `<use_force_commands>`, a PID on the velocity of the first joint computes one effort for all joints;
+    `<disable_braking>` then suppresses efforts that slow the joints down. Commands are read from
+    `/model/<model>/joint/<joint>/cmd_vel`, from `<sub_topic>` below the model's topics, or from `<topic>`. With
+    `<use_actuator_msg>` the command is number `<actuator_number>` in an `Actuators` message. The gains and limits of
+    the PID are live parameters.
     """
 
     endpoints = (
@@ -57,7 +58,7 @@ class JointController(JointCommander):
         self._by_velocity = not self.options.use_force_commands
         self._coasts = self.options.disable_braking
         if self._by_velocity:
-            self.say_gains_are_unused(params, (*GAINS, "disable_braking"), "without <use_force_commands>")
+            self.warn_about_unused_gains(params, (*GAINS, "disable_braking"), "without <use_force_commands>")
         else:
             self.declare_controller(Pid(1.0, 0.0, 0.0, 1.0, -1.0, 1000.0, -1000.0))
 
@@ -84,12 +85,12 @@ class JointPositionControllerOptions(JointCommandOptions):
 class JointPositionController(JointCommander):
     """Moves one or more joints to a commanded position [rad or m].
 
-    A PID on the position of the first joint gives the effort of all joints. With `<use_velocity_commands>` the joints
-    move instead at the velocity that reaches the position within one step, at most `<cmd_max>` if the file contains it.
-    Commands come on `/model/<model>/joint/<joint>/<joint_index>/cmd_pos`, on `<sub_topic>` below the model or on
-    `<topic>`, or as one of many actuators (`<use_actuator_msg>`, `<actuator_number>`). The first target is
-    `<initial_position>`. `<joint_index>` selects the axis of a joint with several axes. The numbers of the PID are live
-    parameters.
+    A PID on the position of the first joint computes one effort for all joints. With `<use_velocity_commands>` the
+    joints move instead at the velocity that reaches the position within one step; `<cmd_max>`, if present, limits this
+    velocity. Commands are read from `/model/<model>/joint/<joint>/<joint_index>/cmd_pos`, from `<sub_topic>` below the
+    model's topics, or from `<topic>`. With `<use_actuator_msg>` the command is number `<actuator_number>` in an
+    `Actuators` message. The first target is `<initial_position>`. `<joint_index>` selects the axis of a joint with
+    several axes. The gains and limits of the PID are live parameters.
     """
 
     endpoints = (
@@ -118,7 +119,7 @@ class JointPositionController(JointCommander):
             description = "largest velocity [rad/s or m/s]"
             self._fastest = self.declare("cmd_max", 1000.0, minimum=0.0, description=description)
         unused = tuple(name for name in GAINS if name != "cmd_max")
-        self.say_gains_are_unused(params, unused, "with <use_velocity_commands>")
+        self.warn_about_unused_gains(params, unused, "with <use_velocity_commands>")
 
     def command(self) -> None:
         error = self.axes[0].position - self._target

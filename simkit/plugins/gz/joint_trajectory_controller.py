@@ -81,16 +81,18 @@ class JointTrajectoryControllerOptions(Options):
 class JointTrajectoryController(ControlledJoints, ModelPlugin):
     """Follows a `JointTrajectory` with the sum of a PID on position, a PID on velocity, and the efforts of the points.
 
-    The target is the first point whose time has not passed: Gazebo does not interpolate. Only the fields that a point
-    has change the target; the last point is held. A new message replaces the active trajectory. A trajectory starts in
-    the step after its message, or with `<use_header_start_time>` at the time in its header. At each change of the
-    target, the fraction of started points is published on `<topic>_progress`.
+    The target is the first point whose time has not passed, because Gazebo does not interpolate. A field that is
+    missing in a point does not change the target. After the end, the last point remains the target. A new message
+    replaces the active trajectory. A trajectory starts in the step after its message, or with `<use_header_start_time>`
+    at the time in its header. At each change of the target, the fraction of started points is published on
+    `<topic>_progress`.
 
     `<simkit:interpolation>` linear, cubic or quintic (`simkit.plugins.joints.joint_trajectory`) interpolates positions
     and velocities between the points instead.
 
-    Without `<joint_name>` all joints of the model with one axis are controlled. Each number of the controllers is
-    repeated, once per joint in that order, and is a live parameter (`<joint>.position_p_gain`).
+    Without `<joint_name>`, all joints of the model with one axis are controlled. Each gain or limit is an element that
+    is repeated once per joint, in the order of the joints. Each of them is also a live parameter, such as
+    `<joint>.position_p_gain`.
     """
 
     endpoints = (
@@ -120,19 +122,20 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         if not elements:
             chosen = [joint for joint in scene.joints if joint.type in _ONE_AXIS and len(joint.axes) == 1]
             if not chosen:
-                message = f"model {scene.scoped!r} has no joint with one axis, which plugin {self.name!r} needs"
+                message = f"plugin {self.name!r} needs a joint with one axis, and model {scene.scoped!r} has none"
                 params.error("SK-PLUGIN-003", message)
         self._scoped = [joint.scoped for joint in chosen]
 
     @property
     def node(self) -> str:
-        """Name of the plugin's node for its parameters, if the file sets none."""
+        """Name of the ROS node that has the plugin's parameters, if the file does not name a node."""
         return valid_topic(f"/model/{self.scoped.replace('::', '/')}/joint_trajectory_controller")
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._axes = self._read_axes(params)
-        attribute = self.options.use_header_start_time_attribute  # Gazebo reads an attribute, its manual has an element
+        # Gazebo reads an attribute, but its manual describes an element
+        attribute = self.options.use_header_start_time_attribute
         self._by_header = params.boolean("use_header_start_time", attribute.lower() in ("true", "1"))
         self._rule: Any = self.options.interpolation
         topic = valid_topic(self.options.topic or f"/model/{parent.name}/joint_trajectory")
@@ -172,11 +175,11 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         return pid
 
     def _repeated(self, params: Params, element: str, default: float) -> list[float]:
-        """Return one number per joint: the values of the repeated element in order, then the default."""
+        """Return one number per joint: the values of the repeated element in order, and then the default."""
         found: tuple[float, ...] = getattr(self.options, element)
         count = len(self._scoped)
         if len(found) > count:
-            message = f"plugin {self.name!r}: {len(found)} times <{element}> for {count} joint{'s'[: count != 1]}"
+            message = f"plugin {self.name!r} has {len(found)} <{element}> for {count} joint{'s'[: count != 1]}"
             hint = "use one for each joint, in the order of <joint_name>; surplus values have no effect"
             params.diagnostics.warning("SK-PLUGIN-044", message, params.all(element)[count].where, hint)
         return [*found, *[default] * count][:count]
@@ -215,14 +218,14 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
             axis.path = None
         if self._rule == "none":
             return
-        for place, name in enumerate(self._names):
-            found = self._axes.get(name)
-            if found is not None:
-                here = JointTarget(found.joint.position, found.joint.velocity)
-                found.path = JointPath.through(here, self._points, place, self._rule)
+        for index, name in enumerate(self._names):
+            axis = self._axes.get(name)
+            if axis is not None:
+                state = JointTarget(axis.joint.position, axis.joint.velocity)
+                axis.path = JointPath.through(state, self._points, index, self._rule)
 
     def _follow(self, now: int) -> None:
-        """Set the targets for this time."""
+        """Set the targets for a simulated time [ns]."""
         since = now - self._start
         if not self._points or since < 0:
             return
@@ -230,13 +233,13 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         if index != self._index:
             self._index = index
             point = self._points[index]
-            for place, name in enumerate(self._names):
+            for joint, name in enumerate(self._names):
                 axis = self._axes.get(name)
                 if axis is None:
                     continue
                 for field, values in _read_targets(point):
-                    if place < len(values):
-                        setattr(axis, field, values[place])
+                    if joint < len(values):
+                        setattr(axis, field, values[joint])
             if self._progress.wanted:
                 self._progress.publish(msgs.type_of(PROGRESS)((index + 1) / len(self._points)))
         for axis in self._axes.values():
@@ -249,7 +252,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         if self._message is not None:
             self._begin(now)
         self._follow(now)
-        if not self._is_ready:  # Gazebo only creates the components of the joints' state in its first step
+        if not self._is_ready:  # in Gazebo the joints' state is not available in the first step
             self._is_ready = True
             return
         step = self.period
@@ -259,7 +262,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
             by_velocity = axis.velocity_pid.update(joint.velocity - axis.velocity, step)
             joint.push(by_position + by_velocity + axis.effort)
             for pid in (axis.position_pid, axis.velocity_pid):
-                if pid.swings.runs_away:
+                if pid.swings.is_unstable:
                     self.watch(joint, pid)
 
 

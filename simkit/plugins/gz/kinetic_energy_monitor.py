@@ -35,7 +35,7 @@ class KineticEnergyMonitorOptions(Options):
 class KineticEnergyMonitor(ModelPlugin):
     """Publishes the kinetic energy [J] that a link lost within one step, if it exceeds a threshold.
 
-    The energy is that of the link's own mass and inertia, for translation and rotation: m v²/2 + ω·Iω/2.
+    The energy of translation and rotation, m v²/2 + ω·Iω/2, is computed from the link's own mass and inertia.
     """
 
     options = OptionsOf(KineticEnergyMonitorOptions)
@@ -53,17 +53,17 @@ class KineticEnergyMonitor(ModelPlugin):
         watch_while_subscribed(self, (self._lost,), "look")
 
     def begin(self) -> None:
-        """Store the present energy when the first subscriber appears."""
-        self._energy = self._present()
+        """Store the link's kinetic energy when the first subscriber appears."""
+        self._energy = self._kinetic_energy()
 
     def look(self) -> None:
-        """Compare the energy with that of the step before."""
-        before, self._energy = self._energy, self._present()
+        """Publish the loss of kinetic energy since the previous step, if it exceeds the threshold."""
+        before, self._energy = self._energy, self._kinetic_energy()
         lost = before - self._energy
         if lost > self._threshold and self._lost.wanted:
             self._lost.publish(msgs.type_of(DOUBLE)(lost))
 
-    def _present(self) -> float:
+    def _kinetic_energy(self) -> float:
         """Return the kinetic energy of the link [J]."""
         sim = self.sim
         body = sim.engine.names.link(self._scoped).body

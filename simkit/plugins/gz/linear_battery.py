@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 BOOL: Final = "std_msgs/msg/Bool"
 SET_BOOL: Final = "std_srvs/srv/SetBool"
 _RENDERED: Final = ("camera", "depth", "gpu_", "segmentation", "boundingbox", "thermal")
-"""Parts of the type names of sensors in Gazebo's Sensors system; a logical camera has a system of its own."""
+"""Substrings of the types of sensors that Gazebo's Sensors system renders; logical cameras are not rendered there."""
 _LEAST_EFFORT: Final = 1e-9  # smallest effort that counts as a command [N·m or N]
 
 
@@ -53,8 +53,9 @@ class LinearBatteryOptions(Options):
 class LinearBattery(Battery):
     """Simulates a battery that a load drains and a charger fills; an empty battery disables the joints of its model.
 
-    The battery drains from the start, from the first command to a joint of the model, or from the first message on a
-    `<power_draining_topic>`. Its state is published on `/model/<model>/battery/<battery>/state` at 50 Hz.
+    The battery starts to drain at the first of these events: the start of the simulation (with `<start_draining>`), a
+    command to a joint of the model, or a message on a `<power_draining_topic>`. The battery's state is published on
+    `/model/<model>/battery/<battery>/state` at 50 Hz.
     """
 
     endpoints = (
@@ -130,7 +131,7 @@ class LinearBattery(Battery):
                 self.sim.sensor(sensor.scoped).sample_only_while(lambda: not self.is_empty)
 
     def _offer_recharge(self, base: str, *, by_topic: bool) -> None:
-        # the data of the request is ignored, as in Gazebo: the name of the service decides
+        # the name of the service decides; the data of the request is ignored, as in Gazebo
         for word, charger in (("start", self._charger), ("stop", None)):
             name, handler = valid_topic(f"{base}/recharge/{word}"), partial(self._set_charger, charger)
             self.offer(name, SET_BOOL, handler)
@@ -166,7 +167,7 @@ class LinearBattery(Battery):
             (self._disable_joints if self._is_dead else self._enable_joints)()
 
     def _is_commanded(self) -> bool:
-        """Check whether a joint of the model was commanded in this step: a control or an effort other than zero."""
+        """Check whether a joint of the model received a control value or an effort other than zero in this step."""
         physics = self.sim.engine.physics
         if not (physics.data.ctrl.any() or physics.last_applied.any()):
             return False

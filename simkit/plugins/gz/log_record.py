@@ -87,7 +87,7 @@ class LogRecord(WorldPlugin):
     def _read_topics(self, params: Params) -> tuple[frozenset[str], tuple[re.Pattern[str], ...]]:
         """Return the topics by name and by regular expression.
 
-        A text with one of the characters `*?[]().` is an expression, as in Gazebo.
+        As in Gazebo, a `<record_topic>` that contains one of the characters `*?[]().` is a regular expression.
         """
         plain, patterns = set(), []
         for element in params.all("record_topic"):
@@ -187,7 +187,7 @@ class LogRecord(WorldPlugin):
 class LogPlayback(WorldPlugin):
     """Replaces Gazebo's replay of logs, which simkit does not support.
 
-    A run with the same seed is identical bit for bit, so that a replay is not needed.
+    A replay is not needed: a run with the same seed is identical bit for bit.
     """
 
     names = ("gz::sim::systems::LogPlayback",)

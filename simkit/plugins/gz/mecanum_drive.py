@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _PLACES = ("front_left", "front_right", "back_left", "back_right")
 _SIGNS = ((1, -1, -1), (1, 1, 1), (1, 1, -1), (1, -1, 1))
-"""Signs of the rim speed for forward speed, speed to the left and turning of the base, for each wheel position."""
+"""Signs of a wheel's rim speed when the base moves forward, moves left and turns left, for each wheel position."""
 
 
 class MecanumOdometry(TravelOdometry):
@@ -41,7 +41,7 @@ class MecanumOdometry(TravelOdometry):
         self._radius, self._arm = radius, arm
 
     def motion(self, before: Angles, after: Angles) -> Motion:
-        """Return the mean displacement that the wheels measure."""
+        """Return the displacement of the base between two samples of the wheel angles."""
         rims = [(b - a) * self._radius for a, b in zip(before, after, strict=True)]
         ahead, left, turn = (
             sum(sign[axis] * rim for sign, rim in zip(_SIGNS, rims, strict=True)) / 4 for axis in range(3)
@@ -68,8 +68,8 @@ class MecanumDriveOptions(SpeedLimitOptions):
 class MecanumDrive(TwistDrive):
     """Drives four wheels with rollers from `/model/<model>/cmd_vel`: forwards, sideways and turning.
 
-    The wheel odometry is published on `/model/<model>/odometry` and `/model/<model>/tf`. It starts at zero, in the
-    middle of the wheels; its twist is the mean over the last ten steps.
+    The wheel odometry is published on `/model/<model>/odometry` and `/model/<model>/tf`. Its pose starts at zero and
+    describes the point in the middle of the wheels. Its twist is the mean over the last ten steps.
     """
 
     options = OptionsOf(MecanumDriveOptions)
@@ -116,7 +116,7 @@ class MecanumDrive(TwistDrive):
 
 
 def _report_missing_rollers(scene: SceneModel, wheels: Sequence[SceneJoint], params: Params) -> None:
-    """Warn about wheels with equal friction in every direction, with which the base can only drag sideways."""
+    """Warn about wheels with equal friction in every direction, because such wheels do not roll sideways."""
     surfaces = {link.scoped: [c.surface for c in link.collisions] for link in scene.all_links()}
     plain = [j for j in wheels if (own := surfaces.get(j.child_link)) and not any(map(has_directional_friction, own))]
     if plain:

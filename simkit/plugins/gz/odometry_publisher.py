@@ -46,10 +46,11 @@ class OdometryPublisherOptions(Options):
 class OdometryPublisher(ModelPlugin):
     """Publishes the true pose and motion of the model in the world, as odometry and as a transform.
 
-    With two dimensions (the default), height and all motion out of the plane are zero; the orientation is complete.
-    `<xyz_offset>` and `<rpy_offset>` place the base frame in the model. `<gaussian_noise>` is the standard deviation of
-    the noise on each component of the twist [m/s, rad/s]; its square is on the diagonals of the odometry with
-    covariance. The twist is the mean over the last ten steps, as in Gazebo: it is 4.5 steps late.
+    With two dimensions (the default), the height and all motion out of the plane are zero, but the orientation has all
+    three angles. `<xyz_offset>` and `<rpy_offset>` are the pose of the base frame in the model. `<gaussian_noise>` is
+    the standard deviation of the noise on each component of the twist [m/s, rad/s]; its square is on the diagonals of
+    the odometry with covariance. The twist is the mean over the last ten steps, as in Gazebo, which is a delay of 4.5
+    steps.
     """
 
     options = OptionsOf(OdometryPublisherOptions)
@@ -87,7 +88,7 @@ class OdometryPublisher(ModelPlugin):
 
     def after_step(self) -> None:
         """Publish odometry and its transform."""
-        self._index += 1  # counted without subscribers too, so that subscriptions do not change the noise
+        self._index += 1  # counted even without subscribers, because the noise depends on this number
         if not (self._odom.wanted or self._noisy.wanted or self._tf.wanted):
             return
         now, (pose, twist) = self.sim.time_ns, self._reading()
@@ -100,9 +101,9 @@ class OdometryPublisher(ModelPlugin):
             self._tf.publish_later(partial(transforms, now, (self._frame, self._base, pose)))
 
     def _reading(self) -> tuple[Pose, BodyTwist]:
-        """Return the world pose of the base frame, and the mean of its twist over the last steps, in its own axes."""
+        """Return the base frame's world pose, and its mean twist over the last steps, in the base frame's axes."""
         trail = np.array((*self._trail, self._true.place()))
-        positions, turns = self._base_of(trail)
+        positions, turns = self._base_frames(trail)
         pose = Pose(positions[-1], turns[-1])
         linear, angular = self._mean_twist(positions, turns) if len(trail) > 1 else (np.zeros(3), np.zeros(3))
         if self._dimensions == 2:
@@ -112,7 +113,7 @@ class OdometryPublisher(ModelPlugin):
         noise: Vector = np.zeros(6) if self._stream is None else self._noise * self._stream.normal(self._index)
         return pose, BodyTwist((linear + noise[:3]).tolist(), (angular + noise[3:]).tolist())
 
-    def _base_of(self, trail: Vector) -> tuple[Vector, Vector]:
+    def _base_frames(self, trail: Vector) -> tuple[Vector, Vector]:
         """Return positions (n, 3) and quaternions (n, 4) of the base frame for poses (n, 7) of the model."""
         if self._offset == IDENTITY:
             return trail[:, :3], trail[:, 3:]
@@ -120,9 +121,10 @@ class OdometryPublisher(ModelPlugin):
         return np.array([p.position for p in poses]), np.array([p.quaternion for p in poses])
 
     def _mean_twist(self, positions: Vector, turns: Vector) -> tuple[Vector, Vector]:
-        """Return the mean linear and angular velocity; each step counts in the base's axes at its end.
+        """Return the mean linear and angular velocity of several steps.
 
-        With two dimensions these axes are turned by the yaw alone.
+        The velocity of each step is in the base frame's axes at the end of that step. With two dimensions these axes
+        are turned by the yaw alone.
         """
         step = self.period
         linear, angular = np.zeros(3), np.zeros(3)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 POSE: Final = "geometry_msgs/msg/PoseStamped"
 STATUS: Final = "simkit_msgs/msg/PerformerStatus"
 DETAILS: Final = "/details"
-"""Suffix of the topic with a detector's complete status."""
+"""Suffix of the topic on which a detector publishes its complete status."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ class PerformerDetectorOptions(Options):
 class PerformerDetector(ModelPlugin):
     """Publishes a message when a performer's box enters or leaves the box of this model.
 
-    Both boxes stay aligned with the axes of the world, as in Gazebo, in any orientation of their models.
+    As in Gazebo, both boxes are always aligned with the world's axes, even if their models are rotated.
     """
 
     options = OptionsOf(PerformerDetectorOptions)
@@ -153,14 +153,14 @@ class PerformerDetector(ModelPlugin):
     def begin(self) -> None:
         """Store the performers that are inside when the first subscriber appears.
 
-        They are not published, except at the very start of the simulation.
+        The detector does not publish these performers, except at the very start of the simulation.
         """
-        found = () if self.sim.tick == self._born else self._found()
+        found = () if self.sim.tick == self._born else self._performer_states()
         self._inside = tuple(name for name, _, is_inside in found if is_inside)
 
     def look(self) -> None:
-        """Publish the performers that entered or left since the last step."""
-        found = self._found()
+        """Publish the performers that entered or left this model's box since the last step."""
+        found = self._performer_states()
         names = tuple(name for name, _, is_inside in found if is_inside)
         for name, place, is_inside in found:
             if is_inside != (name in self._inside):
@@ -174,8 +174,8 @@ class PerformerDetector(ModelPlugin):
         plugins = self.sim.engine.structure.all_plugins()
         return tuple(found for plugin in plugins if isinstance(plugin, Performers) for found in plugin.performers)
 
-    def _found(self) -> list[tuple[str, Pose, bool]]:
-        """Return the performers' models with their world poses and whether their boxes overlap this one."""
+    def _performer_states(self) -> list[tuple[str, Pose, bool]]:
+        """Return each performer's model, its world pose, and whether its box overlaps this model's box."""
         models = self.sim.models
         present = [performer for performer in self._known if performer.model in models]
         if not present:

@@ -58,13 +58,13 @@ class PosePublisher(ModelPlugin):
     """Publishes on `/model/<model>/pose` the poses of the model's entities, each in the frame of its parent.
 
     Links are published by default. `<publish_visual_pose>`, `<publish_collision_pose>`, `<publish_sensor_pose>`,
-    `<publish_nested_model_pose>` and `<publish_model_pose>` (by default as for nested models) add more entities. With
-    `<use_pose_vector_msg>` all poses come in one `tf2_msgs/msg/TFMessage`. Otherwise each pose is a message, by default
-    `geometry_msgs/msg/TransformStamped`; `<simkit:pose_type>` selects another type. Frames are scoped names without the
-    world's name; the parent of a top-level model is the world's name.
+    `<publish_nested_model_pose>` and `<publish_model_pose>` (default: the value of `<publish_nested_model_pose>`) add
+    more entities. With `<use_pose_vector_msg>` one `tf2_msgs/msg/TFMessage` contains all poses. Otherwise each pose is
+    a message, by default `geometry_msgs/msg/TransformStamped`; `<simkit:pose_type>` selects another type. Frame names
+    are scoped names without the world's name. The parent frame of a top-level model has the world's name.
 
-    With `<static_publisher>` this topic only has the links that a joint moves. All other poses are published on
-    `<topic>_static`, including the model's own pose, as in Gazebo. An `<update_frequency>` or
+    With `<static_publisher>` this topic contains only the poses of links that a joint moves. All other poses are
+    published on `<topic>_static`, including the model's own pose, as in Gazebo. An `<update_frequency>` or
     `<static_update_frequency>` [Hz] that is not positive means every step.
     """
 
@@ -115,7 +115,7 @@ class PosePublisher(ModelPlugin):
     # ------------------------------------------------------------------ inside
 
     def _is_due(self, rate: float) -> bool:
-        """Check whether this tick is one of a rate's, because the hook is called at the ticks of both rates."""
+        """Check whether this rate [Hz] has a tick now; `after_step` runs at the ticks of both rates."""
         grid, tick = self.sim.engine.clock.grid(rate), self.sim.tick
         return grid is None or grid.next(tick - 1) == tick
 
@@ -146,7 +146,8 @@ class PosePublisher(ModelPlugin):
             yield from self._of_model(nested)
 
     def _link(self, link: SceneLink, outer: SceneModel) -> PosedEntity:
-        if link.scoped == outer.canonical_link:  # carries the model's frame, so its pose is constant
+        # the model's frame moves with its canonical link, so the pose of this link is constant
+        if link.scoped == outer.canonical_link:
             return PosedEntity(outer.scoped, link.scoped, outer.pose_world.inverse() @ link.pose_world)
         model, handle = self.sim.model(outer.scoped), self.sim.link(link.scoped)
         return PosedEntity(outer.scoped, link.scoped, None, handle, model, link.scoped in self._jointed)
@@ -160,13 +161,13 @@ class PosePublisher(ModelPlugin):
 
 
 def _common_rate(rate: float, other: float) -> float:
-    """Return a rate whose ticks include those of both rates; 0 (every step) if neither is a multiple of the other."""
+    """Return the higher rate [Hz] if it is a multiple of the lower one, else 0, which means every step."""
     low, high = sorted((rate, other))
     return high if low > 0 and (high / low).is_integer() else 0.0
 
 
 def _message(type_name: str, time_ns: int, sample: PoseSample, index: int) -> object:
-    """Return the message of one entity."""
+    """Return the message with the pose of one entity."""
     frame, child, pose = sample.placed[index]
     if type_name == STAMPED:
         return stamped_transform(time_ns, frame, child, pose)

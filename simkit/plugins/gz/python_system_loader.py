@@ -75,7 +75,7 @@ class PythonSystemLoader(GzSystem):
         elif self._module_name in {p.value.split(":")[0].strip() for p in entry_points(group=ENTRY_POINT_GROUP)}:
             self._import(params, None, folders)
         else:
-            searched = ", ".join(map(str, folders)) or "no folder, because none is allowed"
+            searched = ", ".join(map(str, folders)) or "no folder, because no folder is allowed"
             hint = "allow its folder with --plugin-path or plugin_paths, or add it to GZ_SIM_SYSTEM_PLUGIN_PATH"
             missing = f"no module {self._module_name!r} for PythonSystemLoader"
             message = f"{missing}; the plugin is ignored; searched: {searched}"
@@ -84,7 +84,7 @@ class PythonSystemLoader(GzSystem):
 
     def _import(self, params: Params, folder: Path | None, folders: list[Path]) -> None:
         added = [str(f) for f in folders if str(f) not in sys.path]
-        sys.path.extend(added)  # the module may import its neighbours
+        sys.path.extend(added)  # the module may import other modules of its folder
         try:
             with import_hook.importable(self.shadow):
                 name = self._module_name if folder is None else f"{_package_of(folder)}.{self._module_name}"
@@ -99,7 +99,7 @@ class PythonSystemLoader(GzSystem):
                 sys.path.remove(path)
 
     def _report_installed(self, params: Params) -> None:
-        """Report the installed Gazebo modules that the import found instead of simkit's."""
+        """Report installed Gazebo modules that the import loaded instead of simkit's modules."""
         for name, module in sorted(sys.modules.items()):
             target = import_hook.module_behind(name)
             if not target or import_hook.is_shim(module) or name.split(".")[0] == "simkit":
@@ -132,7 +132,7 @@ def folders_of_environment() -> list[Path]:
 def _file_of(name: str, folders: list[Path]) -> tuple[Path, Path] | None:
     """Return the file of a module and its search folder.
 
-    A file behind a link that leads out of the folder is ignored.
+    A symbolic link to a file outside the folder is ignored.
     """
     relative = Path(*name.split("."))
     for folder in folders:
@@ -143,7 +143,7 @@ def _file_of(name: str, folders: list[Path]) -> tuple[Path, Path] | None:
 
 
 def _package_of(folder: Path) -> str:
-    """Return the name of a separate package for the modules of a folder, so that they shadow no other modules."""
+    """Return the package name for the modules of a folder; a separate package prevents conflicts with other modules."""
     name = f"simkit_gz_systems_{hashlib.sha1(str(folder.resolve()).encode(), usedforsecurity=False).hexdigest()[:16]}"
     if name not in sys.modules:
         package = types.ModuleType(name)

@@ -32,7 +32,7 @@ class SensorsSystemOptions(Options):
 
 
 class SensorsSystem(Plugin):
-    """Sets the background and ambient colours of camera images, in place of the scene's.
+    """Sets the background and ambient colours of camera images, which replace the scene's colours.
 
     Sensors run without this plugin. With `<disable_on_drained_battery>`, cameras and GPU lidars of a model stop while
     its battery is empty. `with_sensors_colours` applies the colours before the world is built.
@@ -130,8 +130,9 @@ class MagnetometerSystemOptions(Options):
 class MagnetometerSystem(Plugin):
     """Reads the options of Gazebo's Magnetometer system.
 
-    `<use_units_gauss>` and `<use_earth_frame_ned>` define the Earth's field. Gazebo's default for both is true. In
-    simkit they count only if the file contains them (and in a world with `<gazebo_quirks>`).
+    `<use_units_gauss>` and `<use_earth_frame_ned>` define the Earth's field. Gazebo's default for both is true. simkit
+    applies this default only in a world with `<gazebo_quirks>`. In other worlds an option has an effect only if the
+    file contains it.
     """
 
     options = OptionsOf(MagnetometerSystemOptions)

@@ -53,7 +53,7 @@ class TouchTimer(ModelPlugin):
         self._world = builder.world.name
 
     def _watch(self, watched: Iterable[str], params: Params) -> None:
-        """Open the topics and start to watch these collisions, given by scoped name."""
+        """Open the topics, and start to watch the collisions with these scoped names."""
         self._touched = self.advertise(f"{self._topic}/touched", self.message_type)
         self.listen(f"{self._topic}/enable", self.message_type, self._on_enable)
         self._watched = frozenset(watched)
@@ -114,7 +114,7 @@ class TouchTimer(ModelPlugin):
         self._set_pace()
 
     def _set_pace(self) -> None:
-        """Run at every step only while the detector is enabled."""
+        """Call `before_step` at every step while the detector is enabled, otherwise not at all."""
         set_after_step_rate(self, None if self._is_enabled else NEVER)
 
 
@@ -130,7 +130,7 @@ class TouchPlugin(TouchTimer):
 
     The detector is then disabled until a message enables it again. It watches the collisions of contact sensors on the
     model's links, or those named in `<collision>`. With `<create_contact_sensor_for_collision>` a named collision needs
-    no sensor. A target is every collision whose scoped name contains `<target>`. Contact with other objects does not
+    no sensor. The target is every collision whose scoped name contains `<target>`. Contact with other objects does not
     interrupt the time, as in Gazebo.
     """
 
@@ -174,7 +174,8 @@ class TouchPlugin(TouchTimer):
             hint = "add a contact sensor to its link, or <collision> and <create_contact_sensor_for_collision>"
             params.diagnostics.warning("SK-SENSOR-043", f"{message}; no touch is detected", self.where, hint)
         self._watch(watched, params)
-        if self._same_namespace()[0] is self:  # the first detector offers the service for all of its namespace
+        # the first detector of a namespace offers the service for all detectors of that namespace
+        if self._same_namespace()[0] is self:
             self.offer(f"{self._topic}/enable", SET_BOOL, self._on_call)
 
     def _same_namespace(self) -> list[TouchPlugin]:

@@ -40,7 +40,8 @@ if TYPE_CHECKING:
 
 SPEED = "std_msgs/msg/Float64"
 CENTRE = ("geometry_msgs/msg/Vector3", "geometry_msgs/msg/Point")
-_STRAIGHT = 1e-6  # turning rate [rad/s] below which motion is straight; forward speed [m/s] below which it is a spin
+# turning rate [rad/s] below which the motion is straight; forward speed [m/s] below which the vehicle turns in place
+_STRAIGHT = 1e-6
 _STILL = 1e-6  # change of a speed per step below which no new speeds are sent to the tracks
 _SIDES = ("left", "right")
 
@@ -61,11 +62,11 @@ class TrackControllerOptions(LimiterOptions):
 class TrackController(ModelPlugin):
     """Moves the surface of a link: a conveyor belt, or a track of a vehicle.
 
-    The belt runs along the x axis of the link (turned by `<track_orientation>`), around its y axis. Its speed comes on
-    `/model/<model>/link/<link>/track_cmd_vel`. At a positive speed, objects on top move along x and the ground below
-    moves back, so that a vehicle drives along x. A point on `.../track_cmd_center_of_rotation` bends the motion to a
-    circle around that point of the world; a point that is NaN or infinite makes it straight again. Travel and speed of
-    the belt are published on `/model/<model>/link/<link>/odometry`.
+    The belt runs along the x axis of the link (turned by `<track_orientation>`), around its y axis. The plugin reads
+    the speed from `/model/<model>/link/<link>/track_cmd_vel`. At a positive speed, objects on top move along x and the
+    ground below moves back, so that a vehicle drives along x. A point on `.../track_cmd_center_of_rotation` changes the
+    motion to a circle around that point of the world; a point that is NaN or infinite makes the motion straight again.
+    The travel and the speed of the belt are published on `/model/<model>/link/<link>/odometry`.
     """
 
     endpoints = (
@@ -98,7 +99,7 @@ class TrackController(ModelPlugin):
         self.once = OneTimeWarnings(self)
         self.before_step_rate = NEVER
         self._target_speed, self._command_tick = 0.0, -1
-        self._speed, self._history = 0.0, (0.0, 0.0)  # current speed, and those of the two steps before
+        self._speed, self._history = 0.0, (0.0, 0.0)  # current speed, and the speeds of the two steps before [m/s]
         self._centre: tuple[float, float, float] | None = None
         self._run: BeltMotion | None = BeltMotion(0.0) if self._is_directed else None
         self._tick, self._place = self.sim.tick, (self.sim.tick, 0.0)
@@ -131,13 +132,13 @@ class TrackController(ModelPlugin):
         self._begin()
 
     def _begin(self) -> None:
-        """Apply a command that came between two steps in the next step."""
+        """Apply the last command from the next step on."""
         self._command_tick = self.sim.tick
         self.before_step()
         set_before_step_rate(self, None)
 
     def before_step(self) -> None:
-        """Advance the limited speed by one step towards the command; not called any more when it is reached."""
+        """Advance the limited speed by one step; when the speed reaches the command, the calls end."""
         tick = self.sim.tick
         if tick != self._tick:
             self._tick, self._history = tick, (self._speed, self._history[0])
@@ -204,9 +205,10 @@ class TrackedVehicleOptions(Options):
 class TrackedVehicle(TwistDrive):
     """Drives tracks, each with a `TrackController` of its own, from `/model/<model>/cmd_vel`.
 
-    Tracks turn the vehicle by skidding, so for a turning rate they run faster than wheels would. The factor is one over
-    `<steering_efficiency>`, which also comes on `/model/<model>/steering_efficiency`. All tracks receive the centre of
-    rotation of the vehicle. The odometry on `/model/<model>/odometry` is that of wheels with the same speeds.
+    The tracks skid when the vehicle turns. For the same turning rate, the speed difference of the tracks is therefore
+    larger than for wheels, by the factor 1 / `<steering_efficiency>`. A message on `/model/<model>/steering_efficiency`
+    changes this value. All tracks receive the centre of rotation of the vehicle. The odometry on
+    `/model/<model>/odometry` is computed as for wheels with the speeds of the tracks.
     """
 
     endpoints = (
@@ -238,7 +240,7 @@ class TrackedVehicle(TwistDrive):
         ]
         self._separation = self.options.tracks_separation
         self._efficiency = self.options.steering_efficiency
-        _ = self.options.tracks_height  # it cancels out in Gazebo's odometry
+        _ = self.options.tracks_height  # the track height cancels out in Gazebo's odometry
         self._limiters = [speed_limiter(self.options.linear_velocity), speed_limiter(self.options.angular_velocity)]
         self._odometry_rate = self.options.odom_publish_frequency
         if self.options.debug:

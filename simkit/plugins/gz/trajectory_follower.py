@@ -69,12 +69,12 @@ class TrajectoryFollower(ModelPlugin):
 
     While the direction to the next waypoint differs by more than `<bearing_tolerance>` from the link's x axis,
     `<torque>` turns the link around its own z axis. Otherwise `<force>` pushes the link along its own x axis. Both act
-    at the centre of mass. A waypoint within `<range_tolerance>` is reached. The last waypoint stays active: a displaced
-    link comes back. `<line>` and `<circle>` begin at the initial position of the link. On
+    at the centre of mass. A waypoint within `<range_tolerance>` is reached. The last waypoint stays active, so a
+    displaced link returns to it. `<line>` and `<circle>` begin at the initial position of the link. On
     `/model/<model>/trajectory_follower/pause`, true pauses the motion and false continues it.
 
-    Gazebo pushes along the axes of `<inertial><pose>`. simkit uses the link's axes, which are equal unless that pose is
-    rotated.
+    Gazebo pushes along the axes of `<inertial><pose>`, and simkit along the link's axes. The two differ only if that
+    pose is rotated.
     """
 
     options = OptionsOf(TrajectoryFollowerOptions)
@@ -94,7 +94,7 @@ class TrajectoryFollower(ModelPlugin):
         self._remaining = list(self._points)
         self._link = self.sim.link(self._scoped)
         if self.options.zero_vel_on_bearing_reached and not self._link.is_free:
-            message = "<zero_vel_on_bearing_reached> has no effect: a joint holds the link at its parent or the world"
+            message = "<zero_vel_on_bearing_reached> has no effect: the link has a joint to its parent or to the world"
             self.once.warn("SK-PLUGIN-131", "held", message, "set <link_name> to the root link of the model")
         self._set_pace()
         own = f"/model/{parent.name}/trajectory_follower/pause"
@@ -105,7 +105,7 @@ class TrajectoryFollower(ModelPlugin):
         self._set_pace()
 
     def _set_pace(self) -> None:
-        """Run at every step unless the motion is paused or there are no waypoints."""
+        """Call `before_step` at every step while the link follows waypoints, and not at all during a pause."""
         set_before_step_rate(self, NEVER if self._is_paused or not self._remaining else None)
 
     def before_step(self) -> None:
@@ -115,7 +115,7 @@ class TrajectoryFollower(ModelPlugin):
         (x, y), (goal_x, goal_y) = pose.position[:2].tolist(), self._remaining[0]
         way = goal_x - x, goal_y - y, 0.0  # heights are ignored
         if math.hypot(*way) <= options.range_tolerance:
-            self._go_on()
+            self._activate_next_waypoint()
             return
         ahead, aside, _ = pose.inverse().rotate(way).tolist()
         bearing = math.atan2(aside, ahead)
@@ -131,15 +131,15 @@ class TrajectoryFollower(ModelPlugin):
             if self._is_held:
                 self._link.set_velocity(self._link.linear_velocity)
 
-    def _go_on(self) -> None:
-        """Continue to the next waypoint; the last one stays active."""
+    def _activate_next_waypoint(self) -> None:
+        """Make the next waypoint active; the last waypoint stays active."""
         if len(self._remaining) > 1:
             reached, *rest = self._remaining
             self._remaining = [*rest, reached] if self.options.loop else rest
 
 
 def _waypoints(params: Params, start: Pose, name: str) -> list[Point]:
-    """Return the waypoints in the world [m]: those of `<waypoints>`, else of `<circle>`, else of `<line>`."""
+    """Return the waypoints in the world [m], from `<waypoints>`, else from `<circle>`, else from `<line>`."""
     kinds = [kind for kind in _KINDS if params.has(kind)]
     if not kinds:
         message = f"plugin {name!r} has no <waypoints>, <circle> or <line>, so it pushes nothing"
@@ -148,8 +148,8 @@ def _waypoints(params: Params, start: Pose, name: str) -> list[Point]:
         return []
     if len(kinds) > 1:
         others = " and ".join(f"<{kind}>" for kind in kinds[1:])
-        message = f"plugin {name!r} follows <{kinds[0]}>; its {others} has no effect"
-        params.diagnostics.warning("SK-PLUGIN-130", message, params.where, "remove all but one of them")
+        message = f"plugin {name!r} follows <{kinds[0]}>; {others} {'has' if len(kinds) == 2 else 'have'} no effect"
+        params.diagnostics.warning("SK-PLUGIN-130", message, params.where, "keep one of the elements")
     found = {
         "waypoints": _listed_waypoints(params.block("waypoints"), kinds[0] == "waypoints"),
         "circle": _circle_waypoints(params.block("circle"), start, kinds[0] == "circle"),
@@ -166,7 +166,7 @@ def _listed_waypoints(block: Params, is_followed: bool) -> list[Point]:
 
 
 def _circle_waypoints(block: Params, start: Pose, is_followed: bool) -> list[Point]:
-    """Return eight points of a circle around the start."""
+    """Return eight points [m] on a circle around the start pose."""
     radius = block.number("radius", 0.0, required=is_followed, minimum=0.0, maximum=_FARTHEST)
     x, y = start.position[:2].tolist()
     angles = [math.tau * k / _ON_A_CIRCLE for k in range(_ON_A_CIRCLE)]
@@ -174,7 +174,7 @@ def _circle_waypoints(block: Params, start: Pose, is_followed: bool) -> list[Poi
 
 
 def _line_waypoints(block: Params, start: Pose, is_followed: bool) -> list[Point]:
-    """Return the start and the end of a line from there; its direction [rad] is relative to the link's."""
+    """Return both ends [m] of a line from the start pose; `<direction>` [rad] is relative to the link's x axis."""
     angle = block.number("direction", 0.0, required=is_followed)
     length = block.number("length", 0.0, required=is_followed, minimum=-_FARTHEST, maximum=_FARTHEST)
     far = start.rotate((length * math.cos(angle), length * math.sin(angle), 0.0))

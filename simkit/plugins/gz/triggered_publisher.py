@@ -65,14 +65,6 @@ class TriggeredPublisherServiceOptions(Options):
     rep_type: str = text(element="@repType")
 
 
-class TriggeredPublisherMatchOptions(Options):
-    """Options of a `<match>` block."""
-
-    field: str = text(element="@field")
-    logic_type: str = text("positive", element="@logic_type")
-    tol: str = text("1e-08", element="@tol")
-
-
 class TriggeredPublisherOptions(Options):
     """Options of `TriggeredPublisher`."""
 
@@ -83,10 +75,10 @@ class TriggeredPublisherOptions(Options):
 
 
 class TriggeredPublisher(WorldPlugin):
-    """Publishes messages and calls services whenever an input message meets every `<match>`.
+    """Publishes messages and calls services for each input message that satisfies every `<match>`.
 
-    Messages are written in protobuf's text format, with Gazebo's type names. Inputs are checked between two steps. The
-    outputs follow at once, or at the first step at or after `<delay_ms>` of simulated time.
+    Messages are written in protobuf's text format, with Gazebo's type names. Inputs are checked between two steps.
+    Outputs are published at once, or with `<delay_ms>` in the first step after this delay in simulated time.
     """
 
     options = OptionsOf(TriggeredPublisherOptions)
@@ -106,7 +98,7 @@ class TriggeredPublisher(WorldPlugin):
         if not inputs:
             _ = self.options.input
         for extra in inputs[1:]:
-            message = f"plugin {self.name!r} uses one <input>; this one is not used"
+            message = f"plugin {self.name!r} uses only its first <input>; this <input> is not used"
             params.diagnostics.warning("SK-PLUGIN-124", message, extra.where, "add one plugin for each input")
             extra.mark_all_read()
         if inputs:
@@ -124,7 +116,9 @@ class TriggeredPublisher(WorldPlugin):
         self._input_kind = kind
         self._matchers = [m for match in matchers if (m := self._read_match(kind, match)) is not None]
         if matchers and not any(match.value for match in matchers):
-            element.error("SK-PARAM-002", "found no <match> with a text; expected one, or none at all")
+            element.error(
+                "SK-PARAM-002", "every <match> is empty; write the expected value into one of them, or remove them all"
+            )
             return
         if kind is MESSAGE_CLASSES["Pose"] and any(
             match.attributes.get("field", "").startswith("header.") for match in matchers
@@ -176,7 +170,7 @@ class TriggeredPublisher(WorldPlugin):
         return None if message is None else _Request(valid_topic(name), message, answer)
 
     def _kind(self, element: Params, attribute: str, known: Iterable[str] | None = None) -> type[Message] | None:
-        """Return the message class that an attribute names, or None after an error."""
+        """Return the message class that an attribute names; None after a reported error."""
         written = element.attribute(attribute)
         if not written:
             element.error("SK-PARAM-001", f'<{element.name}> needs {attribute}=: a type such as "gz.msgs.Boolean"')
@@ -217,7 +211,7 @@ class TriggeredPublisher(WorldPlugin):
         self._set_pace()
 
     def _set_pace(self) -> None:
-        """Run at every step only while a delayed output is pending."""
+        """Call `before_step` at every step while a delayed output is pending, otherwise not at all."""
         set_before_step_rate(self, None if self._due else NEVER)
 
     def _respond(self) -> None:
@@ -243,7 +237,7 @@ def _has_ros_type(name: str) -> bool:
 
 
 def _topic(element: Params) -> str:
-    """Return the topic that an element names, or an empty text after an error."""
+    """Return the topic that an element names; an empty text after a reported error."""
     written = element.attribute("topic")
     topic = valid_topic(written)
     if topic == "/":
@@ -268,7 +262,7 @@ def _message(kind: type[Message], text: str, element: Params, label: str) -> Mes
     try:
         message = parse_message(kind, text)
         for twin in twins_of(kind)[:1] if _has_ros_type(kind.__name__) else ():
-            to_ros(message, twin.ros)  # report values that the ROS type cannot hold at load time
+            to_ros(message, twin.ros)  # report at load time the values that the ROS type cannot store
     except MessageError as error:
         element.error("SK-PLUGIN-121", f"{label} {_shortened(text)}: {error}")
         return None

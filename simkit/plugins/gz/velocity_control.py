@@ -37,10 +37,11 @@ class VelocityControlOptions(Options):
 class VelocityControl(ModelPlugin):
     """Moves the model with the twist on `/model/<model>/cmd_vel`, in the model's own axes, around the model's origin.
 
-    The model rests until the first command, or starts with `<initial_linear>` and `<initial_angular>`; the last command
-    stays active. Apart from contacts nothing else moves the model: it stays in the air, and needs no wheels. For each
-    `<link_name>`, a twist in the link's own axes comes on `/model/<model>/link/<link>/cmd_vel`. From the first such
-    command on, it moves the link and all links that joints connect to it.
+    The velocity is `<initial_linear>` and `<initial_angular>` (default: zero) until the first command; each command
+    stays active until the next. Only these commands and contacts move the model, so it does not fall and needs no
+    wheels. For each `<link_name>`, the plugin also reads a twist in the link's own axes from
+    `/model/<model>/link/<link>/cmd_vel`. From its first message on, this twist moves the link and all links that joints
+    connect to the link.
     """
 
     options = OptionsOf(VelocityControlOptions)
@@ -64,7 +65,7 @@ class VelocityControl(ModelPlugin):
         self._whole = self._with_model_frame(self._links)
         # links that move with each commandable link
         self._parts = {name: KinematicMotion(self.sim, trees[link], link) for name, link in self._link_names.items()}
-        # remaining links, which the model's own command moves, by the names of the commanded links
+        # for each set of commanded links: the other links of the model, which the model's own command moves
         self._rests: dict[frozenset[str], KinematicMotion] = {}
         for name in [name for name, part in self._parts.items() if not part] + ([] if self._whole else [""]):
             self._report_fixed(name)
@@ -88,7 +89,7 @@ class VelocityControl(ModelPlugin):
     def _on_link_command(self, link: str, message: Twist | TwistStamped) -> None:
         motion = self._motion_of(message)
         if motion is not None:
-            self._link_targets.pop(link, None)  # keep the order of the commands
+            self._link_targets.pop(link, None)  # the latest command is the last entry
             self._link_targets[link] = motion
 
     def _motion_of(self, message: Any) -> Motion | None:
@@ -101,34 +102,35 @@ class VelocityControl(ModelPlugin):
 
     def before_step(self) -> None:
         """Set the velocities for the next step."""
-        self._mover.move(self._moves())
+        self._mover.move(self._velocity_targets())
 
     @classmethod
     def before_step_together(cls, plugins: Sequence[VelocityControl]) -> Callable[[Iterable[VelocityControl]], None]:
-        """Return a function that runs `before_step` of many plugins, with their common computation done once."""
+        """Return a function that runs `before_step` of many plugins and does their common computation only once."""
         mover = KinematicMover(plugins[0].sim)
 
         def run(rota: Iterable[VelocityControl]) -> None:
-            mover.move([move for plugin in rota for move in plugin._moves()])
+            mover.move([move for plugin in rota for move in plugin._velocity_targets()])
 
         return run
 
-    def _moves(self) -> list[VelocityTarget]:
-        """Return the motions of the next step."""
+    def _velocity_targets(self) -> list[VelocityTarget]:
+        """Return the commanded velocities of the next step."""
         if not self._link_targets:
             return [VelocityTarget(self._whole, self._whole.frame, *self._target)] if self._whole else []
         rest = self._rest()
         moves = [VelocityTarget(rest, rest.frame, *self._target)] if rest else []
-        trees = {self._parts[name].links: name for name in self._link_targets}  # the last command of a tree wins
+        # of several commands for one tree, the last one counts
+        trees = {self._parts[name].links: name for name in self._link_targets}
         parts = [(self._parts[name], self._link_targets[name]) for name in trees.values()]
         return moves + [VelocityTarget(part, part.frame, *motion) for part, motion in parts if part]
 
     def _with_model_frame(self, links: Iterable[str]) -> KinematicMotion:
-        """Return these links of the model as one motion with the model's frame."""
+        """Return a motion of these links of the model; its reference is the model's frame."""
         return KinematicMotion(self.sim, links, self._canonical, self._links[self._canonical].inverse() @ self._pose)
 
     def _rest(self) -> KinematicMotion:
-        """Return the links of the model that no link command moves, as one motion."""
+        """Return a motion of all links of the model that no link command moves."""
         commanded = frozenset(self._link_targets)
         if commanded not in self._rests:
             gone = {link for name in commanded for link in self._parts[name].links}

@@ -35,9 +35,10 @@ class ThermalOptions(Options):
 
 
 class Thermal(Plugin):
-    """Gives its visual a temperature [K], or an image of temperatures.
+    """Sets the temperature [K] of its visual, or an image of temperatures on its surface.
 
-    On a model or a link, where Gazebo ignores it, it applies to every visual there without a temperature of its own.
+    On a model or a link, the plugin sets the temperature of every visual there that has no temperature of its own.
+    Gazebo ignores such a plugin.
     """
 
     options = OptionsOf(ThermalOptions)
@@ -53,7 +54,7 @@ class Thermal(Plugin):
         if params.has("heat_signature"):
             if params.has("temperature"):
                 params.child("temperature")
-                message = "found both <temperature> and <heat_signature>: the second is used, as in Gazebo"
+                message = "found both <temperature> and <heat_signature>: <heat_signature> is used, as in Gazebo"
                 params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("temperature").where)
             self._range = _read_range(params)
             self._picture = _find_picture(self.options, builder)
@@ -92,10 +93,10 @@ def _read_kelvins(params: Params, name: str) -> float:
 
 
 def _read_range(params: Params) -> tuple[float | None, float | None]:
-    """Return the temperatures [K] of black and red pixels of a heat signature; None if not limits."""
+    """Return the temperatures [K] of black and red pixels of a heat signature; None if an element is missing."""
     low, high = (_read_kelvins(params, name) if params.has(name) else None for name in ("min_temp", "max_temp"))
     if low is not None and high is not None and low > high:
-        message = f"found <min_temp> {low:g} above <max_temp> {high:g}: both are swapped, as in Gazebo"
+        message = f"found <min_temp> {low:g} above <max_temp> {high:g}: the two are swapped, as in Gazebo"
         params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("min_temp").where)
     return low, high
 
@@ -123,7 +124,7 @@ def _find_picture(options: ThermalOptions, builder: SpecBuilder) -> Path | None:
 
 
 def _sorted_range(limits: tuple[float | None, float | None], sim: Simulation) -> tuple[float, float]:
-    """Return the temperatures of black and red pixels [K], the smaller one first; the air's if not limits."""
+    """Return the temperatures [K] of black and red pixels in rising order; None becomes the temperature of the air."""
     air = (sim.world.atmosphere or Atmosphere()).temperature
     low, high = (air if limit is None else limit for limit in limits)
     return min(low, high), max(low, high)
@@ -176,10 +177,10 @@ class LabelOptions(Options):
 
 
 class Label(Plugin):
-    """Gives its model, or its one visual, the number that segmentation and bounding box cameras publish.
+    """Sets the label of a model or a visual: the number that segmentation and bounding box cameras publish.
 
-    The label of a visual overrides that of its model, and the label of a nested model that of the outer one. Of two
-    labels on one element the later one counts.
+    The label of a visual overrides the label of its model. The label of a nested model overrides the label of the outer
+    model. If an element has two labels, the later label is used.
     """
 
     options = OptionsOf(LabelOptions)

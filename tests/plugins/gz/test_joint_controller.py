@@ -86,7 +86,7 @@ def test_an_actuator_message_commands_by_number() -> None:
     sim.publish("/actuators", {"velocity": [9.0]})
     sim.step(2)
     assert sim.joint("m::j_a").velocity == pytest.approx(4.0, abs=1e-4)
-    assert "has none for actuator 1" in codes(sim.diagnostics, "SK-PLUGIN-041")[0]
+    assert "and none for actuator 1" in codes(sim.diagnostics, "SK-PLUGIN-041")[0]
 
 
 def test_without_an_actuator_number_float_messages_are_used_with_a_warning() -> None:

@@ -163,7 +163,7 @@ def test_wrong_elements_are_reported_together() -> None:
     assert "no joint 'j_aa'" in text and "is ball" in text
     with pytest.raises(LoadError, match="cubik"):
         load(rotor("a"), trajectory("<simkit:interpolation>cubik</simkit:interpolation>"))
-    with pytest.raises(LoadError, match="no joint with one axis"):
+    with pytest.raises(LoadError, match="needs a joint with one axis"):
         load(rotor("a", kind="ball"), trajectory(""))
     twice = load(rotor("a"), trajectory(A + A + servo("position", 2)))
     assert len(codes(twice.diagnostics, "SK-PLUGIN-044")) == 3  # the name, and both numbers
