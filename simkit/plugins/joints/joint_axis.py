@@ -22,8 +22,8 @@ class JointAxis(SharedByCopies):
         joint: Handle of the joint.
         name: Name of the joint.
         index: Index of the axis in the joint.
-        dof: Index among MuJoCo's degrees of freedom. It changes when a model is spawned or removed, so it is not
-            stored.
+        dof: Index among MuJoCo's degrees of freedom. The index changes when a model is spawned or removed, so it is
+            looked up at each access.
     """
 
     def __init__(self, joint: Any, index: int = 0) -> None:
@@ -59,16 +59,16 @@ class JointAxis(SharedByCopies):
         return self._limit(self.joint._velocity_limit)
 
     def _limit(self, limits: Vector) -> float:
-        # read at every step, and much cheaper than the joint's property
+        # read at every step, and much faster than the joint's property
         value: float = limits.item(self.index if len(limits) > 1 else 0)
         return value
 
     def is_meant(self, name: str) -> bool:
-        """Check whether a scoped name is that of the joint or of its top-level model."""
+        """Check whether a scoped name is the name of this joint or of its top-level model."""
         return name in (self.joint.scoped, self.joint.scoped.split("::")[0])
 
     def push(self, effort: float) -> None:
-        """Set the effort of the next step, in place of an earlier one.
+        """Set the effort of the next step; an effort that was set earlier for this step is replaced.
 
         NaN and infinite values become a finite effort that is so large that the physics reports its divergence.
         """
@@ -124,5 +124,5 @@ def has_axis(joint: SceneJoint, axis: int, params: Params) -> bool:
 
 
 def suggest_names(name: str, names: Sequence[str]) -> str:
-    """Return the end of a 'joint not found' message: the closest name, or all of them."""
+    """Return the end of a 'joint not found' message: the closest name, or all names."""
     return did_you_mean(name, names) or "there is " + (", ".join(map(repr, names[:20])) or "none")

@@ -43,7 +43,7 @@ class ControlledJoints:
 
     def watch(self, axis: JointAxis, pid: Pid) -> None:
         """Warn once about an unstable controller."""
-        if pid.swings.runs_away:
+        if pid.swings.is_unstable:
             message = (
                 f"the PID of joint {axis.joint.scoped!r} is unstable: its error oscillates with growing amplitude or "
                 f"between both effort limits (p_gain {pid.p:g}, i_gain {pid.i:g}, d_gain {pid.d:g})"
@@ -84,9 +84,9 @@ class JointCommandOptions(PidOptions):
 
 
 class JointCommander(ControlledJoints, ModelPlugin):
-    """Base class of the systems that bring one or more joints to a commanded value; the first joint's error drives all.
+    """Base class of systems that move joints to a commanded value; one controller acts on the first joint's error.
 
-    Gazebo only creates the components of the joint's state in its first step, so commands act from the second step on.
+    In Gazebo the joint's state is not available in the first step, so commands act from the second step on.
 
     Attributes:
         own_topic: Default topic, below the model's topics.
@@ -124,7 +124,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
 
     @property
     def node(self) -> str:
-        """Name of the plugin's node for its parameters, if the file sets none: the joint's topic and the controller."""
+        """Default name of the ROS node that has the parameters: the joint's topic and the controller."""
         joint = f"/model/{self.scoped}/joint/{self._first_name}".replace("::", "/")
         axis = f"_{self._index}" if self._index else ""
         return valid_topic(f"{joint}/{self.actuator_field}_controller{axis}")
@@ -157,7 +157,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
         if self._number < len(values):
             self._aim(float(values[self._number]))
         else:
-            what = f"a message with {len(values)} numbers in {self.actuator_field} has none for actuator {self._number}"
+            what = f"{self.actuator_field} of a message has {len(values)} numbers and none for actuator {self._number}"
             self.once.left_out("short", f"{what}; the message is ignored")
 
     def _aim(self, target: float) -> None:
@@ -183,7 +183,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
         return [] if self._pid is None else [(axis, self._pid) for axis in self.axes]
 
     def explain_divergence(self, name: str) -> str:
-        """Describe a velocity command at a diverged joint, or else the controller as the base class does."""
+        """Describe the velocity command of a joint that diverged, or else the controller, as in the base class."""
         axis = next((axis for axis in self.axes if axis.is_meant(name)), None)
         if axis is None or self._commanded_velocity is None:
             return super().explain_divergence(name)
@@ -199,7 +199,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
 
     @abc.abstractmethod
     def command(self) -> None:
-        """Bring the joints nearer to the target, by `push` or `turn`."""
+        """Move the joints towards the target, with `push` or `turn`."""
 
     def push(self, error: float) -> None:
         """Push all joints with the effort that the controller returns for an error of the first joint."""
@@ -207,7 +207,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
         effort = self._pid.update(error, self.period)
         for axis in self.axes:
             axis.push(effort)
-        if self._pid.swings.runs_away:
+        if self._pid.swings.is_unstable:
             self.watch(self.axes[0], self._pid)
 
     def turn(self, velocity: float) -> None:
@@ -215,7 +215,10 @@ class JointCommander(ControlledJoints, ModelPlugin):
         self._commanded_velocity = velocity
 
     def _drive(self) -> None:
-        """Apply the velocities of all plugins in the last one, because joints of one tree need a common solution."""
+        """Apply the velocities of all plugins together, because joints of one kinematic tree need a common solution.
+
+        The last of these plugins in a step does this; the others do nothing.
+        """
         group, structure = self._group, self.sim.engine.structure
         if group is None or group.structure is not structure:
             members = [p for p in structure.all_plugins() if isinstance(p, JointCommander) and p._by_velocity]
@@ -232,7 +235,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
                 axes, velocities = zip(*pairs, strict=True)
                 self._servo.drive(self.sim, axes, velocities, group.layouts)
 
-    def say_gains_are_unused(self, params: Params, unused: Sequence[str], reason: str) -> None:
+    def warn_about_unused_gains(self, params: Params, unused: Sequence[str], reason: str) -> None:
         """Warn about gains in the file that have no effect.
 
         Args:
@@ -248,7 +251,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
 
 
 class _VelocityGroup(SharedByCopies):
-    """Plugins that command velocities in one structure, with the kinematic trees of their joints."""
+    """Plugins of one simulation that command velocities, with the kinematic trees of their joints."""
 
     def __init__(self, structure: object, members: list[JointCommander]) -> None:
         self.structure, self.members = structure, members

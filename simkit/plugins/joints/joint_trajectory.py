@@ -1,4 +1,4 @@
-"""Joint trajectory over time: the active point, and the interpolation between two points."""
+"""Points of a joint trajectory: the active point at a time, and the interpolation between two points."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SECOND: Final = 1_000_000_000
 
 @dataclass(frozen=True, slots=True)
 class JointTarget:
-    """Target of one joint: position, velocity and acceleration [rad or m, per s, per s²]."""
+    """Target of one joint: position [rad or m], velocity [per s] and acceleration [per s²]."""
 
     position: float
     velocity: float = 0.0
@@ -105,9 +105,9 @@ class JointPath:
         """Return the path of a joint through the points that have a position for it, or None if no point has one.
 
         - linear: straight line from point to point.
-        - cubic: through the velocities of the points. A point without one gets the mean of the slopes before and after
-          it, or zero if these differ in sign; the last point gets zero.
-        - quintic: through the accelerations as well; a missing one is 0.
+        - cubic: also matches the velocities of the points. A point without a velocity gets the mean of the slopes
+          before and after the point, or zero if these slopes differ in sign; the last point gets zero.
+        - quintic: also matches the velocities and the accelerations; a missing acceleration is 0.
 
         Args:
             start: State of the joint at the start; used if no point has time 0.
@@ -148,7 +148,7 @@ def _value_of_joint(values: tuple[float, ...], joint: int) -> float:
 
 
 def _velocity(points: list[TrajectoryPoint], joint: int, i: int) -> float:
-    """Return the velocity of the joint at a point: the given one, or one derived from the neighbouring points."""
+    """Return the velocity of the joint at a point, from the point or else from the positions of its neighbours."""
     if joint < len(points[i].velocities):
         return points[i].velocities[joint]
     if i == 0 or i == len(points) - 1:

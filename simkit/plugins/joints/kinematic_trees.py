@@ -22,7 +22,7 @@ Keys = tuple[tuple[str, int], ...]
 _HOLD: Final = 10.0
 """Effort of a joint without an effort limit against an obstacle, as a multiple of the weight of its whole tree."""
 
-_GRAVITY: Final = 9.81  # [m/s²]; also used in a world without gravity, where the limit must not be zero
+_GRAVITY: Final = 9.81  # [m/s²]; also used in a world without gravity, because the limit must not be zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class KinematicTrees:
 
     Attributes:
         axes: Joint axes, sorted by tree.
-        order: Index of each axis in the input.
+        order: Index of each axis in the sequence from which this object was made (n,).
         keys: Scoped name and axis index of each joint.
         dofs, joints, positions: MuJoCo's indices of the degrees of freedom, joints and qpos entries, each (n,).
         bodies: MuJoCo's indices of the moved bodies.
@@ -42,9 +42,10 @@ class KinematicTrees:
         is_used: True for slots that have a driven joint (trees, slots).
         damped: True for damped degrees of freedom of the compiled model (nv,).
         is_damped: True if a tree of the driven joints has a damped degree of freedom.
-        all: Degrees of freedom of the slots, then the other damped ones of the same tree (trees, all slots).
-        is_any: True for slots of `all` that are in use.
-        place: Indices of the joints in the flattened `all`.
+        all: Degrees of freedom of the slots, then the other damped degrees of freedom of the same tree (trees, all
+            slots).
+        is_any: True for slots of `all` that are in use (trees, all slots).
+        place: Index of each joint's degree of freedom in the flattened `all` (n,).
         units: Unit efforts on all degrees of freedom, one row per slot (all slots, nv).
         hold: Additional effort of a joint without a limit, beyond the effort that moves it without contacts.
     """
@@ -115,7 +116,7 @@ class KinematicTrees:
         )
 
     def fits(self, model: mujoco.MjModel) -> bool:
-        """Check whether the same degrees of freedom are damped as when this object was made."""
+        """Check whether the model still has the same damped degrees of freedom as when this object was made."""
         return np.array_equal(model.dof_damping > 0.0, self.damped)
 
     def spread(self, values: Vector) -> Vector:
@@ -148,7 +149,7 @@ def _padded(rows: list[list[int]]) -> tuple[Integers, Flags]:
 
 
 def _weights(model: mujoco.MjModel, dofs: Sequence[int]) -> Vector:
-    """Return the weight of each joint's tree: [N] for a slider, times the reach of its links [N·m] for a hinge."""
+    """Return the weight of each joint's tree: [N] for a slider; for a hinge, times the links' reach [N·m]."""
     reach, found = _reaches(model), []
     for dof in dofs:
         joint, body = int(model.dof_jntid[dof]), int(model.dof_bodyid[dof])
@@ -161,7 +162,7 @@ def _weights(model: mujoco.MjModel, dofs: Sequence[int]) -> Vector:
 def _reaches(model: mujoco.MjModel) -> list[float]:
     """Return the largest distance from the frame of each body to any point of the body or its descendants [m]."""
     own = np.linalg.norm(model.body_ipos, axis=1)
-    # a body without geoms has no size but that of its inertia: use the radius of gyration
+    # a body without geoms has no shape, so the radius of gyration of its inertia is its size
     gyration = np.sqrt(model.body_inertia.max(axis=1) / np.maximum(model.body_mass, mujoco.mjMINVAL))
     own += np.where(model.body_geomnum == 0, gyration, 0.0)
     np.maximum.at(own, model.geom_bodyid, np.linalg.norm(model.geom_pos, axis=1) + model.geom_rbound)

@@ -68,7 +68,7 @@ class Pid:
         integral: Current integral term.
         last: Error of the last call; 0 at the start, so that the first call has a derivative.
         command: Last output.
-        swings: Detector of an unstable loop.
+        swings: Detector of an unstable control loop.
     """
 
     p: float
@@ -116,17 +116,17 @@ class Pid:
 class DivergenceDetector:
     """Detector of an unstable control loop, based on the peaks of the error between its zero crossings.
 
-    A loop is unstable after `GROWING` peaks in a row, each higher by the factor `GROWTH` than the last peak on the same
-    side. A loop is also unstable after `SATURATED` peaks in a row with a limited output that do not get smaller. Peaks
+    A loop is unstable after `GROWING` consecutive peaks, each at least `GROWTH` times the last peak on the same side. A
+    loop is also unstable after `SATURATED` consecutive peaks that do not get smaller while the output is limited. Peaks
     below `SMALL` [rad, m, rad/s or m/s] count as noise.
 
     Attributes:
         last: Last error that is not zero.
         peak: Highest error since the last zero crossing.
-        before, earlier: Peaks of the last swing and of the swing before that.
+        before, earlier: The last peak, and the peak before the last peak.
         is_saturated: True if the output was limited since the last zero crossing.
-        grown: Number of peaks in a row that grew.
-        held: Number of peaks in a row with a limited output that did not get smaller.
+        grown: Number of consecutive peaks that grew.
+        held: Number of consecutive peaks with a limited output that did not get smaller.
     """
 
     GROWING = 12
@@ -162,7 +162,7 @@ class DivergenceDetector:
         self.is_saturated = self.is_saturated or is_saturated
 
     @property
-    def runs_away(self) -> bool:
+    def is_unstable(self) -> bool:
         """True if the loop is unstable."""
         return self.grown >= self.GROWING or self.held >= self.SATURATED
 
@@ -173,15 +173,15 @@ def declare_pid(
     """Declare the numbers of a controller as live parameters of its plugin: `p_gain`, `i_gain`, …, `cmd_offset`.
 
     Args:
-        plugin: Plugin that owns the parameters.
+        plugin: Plugin with the parameters.
         first: Controller with the default numbers.
         find: Callback that returns the current controller when a parameter changes; a restored snapshot has a new
             object.
         prefix: Prefix of each parameter name.
-        elements: Element that holds the first value, by parameter name; the parameter's own name if omitted.
+        elements: Name of the element with the first value, by parameter name; by default both names are the same.
 
     Returns:
-        The controller `first`, with the numbers of the file.
+        The controller `first`, with the numbers from the file.
     """
     for name, attribute in FIELDS.items():
 

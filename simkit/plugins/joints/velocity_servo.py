@@ -20,13 +20,16 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 _ENOUGH: Final = 3e-6
-"""Relative to 1 + the commanded velocity [rad/s or m/s]: smaller errors need no correction."""
+"""Largest velocity error that needs no correction, relative to 1 + the commanded velocity [rad/s or m/s]."""
 
 _CLOSE: Final = 1e-5
-"""Relative to the same: after a correction, smaller errors are left to the next step."""
+"""Largest velocity error after a correction that is left to the next step, relative to the same number."""
 
 _FAR: Final = 0.1
-"""Relative to the same: with larger errors the search starts from zero effort instead of the last efforts."""
+"""Largest velocity error, relative to the same number, for which the search starts from the last efforts.
+
+With larger errors the search starts from zero effort.
+"""
 
 _ROUNDS: Final = 6
 """Largest number of corrections in one step; each costs a forward pass."""
@@ -79,7 +82,7 @@ class VelocityServo:
         self.efforts = self._search(trial, best, missing) if least.any() else best
 
     def _begin(self, layout: KinematicTrees) -> None:
-        """Switch to other joints; joints that were driven before keep their efforts."""
+        """Switch to the joints of another layout; joints that were already driven keep their efforts."""
         efforts = dict(zip(self.keys, self.efforts.tolist(), strict=True))
         self.keys, self.efforts = layout.keys, np.array([efforts.get(key, 0.0) for key in layout.keys])
         trees, slots = layout.is_used.shape
@@ -114,11 +117,14 @@ class VelocityServo:
         return best
 
     def _learn(self, layout: KinematicTrees, free: Vector, pushed: Vector, gained: Vector) -> None:
-        """Update the learnt matrix by Broyden's method: `pushed` more effort `gained` this acceleration."""
+        """Update the learnt matrix by Broyden's method, from a change of the efforts and its effect.
+
+        The change `pushed` [N·m or N] of the efforts caused the change `gained` [rad/s² or m/s²] of the accelerations.
+        """
         s, y, known = layout.spread(pushed), layout.spread(gained), self.learnt
         guess = (known @ y[..., None])[..., 0]
         scale, size = (s * guess).sum(1), (s * s).sum(1)
-        # a very small or opposite response means that a contact changed: restart from the contact-free inertia
+        # a very small or opposite effect means that a contact changed: restart from the inertia without contacts
         is_clear, is_moved = scale > 1e-6 * size, size > 0.0
         row = (s[:, None, :] @ known)[:, 0]
         update = (s - guess)[:, :, None] * row[:, None, :] / np.where(is_clear, scale, 1.0)[:, None, None]
@@ -127,7 +133,7 @@ class VelocityServo:
 
 
 VelocityCommands = tuple[Vector, Vector, Vector]
-"""Efforts, velocity errors, and relevant part of these errors."""
+"""Efforts, velocity errors, and the relevant part of these errors, each (n,)."""
 
 
 def _better_efforts(
