@@ -1,4 +1,4 @@
-"""World plugins of every simulation: clock, services and statistics; also the sun by date and place.
+"""World plugins of every simulation: clock, services and statistics; also the sun by date and location.
 
-Requests of ROS and gz come in, responses and the state of the world go out. This package has no plugins of models.
+They answer the requests of ROS and gz, and publish the state of the world. This package has no plugins of models.
 """

@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 CLOCK: Final = "rosgraph_msgs/msg/Clock"
 STATISTICS: Final = "ros_gz_interfaces/msg/WorldStatistics"
 STATISTICS_RATE: Final = 5.0
-"""Rate of the statistics [Hz of simulated time]; gz's server uses real time."""
+"""Rate of the statistics [Hz of simulated time]; in gz's server this is a rate of real time."""
 CLOCK_RATE: Final = 100.0
 POSE_RATE: Final = 60.0
-"""Rate of the poses [Hz of simulated time], as gz's `dynamic_pose_hertz`."""
+"""Rate of the poses [Hz of simulated time], the same number as gz's default of `dynamic_pose_hertz`."""
 _WINDOW: Final = 20  # number of statistics in the average real-time factor, as in gz's server
 
 
 class WallClock(SharedByCopies):
-    """Wall-clock duration of a run; nothing in a world may depend on it.
+    """Wall-clock duration of a run; the simulated world must not depend on this duration.
 
     The duration is not part of a world's state: snapshots exclude it, and restoring a run does not reset it.
 
@@ -56,7 +56,7 @@ class WallClock(SharedByCopies):
         self._last, self._was_paused = now, self._sim.paused
 
     def factor(self) -> float:
-        """Return simulated time over real time in the last statistics; 0 before the second statistics."""
+        """Return simulated time / real time, averaged over the last statistics; 0 before the second statistics."""
         simulated, recent = self._sim.time, self._recent
         if recent and simulated < recent[-1][0]:
             recent.clear()  # the run was reset or restored
@@ -66,15 +66,15 @@ class WallClock(SharedByCopies):
 
 
 class WorldStats(WorldPlugin):
-    """Publishes statistics, the clock and all poses of a world; part of every world, without cost if nobody subscribes.
+    """Publishes statistics, clock and poses of a world; every world has this plugin, which is free without subscribers.
 
     `/stats` and `/world/<world>/stats` (`ros_gz_interfaces/msg/WorldStatistics`) at 5 Hz of simulated time, and at once
     when the world is paused or resumed. `real_time`, `pause_time` and `real_time_factor` come from the wall clock and
-    differ between runs; all other fields are the same in every run. `/world/<world>/clock` at 100 Hz.
-    `/world/<world>/pose/info` has every model, link, visual and light, `/world/<world>/dynamic_pose/info` the models
-    and links that are not static. Both are published at 60 Hz, each pose in the frame of the parent
-    (`tf2_msgs/msg/TFMessage`). Recorders skip these topics unless a user names them. All topics except the statistics
-    are listed only while they have subscribers.
+    differ between runs; all other fields are the same in every run. `/world/<world>/clock` is published at 100 Hz.
+    `/world/<world>/pose/info` has the poses of all models, links, visuals and lights.
+    `/world/<world>/dynamic_pose/info` has the poses of the models and links that are not static. Both are published at
+    60 Hz; each pose is in the frame of the entity's parent (`tf2_msgs/msg/TFMessage`). A recorder records these topics
+    only if the user names them. All topics except the statistics are listed only while they have subscribers.
     """
 
     def load(self, parent: Simulation, params: Params) -> None:
@@ -125,7 +125,7 @@ class WorldStats(WorldPlugin):
         return partial(transforms_message, self.sim.time_ns, self._take("moving poses", with_all=False))
 
     def _take(self, name: str, *, with_all: bool) -> PoseSample:
-        """Return the current poses: all models with their visuals, or only models that may move, without visuals."""
+        """Return the current poses of all models with their visuals, or only of models that may move."""
         poses: EntityPoses = self.sim.engine.names.shared(name, lambda: EntityPoses(self.sim, self._parts(with_all)))
         return poses.take()
 
@@ -147,7 +147,7 @@ class WorldStats(WorldPlugin):
 
 
 class ClockPublisher(WorldPlugin):
-    """Publishes `rosgraph_msgs/msg/Clock` on `/clock` at 100 Hz of simulated time; part of every world."""
+    """Publishes `rosgraph_msgs/msg/Clock` on `/clock` at 100 Hz of simulated time; every world has this plugin."""
 
     after_step_rate = 100.0
 

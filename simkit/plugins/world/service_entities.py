@@ -24,33 +24,33 @@ _WORLD: Final = ("", "world", "map", "/map")
 
 
 class RequestRefused(Exception):
-    """A service cannot do what a request demands; the text is the reason."""
+    """Error for a request that a service cannot fulfil; its text is the reason."""
 
 
 def answer_handler(
-    sim: Simulation, name: str, does: Callable[[Any], dict[str, object] | str | None], says_why: bool = True
+    sim: Simulation, name: str, execute: Callable[[Any], dict[str, object] | str | None], has_status: bool = True
 ) -> Callable[[object], dict[str, object]]:
     """Return a service handler that answers `success`, or the reason for a failure.
 
     Args:
         sim: simulation.
         name: name of the service, for the log.
-        does: function from the request to the fields of the response, a status message, or None.
-        says_why: whether the response has a `status_message`. Without this field, the reason is logged, as in Gazebo.
+        execute: function of the request that returns the fields of the response, a status message, or None.
+        has_status: True if the response has a field `status_message`. The reason of a failure is always logged.
     """
 
     def handle(request: object) -> dict[str, object]:
         from simkit.runtime.handles.handle import UnknownName
 
         try:
-            found = does(request)
+            found = execute(request)
         except (RequestRefused, InputError, UnknownName) as error:
             why = str(error)
             sim.engine.log.warning("%s: %s", name, why)
-            return {"success": False, "status_message": why} if says_why else {"success": False}
+            return {"success": False, "status_message": why} if has_status else {"success": False}
         fields = found if isinstance(found, dict) else {}
         if isinstance(found, str) and found:
-            if says_why:
+            if has_status:
                 fields = {"status_message": found}
             else:
                 sim.engine.log.warning("%s: %s", name, found)
@@ -59,9 +59,9 @@ def answer_handler(
     return handle
 
 
-def command_handler(sim: Simulation, name: str, does: Callable[[Any], str | None]) -> Callable[[object], None]:
+def command_handler(sim: Simulation, name: str, execute: Callable[[Any], str | None]) -> Callable[[object], None]:
     """Return a handler for a command without a response, such as a topic; a failure is logged."""
-    answer = answer_handler(sim, name, does, says_why=False)
+    answer = answer_handler(sim, name, execute, has_status=False)
 
     def handle(message: object) -> None:
         answer(message)
@@ -69,14 +69,14 @@ def command_handler(sim: Simulation, name: str, does: Callable[[Any], str | None
     return handle
 
 
-def spawn_entities(make: Callable[..., T], *values: object) -> T:
-    """Call `sim.spawn`, `sim.contents.spawn_all` or `sim.contents.clone` and return its result.
+def spawn_entities(spawn: Callable[..., T], *arguments: object) -> T:
+    """Call `sim.spawn`, `sim.contents.spawn_all` or `sim.contents.clone`, and return the result.
 
     Raises:
         RequestRefused: a plugin of the model raised in its `load`; the world is unchanged.
     """
     try:
-        return make(*values)
+        return spawn(*arguments)
     except PluginError as error:
         raise RequestRefused(str(error)) from error
 
@@ -102,11 +102,11 @@ def entity_id(kind: str, scoped: str) -> int:
 def find_entity(sim: Simulation, name: str, kinds: Sequence[str], what: str = "") -> tuple[str, str]:
     """Return kind and scoped name of the entity that a name refers to.
 
-    The search tries scoped names first, with or without the world's name in front. It then tries plain names, the first
-    in document order. Each step searches the kinds in the given order.
+    The search compares scoped names first; the name may begin with the world's name. Then the search compares plain
+    names and returns the first match in document order. Both searches go through `kinds` in order.
 
     Raises:
-        RequestRefused: no entity has the name; the text suggests the closest name.
+        RequestRefused: no entity has this name; the text suggests the closest name.
     """
     own = name.removeprefix(f"{sim.world.name}::")
     for kind in kinds:
@@ -147,7 +147,7 @@ def entity_of(sim: Simulation, message: msgs.Entity, kinds: Sequence[str]) -> tu
 
 
 def frame_of(sim: Simulation, name: str) -> Pose:
-    """Return the pose of a reference frame in the world: of the world itself, or of an entity.
+    """Return the pose of a reference frame in the world; the frame is the world itself or an entity.
 
     Raises:
         RequestRefused: the entity does not exist; the text suggests the closest name.
@@ -167,7 +167,7 @@ def handle_of(sim: Simulation, kind: str, scoped: str) -> Any:
 
 
 def require_finite(value: float, what: str, minimum: float | None = None) -> float:
-    """Return the value as a finite number.
+    """Return a number of a message, after a check that it is finite and at least `minimum`.
 
     Raises:
         RequestRefused: the value is NaN, infinite or below `minimum`.
@@ -186,13 +186,14 @@ def vector_of(message: msgs.Vector3 | msgs.Point, what: str) -> tuple[float, flo
 
 
 def pose_of(message: msgs.Pose, what: str = "pose") -> Pose:
-    """Return the pose of a `Pose` message; a rotation of zeros is the identity, any other is normalised.
+    """Return the pose of a `Pose` message; its quaternion is normalised, and four zeros mean the identity.
 
     Raises:
         RequestRefused: a number is NaN or infinite.
     """
     q = [require_finite(getattr(message.orientation, axis), f"{what}.orientation.{axis}") for axis in "wxyz"]
-    most = max(map(abs, q)) or 1.0  # scaled first: squares of huge or tiny numbers overflow or vanish
+    # scaled first, because squares of huge numbers overflow, and squares of tiny numbers are zero
+    most = max(map(abs, q)) or 1.0
     q = [part / most for part in q]
     size = math.hypot(*q)
     quaternion = [part / size for part in q] if size > 0.0 else [1.0, 0.0, 0.0, 0.0]
@@ -213,6 +214,6 @@ def vector_fields(vector: Sequence[float] | Vector) -> dict[str, float]:
 
 
 def colour_of(message: msgs.ColorRGBA, what: str) -> tuple[float, float, float, float] | None:
-    """Return a colour RGBA from 0 to 1; None if all four are zero, which means "unchanged". Raises `RequestRefused`."""
+    """Return a colour RGBA from 0 to 1; None if all four are zero ("unchanged"). Raises `RequestRefused`."""
     r, g, b, a = (require_finite(getattr(message, part), f"{what}.{part}", 0.0) for part in "rgba")
     return None if r == g == b == a == 0.0 else (r, g, b, a)

@@ -1,4 +1,4 @@
-"""World plugin that moves a directional light like the sun, by date, time and place."""
+"""World plugin that moves a directional light like the sun, by date, time and location."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _DISTANCE = 149_597_870_700.0  # [m], one astronomical unit
 _MOST_KELVIN = 1000.0
-_FASTEST = 1e6  # seconds of the sun's time per simulated second: a year in half a minute
+_FASTEST = 1e6  # largest number of seconds that the sun advances per simulated second: a year in half a minute
 _LOWEST, _HIGHEST = -500.0, 11_000.0  # [m]
 _INSTALL = "pip install 'simkit-robotics[sun]'"
 _DATE = "a date and time such as 2024-06-21T10:30:00Z (UTC without an offset)"
@@ -48,13 +48,14 @@ class SunOptions(Options):
 class Sun(WorldPlugin):
     """Moves a directional light like the sun: its pose, direction, on/off state and irradiance.
 
-    `<start>` (required): date and time at t = 0, ISO 8601, UTC without an offset; never the machine's clock.
-    `<light_name>`: default the world's first directional light. `<time_scale>`: seconds of the sun's time per simulated
-    second, default 1. The location is the world's `<spherical_coordinates>`; `<latitude_deg>`, `<longitude_deg>`,
-    `<elevation>` [m] and `<heading_deg>` of the plugin override it. `<irradiance>`: `clear_sky` (default), or a number
-    [W/m²]. `<pressure>` [Pa] and `<temperature>` [K] of the air, for refraction and for the clear sky; defaults are the
-    standard atmosphere's pressure at the elevation and 285.15 K. `<update_rate>` [Hz], default 10: rate at which the
-    drawn light moves. Sensors that measure the light use the sun's exact position at their own time.
+    `<start>` (required) is the date and time at the start of the simulation, in ISO 8601; without an offset the time is
+    UTC. The machine's clock is never used. `<light_name>` is the light, by default the world's first directional light.
+    `<time_scale>` is the number of seconds that the sun advances per simulated second, by default 1. The location is
+    the world's `<spherical_coordinates>`; the plugin's own `<latitude_deg>`, `<longitude_deg>`, `<elevation>` [m] and
+    `<heading_deg>` override it. `<irradiance>` is `clear_sky` (default) or a number [W/m²]. `<pressure>` [Pa] and
+    `<temperature>` [K] of the air determine the refraction and the light of a clear sky. Their defaults are the
+    standard atmosphere's pressure at the elevation, and 285.15 K. `<update_rate>` [Hz] is the rate at which the drawn
+    light moves, by default 10. Sensors that measure the light use the sun's exact position at their own time.
     """
 
     options = OptionsOf(SunOptions)
@@ -119,7 +120,7 @@ def _start(options: SunOptions) -> float:
 
 
 def _site(options: SunOptions, world: SphericalCoordinates | None) -> Site:
-    """Return the plugin's own location, or the world's."""
+    """Return the location in the plugin's parameters, or else the world's location."""
     params = options.params
     own = params.has("latitude_deg"), params.has("longitude_deg")
     if world is None and not all(own):
@@ -134,7 +135,7 @@ def _site(options: SunOptions, world: SphericalCoordinates | None) -> Site:
 
     elevation = params.number("elevation", world.elevation if world else 0.0, minimum=_LOWEST, maximum=_HIGHEST)
     if not params.has("elevation") and not _LOWEST <= elevation <= _HIGHEST:
-        message = f"the world's <elevation> is {elevation:g} m, allowed for a sun is {_LOWEST:g} to {_HIGHEST:g} m"
+        message = f"the world's <elevation> is {elevation:g} m; the sun needs one from {_LOWEST:g} to {_HIGHEST:g} m"
         params.error("SK-PARAM-002", message, "or add <elevation> to the plugin")
         elevation = 0.0
     return Site(
@@ -148,7 +149,7 @@ def _site(options: SunOptions, world: SphericalCoordinates | None) -> Site:
 
 
 def _irradiance(options: SunOptions) -> float | None:
-    """Return `<irradiance>` [W/m²], or None for that of a clear sky."""
+    """Return `<irradiance>` [W/m²], or None for `clear_sky`."""
     text = options.irradiance
     if text == "clear_sky":
         return None

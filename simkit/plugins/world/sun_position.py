@@ -1,4 +1,4 @@
-"""Position of the sun over a place on Earth, by NREL's Solar Position Algorithm, and its light under a clear sky."""
+"""Position of the sun at a location on Earth, by NREL's Solar Position Algorithm, and its light under a clear sky."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from simkit.pose import Vector
 
 _STEP: Final = 60.0  # [s] between the times at which the algorithm runs
 _BLOCK: Final = 64
-_TERRESTRIAL_LAG: Final = 67.0  # [s], terrestrial time minus universal time; 10 s more turn the sun by 1e-7 rad
+_TERRESTRIAL_LAG: Final = 67.0  # [s], terrestrial time minus universal time; an error of 10 s turns the sun by 1e-7 rad
 _AT_SUNRISE: Final = 0.5667  # [degrees], refraction at sunrise and sunset
 _SEA_LEVEL: Final = 101325.0  # [Pa]
 _BEYOND_AIR: Final = 1353.0  # [W/m²]
@@ -61,11 +61,11 @@ class SunDirection:
 
 
 class SunPath(SharedByCopies):
-    """Direction of the sun over a site, as a function of time alone.
+    """Direction of the sun at a site, as a function of time only.
 
     The algorithm (I. Reda, A. Andreas, Solar Position Algorithm for Solar Radiation Applications, NREL/TP-560-34302)
-    takes 2 ms for one time or for a hundred. It therefore computes blocks of times 60 s apart. A cubic through the four
-    nearest directions interpolates between them with an error below 1e-8 rad.
+    takes 2 ms for one time and also for a hundred times. Directions are therefore computed in blocks, for times at
+    intervals of 60 s. A cubic through the four nearest directions interpolates with an error below 1e-8 rad.
 
     Raises:
         ImportError: pvlib is not installed.
@@ -149,7 +149,7 @@ def clear_sky(elevation: float, pressure: float) -> float:
     """Return the irradiance [W/m²] of a surface that faces the sun under a clear sky, without diffuse light.
 
     A. B. Meinel, M. P. Meinel, Applied Solar Energy (1976): 1353 W/m² · 0.7^(AM^0.678), with the air mass by Kasten and
-    Young, times the pressure over that at sea level.
+    Young, times the ratio of the pressure to the pressure at sea level.
 
     Args:
         elevation: apparent elevation of the sun [rad]; the result is 0 below the horizon.
@@ -164,7 +164,8 @@ def clear_sky(elevation: float, pressure: float) -> float:
 def _algorithm() -> Callable[..., Any]:
     """Return the function `spa.solar_position` of pvlib.
 
-    Its file is loaded alone: it needs only NumPy, while the whole package takes more than a second to import.
+    Only the file of this function is loaded. The file needs only NumPy, while the whole package takes more than a
+    second to import.
     """
     package = importlib.util.find_spec("pvlib")
     if package is None or not package.submodule_search_locations:

@@ -46,10 +46,11 @@ _Does = Callable[..., dict[str, object] | str | None]
 
 
 class WorldServices(WorldPlugin):
-    """Offers `/world/<world>/control`, `create`, `remove`, `set_pose` and the other services; part of every world.
+    """Offers `/world/<world>/control`, `create`, `remove`, `set_pose` and more services; every world has this plugin.
 
-    A response arrives after the request is done. Each service except `control` is therefore also available as
-    `<name>/blocking`, as in gz. `docs/services.md` describes the requests and effects of all services.
+    A service sends its response after the request is completed. gz also has a service `<name>/blocking` that waits for
+    the completion, so simkit offers each service except `control` under this name too. `docs/services.md` describes the
+    requests and effects of all services.
     """
 
     on_error = "stop"
@@ -59,8 +60,8 @@ class WorldServices(WorldPlugin):
         offer = self.sim.communication.services.offer_by_default
         for short, (type_name, does) in self._services().items():
             name = f"{prefix}/{short}"
-            says_why = type_name.startswith(("simkit_msgs", "gazebo_msgs"))
-            handler = answer_handler(self.sim, name, does, says_why)
+            has_status = type_name.startswith(("simkit_msgs", "gazebo_msgs"))
+            handler = answer_handler(self.sim, name, does, has_status)
             offer(name, type_name, handler)
             if short != "control":
                 offer(f"{name}/blocking", type_name, handler)
@@ -133,7 +134,10 @@ class WorldServices(WorldPlugin):
         with self.sim.contents.all_or_none():
             waiting: dict[str, tuple[str, Pose | None]] = {}
             for factory in request.entity_factories:
-                if factory.clone_name or factory.relative_to not in ("", "world"):  # may refer to a model in `waiting`
+                if factory.clone_name or factory.relative_to not in (
+                    "",
+                    "world",
+                ):  # this request may refer to a model in `waiting`
                     self._spawn_waiting(waiting)
                     self._spawn(factory)
                 else:
@@ -144,7 +148,7 @@ class WorldServices(WorldPlugin):
             self._spawn_waiting(waiting)
 
     def _spawn_waiting(self, waiting: dict[str, tuple[str, Pose | None]]) -> None:
-        """Spawn models by name with a single compile for all of them."""
+        """Spawn models, given by name, and compile the world only once for all of them."""
         if waiting:
             spawn_entities(
                 self.sim.contents.spawn_all, [(source, name, pose) for name, (source, pose) in waiting.items()]
@@ -206,7 +210,7 @@ class WorldServices(WorldPlugin):
     def _set_pose_vector(self, request: msgs.SetEntityPoses_Request) -> None:
         if len(request.entities) != len(request.poses):
             raise RequestRefused(
-                f"found {len(request.entities)} entities and {len(request.poses)} poses; expected as many"
+                f"found {len(request.entities)} entities and {len(request.poses)} poses; expected one pose per entity"
             )
         poses = [pose_of(pose) for pose in request.poses]
         for entity in request.entities:  # check all entities before the first one moves
@@ -241,13 +245,13 @@ class WorldServices(WorldPlugin):
         sim = self.sim
         name = request.name
         if not name and request.id:
-            raise RequestRefused("a light is identified by its name, not by a number of 32 bits")
+            raise RequestRefused("the request has an id but no name; lights are identified by their names")
         light = sim.light(find_entity(sim, name, ("light",))[1])
         scene = light.scene
         kind = _LIGHTS[int(request.type)] if 0 <= int(request.type) < len(_LIGHTS) else ""
         if int(request.type) and kind != scene.type:
             other = f"a {kind} light" if kind else f"a light of type {int(request.type)}"
-            raise RequestRefused(f"light {light.scoped!r} is a {scene.type} light, and cannot become {other}")
+            raise RequestRefused(f"light {light.scoped!r} is a {scene.type} light and cannot become {other}")
         change: dict[str, Any] = {"cast_shadows": bool(request.cast_shadows)}
         for part in ("diffuse", "specular"):
             colour = colour_of(getattr(request, part), part)
@@ -289,7 +293,7 @@ class WorldServices(WorldPlugin):
         others = [part for part in ("specular", "emissive") if any(getattr(getattr(request, part), c) for c in "rgb")]
         if others or request.shininess:
             unused = " and ".join([*others, *(["shininess"] if request.shininess else [])])
-            return f"painted; {unused} stay as they are"
+            return f"the diffuse colour is set; {unused} cannot be set and did not change"
         return None
 
     def _scene_info(self, _: object) -> dict[str, object]:

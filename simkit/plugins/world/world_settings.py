@@ -36,7 +36,7 @@ def set_physics(sim: Simulation, request: SetPhysicsProperties_Request, *, keeps
     Args:
         sim: simulation.
         request: a `gazebo_msgs/srv/SetPhysicsProperties_Request`.
-        keeps_gravity: leaves gravity unchanged.
+        keeps_gravity: True to ignore the gravity in the request.
 
     Returns:
         Message that lists the unsupported settings of the request; empty if all are supported.
@@ -77,7 +77,7 @@ def _config_fields(sim: Simulation) -> dict[str, float]:
 
 def physics_fields(sim: Simulation) -> dict[str, object]:
     """Return the fields of a `gazebo_msgs/srv/GetPhysicsProperties_Response`."""
-    pace = sim.control.pausing.pace or 0.0  # no pace: as fast as possible, which is a rate of 0 in Gazebo
+    pace = sim.control.pausing.pace or 0.0  # no pace means as fast as possible, which is a rate of 0 in Gazebo
     return {
         "time_step": sim.timestep,
         "pause": sim.paused,
@@ -88,12 +88,12 @@ def physics_fields(sim: Simulation) -> dict[str, object]:
     }
 
 
-_MOON: Final = 1737400.0, 1737400.0  # semi-axes [m], as `<surface_model>MOON_SCS</surface_model>` has them
+_MOON: Final = 1737400.0, 1737400.0  # semi-axes of the moon [m], as for `<surface_model>MOON_SCS</surface_model>`
 _EARTH: Final = 6378137.0, 6356752.314245  # of WGS 84
 
 
 def set_world_location(sim: Simulation, request: SetSphericalCoordinates_Request) -> None:
-    """Move the world's origin; sensors of position and magnetic field use it from now on. Raises `RequestRefused`."""
+    """Move the world's origin, which sensors of position and magnetic field then use; raises `RequestRefused`."""
     latitude, longitude, elevation, heading = _numbers(request)
     surface = int(request.surface_model)
     if surface not in (0, 1):

@@ -173,7 +173,7 @@ def test_several_poses_are_set_or_none() -> None:
         assert "did you mean 'arm'?" in response.status_message
         assert sim.model("box").pose.position[2] == 4
         response = ask(sim, "set_pose_vector", entities=entities, poses=poses[:1])
-        assert response.status_message == "found 2 entities and 1 poses; expected as many"
+        assert response.status_message == "found 2 entities and 1 poses; expected one pose per entity"
 
 
 def test_every_service_except_control_has_a_blocking_variant() -> None:
@@ -260,7 +260,7 @@ def test_a_light_is_changed_by_topic_as_well() -> None:
 def test_a_light_keeps_its_type(caplog: pytest.LogCaptureFixture) -> None:
     with load() as sim:
         response = ask(sim, "light_config", light={"name": "lamp", "type": 2})
-        assert response.status_message == "light 'lamp' is a spot light, and cannot become a directional light"
+        assert response.status_message == "light 'lamp' is a spot light and cannot become a directional light"
 
 
 def colours(sim: simkit.Simulation, visual: str) -> list[float]:
@@ -286,7 +286,10 @@ def test_ignored_colours_are_reported() -> None:
     with load() as sim:
         asked = {"entity": {"name": "box"}, "diffuse": {"r": 1.0, "a": 1.0}, "emissive": {"r": 1.0}, "shininess": 3.0}
         response = ask(sim, "visual_config", material_color=asked)
-        assert response.status_message == "painted; emissive and shininess stay as they are"
+        assert (
+            response.status_message
+            == "the diffuse colour is set; emissive and shininess cannot be set and did not change"
+        )
         assert not ask(sim, "visual_config", material_color={"entity": {"name": "box"}}).success
 
 
