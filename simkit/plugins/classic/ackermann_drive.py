@@ -1,9 +1,9 @@
 """Ackermann drive of Gazebo Classic: `libgazebo_ros_ackermann_drive.so`.
 
 A command has the speed (`linear.x`) and the angle of a virtual wheel between the front wheels (`angular.z`). As in
-Classic, PID controllers push the steering joints and the rear wheels at every update, for a single step. Their gains
-are therefore those of efforts in a single step. One deliberate difference to Gazebo Classic: `<publish_steerangle>`
-works here, while Classic only documents it.
+Classic, PID controllers drive the steering joints and the rear wheels. Each update of a controller sets an effort for
+one step only, and the gains must suit these short efforts. One deliberate difference to Gazebo Classic:
+`<publish_steerangle>` publishes the steering angle, while Classic only documents this option.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class GazeboRosAckermannDriveOptions(Options):
 
 
 class GazeboRosAckermannDrive(CommandedDrive):
-    """Steers the front wheels and drives the rear wheels of a car from `cmd_vel`; odometry is the ground truth.
+    """Steers the front wheels and drives the rear wheels of a car from `cmd_vel`; its odometry is the true motion.
 
     The wheel base, the track width and the radius of the rear wheels come from the wheels' collisions, as in Classic.
     """
@@ -138,7 +138,10 @@ class GazeboRosAckermannDrive(CommandedDrive):
             params.error("SK-PLUGIN-093", "the front and the rear wheels are at the same position; the wheel base is 0")
 
     def _add_steering_wheel_servo(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> ActuatorRef | None:
-        """Add a servo for the steering wheel joint, if there is one; Classic's default name is optional."""
+        """Add a servo for the joint of the steering wheel.
+
+        No error is reported if the model has no joint with Classic's default name.
+        """
         name = self.options.steering_wheel_joint
         there = any(name in (joint.name, joint.scoped) for joint in scene.all_joints())
         if not (params.has("steering_wheel_joint") or there):
@@ -161,7 +164,7 @@ class GazeboRosAckermannDrive(CommandedDrive):
     # ------------------------------------------------------------------ commands
 
     def before_step(self) -> None:
-        """Push the joints for one step."""
+        """Set the efforts of the steering joints and of the rear wheels for one step."""
         options, elapsed = self.options, self._elapsed()
         if elapsed <= 0.0:
             elapsed = max(self.period, 1.0 / options.update_rate) if options.update_rate > 0 else self.period
@@ -177,10 +180,10 @@ class GazeboRosAckermannDrive(CommandedDrive):
         for axis in (rear_left, rear_right):
             axis.push(push)
         if self._steering_wheel is not None:
-            self.sim.engine.set_control(self._steering_wheel, self._steered() / self._ratio)
+            self.sim.engine.set_control(self._steering_wheel, self._mean_steering_angle() / self._ratio)
 
-    def _steered(self) -> float:
-        """Return the mean steering angle of both wheels [rad]."""
+    def _mean_steering_angle(self) -> float:
+        """Return the mean steering angle of both front wheels [rad]."""
         return (self._axes[0].position + self._axes[1].position) / 2
 
     # ------------------------------------------------------------------ readings
@@ -192,7 +195,7 @@ class GazeboRosAckermannDrive(CommandedDrive):
         self._place = place
         if self._outputs.wants_odometry:
             self._outputs.tell(*self._true.state())
-        for out, value in ((self._distance_out, self._distance), (self._angle_out, self._steered())):
+        for out, value in ((self._distance_out, self._distance), (self._angle_out, self._mean_steering_angle())):
             if out is not None and out.wanted:
                 out.publish_later(partial(msgs.make, _FLOAT, data=value))
 

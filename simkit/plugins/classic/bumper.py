@@ -24,7 +24,7 @@ class GazeboRosBumperOptions(Options):
 
 
 class GazeboRosBumper(SensorPlugin):
-    """Publishes the contacts of its sensor on `bumper_states` at the sensor's rate, also if there are none.
+    """Publishes the contacts of its sensor on `bumper_states` at the sensor's rate, even if the list is empty.
 
     Positions, normals and wrenches are in the frame of the link `<frame_name>` (ROS 1: `<frameName>`), or in the world.
     """

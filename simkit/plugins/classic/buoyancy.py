@@ -40,9 +40,10 @@ class BuoyancyPluginOptions(Options):
 
 
 class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
-    """Makes the links of the model float, fully submerged, by the volume of their collisions or by values in the file.
+    """Applies the buoyancy of fully submerged links, by the volume of their collisions or by values in the file.
 
-    `<link name="…">` with `<center_of_volume>` (link frame) and `<volume>` overrides the volume of the collisions.
+    `<link name="…">` sets the `<volume>` [m³] and the `<center_of_volume>` [m, link frame], in place of the values from
+    the link's collisions.
     """
 
     options = OptionsOf(BuoyancyPluginOptions)
@@ -65,7 +66,7 @@ class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
         self.start()
 
     def find_hulls(self) -> Mapping[str, Sequence[Hull]]:
-        """Return the hulls of the model's links; values in the file override collisions."""
+        """Return the hulls of the model's links, from values in the file or else from the collisions."""
         links = self.sim.engine.names.links
         hulls = self._hulls_in_file
         return {n: [hulls[n]] if n in hulls else self._factory.hulls(links[n].scene) for n in self._links if n in links}

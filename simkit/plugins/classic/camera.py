@@ -32,11 +32,12 @@ class GazeboRosCameraOptions(CameraOptions):
 class GazeboRosCamera(CameraPlugin):
     """Publishes its camera below `<camera_name>` (by default the sensor's name), in the link's frame.
 
-    Topics: `image_raw` and `camera_info`; of a depth camera also `depth/image_raw`, `depth/camera_info` and `points`,
-    whose axes are optical; of a multicamera both below each camera's name. `<hack_baseline>` [m] sets the baseline in
-    the projection matrix (of a multicamera: of all but the left camera). `<triggered>` true takes a picture for each
-    message on `image_trigger`, at the sensor's next due time. `<min_depth>` and `<max_depth>` [m] bound the depths. ROS
-    1 spelling: `<cameraName>`, `<imageTopicName>`, `<cameraInfoTopicName>`, `<frameName>`, `<updateRate>`, ….
+    The topics are `image_raw` and `camera_info`. A depth camera also has `depth/image_raw`, `depth/camera_info` and
+    `points`; the points are in an optical frame. A multicamera has `image_raw` and `camera_info` below the name of each
+    of its cameras. `<hack_baseline>` [m] sets the baseline in the projection matrix; in a multicamera it applies to all
+    cameras except the left one. If `<triggered>` is true, each message on `image_trigger` takes one picture at the next
+    time that the sensor's rate allows. `<min_depth>` and `<max_depth>` [m] limit the depths. Files for ROS 1 write
+    `<cameraName>`, `<imageTopicName>`, `<cameraInfoTopicName>`, `<frameName>`, `<updateRate>` and others.
     """
 
     endpoints = (
@@ -74,7 +75,7 @@ class TriggeredCameraOptions(CameraOptions):
 
 
 class GazeboRosTriggeredCamera(CameraPlugin):
-    """Publishes a picture after each message on `<triggerTopicName>` (`image_trigger`), else as the ROS 1 camera."""
+    """Publishes a ROS 1 camera that takes a picture only after a message on `<triggerTopicName>` (`image_trigger`)."""
 
     options = OptionsOf(TriggeredCameraOptions)
     filenames = ("libgazebo_ros_triggered_camera.so",)
@@ -94,7 +95,7 @@ class ProsilicaOptions(CameraOptions):
 
 
 class GazeboRosProsilica(CameraPlugin):
-    """Streams pictures as the ROS 1 camera does; polling is not supported, because its services do not exist."""
+    """Publishes pictures like the ROS 1 camera; polling is not supported, because its services do not exist."""
 
     options = OptionsOf(ProsilicaOptions)
     filenames = ("libgazebo_ros_prosilica.so",)
@@ -108,7 +109,7 @@ class GazeboRosProsilica(CameraPlugin):
 
 
 def image_topics(names: CameraNames) -> dict[str, str]:
-    """Return the topic of each product of a camera with one picture."""
+    """Return the topic of each product (image, depth image, point cloud, …) of a camera with one lens."""
     return {"image": names.topic(names.image), "camera_info": names.topic(names.info)}
 
 
@@ -125,19 +126,21 @@ def connect_camera(plugin: CameraPlugin, sensor: RenderedCamera, names: CameraNa
     sensor.publish_on(topics)
 
 
-def connect_stereo(plugin: CameraPlugin, sensor: MultiCamera, names: CameraNames, folder: Callable[[str], str]) -> None:
+def connect_stereo(
+    plugin: CameraPlugin, sensor: MultiCamera, names: CameraNames, camera_namespace: Callable[[str], str]
+) -> None:
     """Set the topics and the frame of a multicamera, and apply the parameters that all camera plugins share.
 
     Args:
         plugin: camera plugin.
         sensor: multicamera.
-        names: names of topics.
-        folder: function from a camera's name to the namespace of its topics.
+        names: names of the topics in the file.
+        camera_namespace: function from a camera's name to the namespace of its topics.
     """
     topics = {}
     for eye in sensor.eyes:
-        topics[f"{eye.name}/image"] = names.topic(names.image, folder(eye.name))
-        topics[f"{eye.name}/camera_info"] = names.topic(names.info, folder(eye.name))
+        topics[f"{eye.name}/image"] = names.topic(names.image, camera_namespace(eye.name))
+        topics[f"{eye.name}/camera_info"] = names.topic(names.info, camera_namespace(eye.name))
     connect_camera(plugin, sensor, names, topics)
 
 
@@ -198,10 +201,11 @@ class Ros1DepthCamera(CameraPlugin):
 class GazeboRosDepthCamera(Ros1DepthCamera):
     """Publishes a depth camera below `<cameraName>` in an optical frame: `<frameName>` or the link's frame.
 
-    Topics: `<imageTopicName>` (image_raw), `<cameraInfoTopicName>` (camera_info), `<depthImageTopicName>`
+    The topics are `<imageTopicName>` (image_raw), `<cameraInfoTopicName>` (camera_info), `<depthImageTopicName>`
     (depth/image_raw), `<depthImageCameraInfoTopicName>` (depth/camera_info), `<pointCloudTopicName>` (points). Depths
-    of at most `<pointCloudCutoff>` [m] (0.4) are NaN, in the image and in the cloud. With `<useDepth16UC1Format>` the
-    image is in millimetres, and these depths are 0. Other parameters are those of `libgazebo_ros_camera.so` in ROS 1.
+    up to `<pointCloudCutoff>` [m] (0.4) are NaN, in the image and in the cloud. With `<useDepth16UC1Format>` the image
+    is in millimetres, and these depths are 0. All other parameters are the same as for `libgazebo_ros_camera.so` in ROS
+    1.
     """
 
     options = OptionsOf(GazeboRosDepthCameraOptions)
@@ -227,7 +231,7 @@ class GazeboRosOpenniKinect(Ros1DepthCamera):
 
 
 def connect_depth_camera(plugin: Ros1DepthCamera, sensor: RgbdCamera, near: float, far: float) -> None:
-    """Publish a depth camera whose depths are limited to `near` to `far` [m]."""
+    """Publish a depth camera whose depths [m] are limited to the range from `near` to `far`."""
     options = plugin.options
     in_millimetres = options.use_depth_16_uc_1_format
     if not camera_settings.is_camera(plugin, sensor, "depth", "points"):
@@ -247,10 +251,10 @@ def connect_depth_camera(plugin: Ros1DepthCamera, sensor: RgbdCamera, near: floa
 
 
 class GazeboRosMultiCamera(CameraPlugin):
-    """Publishes the cameras below `<cameraName>/left` and `<cameraName>/right`, others below their own name.
+    """Publishes a multicamera below `<cameraName>/left` and `<cameraName>/right`; other cameras use their own names.
 
-    The names of the cameras contain `left` and `right`. `<hackBaseline>` [m] sets the baseline in the projection matrix
-    of the right camera; the default follows from the cameras' poses.
+    A camera whose name contains `left` or `right` is the left or the right camera. `<hackBaseline>` [m] sets the
+    baseline in the projection matrix of the right camera; the default follows from the cameras' poses.
     """
 
     filenames = ("libgazebo_ros_multicamera.so",)

@@ -1,4 +1,4 @@
-"""Names, rates and camera intrinsics that all camera plugins of Gazebo Classic read."""
+"""Parameters of all camera plugins of Gazebo Classic: names, rates and intrinsics."""
 
 from __future__ import annotations
 
@@ -20,21 +20,22 @@ if TYPE_CHECKING:
     from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
 EMPTY: Final = ("std_msgs/msg/Empty", "std_msgs/msg/Bool")
-"""Types of messages that trigger a camera of Classic; the first is Classic's own."""
+"""Types of messages that trigger a camera of Gazebo Classic; Classic itself uses the first type."""
 
 _OF_ROS_1 = (
     "cameraName", "imageTopicName", "cameraInfoTopicName", "frameName", "updateRate", "hackBaseline", "robotNamespace",
     "triggerTopicName",
 )  # fmt: skip
 _CROPPED = "pictures are rendered beyond their edges before distortion, so they have no black border and K is valid"
-CROP = {"border_crop": _CROPPED, "borderCrop": _CROPPED, "CxPrime": "Classic reads it and publishes <Cx>"}
-"""Parameters of every camera plugin that have no effect, with the reasons."""
+CROP = {"border_crop": _CROPPED, "borderCrop": _CROPPED, "CxPrime": "Classic reads this element but publishes <Cx>"}
+"""Reason why a parameter of all camera plugins has no effect, by parameter name."""
 
 _MOST_PIXELS = 1e9
 FARTHEST = 1e30  # [m]; depths have 32 bits
 _MOST_BENT = 1e3
-_FEW_PIXELS = 0.51  # tolerance of a principal point; Classic's default is half a pixel off the picture's centre
-_LITTLE = 1e-3  # tolerance, relative for a focal length, absolute for a distortion: files use 1e-8 for none
+# tolerance of a principal point; Classic's default differs from the picture's centre by half a pixel
+_FEW_PIXELS = 0.51
+_LITTLE = 1e-3  # tolerance, relative for a focal length, absolute for a distortion; files write 1e-8 for no distortion
 
 
 class CameraOptions(Options):
@@ -111,7 +112,10 @@ def is_camera(plugin: SensorPlugin, sensor: RenderedCamera, required_kind: str, 
 
 
 def name_frame(plugin: CameraPlugin, sensor: RenderedCamera) -> None:
-    """Set the frame of all messages to `<frame_name>`, else to the link's name, and keep `<optical_frame_id>`."""
+    """Set the frame of all messages to `<frame_name>`, else to the link's name.
+
+    Without `<frame_name>`, messages with optical axes keep the sensor's `<optical_frame_id>`.
+    """
     frame = (plugin.options.frame_name or plugin.options.frame_name_ros_1 or link_name(sensor)).lstrip("/")
     is_named = any(plugin.params.has(name) for name in ("frame_name", "frameName"))
     if is_named or not sensor.optical_frame_id:
@@ -128,11 +132,12 @@ def apply_update_rate(plugin: CameraPlugin, sensor: RenderedCamera) -> None:
 
 
 def override_intrinsics(plugin: CameraPlugin, sensor: RenderedCamera, *, is_ros_1: bool) -> None:
-    """Replace intrinsics in `CameraInfo` with those of the plugin's parameters; the pictures do not change.
+    """Replace the intrinsics in `CameraInfo` by the plugin's parameters; the pictures do not change.
 
-    `<focalLength>`, `<Cx>`, `<Cy>` (`<focal_length>`, `<cx>`, `<cy>` in ROS 2) [px], 0 for the values of the picture,
-    and in ROS 1 `<distortionK1>` … `<distortionT2>`. Classic's default for the principal point, (w+1)/2, is half a
-    pixel off the centre of its own pictures. It is used only in a world with Gazebo's quirks.
+    The parameters are `<focalLength>`, `<Cx>` and `<Cy>` [px] (`<focal_length>`, `<cx>` and `<cy>` in ROS 2). With the
+    value 0, the intrinsics of the picture are published. ROS 1 also has `<distortionK1>` … `<distortionT2>`. Classic's
+    default for the principal point, (w+1)/2, is half a pixel off the centre of its own pictures. simkit uses this
+    default only in a world with Gazebo's quirks.
     """
     params, options = plugin.params, plugin.options
     if is_ros_1:
@@ -164,7 +169,7 @@ def override_intrinsics(plugin: CameraPlugin, sensor: RenderedCamera, *, is_ros_
 
 
 def _read_distortion(options: CameraOptions) -> dict[str, Any]:
-    """Return the distortion of ROS 1, if it is not zero; `<autoDistortion>` uses the lens of the sensor."""
+    """Return the distortion that a ROS 1 file sets; empty if it is zero, or with `<autoDistortion>`."""
     found = {
         "k1": options.distortion_k1,
         "k2": options.distortion_k2,
@@ -180,10 +185,10 @@ def _read_distortion(options: CameraOptions) -> dict[str, Any]:
 def _report_difference(params: Params, drawn: CameraModel, published: CameraModel, names: Sequence[str]) -> None:
     off = []
     if abs(published.fx - drawn.fx) > _LITTLE * drawn.fx:
-        off.append(f"<{names[0]}>{published.fx:g}, where the picture has {drawn.fx:g}")
+        off.append(f"<{names[0]}>{published.fx:g} instead of {drawn.fx:g}")
     for name, value, own in ((names[1], published.cx, drawn.cx), (names[2], published.cy, drawn.cy)):
         if abs(value - own) > _FEW_PIXELS:
-            off.append(f"<{name}>{value:g}, where the picture has {own:g}")
+            off.append(f"<{name}>{value:g} instead of {own:g}")
     if np.abs(published.coefficients - drawn.coefficients).max(initial=0.0) > _LITTLE:
         off.append("a distortion that the picture does not have")
     if off:

@@ -20,7 +20,7 @@ class CommandedDrive(ModelPlugin):
     _canonical: str
 
     def start(self, parent: Model, topic: str, rate: float) -> None:
-        """Subscribe to commands, and set the rate of both hooks [Hz]; to be called first in `load`."""
+        """Subscribe to commands, and set the rate [Hz] of both hooks; `load` must call this method first."""
         self.once = OneTimeWarnings(self)
         self.before_step_rate = self.after_step_rate = rate
         self._true = TrueMotion(parent, self.sim.link(self._canonical))

@@ -2,8 +2,8 @@
 
 ROS 1's skid steering with four wheels is `libgazebo_ros_skid_steer_drive.so`. Each wheel is a velocity servo limited to
 the wheel torque. Two differences to Gazebo Classic are deliberate. The acceleration ramp follows the commanded rim
-speed; Classic adds the speed error, which winds up while a wheel is blocked. An encoder twist is negative when the
-robot drives backwards.
+speed, while Classic adds the speed error, which winds up while a wheel is blocked. If the odometry comes from encoders,
+its forward speed is negative when the robot drives backwards.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class Pair:
 
 
 class CommonDiffDriveOptions(Options, abc.ABC):
-    """Options that both spellings share, with fixed values for elements that a spelling does not have."""
+    """Options of both spellings; an element that a spelling does not have is a constant."""
 
     command_topic: str = "cmd_vel"
     odometry_topic: str = "odom"
@@ -93,7 +93,7 @@ class CommonDiffDriveOptions(Options, abc.ABC):
     odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
 
     def read_all(self) -> Self:
-        """Read the pairs of wheels, then every other option, and simkit's own noise of the odometry."""
+        """Read the pairs of wheels, then all other options, and convert `<odometry_noise>`."""
         self.pairs = self._read_pairs()
         super().read_all()
         self.noise = odometry_noise(self.odometry_noise)
@@ -105,11 +105,11 @@ class CommonDiffDriveOptions(Options, abc.ABC):
 
     @property
     def from_encoders(self) -> bool:
-        """True if the odometry comes from the wheels instead of the ground truth."""
+        """True if the odometry is computed from the wheels; False if the odometry is the ground truth."""
         return self.odometry_source in (0, "0", "encoder")
 
     @property
-    def tells_odom_tf(self) -> bool:
+    def publishes_odom_tf(self) -> bool:
         """True if the odometry is published as a transform."""
         return self.publish_odom_tf
 
@@ -133,14 +133,14 @@ class DiffDriveOptions(CommonDiffDriveOptions):
     wheel_diameters: tuple[float, ...] = numbers("m", element="wheel_diameter", minimum=1e-6)
 
     def _read_pairs(self) -> tuple[Pair, ...]:
-        _ = self.update_rate  # read first, so that its report stays before those of the wheels
+        _ = self.update_rate  # read first, so that its error is reported before the errors of the wheels
         count, left, right = self.num_wheel_pairs, self.left_joints, self.right_joints
         if left and right and not len(left) == len(right) == count:
             found_text = f"found {len(left)} <left_joint> and {len(right)} <right_joint>"
             allowed = f"expected one of each for each of {count} <num_wheel_pairs>"
             self.params.error("SK-PARAM-002", f"{found_text}, {allowed}")
             return ()
-        # pairs beyond the end of a list get Gazebo's default
+        # a pair without a number in the file gets Gazebo's default
         separations = [*self.wheel_separations, *[0.34] * (len(left) - len(self.wheel_separations))]
         diameters = [*self.wheel_diameters, *[0.15] * (len(left) - len(self.wheel_diameters))]
         joined = zip(left, right, separations, diameters, strict=False)
@@ -177,7 +177,7 @@ class DiffDriveRos1Options(CommonDiffDriveOptions):
         return (Pair(left, right, self.wheel_separation, self.wheel_diameter / 2),)
 
     @property
-    def tells_odom_tf(self) -> bool:
+    def publishes_odom_tf(self) -> bool:
         return self.publish_odom_tf and self.publish_odom  # Gazebo's <publishTf> switches both
 
 
@@ -198,7 +198,7 @@ class GazeboRosDiffDrive(CommandedDrive):
 
     The last command stays active until the next. `<publish_ground_truth>` (simkit's own) publishes the model's true
     pose on `ground_truth/odom`, at the same instants as the odometry. `<odometry_noise>` (simkit's own) adds errors to
-    either source; the covariance accumulates those of the wheels.
+    the odometry of either source; the covariance of the odometry accumulates the wheels' errors.
     """
 
     endpoints: ClassVar[tuple[Endpoint, ...]] = (
@@ -236,10 +236,11 @@ class GazeboRosDiffDrive(CommandedDrive):
         self._reckoning = DeadReckoning()
         self._angles = self._first_angles()
         self._covariance = planar_covariance(options.covariance_x, options.covariance_y, options.covariance_yaw)
-        self._erring, self._followed = self._start_erring()
+        self._erring, self._followed = self._create_noisy_odometry()
         self._last_read_ns = self.sim.time_ns
         self._odom = self.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
-        self._tf = self.advertise("/tf", TRANSFORMS) if options.tells_odom_tf or options.publish_wheel_tf else None
+        has_tf = options.publishes_odom_tf or options.publish_wheel_tf
+        self._tf = self.advertise("/tf", TRANSFORMS) if has_tf else None
         self._truth = self.advertise("ground_truth/odom", ODOMETRY) if options.publish_ground_truth else None
         self._states = None
         if options.publish_wheel_joint_state:
@@ -272,7 +273,7 @@ class GazeboRosDiffDrive(CommandedDrive):
         """Publish odometry, transforms, ground truth and joint states."""
         options, now = self.options, self.sim.time_ns
         if self._erring is not None:
-            self._err(self._erring)
+            self._advance_with_noise(self._erring)
         elif options.from_encoders:
             self._advance()
         if self._truth is not None and self._truth.wanted:
@@ -291,7 +292,7 @@ class GazeboRosDiffDrive(CommandedDrive):
             self._states.publish_later(partial(joint_state_message, now, joint_readings(self._wheels)))
 
     def _measured(self) -> tuple[Pose, BodyTwist]:
-        """Return pose and twist from the chosen source; the twist is in the robot's own axes."""
+        """Return pose and twist from `<odometry_source>`; the twist is in the robot's own axes."""
         if self._erring is not None:
             reckoned, twist = self._erring.reckoning, self._erring.twist
             return (
@@ -302,8 +303,8 @@ class GazeboRosDiffDrive(CommandedDrive):
         pair = self.options.pairs[0]
         return self._reckoning.pose, rolling_twist(self._wheels, pair.radius, pair.separation)
 
-    def _start_erring(self) -> tuple[NoisyOdometry | None, EquivalentWheelAngles | None]:
-        """Return the noisy odometry, and for ground truth also the wheel angles that give the true motion."""
+    def _create_noisy_odometry(self) -> tuple[NoisyOdometry | None, EquivalentWheelAngles | None]:
+        """Return the odometry with noise; for ground truth, also return the wheel angles of the true motion."""
         options, followed = self.options, None
         if options.noise is None:
             return None, None
@@ -314,21 +315,21 @@ class GazeboRosDiffDrive(CommandedDrive):
         stream = self.random("odometry_noise", 2)
         return NoisyOdometry(options.noise, pair.radius, pair.separation, stream, angles, start), followed
 
-    def _err(self, erring: NoisyOdometry) -> None:
+    def _advance_with_noise(self, odometry: NoisyOdometry) -> None:
         now = self.sim.time_ns
         elapsed, self._last_read_ns = (now - self._last_read_ns) * 1e-9, now
         if self._followed is None:
-            erring.advance(*self._first_angles(), elapsed)
+            odometry.advance(*self._first_angles(), elapsed)
         else:
             left, right, sideways = self._followed.follow(self._true.state()[0])
-            erring.advance(left, right, elapsed, sideways)
+            odometry.advance(left, right, elapsed, sideways)
 
     def _covariances(self) -> tuple[Vector, ...]:
-        """Return the accumulated covariances of the wheels' errors, or the file's if there are no random errors."""
-        erring = self._erring
-        if erring is None or not erring.noise.wheel_variance:
+        """Return the covariances: accumulated wheel errors if the noise is random, else the values in the file."""
+        odometry = self._erring
+        if odometry is None or not odometry.noise.wheel_variance:
             return (self._covariance,)
-        return erring.messages_covariance()
+        return odometry.messages_covariance()
 
     def _advance(self) -> None:
         pair = self.options.pairs[0]
@@ -343,7 +344,7 @@ class GazeboRosDiffDrive(CommandedDrive):
 
     def _transforms(self, base: Pose) -> list[tuple[str, str, Pose]]:
         found = []
-        if self.options.tells_odom_tf:
+        if self.options.publishes_odom_tf:
             found.append((self.options.odometry_frame, self.options.robot_base_frame, base))
         if self.options.publish_wheel_tf:
             for _, above, below in self._joints:
@@ -379,7 +380,7 @@ class SkidSteerOptions(CommonDiffDriveOptions):
 
 
 class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
-    """Drives two pairs of wheels from `<commandTopic>` (`cmd_vel`), both sides like a differential drive.
+    """Drives four wheels from `<commandTopic>` (`cmd_vel`); both wheels of a side have the same rim speed.
 
     The odometry on `<odometryTopic>` (`odom`) is the model's true pose and twist in the plane, with height zero. With
     `<broadcastTF>` the pose, with its height, is also on `/tf`. The last command stays active until the next.

@@ -51,15 +51,16 @@ class ElevatorPluginOptions(Options):
 
 
 class ElevatorPlugin(ModelPlugin):
-    """Moves the cabin to the requested floor with the door closed; then opens the door, waits, and closes it.
+    """Closes the door, moves the cabin to the requested floor, opens the door, waits, and closes the door.
 
-    The command is the floor number as text. Floors are `<floor_height>` apart, starting where the joint `<lift_joint>`
-    is 0; `<door_joint>` is open at 1 and closed at 0. A command during a ride is ignored, as in Gazebo. The topic is
-    `~/elevator`, which is `/gazebo/<world>/elevator`, or `<topic>`.
+    The command is the floor number as text. The distance between floors is `<floor_height>`; at floor 0 the position of
+    `<lift_joint>` is 0. `<door_joint>` is open at 1 and closed at 0. A command is ignored until the previous command is
+    completed, as in Gazebo. The topic is `<topic>`, by default `~/elevator`, which is `/gazebo/<world>/elevator`.
 
-    Springs and dampers of Gazebo's strengths hold cabin and door (10⁵ N/m and N·s/m, 2 N/m and 1 N·s/m). Gazebo damps
-    the change of the error, which throws the cabin when the floor changes, and its damping of the door fades over time.
-    Here the speed is damped. The wait is in simulated time; Gazebo uses wall-clock time.
+    The cabin and the door are moved by springs and dampers with Gazebo's gains: 10⁵ N/m and 10⁵ N·s/m for the cabin, 2
+    N/m and 1 N·s/m for the door. Gazebo damps the rate of the position error, which causes a very large force on the
+    cabin when the target floor changes, and Gazebo's damping of the door decreases over time. simkit damps the speed
+    instead. The waiting time is simulated time; Gazebo uses wall-clock time.
     """
 
     endpoints = (listens("/gazebo/{world}/elevator", STRING, named_by=("topic",)),)
@@ -113,18 +114,18 @@ class ElevatorPlugin(ModelPlugin):
             return
         floor = int(found[0])
         if self._bottom is not None and floor < self._bottom:
-            self._beyond(floor, f"the lowest is {self._bottom}")
+            self._beyond(floor, f"the lowest floor is {self._bottom}")
         elif self._top is not None and floor > self._top:
-            self._beyond(floor, f"the highest is {self._top}")
+            self._beyond(floor, f"the highest floor is {self._top}")
         elif self._phase == "idle":
             self._floor = floor
             self._go("closing first")
 
     def _beyond(self, floor: int, limit: str) -> None:
-        self.once.left_out(f"floor {floor}", f"there is no floor {floor}, {limit}; the command is ignored")
+        self.once.left_out(f"floor {floor}", f"there is no floor {floor}: {limit}; the command is ignored")
 
     def before_step(self) -> None:
-        """Start the next phase when the present phase has ended."""
+        """Start the next phase when the current phase has ended."""
         phase = self._phase
         if phase == "moving":
             is_over = abs(self._lift.position - self._floor * self._height) < _CABIN_WITHIN

@@ -36,8 +36,9 @@ class GazeboRosForceOptions(Options):
 class GazeboRosForce(ModelPlugin):
     """Applies the wrench of the last message to a link at its centre of mass, at every step.
 
-    ROS 2: `<link_name>`, `<force_frame>` world (default) or link, on `gazebo_ros_force`. ROS 1: `<bodyName>` and
-    `<topicName>`, always in the world's axes.
+    In ROS 2, `<link_name>` names the link, `<force_frame>` is world (default) or link, and the topic is
+    `gazebo_ros_force`. In ROS 1, `<bodyName>` names the link, `<topicName>` is the topic, and the wrench is always in
+    the world's axes.
     """
 
     endpoints = (listens("gazebo_ros_force", WRENCH, named_by=("topicName",)),)

@@ -42,12 +42,13 @@ class GazeboRosFtSensorOptions(Options):
 
 
 class GazeboRosFtSensor(ModelPlugin):
-    """Publishes on `wrench` (after `<remapping>`) the wrench in a joint, or the sum of all wrenches on a link.
+    """Publishes the wrench in a joint, or the sum of all wrenches on a link, on `wrench` (after `<remapping>`).
 
-    With `<joint_name>`: the wrench of the child link on the joint, about the joint's origin, in the child link's axes
-    and frame. With `<body_name>`: the sum of all wrenches on the link, in the world's axes and in the frame
-    `<frame_name>`. The sum includes gravity: mass times acceleration of the centre of mass, and the change of angular
-    momentum. `<gaussian_noise>` is the standard deviation on each of the six numbers [N, N·m].
+    With `<joint_name>`, the message has the wrench of the child link on the joint, about the joint's origin, in the
+    axes of the child link, whose name is the `frame_id`. With `<body_name>`, the message has the sum of all wrenches on
+    the link, in the world's axes; `<frame_name>` sets only the `frame_id`. This sum includes gravity: the force is the
+    link's mass times the acceleration of its centre of mass, and the torque is the rate of change of its angular
+    momentum. `<gaussian_noise>` is the standard deviation of the noise on each of the six numbers [N, N·m].
 
     Attributes:
         reads_contacts: keeps resting bodies awake, because a sleeping body has no contact forces and its weight would
@@ -88,7 +89,7 @@ class GazeboRosFtSensor(ModelPlugin):
         self._index = 0
 
     def after_step(self) -> None:
-        self._index += 1  # counted without subscribers too, so that they do not change the noise
+        self._index += 1  # counted even without subscribers, because the noise depends on this number
         if not self._out.wanted:
             return
         data = self.sim.engine.physics.fresh_accelerations()
@@ -139,12 +140,13 @@ class GazeboRosF3DOptions(Options):
 class GazeboRosF3D(GazeboRosFtSensor):
     """Publishes on `<topicName>` the sum of all wrenches on the link `<bodyName>`, at every step.
 
-    In the world's axes, including gravity: the link's mass times the acceleration of its centre of mass [N], and the
-    change of its angular momentum [N·m]. `<frameName>` (`world`) sets only the `frame_id`.
+    The sum is in the world's axes and includes gravity. The force [N] is the link's mass times the acceleration of its
+    centre of mass. The torque [N·m] is the rate of change of the link's angular momentum. `<frameName>` (`world`) sets
+    only the `frame_id`.
     """
 
     endpoints = (publishes("{topicName}", "geometry_msgs/msg/WrenchStamped", named_by=("topicName",)),)
-    options = OptionsOf(GazeboRosF3DOptions)  # type: ignore[assignment]  # it reads none of its base's options
+    options = OptionsOf(GazeboRosF3DOptions)  # type: ignore[assignment]  # this class reads no option of its base class
     filenames = ("libgazebo_ros_f3d.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:

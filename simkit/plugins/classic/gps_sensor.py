@@ -48,9 +48,9 @@ class GazeboRosGpsSensor(SensorPlugin):
         parent.publish_on({"fix": self.ros.topic("~/out"), "velocity": self.ros.topic("~/vel")})
 
     def _check_heading(self, params: Params) -> None:
-        """Warn about a heading of 180 degrees, with which worlds compensate that Classic turns positions."""
+        """Warn about a heading of 180 degrees, by which worlds compensate Classic's error of half a turn."""
         place = self.sim.world.spherical_coordinates
         if place is not None and math.cos(place.heading) < _BACKWARDS and not self.sim.world.gazebo_quirks:
-            message = "<heading_deg> 180 makes x point west; in Gazebo Classic, which is half a turn off, x points east"
-            hint = "write <heading_deg>0</heading_deg>, or <gazebo_quirks> for Classic's half turn"
+            message = "<heading_deg> 180 makes x point west; Gazebo Classic, wrong by half a turn, makes x point east"
+            hint = "write <heading_deg>0</heading_deg>, or add <gazebo_quirks> to the world for Classic's heading"
             params.diagnostics.warning("SK-SENSOR-068", message, place.where, hint)

@@ -1,4 +1,4 @@
-"""Gazebo Classic's plugin that holds a link at a frame of tf, in both spellings: `libgazebo_ros_hand_of_god.so`."""
+"""Plugin of Gazebo Classic that pulls a link to a frame of tf, in both spellings: `libgazebo_ros_hand_of_god.so`."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ class GazeboRosHandOfGodOptions(Options):
 
 
 class GazeboRosHandOfGod(ModelPlugin):
-    """Pulls a link, whose weight it carries, to the frame `<frame_id>_desired` that others publish on `/tf`.
+    """Compensates the weight of a link, and pulls the link to the frame `<frame_id>_desired` from `/tf`.
 
     The force is `<kl>` [N/m] times the distance to the target, damped critically for the link's mass. The torque is
     `<ka>` [N·m/rad] times half the angle to the target, damped by 2 √(ka Ixx), as in Gazebo. The link's pose is
-    published on `/tf` as `<frame_id>_actual`. The frame may be the end of a chain of frames from `world`. ROS 1:
-    `<linkName>`, `<frameId>`.
+    published on `/tf` as `<frame_id>_actual`. The desired frame may be the end of a chain of frames that begins with
+    `world`. The ROS 1 names are `<linkName>` and `<frameId>`.
     """
 
     options = OptionsOf(GazeboRosHandOfGodOptions)
@@ -81,7 +81,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         self._compensate_weight(are_applied=True)
 
     def _compensate_weight(self, *, are_applied: bool = False) -> None:
-        """Compensate the link's weight."""
+        """Apply a force against gravity at the link's centre of mass."""
         force = -self._mass * np.asarray(self.sim.gravity) if self._has_weight else np.zeros(3)
         lift = {self._scoped: np.array([*force, 0.0, 0.0, 0.0])} if force.any() else {}
         self.sim.engine.wrenches.set(self, lift, are_applied=are_applied)
@@ -104,7 +104,7 @@ class GazeboRosHandOfGod(ModelPlugin):
             self.sim.engine.reschedule()
 
     def _desired(self) -> Pose | None:
-        """Return the desired pose of the link in the world; None until it has been published."""
+        """Return the desired pose of the link in the world; None if `/tf` does not contain this pose yet."""
         frame, pose = f"{self._frame}_desired", IDENTITY
         for _ in range(len(self._frames)):  # the bound ends the loop for a cycle of frames
             if frame not in self._frames:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from simkit.sensors.inertial.imu_measurement import ImuMeasurement
 
 TYPE = "sensor_msgs/msg/Imu"
-_DEFAULT = "/default_imu"  # of both topic and service
+_DEFAULT = "/default_imu"  # default name of both the topic and the service
 
 
 class GazeboRosImuOptions(Options):
@@ -44,10 +44,10 @@ class GazeboRosImu(ModelPlugin):
 
     Rates and accelerations are in the link's axes; the orientation is the link's in the world, turned by `<rpyOffset>`
     about the world's axes. `<frameName>` (the link's name) sets only the `frame_id`. The acceleration includes the
-    reaction to gravity, as `sensor_msgs/Imu` requires. Gazebo's plugin omits it and turns both vectors in the wrong
-    direction; this plugin does the same in a world with `<gazebo_quirks>`. `<gaussianNoise>` is a standard deviation on
-    each of the six numbers [rad/s, m/s²]; its square is on the diagonals of the covariances. `<updateRate>` [Hz]; 0 is
-    every step. The calibration service `<serviceName>` (`/default_imu`) does nothing.
+    reaction to gravity, as `sensor_msgs/Imu` requires. Gazebo's plugin omits this reaction and turns both vectors in
+    the wrong direction; simkit does the same only in a world with `<gazebo_quirks>`. `<gaussianNoise>` is the standard
+    deviation of the noise on each of the six numbers [rad/s, m/s²]; its square is on the diagonals of the covariances.
+    `<updateRate>` is in Hz; 0 means every step. The calibration service `<serviceName>` (`/default_imu`) does nothing.
     """
 
     endpoints = (
@@ -86,7 +86,7 @@ class GazeboRosImu(ModelPlugin):
         self._covariance = covariance
 
     def after_step(self) -> None:
-        self._index += 1  # counted without subscribers too, so that they do not change the noise
+        self._index += 1  # counted even without subscribers, because the noise depends on this number
         if self._out is None or not self._out.wanted:
             return
         link, pose = self._link, self._link.pose

@@ -34,15 +34,17 @@ class GazeboRosJointPoseTrajectoryOptions(Options):
 
 
 class GazeboRosJointPoseTrajectory(ModelPlugin):
-    """Sets joints to the positions of a `JointTrajectory`, one point after another; between points the joints are free.
+    """Sets joints to the positions of a `JointTrajectory`, point by point; between two points the joints move freely.
 
-    Times are as in Gazebo. The first point is set at once, or at the time of the header if that is later. After each
-    point its `time_from_start` passes before the next. `<simkit:point_times>` from_start sets each point at its own
-    time instead. Points are set at `<update_rate>` (ROS 2, 100 Hz; 0: every step), one at a time.
+    As in Gazebo, the first point is set at once, or at the time in the header if that is later. The `time_from_start`
+    of a point is the delay between this point and the next point. If `<simkit:point_times>` is from_start, each point
+    is set at its own `time_from_start` instead. At most one point is set per update; `<update_rate>` is 100 Hz by
+    default in ROS 2, and 0 means every step.
 
-    The header's `frame_id` is `world`, `map`, or a link whose pose is kept, of this model or another; the joints are
-    then those of that link's model. ROS 2: on `set_joint_trajectory`. ROS 1: `<topicName>`, at every step. Gazebo on
-    ROS 1 pauses the physics meanwhile; here the physics continues.
+    The header's `frame_id` is `world`, `map`, or the name of a link, in this model or another. With a link, the joints
+    belong to the link's model, and the link's pose does not change when the joints are set. The topic is
+    `set_joint_trajectory` in ROS 2 and `<topicName>` in ROS 1, where points can be set at every step. Gazebo on ROS 1
+    pauses the physics while a trajectory plays; in simkit the physics continues.
     """
 
     endpoints = (listens("set_joint_trajectory", TRAJECTORY, named_by=("topicName",)),)
@@ -55,7 +57,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         self._model = parent
         is_ros_1 = any(params.has(name) for name in ("topicName", "serviceName", "updateRate", "robotNamespace"))
         if is_ros_1:
-            _ = self.options.update_rate_ros_1  # Gazebo reads it and does not use it
+            _ = self.options.update_rate_ros_1  # Gazebo reads this element but does not use the value
             _ = self.options.service_name  # Gazebo is built without this service
             message = f"plugin {self.name!r}: the physics continues while a trajectory plays; Gazebo on ROS 1 pauses it"
             params.diagnostics.note("SK-PLUGIN-046", message, self.where)
@@ -97,7 +99,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         self._index = 0
 
     def _reference(self, frame: str) -> Link | None:
-        """Return the link whose pose a trajectory keeps; None for the world, or after a report."""
+        """Return the link whose pose does not change when the joints are set; None for the world or after a report."""
         if frame in _WORLD:
             return None
         links: dict[str, Link] = self.sim.contents.handles.tables["link"]
@@ -105,7 +107,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         found = links.get(own) or links.get(frame)
         found = found or next((link for scoped, link in links.items() if scoped.endswith("::" + frame)), None)
         if found is None:
-            problem = f"a trajectory is ignored: its frame_id {frame!r} is neither 'world' nor a link"
+            problem = f"a trajectory is ignored: its frame_id {frame!r} is not 'world', 'map' or a link"
             self.once.left_out(f"frame {frame}", problem, suggest_names(frame, list(links)))
         return found
 
@@ -127,7 +129,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         self._index += 1
 
     def _set_joints(self, positions: tuple[float, ...]) -> None:
-        """Set the joints; the reference link, or the model, keeps its pose."""
+        """Set the joints; the pose of the reference link, or else of the model, does not change."""
         model = self.sim.model(self._model_name)
         link = self.sim.link(self._fixed) if self._fixed else None
         before = model.pose if link is None else link.pose

@@ -1,4 +1,4 @@
-"""Battery of Gazebo Classic and its consumers: `libLinearBatteryPlugin.so`, `libLinearBatteryConsumerPlugin.so`."""
+"""Battery and battery consumers of Gazebo Classic: `libLinearBatteryPlugin.so`, `libLinearBatteryConsumerPlugin.so`."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class ClassicLinearBatteryOptions(Options):
 
 
 class ClassicLinearBattery(Battery):
-    """Drains a battery with the arithmetic of gz's linear battery, from the start; an empty battery stops nothing.
+    """Drains a battery from the start, by the equations of gz's linear battery; an empty battery has no effect.
 
-    In Classic only other plugins can read the battery. Here its state is published like that of gz's battery.
+    In Classic only other plugins can read the battery. simkit also publishes the battery's state, as for gz's battery.
     """
 
     options = OptionsOf(ClassicLinearBatteryOptions)
@@ -61,7 +61,7 @@ class LinearBatteryConsumerOptions(Options):
 
 
 class LinearBatteryConsumer(BatteryConsumer):
-    """Draws power from a battery of its model, Classic's or gz's."""
+    """Draws power from a battery of its model, which may be a plugin of Classic or of gz."""
 
     options = OptionsOf(LinearBatteryConsumerOptions)
     filenames = ("libLinearBatteryConsumerPlugin.so",)

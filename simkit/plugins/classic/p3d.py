@@ -53,14 +53,15 @@ class GazeboRosP3DOptions(Options):
 class GazeboRosP3D(ModelPlugin):
     """Publishes the true pose and twist of the link `<body_name>` on `odom` (ROS 1: `<topicName>`).
 
-    Pose and twist are in the world's axes, or relative to the link that `<frame_name>` names and in its axes. The twist
-    is that of the link's origin, and never in the link's own axes. `<xyz_offset>` is added to the position, along the
-    axes of the frame, and `<rpy_offset>` turns the orientation about them; neither changes the twist.
-    `<gaussian_noise>` is the standard deviation on each part of the twist [m/s, rad/s]; its square is on the diagonals
-    of both covariances. `<update_rate>` [Hz]; 0 is every step.
+    Pose and twist are in the world's axes. If `<frame_name>` names a link, they are relative to that link and in its
+    axes. The linear velocity is measured at the origin of `<body_name>`. The twist is never in the axes of
+    `<body_name>`. `<xyz_offset>` is added to the position, along the axes of the frame, and `<rpy_offset>` turns the
+    orientation about them; neither changes the twist. `<gaussian_noise>` is the standard deviation of the noise on each
+    component of the twist [m/s, rad/s]; its square is on the diagonals of both covariances. `<update_rate>` is in Hz; 0
+    means every step.
 
-    If the reference is a rotating link, Gazebo multiplies orientations in the wrong order, turns velocities in the
-    wrong direction and omits the velocity due to the rotation. Here the twist is the rate of change of the pose.
+    If `<frame_name>` is a rotating link, Gazebo multiplies orientations in the wrong order, turns velocities in the
+    wrong direction and omits the velocity due to the rotation. In simkit the twist is the rate of change of the pose.
     """
 
     endpoints = (publishes("odom", ODOMETRY, named_by=("topicName",)),)
@@ -88,7 +89,7 @@ class GazeboRosP3D(ModelPlugin):
         self._frame, self._reference = frame.strip("/"), self._find_reference(scene, frame.strip("/"), params)
 
     def _find_reference(self, scene: SceneModel, frame: str, params: Params) -> str:
-        """Return the scoped name of the link that is the frame of the poses; empty for the world."""
+        """Return the scoped name of the link whose frame the poses use; empty for the world."""
         if frame in _INERTIAL:
             return ""
         links = {link.name: link.scoped for link in scene.all_links()}
@@ -105,17 +106,17 @@ class GazeboRosP3D(ModelPlugin):
         self._stream = self.random("gaussian_noise", 6) if self._deviation > 0 else None
         self._spread = np.diag([self._deviation**2] * 6).reshape(36)
         self._out = self.advertise(self._topic, ODOMETRY)
-        publish_while_subscribed(self, self._out, self._rate, "tell")
+        publish_while_subscribed(self, self._out, self._rate, "publish")
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Publish the odometry."""
         pose, motion = self._reading()
-        # independent of subscribers, so that they do not change the noise
+        # the noise depends on this number of instants, and therefore not on the subscribers
         index = count_instants(self, self._rate)
         self._out.publish_later(partial(self._message, self.sim.time_ns, pose, motion, index))
 
     def _reading(self) -> tuple[Pose, Vector]:
-        """Return the pose with its offset, and the twist (linear, angular), both along the axes of the frame."""
+        """Return the pose with its offset, and the twist (linear, angular), both in the axes of `<frame_name>`."""
         link, base = self._link, self._base
         pose, velocity = link.pose, link._velocity()
         linear, angular = velocity[3:], velocity[:3]
@@ -138,6 +139,6 @@ class GazeboRosP3D(ModelPlugin):
 
 
 def _is_unchanged_by_zero_offset(pose: Pose) -> bool:
-    """Check whether a zero offset leaves every bit of a pose unchanged: it has no zeros, and its quaternion is unit."""
+    """Check whether a zero offset changes no bit of a pose: no number is zero, and the quaternion is unit."""
     turn = pose.quaternion
     return abs(math.sqrt(turn.dot(turn)) - 1.0) <= 1e-15 and bool(pose.position.all() and turn.all())

@@ -43,8 +43,8 @@ class PlanarMoveOptions(Options):
     """Options in the spelling of ROS 2, whose topics have fixed names; rates in Hz, 0 is every step.
 
     Attributes:
-        timeout: duration for which a command stays active [s].
-        is_level: whether the height in the odometry and the twist's covariance are 0.
+        timeout: time for which a command stays active [s].
+        is_level: True if the odometry has the height 0 and the twist covariance 0.
     """
 
     command_topic: str = "cmd_vel"
@@ -79,7 +79,7 @@ class PlanarMoveRos1Options(Options):
 
     @property
     def timeout(self) -> float:
-        """Duration for which a command stays active [s]; unlimited if `<cmdTimeout>` is negative or missing."""
+        """Time for which a command stays active [s]; unlimited if `<cmdTimeout>` is negative or missing."""
         return self.cmd_timeout if self.cmd_timeout >= 0 else math.inf
 
     @property
@@ -99,13 +99,14 @@ def read_options(params: Params) -> PlanarMoveOptions | PlanarMoveRos1Options:
 class GazeboRosPlanarMove(ModelPlugin):
     """Moves the model in the plane with the twist on `cmd_vel`: forward, left, and rotation about the vertical.
 
-    The linear speeds are along the model's heading, at the model's origin. The last command stays active, in ROS 1 for
-    `<cmdTimeout>` [s]. The model neither tilts nor climbs by itself, and slides on static objects; without any contact,
-    it falls. Odometry on `odom` and `/tf` is the model's true pose in the world and its true twist along its heading.
-    In ROS 1 its height and the twist's covariance are 0. `<odometryRate>` 0 publishes nothing.
+    The linear speeds are along the model's heading, at the model's origin. Each command stays active until the next, in
+    ROS 1 at most for `<cmdTimeout>` [s]. The plugin does not tilt or lift the model: on static objects the model
+    slides, and without any contact it falls. The odometry on `odom` and `/tf` is the model's true pose in the world and
+    its true twist along its heading. In ROS 1 the odometry has the height 0 and the twist covariance 0; an
+    `<odometryRate>` of 0 publishes nothing.
 
-    Gazebo sets the velocity only at `<update_rate>` (20 Hz), and friction brakes the model in between. Here every step
-    holds the velocity, and commands are read at that rate.
+    Gazebo sets the velocity only at `<update_rate>` (20 Hz), and friction brakes the model in between. simkit reads
+    commands at this rate, but sets the velocity at every step.
     """
 
     endpoints = (
@@ -137,7 +138,7 @@ class GazeboRosPlanarMove(ModelPlugin):
         self._motion = KinematicMotion(self.sim, self._links, self._canonical, self._in_canonical)
         self._mover = KinematicMover(self.sim)
         if not self._motion:
-            message = f"plugin {self.name!r}: model {self.scoped!r} is joined to the world and cannot move"
+            message = f"plugin {self.name!r}: model {self.scoped!r} has a joint to the world and cannot move"
             hint = "remove the joint to the world"
             params.diagnostics.warning("SK-PLUGIN-053", message, self.where, hint)
         self.listen(options.command_topic, COMMAND_TYPES, self._on_command)
@@ -156,22 +157,22 @@ class GazeboRosPlanarMove(ModelPlugin):
 
     def before_step(self) -> None:
         """Set the velocity for the next step."""
-        self._mover.move(self._moves())
+        self._mover.move(self._velocity_targets())
 
     @classmethod
     def before_step_together(
         cls, plugins: Sequence[GazeboRosPlanarMove]
     ) -> Callable[[Iterable[GazeboRosPlanarMove]], None]:
-        """Run `before_step` of many plugins, with a shared mover."""
+        """Return a function that runs `before_step` of many plugins with one shared mover."""
         mover = KinematicMover(plugins[0].sim)
 
         def run(rota: Iterable[GazeboRosPlanarMove]) -> None:
-            mover.move([move for plugin in rota for move in plugin._moves()])
+            mover.move([move for plugin in rota for move in plugin._velocity_targets()])
 
         return run
 
-    def _moves(self) -> list[VelocityTarget]:
-        """Return the target velocity of the model, in the axes of its heading."""
+    def _velocity_targets(self) -> list[VelocityTarget]:
+        """Return the commanded velocity of the model, in the axes of its heading; empty if the model cannot move."""
         tick = self.sim.tick
         if tick >= self._next:
             grid: TickGrid | None = self.sim.engine.clock.grid(self.options.update_rate)

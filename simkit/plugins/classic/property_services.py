@@ -39,7 +39,7 @@ def joint_properties(sim: Simulation, request: msgs.GetJointProperties_Request) 
     """Return the response of `GetJointProperties`."""
     joint = joint_of(sim, request.joint_name)
     if joint.type not in _TYPES:
-        message = f"GetJointProperties: got properties; {joint.type} joints have no type in this message"
+        message = f"GetJointProperties: got properties; the message has no type for a {joint.type} joint, so type is 0"
     else:
         message = "GetJointProperties: got properties"
     return {
@@ -55,7 +55,7 @@ def set_joint_properties(sim: Simulation, request: msgs.SetJointProperties_Reque
     """Set damping and position limits; return a message that lists the ignored parameters of ODE.
 
     Raises:
-        RequestRefused: the joint does not exist, or a value does not fit it.
+        RequestRefused: the joint does not exist, or a number is not valid for this joint.
     """
     joint, config = joint_of(sim, request.joint_name), request.ode_joint_config
     dofs = list(joint.mj_dofs)
@@ -63,9 +63,10 @@ def set_joint_properties(sim: Simulation, request: msgs.SetJointProperties_Reque
     stops = {name: [require_finite(value, name) for value in getattr(config, name)] for name in _STOPS}
     for name, values in {"damping": damping, **stops}.items():
         if len(values) > len(dofs):
-            raise RequestRefused(f"found {len(values)} numbers in {name}, joint {joint.scoped!r} has {len(dofs)}")
+            count = f"{len(dofs)} degrees of freedom"
+            raise RequestRefused(f"found {len(values)} numbers in {name}; joint {joint.scoped!r} has {count}")
     if any(stops.values()) and len(dofs) != 1:
-        raise RequestRefused(f"joint {joint.scoped!r} has {len(dofs)} degrees of freedom; limits need a joint with one")
+        raise RequestRefused(f"joint {joint.scoped!r} has {len(dofs)} degrees of freedom; limits need exactly one")
     if damping:
         sim.engine.touch("dof_damping")[dofs[: len(damping)]] = damping
     for name, values in stops.items():
@@ -111,5 +112,5 @@ def set_light_properties(sim: Simulation, request: msgs.SetLightProperties_Reque
 
 
 def joint_of(sim: Simulation, name: str) -> Joint:
-    """Return a joint by its scoped name, or the first with that plain name; raises `RequestRefused`."""
+    """Return the joint with a scoped name, else the first joint with this plain name; raises `RequestRefused`."""
     return sim.joint(find_entity(sim, name, ("joint",))[1])

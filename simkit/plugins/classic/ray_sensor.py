@@ -1,4 +1,4 @@
-"""Lidars of Gazebo Classic: `libgazebo_ros_ray_sensor.so` of ROS 2, `libgazebo_ros_laser.so` and related of ROS 1.
+"""Lidars of Gazebo Classic: `libgazebo_ros_ray_sensor.so` of ROS 2, `libgazebo_ros_laser.so` and others of ROS 1.
 
 ROS 1's `libgazebo_ros_range.so` is a lidar that publishes its nearest ray.
 """
@@ -40,8 +40,8 @@ class GazeboRosRaySensorOptions(Options):
 class GazeboRosRaySensor(SensorPlugin):
     """Publishes its lidar on `~/out` (after `<remapping>`), in the link's frame or `<frame_name>`.
 
-    `<output_type>` is sensor_msgs/LaserScan, PointCloud2 (the default), PointCloud or Range. `<min_intensity>` is a
-    lower bound of intensities. `<radiation_type>` (ultrasound or infrared) is copied to Range messages.
+    `<output_type>` is sensor_msgs/LaserScan, PointCloud2 (the default), PointCloud or Range. Intensities below
+    `<min_intensity>` become `<min_intensity>`. `<radiation_type>` (ultrasound or infrared) is copied to Range messages.
     """
 
     endpoints = (
@@ -99,8 +99,9 @@ class GazeboRosBlockLaser(SensorPlugin):
     """Publishes a ROS 1 PointCloud with a point for every ray on `<topicName>` (`/world`).
 
     The frame is the link's frame or `<frameName>`. A ray without a reading ends at the sensor's maximum range.
-    `<gaussianNoise>` is a standard deviation on x, y and z [m] of rays with a reading, and on every intensity, in
-    addition to the sensor's own noise. `<hokuyoMinIntensity>` and `<updateRate>` have no effect, as in Gazebo.
+    `<gaussianNoise>` is the standard deviation of noise on x, y and z [m] of rays with a reading, and on every
+    intensity. This noise is in addition to the sensor's own noise. `<hokuyoMinIntensity>` and `<updateRate>` have no
+    effect, as in Gazebo.
     """
 
     endpoints = (publishes("/world", "sensor_msgs/msg/PointCloud", named_by=("topicName",)),)
@@ -121,7 +122,7 @@ class GazeboRosBlockLaser(SensorPlugin):
 
 
 def _named_topic(plugin: SensorPlugin, topic: str) -> str:
-    """Return the topic `<topicName>`, which is `/world` by default in Gazebo."""
+    """Return the topic `<topicName>`, or Gazebo's default `/world` after a warning."""
     if not topic:
         message = f"plugin {plugin.name!r} has no <topicName>: it publishes on '/world', as in Gazebo"
         plugin.params.diagnostics.note("SK-PLUGIN-062", message, plugin.where, "<topicName>scan</topicName>")
@@ -144,9 +145,9 @@ class GazeboRosVelodyneLaserOptions(Options):
 class GazeboRosVelodyneLaser(SensorPlugin):
     """Publishes a PointCloud2 with x, y, z, intensity and ring on `~/out` (after `<remapping>`; or `<topicName>`).
 
-    The cloud has only points farther than `<min_range>`, nearer than `<max_range>` and of at least `<min_intensity>`.
-    With `<organize_cloud>` every ray has a fixed index in the cloud. `<gaussianNoise>`, a standard deviation [m], is
-    added to the sensor's.
+    The cloud has only points whose distance is between `<min_range>` and `<max_range>` [m] and whose intensity is at
+    least `<min_intensity>`. With `<organize_cloud>` every ray has a fixed index in the cloud. `<gaussianNoise>` is the
+    standard deviation [m] of noise in addition to the sensor's own noise.
     """
 
     endpoints = (publishes("~/out", "sensor_msgs/msg/PointCloud2", named_by=("topicName",)),)
@@ -190,8 +191,9 @@ class GazeboRosRangeOptions(Options):
 class GazeboRosRange(SensorPlugin):
     """Publishes a `Range` on `<topicName>` (`range`), in the link's frame or `<frameName>`.
 
-    `<fov>` [rad] only sets a field of the message: the rays are the sensor's. `<gaussianNoise>` [m] is on the nearest
-    range. `<updateRate>` [Hz] applies if it is lower than the sensor's own.
+    `<fov>` [rad] only sets a field of the message and does not change the sensor's rays. `<gaussianNoise>` is the
+    standard deviation [m] of noise on the nearest range. `<updateRate>` [Hz] is used if it is lower than the sensor's
+    own rate.
     """
 
     endpoints = (publishes("range", "sensor_msgs/msg/Range", named_by=("topicName",)),)

@@ -54,9 +54,10 @@ class RealSense(ModelPlugin):
     """Publishes the sensors `<prefix>color`, `<prefix>depth`, `<prefix>ired1` and `<prefix>ired2` of its model.
 
     The topics are `<prefix>/<colorTopicName>` and so on, each with a `camera_info`, in the frames
-    `<colorOpticalframeName>` and so on. Depths are in millimetres (`16UC1`), 0 outside `<rangeMinDepth>` to
-    `<rangeMaxDepth>` [m]. With `<pointCloud>` true a cloud in the depth's optical frame is on
-    `<prefix>/<pointCloudTopicName>`, NaN outside `<pointCloudCutoff>` to `<pointCloudCutoffMax>` [m].
+    `<colorOpticalframeName>` and so on. Depths are in millimetres (`16UC1`), and 0 outside the range from
+    `<rangeMinDepth>` to `<rangeMaxDepth>` [m]. If `<pointCloud>` is true, a point cloud in the depth camera's optical
+    frame is published on `<prefix>/<pointCloudTopicName>`. Its points are NaN outside the range from
+    `<pointCloudCutoff>` to `<pointCloudCutoffMax>` [m].
     """
 
     endpoints = (
@@ -111,7 +112,7 @@ class RealSense(ModelPlugin):
         return self.ros.topic(f"{prefix}/{name.lstrip('/')}" if prefix else name)
 
     def _find(self, model: Model, name: str, product: str) -> RgbdCamera | None:
-        """Return the model's camera of that name, or None after a warning."""
+        """Return the model's camera with a name; None after a warning."""
         inside = model.scoped + "::"
         within = [s for scoped, s in self.sim.contents.sensors.items() if scoped.startswith(inside)]
         sensors = [sensor for sensor in within if hasattr(sensor, "transform_messages")]
@@ -126,7 +127,7 @@ class RealSense(ModelPlugin):
 
 
 def _as_driver(image: Image) -> Image:
-    """Rename the grey encoding as in the camera's driver."""
+    """Return the image with the name that the camera's ROS driver uses for the grey encoding."""
     if image.encoding == "mono8":
         image.encoding = "8UC1"
     return image

@@ -1,4 +1,4 @@
-"""Services of Gazebo Classic's server for ROS 2, and those under `/gazebo` for worlds of ROS 1."""
+"""Services of Gazebo Classic's server for ROS 2, and the services under `/gazebo` for worlds of ROS 1."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ _EMPTY: Final = "std_srvs/srv/Empty"
 class ClassicServices(WorldPlugin):
     """Offers the services of Gazebo Classic's server; part of every world.
 
-    These are spawning, deleting, listing, pausing, resetting, wrenches and efforts, which `gazebo.launch.py` of ROS 2
-    loads into every server. States and properties, for which Classic needs a plugin in the world, are always available,
-    because they cost nothing. A world with plugins in ROS 1's spelling (camelCase) or with
-    `libgazebo_ros_api_plugin.so` also has ROS 1's own names, under `/gazebo`. `docs/services.md` describes the requests
-    and effects of all services.
+    They spawn, delete and list models, pause and reset the world, and apply wrenches and efforts; `gazebo.launch.py` of
+    ROS 2 loads them into every server. Classic offers the services for states and properties only with a plugin in the
+    world. simkit always offers them, because they cost nothing. A world with plugins in ROS 1's spelling (camelCase) or
+    with `libgazebo_ros_api_plugin.so` also has ROS 1's services, under `/gazebo`. `docs/services.md` describes the
+    requests and effects of all services.
     """
 
     on_error = "stop"
@@ -82,21 +82,21 @@ class ClassicServices(WorldPlugin):
     def clear_link(self, name: str) -> None:
         """Remove the wrenches on a link."""
         link = find_entity(self.sim, name, ("link",))[1]
-        if not self._keep([push for push in self.pushes if push.link != link]):
+        if not self._replace_wrenches([push for push in self.pushes if push.link != link]):
             raise RequestRefused(f"no applied wrenches on {link!r}")
 
     def clear_joint(self, name: str) -> None:
         """Remove the efforts on a joint."""
         joint = properties.joint_of(self.sim, name).scoped
-        if not self._keep([push for push in self.pushes if push.joint != joint]):
+        if not self._replace_wrenches([push for push in self.pushes if push.joint != joint]):
             raise RequestRefused(f"no applied efforts on {joint!r}")
 
     def _push(self, push: TimedWrench | None) -> None:
         if push is not None:
-            self._keep([*self.pushes, push])
+            self._replace_wrenches([*self.pushes, push])
 
-    def _keep(self, pushes: list[TimedWrench]) -> bool:
-        """Replace the active wrenches; return False if their number is unchanged."""
+    def _replace_wrenches(self, pushes: list[TimedWrench]) -> bool:
+        """Replace the active wrenches if their number has changed; return whether they were replaced."""
         if len(pushes) == len(self.pushes):
             return False
         self.pushes = pushes
@@ -104,23 +104,30 @@ class ClassicServices(WorldPlugin):
         return True
 
     def _apply(self, _: int) -> None:
-        self._keep(apply_wrenches(self.sim, self.pushes))
+        self._replace_wrenches(apply_wrenches(self.sim, self.pushes))
 
 
-def offer_table(prefix: str, sim: Simulation, *tables: Table, named: Callable[[str], str] | None = None) -> None:
-    """Offer services under a prefix, or under the names that `named` returns for the short names.
+def offer_table(prefix: str, sim: Simulation, *tables: Table, full_name: Callable[[str], str] | None = None) -> None:
+    """Offer the services of tables.
 
-    Services of a plugin in the file are permanent; all others are replaced by any other service of the same name.
+    With `full_name` the services belong to a plugin in the file and are permanent. Otherwise a service is replaced when
+    another service with the same name is offered.
+
+    Args:
+        prefix: start of each service name.
+        sim: simulation.
+        *tables: tables of services.
+        full_name: function from a short name to the service name, in place of the prefix.
     """
     for table in tables:
-        for short, (type_name, does) in table.items():
-            name = f"{prefix}/{short}" if named is None else named(short)
+        for short, (type_name, execute) in table.items():
+            name = f"{prefix}/{short}" if full_name is None else full_name(short)
             if type_name == _EMPTY or type_name.endswith(("LinkRequest", "BodyRequest", "JointRequest")):
-                handler: Handler = command_handler(sim, name, does)
+                handler: Handler = command_handler(sim, name, execute)
             else:
-                says_why = not type_name.endswith(("GetModelList", "GetEntityState", "SetEntityState"))
-                handler = answer_handler(sim, name, does, says_why)
-            if named is None:
+                has_status = not type_name.endswith(("GetModelList", "GetEntityState", "SetEntityState"))
+                handler = answer_handler(sim, name, execute, has_status)
+            if full_name is None:
                 sim.communication.services.offer_by_default(name, type_name, handler)
             else:
                 sim.communication.services.offer(name, type_name, handler)
@@ -301,16 +308,16 @@ def listen_to_states(prefix: str, sim: Simulation) -> None:
         "set_model_state": ("ModelState", _set_model_state),
         "set_link_state": ("LinkState", _set_link_state),
     }
-    for short, (kind, does) in inputs.items():
+    for short, (kind, execute) in inputs.items():
         topic = f"{prefix}/{short}"
         sim.communication.bus.aside.add(topic)
         sim.communication.bus.unlisted.add(topic)
-        take = command_handler(sim, topic, partial(does, sim))
+        take = command_handler(sim, topic, partial(execute, sim))
         sim.communication.bus.listen(topic, (f"gazebo_msgs/msg/{kind}",), take)
 
 
 def broadcast_states(sim: Simulation, models: str, links: str, rate: float, *, is_aside: bool) -> None:
-    """Publish the states of models and links while they have subscribers."""
+    """Publish the states of models and links while the topics have subscribers."""
     topics = {models: MODEL_STATES, links: LINK_STATES}
     make = partial(states.states_message, sim)
     sim.communication.on_demand.broadcast(topics, rate, lambda topic: make(topics[topic]), is_aside=is_aside)
@@ -318,7 +325,7 @@ def broadcast_states(sim: Simulation, models: str, links: str, rate: float, *, i
 
 def _broadcast_states(prefix: str, sim: Simulation) -> None:
     models, links = f"{prefix}/model_states", f"{prefix}/link_states"
-    if not {models, links} & set(sim.communication.bus.all_topics()):  # a plugin of the file may publish them already
+    if not {models, links} & set(sim.communication.bus.all_topics()):  # else a plugin publishes them already
         broadcast_states(sim, models, links, STATES_RATE, is_aside=True)
 
 
@@ -354,7 +361,7 @@ class GazeboRosStateOptions(Options):
 class GazeboRosState(WorldPlugin):
     """Publishes `model_states` and `link_states`, and offers `get_entity_state`, `set_entity_state` and others.
 
-    All names are in its own `<ros><namespace>`. `<update_rate>` [Hz] is 100 by default; 0 is every step.
+    All names are in the plugin's `<ros><namespace>`. `<update_rate>` is 100 Hz by default; 0 means every step.
     """
 
     options = OptionsOf(GazeboRosStateOptions)
@@ -366,13 +373,13 @@ class GazeboRosState(WorldPlugin):
 
     def load(self, parent: Simulation, params: Params) -> None:
         rate = self.options.update_rate
-        offer_table("", self.sim, state_services(self.sim), named=self.ros.topic)
+        offer_table("", self.sim, state_services(self.sim), full_name=self.ros.topic)
         models, links = self.ros.topic("model_states"), self.ros.topic("link_states")
         broadcast_states(self.sim, models, links, rate, is_aside=False)
 
 
 class GazeboRosProperties(WorldPlugin):
-    """Offers `get_model_properties`, `get_physics_properties` and others in its own `<ros><namespace>`."""
+    """Offers `get_model_properties`, `get_physics_properties` and others in the plugin's `<ros><namespace>`."""
 
     filenames = ("libgazebo_ros_properties.so",)
     endpoints = offers_all(
@@ -382,4 +389,4 @@ class GazeboRosProperties(WorldPlugin):
     )
 
     def load(self, parent: Simulation, params: Params) -> None:
-        offer_table("", self.sim, property_services(self.sim), named=self.ros.topic)
+        offer_table("", self.sim, property_services(self.sim), full_name=self.ros.topic)

@@ -63,18 +63,20 @@ class SolarSensorOptions(Options):
 class SolarSensor(ModelPlugin):
     """Publishes the direction of a light, seen from a link, as the orientation of an `Imu` on `sunloin_imu`.
 
-    The unit vector from the link's origin to the light, in the link's axes, plus `<xyz_offset>`, gives pitch = asin(-z)
-    and yaw = atan2(y, x): the x axis of that orientation points at the light. `<rpy_offset>` turns the result
-    afterwards.
+    Let (x, y, z) be the unit vector from the link's origin to the light, in the link's axes, plus `<xyz_offset>`. The
+    orientation has pitch = asin(-z) and yaw = atan2(y, x), so its x axis points at the light. `<rpy_offset>` then turns
+    this orientation.
 
-    `<frame_name>` names the link and is the message's frame; `<body_name>` names the link if the frame differs; the
-    default is the model's canonical link. `<gaussian_noise>` [rad] is the standard deviation of independent noise on
-    roll, pitch and yaw; its square is on the diagonal of the covariance. `<update_rate>` [Hz], 0 is every step.
+    `<frame_name>` is the message's frame and also names the link. If the link has another name, write that name into
+    `<body_name>`. The default is the model's canonical link. `<gaussian_noise>` [rad] is the standard deviation of
+    independent noise on roll, pitch and yaw; its square is on the diagonal of the covariance. `<update_rate>` is in Hz;
+    0 means every step.
 
-    Extensions of the course's sensor, all off by default: `<simkit:shadow>`, `<simkit:field_of_view>`,
-    `<simkit:irradiance>`, `<simkit:panel>`, `<simkit:falloff>` and `<simkit:normal>` as in the `solar_irradiance`
-    sensor, with their readings on topics below this one; `<simkit:angular_noise>` [rad], which turns the direction
-    about a random perpendicular axis; `<simkit:towards>` `direction`, which uses parallel rays for a directional light.
+    simkit adds options, which are all off by default. `<simkit:shadow>`, `<simkit:field_of_view>`,
+    `<simkit:irradiance>`, `<simkit:panel>`, `<simkit:falloff>` and `<simkit:normal>` have the same meaning as in the
+    `solar_irradiance` sensor; their readings are on topics below `sunloin_imu`. `<simkit:angular_noise>` [rad] turns
+    the direction about a random perpendicular axis. If `<simkit:towards>` is `direction`, the rays of a directional
+    light are parallel.
     """
 
     endpoints = (
@@ -112,10 +114,10 @@ class SolarSensor(ModelPlugin):
         self._types = (msgs.type_of(IMU), *(msgs.type_of(name) for name in geometry))
         self._index = 0
         self._readings = self.advertise("sunloin_imu", IMU)
-        self._find_view(params)
+        self._create_view(params)
 
-    def _find_view(self, params: Params) -> None:
-        """Create the view and open the topics of the extensions that the file enables."""
+    def _create_view(self, params: Params) -> None:
+        """Create the view of the light, and open the topics of the options that the file enables."""
         options = self._options
         judges = options.shadow or params.has("field_of_view")
         self._view: SolarView | None = None
@@ -137,7 +139,7 @@ class SolarSensor(ModelPlugin):
                 self._more.append((self.advertise(f"{topic}/{name}", kind), msgs.type_of(kind), value))
 
     def after_step(self) -> None:
-        self._index += 1  # counted without subscribers too, so that they do not change the noise
+        self._index += 1  # counted even without subscribers, because the noise depends on this number
         if self._light is None:
             return
         if self._view is not None:
@@ -207,9 +209,9 @@ class SolarSensor(ModelPlugin):
 
 
 def _find_light(sim: Simulation, params: Params, name: str) -> Light | None:
-    """Return the light that `<light_name>` names; None after an error with the lights, or a note for a bare model."""
+    """Return the light that `<light_name>` names; None after an error, or after a note if there is no world."""
     if name and not sim.contents.lights and sim.world.where == NOWHERE:
-        message = f"a bare model has no light {name!r}: nothing is published until a world with this light contains it"
+        message = f"a model without a world has no light {name!r}; nothing is published until a world has this light"
         params.diagnostics.note("SK-PLUGIN-009", message, params.where)
         return None
     if name:
@@ -220,7 +222,7 @@ def _find_light(sim: Simulation, params: Params, name: str) -> Light | None:
 
 
 def _offset(params: Params, name: str) -> tuple[float, float, float]:
-    """Read `name`, or its older spelling with an s, which is reported."""
+    """Read the numbers of an element [m or rad]; the old spelling, with an s at the end, causes a warning."""
     older = params.child(name + "s")
     if older is None or params.has(name):
         return params.vector3(name, (0.0, 0.0, 0.0))

@@ -41,7 +41,7 @@ _KINDS: Final = ("model", "link", "light", "visual")
 
 
 def spawn_model(sim: Simulation, xml: str, name: str, namespace: str, pose_message: msgs.Pose, frame: str) -> str:
-    """Spawn a model as Classic does, with its pose in the file relative to the initial pose in the frame.
+    """Spawn a model as Classic does: pose in the world = frame · initial pose · pose in the file.
 
     Returns:
         Name of the model.
@@ -65,7 +65,7 @@ def spawn_model(sim: Simulation, xml: str, name: str, namespace: str, pose_messa
 
 
 def add_namespace(xml: str, namespace: str) -> str:
-    """Add `<ros><namespace>` to each plugin of a description, as Classic's `robot_namespace`; also for ROS 1."""
+    """Add a namespace to each plugin of a description, as Classic does for `robot_namespace`; also for ROS 1."""
     namespace = escape(namespace, quote=False)
     element = f"<namespace>{namespace}</namespace>"
 
@@ -102,7 +102,7 @@ def delete_model(sim: Simulation, name: str) -> None:
 
 
 def carrying_link(sim: Simulation, kind: str, scoped: str) -> Link | None:
-    """Return the link that an entity moves with; the link of a model is its canonical link."""
+    """Return the link to which an entity is fixed; for a model this is its canonical link."""
     if kind == "link":
         return sim.link(scoped)
     if kind == "visual":
@@ -129,7 +129,7 @@ def twist_fields(linear: Vector, angular: Vector) -> dict[str, object]:
 
 
 def state_of(sim: Simulation, name: str, frame: str, kinds: tuple[str, ...] = _KINDS) -> tuple[Pose, Vector, Vector]:
-    """Return pose and velocities of an entity relative to the frame of another; raises `RequestRefused`."""
+    """Return pose and velocities of an entity, relative to the entity named `frame`; raises `RequestRefused`."""
     kind, scoped = find_entity(sim, name, kinds, "entity" if kinds == _KINDS else "")
     pose = handle_of(sim, kind, scoped).pose
     linear, angular = velocity_of(sim, kind, scoped)
@@ -148,7 +148,7 @@ def set_state(
     frame: str,
     kinds: tuple[str, ...] = ("model", "link", "light"),
 ) -> None:
-    """Set pose and velocity of an entity, both in the frame of another; raises `RequestRefused`."""
+    """Set pose and velocity of an entity, relative to the entity named `frame`; raises `RequestRefused`."""
     kind, scoped = find_entity(sim, name, kinds, "entity" if len(kinds) > 1 else "")
     frame_pose = frame_of(sim, frame)
     pose = frame_pose @ pose_of(pose_message)

@@ -23,7 +23,7 @@ class ClassicTouchPluginOptions(TouchOptions):
 
 
 class ClassicTouchPlugin(TouchTimer):
-    """Publishes once that its model has touched a target, and nothing else, for an uninterrupted duration.
+    """Publishes one message after its model has touched the target, and nothing else, for an uninterrupted time.
 
     Only the collisions of the named contact sensors count. The messages are integers: 1 on `/<namespace>/enable` starts
     the detection, 0 stops it; 1 on `/<namespace>/touched` reports the touch.

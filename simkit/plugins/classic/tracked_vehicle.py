@@ -46,11 +46,11 @@ class TrackedVehicleOptions(Options):
 
 
 class _TrackedVehicle(ModelPlugin):
-    """Base of tracked vehicles: convert commands to speeds of the tracks.
+    """Base of tracked vehicles, which converts commands to speeds of the tracks.
 
-    Commands: `/<robot_namespace>/cmd_vel` takes a Twist that turns left for a positive rate, as usual in ROS.
-    `/<robot_namespace>/cmd_vel_twist` takes a Twist that turns right, like Gazebo's own topic. The last command stays
-    active.
+    The command is a Twist. On `/<robot_namespace>/cmd_vel` a positive turning rate turns left, as usual in ROS. On
+    `/<robot_namespace>/cmd_vel_twist` a positive turning rate turns right, as on Gazebo's own topic. Each command stays
+    active until the next.
     """
 
     endpoints = (
@@ -111,7 +111,7 @@ class SimpleTrackedVehiclePluginOptions(TrackedVehicleOptions):
 
 
 class SimpleTrackedVehiclePlugin(_TrackedVehicle):
-    """Drives tracks with a moving surface: `<left_track>` and `<right_track>`, with flippers on either side.
+    """Drives `<left_track>` and `<right_track>`, whose surfaces move, and any number of flippers on each side.
 
     In a turn the surface velocities follow circles about the vehicle's centre of rotation.
     """
@@ -121,7 +121,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         super().prepare(scene, params, builder)
-        _ = self.options.collide_without_contact_bitmask  # a workaround for ODE's collision categories
+        _ = self.options.collide_without_contact_bitmask  # only needed for ODE, which filters collisions by categories
         body = self._link("body", scene, params)
         self._body = "" if body is None else body.scoped
         self._tracks: list[tuple[SceneLink, int]] = []
@@ -137,7 +137,10 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         return None if named is None or not name else find_link(scene, name, named)
 
     def _friction(self, link: SceneLink) -> tuple[float, float] | None:
-        """Return the friction along and across the belt, if the plugin sets any; the file's for a missing value."""
+        """Return the friction along and across the belt; None if the plugin sets no friction.
+
+        If the plugin sets only one of the two values, the collision's friction is the other value.
+        """
         if self._friction_overrides == [None, None] or not link.collisions:
             return None
         of_file = directional_friction(link.collisions[0].surface)
@@ -172,13 +175,14 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
     def drive(self, left: float, right: float) -> None:
         self._speeds = left, right
         self._run()
-        pace = None if self._turn() is not None else 1e-9  # in a turn the centre moves with the vehicle
+        # in a turn the centre of rotation moves with the vehicle, so every step updates the centre
+        pace = None if self._turn() is not None else 1e-9
         if pace != self.before_step_rate:
             self.before_step_rate = pace
             self.sim.engine.reschedule()
 
     def _turn(self) -> float | None:
-        """Return the distance of the centre of rotation to the left [m]; None for a straight motion."""
+        """Return the position of the centre of rotation on the axis to the left [m]; None for straight motion."""
         left, right = self._speeds
         ahead, turning = (left + right) / 2, (right - left) * self._efficiency / self._separation
         if abs(turning) < _STRAIGHT:
@@ -213,9 +217,9 @@ class WheelTrackedVehiclePluginOptions(TrackedVehicleOptions):
 
 
 class WheelTrackedVehiclePlugin(_TrackedVehicle):
-    """Drives tracks made of wheels: any number of `<left_joint>` and `<right_joint>`, at the speed of the track.
+    """Drives tracks that are rows of wheels, `<left_joint>` and `<right_joint>`, at the rim speed of the track.
 
-    A wheel's radius is that of its cylinder, else of its sphere.
+    The radius of a wheel is the radius of its cylinder, else of its sphere.
     """
 
     options = OptionsOf(WheelTrackedVehiclePluginOptions)

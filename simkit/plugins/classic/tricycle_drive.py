@@ -3,11 +3,12 @@
 A command has the speed of the driven wheel (`linear.x`) and the angle of its steering (`angular.z`). Deliberate
 differences to Gazebo Classic:
 
-- The acceleration ramp follows the commanded speed. Classic adds to the wheel's own, which winds up while the wheel is
-  blocked.
-- Steering with a speed moves towards its angle. Classic compares the angle with a speed.
-- An odometry from the wheels counts a left turn as positive.
-- Steering without a speed is a servo. Classic sets its angle.
+- The acceleration ramp follows the commanded speed. Classic adds to the wheel's own speed, which winds up while the
+  wheel is blocked.
+- With a maximum steering speed, the steering moves towards the commanded angle. Classic compares the angle with a
+  speed.
+- In odometry from the wheels, a turn to the left is positive. In Classic it is negative.
+- Without a maximum steering speed, a servo moves the steering. Classic sets the position of the joint.
 """
 
 from __future__ import annotations
@@ -42,9 +43,10 @@ _COVARIANCE = (1e-5, 1e-5, 1e-3)
 class TricycleOptions(Options):
     """Options in the spelling of ROS 2; its topics have fixed names.
 
-    The torque [N·m] is that of the driven wheel, and of the steering if it has a speed. Within the tolerances the wheel
-    jumps to its speed [rad/s], and the steering stops [rad]. A steering speed of 0 is as fast as possible, an
-    acceleration of 0 has no limit.
+    The torque limit [N·m] applies to the driven wheel, and also to the steering if it has a maximum speed. If the
+    wheel's speed error is within its tolerance [rad/s], the wheel gets the target speed at once. If the steering's
+    angle error is within its tolerance [rad], the steering stops. A maximum steering speed of 0 means as fast as
+    possible; an acceleration of 0 means no limit.
     """
 
     command_topic: str = "cmd_vel"
@@ -112,7 +114,7 @@ def _outputs(options: TricycleOptions | TricycleRos1Options) -> DriveOutputOptio
 
 
 class GazeboRosTricycleDrive(CommandedDrive):
-    """Steers and drives one wheel from `cmd_vel`; odometry from the ground truth or from two undriven wheels."""
+    """Steers and drives one wheel from `cmd_vel`; its odometry is the ground truth or from two undriven wheels."""
 
     endpoints = (
         listens("cmd_vel", *COMMAND_TYPES, named_by=("commandTopic",)),

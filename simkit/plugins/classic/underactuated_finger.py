@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneJoint, SceneModel
 
 _NOISE: Final = 0.02
-"""Deadband of the motor's position in Gazebo's filter [rad]."""
+"""Smallest change of the motor's position that moves the joints, as in Gazebo [rad]."""
 
 _GAINS: Final = ("p", "i", "d", "i_max", "i_min")
 
@@ -56,11 +56,12 @@ class UnderactuatedFingerOptions(Options):
 
 
 class UnderactuatedFinger(ModelPlugin):
-    """Keeps each `<virtualJoint>` at the position of `<actuatedJoint>` over its `<scale_factor>`, within its limits.
+    """Moves each `<virtualJoint>` to the position of `<actuatedJoint>` divided by `<scale_factor>`, within its limits.
 
-    A new position of the motor is used once it differs by more than 0.02 rad from the position used before. A joint
-    with a complete set of `<pid_gains>` (`p`, `i`, `d`, `i_max`, `i_min`) is controlled by that PID. Gazebo sets the
-    position of other joints at once, regardless of contacts; here a servo moves them within their effort limit.
+    A new position of the motor is used only if it differs by more than 0.02 rad from the last position that was used. A
+    joint with a complete set of `<pid_gains>` (`p`, `i`, `d`, `i_max`, `i_min`) is controlled by that PID. Gazebo sets
+    the position of all other joints at once, regardless of contacts. In simkit a servo moves these joints within their
+    effort limits.
     """
 
     options = OptionsOf(UnderactuatedFingerOptions)
@@ -70,7 +71,7 @@ class UnderactuatedFinger(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         _ = self.options.actuated_joint
         motor = params.child("actuatedJoint")
-        found = None if motor is None else _of_one_axis(scene, motor)
+        found = None if motor is None else _joint_with_one_axis(scene, motor)
         self._motor = "" if found is None else found.scoped
         self._servos: list[tuple[str, float, ActuatorRef]] = []
         self._loops: list[tuple[str, float, tuple[float, ...]]] = []
@@ -85,7 +86,7 @@ class UnderactuatedFinger(ModelPlugin):
         """Add a servo or a PID for one finger joint."""
         options.params.text("name", required=True)
         named = options.params.child("name")
-        joint = None if named is None else _of_one_axis(scene, named)
+        joint = None if named is None else _joint_with_one_axis(scene, named)
         scale = options.scale_factor
         if scale == 0.0:
             options.params.error("SK-PARAM-002", "found <scale_factor> 0; expected any other number")
@@ -125,12 +126,12 @@ class UnderactuatedFinger(ModelPlugin):
         self._errors = np.zeros(len(self._loops))
         self._gain = np.array([gains for *_, gains in self._loops]).reshape(-1, len(_GAINS)).T
         # weak reference to the engine's model that the servo ids belong to
-        self._seen: Callable[[], mujoco.MjModel | None] = _nothing
+        self._seen: Callable[[], mujoco.MjModel | None] = _no_model
 
     def before_step(self) -> None:
         now, physics = float(self._actuated.position), self.sim.engine.physics
         is_new = physics.model is not self._seen()
-        if is_new:  # also after a change of structure
+        if is_new:  # the first step, or the first step after a model was added or removed
             self._seen = weakref.ref(physics.model)
             self._ids = np.array([self.sim.engine.names.actuator(ref) for *_, ref in self._servos], np.intp)
         if is_new or abs(self._counts - now) > _NOISE:
@@ -156,12 +157,12 @@ class UnderactuatedFinger(ModelPlugin):
             joint.set_effort(effort)
 
 
-def _nothing() -> None:
-    """Act as a weak reference to nothing."""
+def _no_model() -> None:
+    """Return None, like a weak reference to a deleted model."""
 
 
-def _of_one_axis(scene: SceneModel, named: Params) -> SceneJoint | None:
-    """Return the joint that an element names; None after an error."""
+def _joint_with_one_axis(scene: SceneModel, named: Params) -> SceneJoint | None:
+    """Return the joint that an element names; None after an error if the joint is missing or has several axes."""
     joint = find_joint(scene, named.value, named) if named.value else None
     if joint is not None and len(joint.axes) != 1:
         named.error("SK-PLUGIN-003", f"joint {joint.name!r} has {len(joint.axes)} axes; expected one")

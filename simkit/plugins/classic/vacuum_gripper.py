@@ -48,15 +48,15 @@ class GazeboRosVacuumGripperOptions(Options):
 
 
 class GazeboRosVacuumGripper(ModelPlugin):
-    """Holds every link whose origin comes within `<max_distance>` of a gripper link's origin, while switched on.
+    """Holds every link whose origin is within `<max_distance>` [m] of a gripper link's origin, while switched on.
 
     A held link keeps its pose relative to the gripper link until the gripper is switched off; the robot carries its
     weight. The robot itself, immovable links, and the models named in `<fixed>` are never held. A Bool on `grasping`
-    reports whether a link is held. ROS 2: `<link_name>` (several), the service `switch` (SetBool). ROS 1: `<bodyName>`,
-    `<topicName>`, `<maxDistance>`, the services `on` and `off` (Empty).
+    reports whether a link is held. ROS 2 uses one or more `<link_name>` and the service `switch` (SetBool). ROS 1 uses
+    `<bodyName>`, `<topicName>`, `<maxDistance>` and the services `on` and `off` (Empty).
 
-    Gazebo pulls at near links: with 1 N in ROS 2, by setting their velocity in ROS 1. Neither can lift a load and hold
-    its pose. Here a weld joint holds the link, like real suction.
+    Gazebo pulls at near links, by a force of 1 N in ROS 2 and by setting their velocity in ROS 1. Both methods cannot
+    lift a load and hold its pose. In simkit a weld joint holds the link, like real suction.
     """
 
     endpoints = (
@@ -79,7 +79,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
             for name in ("maxForce", "minDistance"):
                 if params.has(name):
                     params.number(name, minimum=0.0)
-                    message = f"plugin {self.name!r}: <{name}> has no effect: a joint holds near links"
+                    message = f"plugin {self.name!r}: <{name}> has no effect: a weld joint holds the links"
                     params.diagnostics.note("SK-PLUGIN-138", message, self.where)
         else:
             named = params.all("link_name")
@@ -93,7 +93,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
 
     def load(self, parent: Model, params: Params) -> None:
         self._is_on = False
-        self._held: dict[str, str] = {}  # scoped link -> the weld that holds it
+        self._held: dict[str, str] = {}  # scoped name of a held link -> name of its weld
         self._candidates = _GrippableLinks()
         self.before_step_rate = NEVER
         words = ("on", "off") if self._is_ros_1 else ("switch",)
@@ -107,7 +107,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
         else:
             self.offer("switch", SET_BOOL, self._on_switch)
         self._grasping = self.advertise(self._topic, BOOL)
-        publish_while_subscribed(self, self._grasping, self._rate, "tell")
+        publish_while_subscribed(self, self._grasping, self._rate, "publish_grasping")
 
     def reset(self) -> None:
         self.sim.engine.reschedule()
@@ -117,7 +117,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
         """Scoped names of the links that the gripper holds."""
         return [link for link, weld in self._held.items() if self._is_there(weld)]
 
-    def tell(self) -> None:
+    def publish_grasping(self) -> None:
         """Publish whether the gripper holds a link."""
         self._grasping.publish(msgs.make(BOOL, data=bool(self.holds)))
 
@@ -137,7 +137,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
             gripper._switch(is_on)
 
     def _switch(self, is_on: bool) -> bool:
-        """Switch the gripper; return False without a change."""
+        """Switch the gripper on or off; return False if the gripper already has this state."""
         if is_on == self._is_on:
             return False
         self._is_on = is_on
@@ -153,13 +153,13 @@ class GazeboRosVacuumGripper(ModelPlugin):
     # ------------------------------------------------------------------ holding
 
     def before_step(self) -> None:
-        """Attach links that have come near."""
+        """Attach links that are near enough."""
         if not self._is_on:
             return
         sim, candidates = self.sim, self._candidates
         candidates.bind(sim, self._own, self._fixed, self._grippers)
         physics = sim.engine.physics
-        # positions do not depend on velocities and forces set since the last step
+        # velocities and forces that were set since the last step do not change positions
         near = candidates.near(physics.fresh() if physics.stage == STALE else physics.data, self._reach)
         for gripper, link in near:
             weld = self._held.get(link)
@@ -182,13 +182,13 @@ class GazeboRosVacuumGripper(ModelPlugin):
 
 
 class _GrippableLinks(SharedByCopies):
-    """Positions of gripper links and of links that they may hold in the engine; a handle without state of its own."""
+    """Positions in the engine of gripper links and of links that they may hold; no part of the simulated state."""
 
     def __init__(self) -> None:
         self._known: WorldStructure | None = None
 
     def bind(self, sim: Simulation, own: str, fixed: frozenset[str], grippers: list[str]) -> None:
-        """Find the links in the present model."""
+        """Find the links in the engine's current model."""
         if self._known is sim.engine.structure:
             return
         self._known, names, weld = sim.engine.structure, sim.engine.names, sim.mj_model.body_weldid
@@ -204,7 +204,7 @@ class _GrippableLinks(SharedByCopies):
         self._others = _frames(names, self._links)
 
     def near(self, data: mujoco.MjData, reach: float) -> list[tuple[str, str]]:
-        """Return each link within reach with the first gripper link near it; scoped names, gripper first."""
+        """Return pairs of scoped names: the first gripper link within `reach` [m] of a link, and this link."""
         if not self._links:
             return []
         origins = _origins(data, *self._others)

@@ -33,11 +33,11 @@ class GazeboWorldOdometryOptions(Options):
 
 
 class GazeboWorldOdometry(ModelPlugin):
-    """Publishes the true pose of the link `<bodyName>` in the world on `<topicName>`, whatever `<frameName>` is.
+    """Publishes the true pose of the link `<bodyName>` in the world on `<topicName>`, for any `<frameName>`.
 
-    Details are as in Gazebo: the frame of the message is `<frameName>` (`world`), which also names the link if there is
-    no `<bodyName>`. The linear velocity is along the world's axes, the angular velocity along the link's own.
-    `<updateRate>` is 1000 [Hz] by default. The live parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] shift
+    As in Gazebo, `<frameName>` (`world`) sets only the frame of the message, and it names the link if there is no
+    `<bodyName>`. The linear velocity is in the world's axes, and the angular velocity in the link's axes.
+    `<updateRate>` is 1000 Hz by default. The live parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] shift
     the published pose. `gaussian_noise` adds a random walk: the standard deviation of each step of x and y [m] and of
     the yaw [rad].
     """
@@ -71,10 +71,10 @@ class GazeboWorldOdometry(ModelPlugin):
         self._stream = self.random("gaussian_noise", 3)
         self._walk: Vector = np.zeros(3)
         self._out = self.advertise(self.options.topic_name, ODOMETRY)
-        # independent of subscribers, so that they do not change the noise
-        publish_while_subscribed(self, self._out, self._rate, "tell", also=lambda: self._deviation.value > 0)
+        # the noise depends on this number of instants, and therefore not on the subscribers
+        publish_while_subscribed(self, self._out, self._rate, "publish", also=lambda: self._deviation.value > 0)
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Publish the odometry."""
         if self._deviation.value > 0:
             self._walk = self._walk + self._deviation.value * self._stream.normal(count_instants(self, self._rate))

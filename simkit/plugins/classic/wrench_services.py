@@ -27,7 +27,7 @@ class TimedWrench:
         joint: scoped name of the joint; empty for a wrench.
         values: force [N] and torque [N·m] in the world at the link's centre of mass, or the effort [N·m or N].
         start: first tick of the steps in which it acts.
-        end: tick before which it ends; None for no end.
+        end: first tick after the steps in which it acts; None for no end.
     """
 
     link: str
@@ -42,8 +42,9 @@ def link_wrench(
 ) -> TimedWrench | None:
     """Return the wrench of a request; None for a duration of zero.
 
-    In the world's frame the reference point is a lever from the link's centre of mass, as in Classic. In the frame of
-    an entity it is a point of that frame, by default the frame's origin.
+    The force acts at the reference point. If the reference frame is the world, the reference point is a vector from the
+    link's centre of mass, as in Classic. If the reference frame is an entity, the reference point is a position in that
+    entity's frame, by default its origin.
 
     Raises:
         RequestRefused: the link or the frame does not exist, or a number is NaN or infinite.
@@ -67,7 +68,8 @@ def joint_effort(sim: Simulation, request: msgs.ApplyJointEffort_Request) -> Tim
     """Return the effort of a request; None for a duration of zero.
 
     Raises:
-        RequestRefused: the joint does not exist or has not one degree of freedom, or the effort is NaN or infinite.
+        RequestRefused: the joint does not exist or does not have exactly one degree of freedom, or the effort is NaN or
+            infinite.
     """
     joint = joint_of(sim, request.joint_name)
     if joint.dof != 1:
@@ -80,7 +82,10 @@ def _tick_range(
     sim: Simulation,
     request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request | msgs.ApplyJointEffort_Request,
 ) -> tuple[int, int | None] | None:
-    """Return the first tick and the end tick; a negative duration has no end, zero gives None."""
+    """Return the first tick and the end tick.
+
+    The end tick is None for a negative duration. The result is None for a duration of zero.
+    """
     duration, start_ns = msgs.stamp_ns(request.duration), msgs.stamp_ns(request.start_time)
     start = sim.tick
     if start_ns > sim.time_ns:

@@ -68,7 +68,9 @@ def test_ros_names_and_bounds_apply_and_invalid_floors_are_reported() -> None:
     sim.run(2.0)
     assert abs(sim.joint("lift_1::lift").position) < 0.06
     messages = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-041"]
-    assert [any(word in m for m in messages) for word in ("attic", "highest is 3", "lowest is -1")] == [True] * 3
+    assert [any(word in m for m in messages) for word in ("attic", "highest floor is 3", "lowest floor is -1")] == [
+        True
+    ] * 3
     sim.publish("/hotel/elevator", {"data": "3"})
     sim.run(6.0)
     assert sim.joint("lift_1::lift").position == pytest.approx(3.0, abs=0.06)

@@ -105,7 +105,7 @@ def test_the_random_walk_continues_after_a_restore() -> None:
 
 def test_no_callback_runs_without_subscribers(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[int] = []
-    monkeypatch.setattr(GazeboWorldOdometry, "tell", lambda self: calls.append(self.sim.tick))
+    monkeypatch.setattr(GazeboWorldOdometry, "publish", lambda self: calls.append(self.sim.tick))
     with opened(bodyName="base", topicName="truth") as sim:
         sim.run(0.05)
         assert not calls
