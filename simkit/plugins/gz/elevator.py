@@ -54,10 +54,10 @@ class Elevator(ModelPlugin):
     Links `floor_0`, `floor_1`, … mark the heights of the joint `lift`. Joints `door_0`, `door_1`, … are open at their
     upper limit and closed at 0. Each joint needs a JointPositionController, which reads its target from
     `/model/<model>/joint/<joint>/0/cmd_pos`. A lidar on `/model/<model>/<door joint>/lidar` can measure the doorway:
-    the door stays open while the first range is short. The elevator has a list of stops. Commands that arrive before
-    the door starts to close are stored; they become stops when the door starts to close. Commands that arrive while the
-    door closes become stops at once. A stop that is on the way to a later stop is inserted before that stop. The floor
-    nearest to the cabin is published on `<state_topic>`.
+    the door stays open while the first range is short. The elevator has a list of stops. An idle elevator executes a
+    command at once. Commands that arrive during a ride or while the door is open are stored; they become stops when the
+    door starts to close. Commands that arrive while the door closes become stops at once. A stop that is on the way to
+    a later stop is inserted before that stop. The floor nearest to the cabin is published on `<state_topic>`.
     """
 
     endpoints = (
@@ -114,7 +114,7 @@ class Elevator(ModelPlugin):
         for k, name in enumerate(self._joint_names[1:]):
             self.subscribe(valid_topic(f"{own}/{name}/lidar"), partial(self._on_scan, k))
         rates = [rate for rate in (self.options.update_rate, self.options.state_publish_rate) if rate > 0]
-        publish_while_subscribed(self, self._state, min(rates, default=0.0), "tell_floor")
+        publish_while_subscribed(self, self._state, min(rates, default=0.0), "publish_floor")
 
     @property
     def floor(self) -> int:
@@ -122,7 +122,7 @@ class Elevator(ModelPlugin):
         height = self._lift.position
         return min(range(len(self._heights)), key=lambda k: abs(self._heights[k] - height))
 
-    def tell_floor(self) -> None:
+    def publish_floor(self) -> None:
         """Publish the floor nearest to the cabin."""
         self._state.publish(msgs.make(INT, data=self.floor))
 

@@ -193,7 +193,7 @@ def _joint_state_publishers(sim: Simulation) -> frozenset[str]:
 
 
 def _entity_of(ecm: EntityComponentManager, parent: object) -> int:
-    """Return the entity number of a plugin's parent."""
+    """Return the entity number of a plugin's parent in the entity-component manager."""
     scoped = getattr(parent, "scoped", "")
     if not scoped:
         return WORLD_ENTITY

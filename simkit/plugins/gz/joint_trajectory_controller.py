@@ -219,10 +219,10 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         if self._rule == "none":
             return
         for index, name in enumerate(self._names):
-            axis = self._axes.get(name)
-            if axis is not None:
-                state = JointTarget(axis.joint.position, axis.joint.velocity)
-                axis.path = JointPath.through(state, self._points, index, self._rule)
+            controlled = self._axes.get(name)
+            if controlled is not None:
+                state = JointTarget(controlled.joint.position, controlled.joint.velocity)
+                controlled.path = JointPath.through(state, self._points, index, self._rule)
 
     def _follow(self, now: int) -> None:
         """Set the targets for a simulated time [ns]."""

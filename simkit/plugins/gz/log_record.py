@@ -1,4 +1,4 @@
-"""Log of a run, as Gazebo's `gz::sim::systems::LogRecord`, written as a bag."""
+"""Log of a run, written as a bag, for Gazebo's `gz::sim::systems::LogRecord`."""
 
 from __future__ import annotations
 
