@@ -42,12 +42,13 @@ class GazeboRosImuOptions(Options):
 class GazeboRosImu(ModelPlugin):
     """Publishes the reading of an IMU at the origin of the link `<bodyName>` on `<topicName>` (`/default_imu`).
 
-    Rates and accelerations are in the link's axes; the orientation is the link's in the world, turned by `<rpyOffset>`
-    about the world's axes. `<frameName>` (the link's name) sets only the `frame_id`. The acceleration includes the
-    reaction to gravity, as `sensor_msgs/Imu` requires. Gazebo's plugin omits this reaction and turns both vectors in
-    the wrong direction; simkit does the same only in a world with `<gazebo_quirks>`. `<gaussianNoise>` is the standard
-    deviation of the noise on each of the six numbers [rad/s, m/s²]; its square is on the diagonals of the covariances.
-    `<updateRate>` is in Hz; 0 means every step. The calibration service `<serviceName>` (`/default_imu`) does nothing.
+    Rates and accelerations are in the link's axes; the orientation is the link's orientation in the world, turned by
+    `<rpyOffset>` about the world's axes. `<frameName>` (the link's name) sets only the `frame_id`. The acceleration
+    includes the reaction to gravity, as `sensor_msgs/Imu` requires. Gazebo's plugin omits this reaction and turns both
+    vectors in the wrong direction; simkit does the same only in a world with `<gazebo_quirks>`. `<gaussianNoise>` is
+    the standard deviation of the noise on each of the six numbers [rad/s, m/s²]; its square is on the diagonals of the
+    covariances. `<updateRate>` is in Hz; 0 means every step. The calibration service `<serviceName>` (`/default_imu`)
+    does nothing.
     """
 
     endpoints = (

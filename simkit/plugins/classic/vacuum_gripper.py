@@ -204,7 +204,7 @@ class _GrippableLinks(SharedByCopies):
         self._others = _frames(names, self._links)
 
     def near(self, data: mujoco.MjData, reach: float) -> list[tuple[str, str]]:
-        """Return pairs of scoped names: the first gripper link within `reach` [m] of a link, and this link."""
+        """Return pairs (gripper link, near link) of scoped names, at most one pair for each link within `reach` [m]."""
         if not self._links:
             return []
         origins = _origins(data, *self._others)

@@ -139,7 +139,7 @@ VelocityCommands = tuple[Vector, Vector, Vector]
 def _better_efforts(
     layout: KinematicTrees, one: VelocityCommands, other: VelocityCommands
 ) -> tuple[Vector, Vector, Vector, bool]:
-    """Choose the better efforts for each kinematic tree, and return True last if `other` is better anywhere."""
+    """Choose the better efforts for each kinematic tree; the last result is True if `other` is better for any tree."""
     is_better = layout.most_of_tree(other[2]) < layout.most_of_tree(one[2])
     rows = is_better[layout.tree]
     efforts, missing, relevant_error = (np.where(rows, b, a) for a, b in zip(one, other, strict=True))
@@ -235,7 +235,7 @@ class _EffortEvaluation:
         self.lowest = np.where(is_free, alone - hold, self.lowest)
 
     def relevant_error(self, missing: Vector, efforts: Vector) -> Vector:
-        """Return each joint's error; 0 if it is small enough or if the effort limit prevents a correction."""
+        """Return each joint's error, or 0 if the error is small enough or the effort limit prevents a correction."""
         off = np.abs(missing)
         is_bad = off > _ENOUGH * self.scale
         if is_bad.any():
