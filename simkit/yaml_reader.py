@@ -10,6 +10,7 @@ from simkit.errors import SimkitError
 
 _DEEPEST: Final = 100
 _MOST: Final = 1_000_000  # values; repeated aliases expand a short text to very many values
+_MOST_DIGITS: Final = 400  # the largest float has 309
 _EXPONENT: Final = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$")
 _SEXAGESIMAL: Final = re.compile(r"[-+]?[0-9][0-9_]*(?::[0-5]?[0-9])+(?:\.[0-9_]*)?$")
 
@@ -101,6 +102,14 @@ def yaml_loader() -> Any:
                 message = f"the text expands to more than {_MOST} values"
                 raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
 
+        def construct_yaml_int(self, node: Any) -> Any:
+            # Python refuses to print an integer of more than 4300 digits, so that no message could show it
+            if len(node.value) > _MOST_DIGITS:
+                message = f"an integer has more than {_MOST_DIGITS} digits"
+                raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
+            return super().construct_yaml_int(node)
+
+    Reader.add_constructor("tag:yaml.org,2002:int", Reader.construct_yaml_int)
     Reader.add_implicit_resolver("tag:yaml.org,2002:float", _EXPONENT, list("-+.0123456789"))
     for sign, known in Reader.yaml_implicit_resolvers.items():
         if sign in "-+0123456789":

@@ -19,7 +19,17 @@ import pytest
 PACKAGE = Path(__file__).resolve().parents[1] / "simkit"
 
 SMALL_MODULES = frozenset(
-    {"child_process", "diagnostic_record", "diagnostics", "errors", "msgs", "mujoco_import", "params", "pose"}
+    {
+        "child_process",
+        "diagnostic_record",
+        "diagnostics",
+        "errors",
+        "input_file",
+        "msgs",
+        "mujoco_import",
+        "params",
+        "pose",
+    }
     | {"registry", "run_spec", "save_path", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""

@@ -27,7 +27,7 @@ def test_what_is_no_number_stays_a_text(text: str) -> None:
         ("!!bool foo", "a value does not fit its type"),
         ("!!int foo", "invalid literal"),
         ("!!float foo", "could not convert"),
-        ("9" * 5000, "4300 digits"),
+        ("9" * 5000, "400 digits"),
         ("&a {x: *a}", "nested too deep"),
         ("&a [*a]", "nested too deep"),
         ("[" * 3000, "nested too deep"),
@@ -63,3 +63,10 @@ def test_a_time_of_day_is_no_number_of_minutes(text: str) -> None:
 @pytest.mark.parametrize("value", [10**400, -(10**400), float("nan"), float("inf"), True, "1", None, [1]])
 def test_what_is_no_finite_number_is_none(value: object) -> None:
     assert finite_number(value) is None and finite_number(10**20) == 1e20
+
+
+@pytest.mark.parametrize("digits", ["0x" + "f" * 5000, "9" * 5000, "0b" + "1" * 500], ids=["hex", "decimal", "binary"])
+def test_an_integer_with_more_digits_than_a_message_can_show_is_not_yaml(digits: str) -> None:
+    with pytest.raises(NotYaml, match="an integer has more than 400 digits") as raised:
+        read_yaml(f"a: 1\nworld: {digits}\n")
+    assert raised.value.line == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import warnings
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshFileError, MeshPart
+from simkit.input_file import read_input
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Heightmap, Plane, Polyline, Sphere
 
@@ -315,11 +317,10 @@ def heightmap_rows(shape: Heightmap) -> Floats:
     from PIL import Image
 
     try:
-        if shape.file.stat().st_size > _LARGEST_FILE:
-            raise MeshFileError(f"is larger than {_LARGEST_FILE >> 20} MiB")
+        content = read_input(shape.file, _LARGEST_FILE)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with Image.open(shape.file, formats=_FORMATS) as image:
+            with Image.open(io.BytesIO(content), formats=_FORMATS) as image:
                 if image.width > LARGEST or image.height > LARGEST:
                     raise MeshFileError(f"is {image.width}×{image.height}; at most {LARGEST}×{LARGEST} is supported")
                 grey = _grey_values(image)

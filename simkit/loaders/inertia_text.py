@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
-from simkit.loaders.resources.bounded_file import read_bounded
+from simkit.input_file import read_input
 from simkit.loaders.resources.xml_reader import MAX_BYTES
 from simkit.loaders.sdf.inertial import MOMENT_NAMES
 
@@ -138,9 +138,7 @@ def find_inertias(path: Path) -> tuple[bytes, list[WrittenInertia]]:
         OSError: the file cannot be read.
         ValueError: the file is not XML in UTF-8, or one of its numbers cannot be read.
     """
-    data = read_bounded(path, MAX_BYTES)
-    if len(data) > MAX_BYTES:
-        raise ValueError(f"is larger than {MAX_BYTES} bytes")
+    data = read_input(path, MAX_BYTES)
     data.decode("utf-8")
     finder = _InertiaFinder(data)
     try:

@@ -17,6 +17,7 @@ from typing import Final
 import yaml
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.input_file import read_failure, read_input_text
 from simkit.params import Params
 from simkit.plugins.ros_parameter_block import Form, ParameterBlock
 
@@ -208,9 +209,9 @@ def _expand_dotted_keys(entry: Entry) -> Entry:
 
 def _parse_file(path: Path, diagnostics: Diagnostics) -> Entry | None:
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_input_text(path)
     except OSError as error:
-        diagnostics.error("SK-CONTROL-002", f"{path} cannot be read: {error}", Where(str(path)))
+        diagnostics.error("SK-CONTROL-002", f"{path} cannot be read: {read_failure(error)}", Where(str(path)))
         return None
     except UnicodeDecodeError as error:
         where = Where(str(path), error.object.count(b"\n", 0, error.start) + 1)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
+from simkit.input_file import read_failure, read_input_text
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 
@@ -153,9 +154,9 @@ def script_items(path: Path) -> list[JsonObject]:
         InputError: SK-CLI-011 the script is invalid; with file and line.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_input_text(path)
     except (OSError, UnicodeDecodeError) as error:
-        raise _script_error(str(path), f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise _script_error(str(path), f"cannot be read: {read_failure(error)}") from None
     try:
         root = compose_nodes(text)
     except NotYaml as error:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.cli.terminal.output import JsonObject, JsonValue
 from simkit.errors import InputError
+from simkit.input_file import read_failure, read_input_text
 from simkit.yaml_reader import NotYaml, read_yaml
 
 if TYPE_CHECKING:
@@ -70,9 +71,9 @@ def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[
         InputError: SK-CLI-041 the file is invalid, or has no parameters of this node.
     """
     try:
-        root = read_yaml(path.read_text(encoding="utf-8"))
+        root = read_yaml(read_input_text(path))
     except (OSError, UnicodeDecodeError) as error:
-        raise _file_error(path, f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise _file_error(path, f"cannot be read: {read_failure(error)}") from None
     except NotYaml as error:
         raise _file_error(path, f"is not YAML: {error}") from None
     if not isinstance(root, dict):

@@ -26,6 +26,7 @@ from simkit.compiler.meshes.mesh_part import (
     MeshPart,
     integers_of,
 )
+from simkit.input_file import read_input
 
 _LEAST_SHARE: Final = 0.012
 """Least fraction of all vertices for a bone; a smaller bone passes its vertices to its parent bone."""
@@ -104,7 +105,7 @@ def bone_parts(file: Path, bone: str) -> list[MeshPart]:
 @lru_cache(maxsize=16)
 def _read(file: Path, _version: tuple[int, int]) -> Skin:
     try:
-        return _SkinFile(read_root(file.read_bytes()), Companions(file)).skin()
+        return _SkinFile(read_root(read_input(file, LARGEST_FILE)), Companions(file)).skin()
     except MeshFileError:
         raise
     except OSError as problem:

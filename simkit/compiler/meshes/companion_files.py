@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.meshes.mesh_part import MeshFileError
+from simkit.input_file import read_input
 
 if TYPE_CHECKING:
     from PIL.Image import Image as PilImage
@@ -108,10 +109,7 @@ class Companions:
         if place is None:
             return None
         try:
-            if place.stat().st_size > LARGEST_COMPANION:
-                self.note(f"{_short(name)} is larger than {LARGEST_COMPANION >> 20} MiB")
-                return None
-            return place.read_bytes()
+            return read_input(place, LARGEST_COMPANION)
         except OSError as problem:
             self.note(f"{_short(name)} cannot be read: {problem.strerror}")
             return None
@@ -150,9 +148,10 @@ def read_pixels(source: bytes | Path) -> Pixels:
     from PIL import Image
 
     try:
+        content = source if isinstance(source, bytes) else read_input(source, LARGEST_COMPANION)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with Image.open(io.BytesIO(source) if isinstance(source, bytes) else source, formats=_FORMATS) as image:
+            with Image.open(io.BytesIO(content), formats=_FORMATS) as image:
                 if image.width * image.height > LARGEST_PIXELS:
                     raise MeshFileError(f"is {image.width}×{image.height} pixels, which is too large")
                 image.draft("RGB", (LARGEST_TEXTURE, LARGEST_TEXTURE))

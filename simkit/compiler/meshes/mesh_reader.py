@@ -32,6 +32,7 @@ from simkit.compiler.meshes.mesh_part import (
 )
 from simkit.compiler.meshes.obj import read_obj
 from simkit.diagnostics import Diagnostics, Where, closest
+from simkit.input_file import read_input
 from simkit.scene import Mesh
 
 SUFFIXES: Final = (".dae", ".stl", ".obj", ".gltf", ".glb", ".ply", ".off")
@@ -105,7 +106,7 @@ def convert_file(file: Path) -> ConvertedMesh:
 @lru_cache(maxsize=64)
 def _converted(file: Path, _version: tuple[int, int]) -> ConvertedMesh:
     try:
-        content = file.read_bytes()
+        content = read_input(file, LARGEST_FILE)
     except OSError as problem:
         raise MeshFileError(f"cannot be read: {problem.strerror}") from None
     key = mesh_key(file, content)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.resources.bounded_file import read_bounded
+from simkit.input_file import read_input
 
 MAX_BYTES: Final = 256 << 20
 MAX_PIXELS: Final = 64_000_000
@@ -40,7 +40,7 @@ def placeholder(kind: str) -> tuple[str, bytes]:
 def read_asset(path: Path, kind: str, where: Where, diagnostics: Diagnostics) -> bytes:
     """Read a file; return empty bytes, with an error recorded, if it is unreadable, too large or of the wrong kind."""
     try:
-        data = read_bounded(path, MAX_BYTES)
+        data = read_input(path, MAX_BYTES)
     except OSError as error:
         diagnostics.error("SK-MJCF-007", f"cannot read {path}: {error.strerror or error}", where)
         return b""
@@ -53,8 +53,6 @@ def read_asset(path: Path, kind: str, where: Where, diagnostics: Diagnostics) ->
 
 def _asset_problem(data: bytes, suffix: str, kind: str) -> str:
     """Describe the problem that makes a file unusable; empty if there is none."""
-    if len(data) > MAX_BYTES:
-        return f"larger than {MAX_BYTES >> 20} MiB"
     if not data:
         return "the file is empty"
     if suffix not in _KNOWN_SUFFIXES.get(kind, ()):

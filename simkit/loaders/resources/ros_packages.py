@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from simkit.loaders.resources.bounded_file import read_bounded
+from simkit.input_file import read_input
 from simkit.loaders.resources.uris import is_file
 
 _PARENT_LEVELS = 6  # folders above a file that are searched for its package.xml
@@ -69,7 +69,7 @@ def package_name(folder: Path) -> str:
     """Return the name in a folder's `package.xml`, or an empty text if there is none."""
     file = folder / "package.xml"
     try:
-        found = _NAME.search(read_bounded(file, 65536))
+        found = _NAME.search(read_input(file, 65536))
     except OSError:
         return ""
     return "" if found is None else found.group(1).decode()

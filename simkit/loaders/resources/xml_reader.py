@@ -9,7 +9,7 @@ from typing import Final
 from xml.parsers import expat
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.resources.bounded_file import read_bounded
+from simkit.input_file import FileTooLargeError, read_input
 from simkit.params import Params
 from simkit.scene.simkit_elements import PREFIX
 
@@ -242,10 +242,10 @@ def _parse_without_comments(data: bytes, file: str | None, diagnostics: Diagnost
 def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:
     """Read one XML file; return None, with an error recorded, if it cannot be read."""
     try:
-        text = read_bounded(path, MAX_BYTES)
-        if len(text) > MAX_BYTES:
-            diagnostics.error("SK-XML-002", f"the file is larger than {MAX_BYTES} bytes", Where(str(path)))
-            return None
+        text = read_input(path, MAX_BYTES, allow_pipe=True)
+    except FileTooLargeError as error:
+        diagnostics.error("SK-XML-002", f"cannot read the file: {error.strerror}", Where(str(path)))
+        return None
     except OSError as error:
         diagnostics.error("SK-LOAD-002", f"cannot read the file: {error.strerror or error}", Where(str(path)))
         return None

@@ -13,6 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
+from simkit.input_file import read_input_text
 from simkit.loaders.sdf.gazebo_materials import gazebo_colours
 from simkit.scene.model import Colour
 
@@ -96,8 +97,6 @@ def _scripts(places: Sequence[Path]) -> list[Path]:
 def _materials(file: Path) -> tuple[OgreMaterial, ...]:
     try:
         stat = file.stat()
-        if stat.st_size > _LARGEST_SCRIPT or not file.is_file():
-            return ()
         return _parsed(file, stat.st_mtime_ns)
     except OSError:
         return ()
@@ -105,7 +104,7 @@ def _materials(file: Path) -> tuple[OgreMaterial, ...]:
 
 @lru_cache(maxsize=256)
 def _parsed(file: Path, _version: int) -> tuple[OgreMaterial, ...]:
-    text = file.read_text(encoding="utf-8", errors="replace")
+    text = read_input_text(file, _LARGEST_SCRIPT, errors="replace")
     return tuple(_read(list(_lines(text)), file.parent))
 
 

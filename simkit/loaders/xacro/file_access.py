@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.resources.bounded_file import read_bounded
+from simkit.input_file import FileTooLargeError, read_input
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.loaders.xacro.expansion_limits import MAX_ITEMS, Budget, ExpansionError
@@ -130,10 +130,9 @@ class FileAccess:
         for tag, factor in _UNITS.items():
             Reader.add_constructor(tag, with_unit(factor))
         try:
-            data = read_bounded(path, MAX_YAML_BYTES)
-            if len(data) > MAX_YAML_BYTES:
-                raise ExpansionError(f"{path} has more than {MAX_YAML_BYTES} bytes")
-            content = yaml.load(data, Reader)
+            content = yaml.load(read_input(path, MAX_YAML_BYTES), Reader)
+        except FileTooLargeError as error:
+            raise ExpansionError(f"{path}: {error.strerror}") from None
         except OSError as error:
             raise MissingError(f"{path}: {error.strerror}") from None
         except (yaml.YAMLError, ValueError, RecursionError) as error:

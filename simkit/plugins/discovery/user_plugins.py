@@ -12,6 +12,7 @@ from importlib.metadata import EntryPoint
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics
+from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.plugins.base import Plugin
 from simkit.plugins.discovery.python_plugins import as_class, describe_allowed_plugins, has_hooks
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
@@ -100,8 +101,8 @@ def _load_entry_point(point: EntryPoint, plugin: ScenePlugin, diagnostics: Diagn
 def _string_literals(file: Path) -> set[str]:
     """Return every text literal of a Python file as a normalised plugin name; the file is parsed, not run."""
     try:
-        tree = ast.parse(file.read_bytes(), str(file))
-    except (SyntaxError, ValueError):
+        tree = ast.parse(read_input(file, TEXT_LIMIT), str(file))
+    except (OSError, SyntaxError, ValueError):
         return set()
     texts = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
     return {normalise(text) for text in texts if isinstance(text, str) and len(text) < 200}

@@ -13,6 +13,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.params import Params
 from simkit.plugins.gz.gz_system_plugin import HOOKS, GzSystem, System, line_of
 from simkit.plugins.gz_python import import_hook
@@ -155,8 +156,8 @@ def _package_of(folder: Path) -> str:
 def has_get_system(file: Path) -> bool:
     """Check whether a file defines the name `get_system`, without running it; True also for invalid Python."""
     try:
-        tree = ast.parse(file.read_bytes(), str(file))
-    except (SyntaxError, ValueError):
+        tree = ast.parse(read_input(file, TEXT_LIMIT), str(file))
+    except (OSError, SyntaxError, ValueError):
         return True  # the import reports the error
     for node in ast.walk(tree):
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and node.name == "get_system":

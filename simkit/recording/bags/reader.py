@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
+from simkit.input_file import open_input, read_failure, read_input_text
 from simkit.msgs import message_types
 from simkit.yaml_reader import NotYaml, read_yaml
 
@@ -217,7 +218,7 @@ def _bag_files(path: Path) -> tuple[list[str], str, str]:
     distro = "unknown"
     if (path / "metadata.yaml").is_file():
         try:
-            text = (path / "metadata.yaml").read_text(encoding="utf-8")
+            text = read_input_text(path / "metadata.yaml")
             info = read_yaml(text)["rosbag2_bagfile_information"]
             names = [Path(name).name for name in info["relative_file_paths"]]
             return names, str(info["storage_identifier"]), str(info.get("ros_distro") or distro)
@@ -244,6 +245,7 @@ def _open_storage(path: Path) -> _CompleteBag | _TruncatedBag:
         raise InputError(text, _UNREADABLE)
     if not path.is_dir() and not path.is_file():
         raise InputError(f"SK-CLI-035 {path} is neither a file nor a folder", _UNREADABLE)
+    _check_kinds(path)
     try:
         reader = Reader(path)
         reader.open()
@@ -255,6 +257,18 @@ def _open_storage(path: Path) -> _CompleteBag | _TruncatedBag:
             return truncated
         reason = truncated.broken if files else error if isinstance(error, ReaderError) else f"it is damaged ({error})"
         raise InputError(f"SK-CLI-035 {path} cannot be read: {reason}", _UNREADABLE) from None
+
+
+def _check_kinds(path: Path) -> None:
+    """Refuse a bag with a pipe or a device, which rosbags would open without a timeout."""
+    files = [path / "metadata.yaml", *(path / name for name in _bag_files(path)[0])] if path.is_dir() else [path]
+    for file in files:
+        try:
+            open_input(file).close()
+        except FileNotFoundError:
+            continue  # rosbags reports the missing file
+        except OSError as error:
+            raise InputError(f"SK-CLI-035 {file} cannot be read: {read_failure(error)}", _UNREADABLE) from None
 
 
 class _CompleteBag:
@@ -379,7 +393,7 @@ class McapRecords:
         for path in self._files:
             schemas: dict[int, Schema] = {}
             channels: dict[int, Channel] = {}
-            with path.open("rb") as file:
+            with open_input(path) as file:
                 try:
                     for record in StreamReader(file).records:
                         self.has_begun = True

@@ -18,6 +18,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
 from simkit.errors import InputError
+from simkit.input_file import open_input
 from simkit.run_spec import JsonObject
 from simkit.testing.bundles.manifest import BAG, BROKEN, COMMANDS, PAGE, Manifest, read_manifest
 
@@ -269,7 +270,7 @@ def _check_index(path: Path) -> None:
         InputError: SK-BUNDLE-001 or SK-BUNDLE-004.
     """
     try:
-        with path.open("rb") as file:
+        with open_input(path) as file:
             size = file.seek(0, os.SEEK_END)
             file.seek(max(0, size - (1 << 16) - _END.size))
             tail = file.read()

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from simkit.input_file import TEXT_LIMIT, read_input
+
 _CALL_HINTS: Final = tomllib.loads(Path(__file__).with_name("call_hints.toml").read_text(encoding="utf-8"))
 _CALLS: Final[dict[str, str]] = {name: hint for hint, names in _CALL_HINTS.items() for name in names}
 _RANDOM: Final = ("random.", "np.random.", "numpy.random.")
@@ -40,7 +42,7 @@ def hints_in(file: str, first: int, last: int) -> list[CodeHint]:
         last: Last line of the class.
     """
     try:
-        tree = ast.parse(Path(file).read_text(encoding="utf-8"))
+        tree = ast.parse(read_input(file, TEXT_LIMIT))
     except (OSError, ValueError, SyntaxError):
         return []
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.lineno != first]

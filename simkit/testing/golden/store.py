@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Final
 
 from simkit.errors import InputError
+from simkit.input_file import read_input
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
 from simkit.testing.golden.record_encoding import decode_record, decode_scenario, encode_record, encode_scenario
@@ -92,8 +93,6 @@ def read_golden(folder: str | os.PathLike[str]) -> RunRecord:
     """
     place = golden_folder(folder)
     main, name, digest, data = _read_main_and_data(place)
-    if len(data) > _MAX_DATA_BYTES:
-        raise _damaged_error(place / name, f"is larger than {_MAX_DATA_BYTES >> 20} MiB")
     if hashlib.sha256(data).hexdigest() != digest:
         raise _damaged_error(place / name, f"does not have the hash that {MAIN_FILE} lists")
     try:
@@ -110,8 +109,7 @@ def _read_main_and_data(place: Path) -> tuple[JsonObject, str, str, bytes]:
         main = read_main(place)
         name, digest = _read_data(place, main)
         try:
-            with open(place / name, "rb") as file:
-                return main, name, digest, file.read(_MAX_DATA_BYTES + 1)
+            return main, name, digest, read_input(place / name, _MAX_DATA_BYTES)
         except FileNotFoundError as error:  # another process may have replaced the golden run just now
             if trial == _READ_ATTEMPTS - 1 or read_main(place) == main:
                 raise _damaged_error(place / name, f"cannot be read: {error.strerror}") from None
@@ -128,8 +126,7 @@ def read_main(folder: Path) -> JsonObject:
     """
     path = folder / MAIN_FILE
     try:
-        with open(path, "rb") as file:
-            text = file.read(_MAX_TEXT_BYTES + 1)
+        text = read_input(path, _MAX_TEXT_BYTES)
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(
             f"SK-GOLDEN-002 {folder}: there is no golden run (no {MAIN_FILE})\n"
@@ -138,8 +135,6 @@ def read_main(folder: Path) -> JsonObject:
         ) from None
     except OSError as error:
         raise _damaged_error(path, f"cannot be read: {error.strerror or error}") from None
-    if len(text) > _MAX_TEXT_BYTES:
-        raise _damaged_error(path, f"is larger than {_MAX_TEXT_BYTES >> 20} MiB")
     try:
         main = json.loads(text.decode())
     except RecursionError:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.errors import RenderError
+from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.params import Params
 from simkit.testing.run_record.world_values import file_hash, plugin_value_files, values_of_files
 from simkit.version import __version__
@@ -185,7 +186,7 @@ def imported_files(path: Path) -> list[Path]:
         if len(found) > _MAX_MODULES:
             break
         try:
-            tree = ast.parse(file.read_bytes())
+            tree = ast.parse(read_input(file, TEXT_LIMIT))
         except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
             continue
         for node in ast.walk(tree):

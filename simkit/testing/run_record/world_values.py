@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import Where
+from simkit.input_file import open_input, read_input_text
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.run_spec import JsonObject
@@ -231,14 +232,13 @@ def file_hash(path: Path) -> tuple[str, int]:
 
 @cache
 def _cached_file_hash(path: str, _: int, size: int) -> tuple[str, int]:
-    with open(path, "rb") as file:
+    with open_input(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest(), size
 
 
 _SUFFIXES: Final = frozenset((".yaml", ".yml"))
 _MAX_FILE_VALUES: Final = 100_000
 _MAX_YAML_DEPTH: Final = 60
-_MAX_FILE_BYTES: Final = 8 << 20
 _PLAIN_YAML_VALUE: Final = re.compile(r"[\w/*:-]+")
 
 
@@ -280,9 +280,7 @@ def _parse_document(path: Path) -> object:
     import yaml
 
     try:
-        if path.stat().st_size > _MAX_FILE_BYTES:
-            return None
-        return yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml_loader())
+        return yaml.compose(read_input_text(path), Loader=yaml_loader())
     except (OSError, UnicodeDecodeError, yaml.YAMLError, RecursionError):
         return None
 

@@ -14,11 +14,13 @@ from typing import Final
 
 from simkit.child_process import ChildProcesses
 from simkit.errors import InputError
+from simkit.input_file import read_input
 from simkit.run_spec import JsonObject
 from simkit.testing.junit import JunitCase
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun
 
 _SPARE_SECONDS: Final = 20.0  # [s], additional wall time for starting and ending a run's process
+_MAX_RESULT_BYTES: Final = 64 << 20
 _MAX_LINES_SHOWN: Final = 20  # last lines of printed output
 
 
@@ -223,7 +225,7 @@ def _run_in_process(
 def _read_process_result(target: Path, token: str, count: int) -> JsonObject | None:
     """Read the result of a run; None if the file was not written by simkit, because the plugin can write there too."""
     try:
-        found = json.loads(target.read_text(encoding="utf-8")) if target.is_file() else None
+        found = json.loads(read_input(target, _MAX_RESULT_BYTES)) if target.is_file() else None
     except (OSError, ValueError):
         return None
     if not isinstance(found, dict) or found.pop("token", None) != token:

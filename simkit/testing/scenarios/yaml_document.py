@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean, shorten
+from simkit.input_file import read_failure, read_input_text
 from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 
 MAX_BYTES = 1 << 20  # limit for a handwritten file [bytes]
@@ -59,14 +60,9 @@ class Document:
 
     def _text(self) -> str | None:
         try:
-            if self.path.stat().st_size > MAX_BYTES:
-                message = f"the file is larger than {MAX_BYTES >> 20} MiB"
-                self.diagnostics.error("SK-SCEN-001", message, Where(str(self.path)))
-                return None
-            return self.path.read_text(encoding="utf-8")
+            return read_input_text(self.path, MAX_BYTES)
         except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or "the file is not UTF-8 text"
-            self.diagnostics.error("SK-SCEN-001", f"cannot be read: {reason}", Where(str(self.path)))
+            self.diagnostics.error("SK-SCEN-001", f"cannot be read: {read_failure(error)}", Where(str(self.path)))
             return None
 
     def _read(self, text: str) -> None:

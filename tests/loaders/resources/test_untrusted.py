@@ -16,7 +16,7 @@ from xml.sax.saxutils import quoteattr
 import pytest
 
 import simkit
-from simkit.loaders.resources.bounded_file import read_bounded
+from simkit.input_file import read_input
 
 ROOT = Path(__file__).resolve().parents[3]
 WIDE = int(os.environ.get("SIMKIT_WIDEST", "200000"))  # siblings; a million of them take 20 s for each format
@@ -101,9 +101,9 @@ def test_a_pipe_is_read_and_a_silent_pipe_times_out(tmp_path, monkeypatch):
     content = MODEL.format(0, '<link name="l"/>').encode()
     writer = threading.Thread(target=pipe.write_bytes, args=(content,))
     writer.start()
-    assert read_bounded(pipe, 10_000) == content
+    assert read_input(pipe, 10_000, allow_pipe=True) == content
     writer.join()
-    monkeypatch.setattr("simkit.loaders.resources.bounded_file.PIPE_TIMEOUT", 0.2)
+    monkeypatch.setattr("simkit.input_file.PIPE_TIMEOUT", 0.2)
     assert errors(pipe) == ["SK-LOAD-002"]
 
 
