@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from simkit.input_file import read_input
-from simkit.loaders.resources.uris import is_file
+from simkit.loaders.resources.uris import is_file, is_private
 
 _PARENT_LEVELS = 6  # folders above a file that are searched for its package.xml
 _SEARCH_DEPTH = 4  # levels of folders below a search path
@@ -82,7 +82,8 @@ def _nearby_packages(name: str, folder: Path) -> Iterator[Path]:
         return
     if home.name == name or package_name(home) == name:
         yield home
-    yield home.parent / name
+    if not is_private(home.parent / name):
+        yield home.parent / name
     for above in home.parents[:3]:
         if len(above.parts) < 3:
             return

@@ -20,6 +20,7 @@ from simkit.loaders.resources.uris import (
     is_existing,
     is_file,
     is_folder,
+    is_private,
     is_path_of_other_machine,
     is_relocated,
     is_small_integer,
@@ -199,9 +200,12 @@ class Resolver:
                 continue
             folder = absolute_path(folder)
             for ancestor in (folder, *folder.parents[:3]):
-                if ancestor.name == name:
+                if ancestor.name == name and not is_private(ancestor):
                     yield ancestor / inside
-            yield from (folder / name / inside, folder.parent / name / inside, folder.parent / "models" / name / inside)
+            yield folder / name / inside
+            for near in (folder.parent / name, folder.parent / "models" / name):
+                if not is_private(near):
+                    yield near / inside
         for bundle in bundled_folders("assets"):
             yield bundle / name / inside
             yield from sorted(bundle.glob(f"*/{name}/")) if not inside and name.replace("_", "").isalnum() else ()
@@ -222,9 +226,7 @@ class Resolver:
         if relative_to is None or "/" not in inside or enclosing_package(absolute_path(relative_to)) is not None:
             return  # the enclosing package already defines the name
         folder = absolute_path(relative_to)
-        for ancestor in (folder, *folder.parents[:2]):
-            if len(ancestor.parts) > 3 and ancestor != Path.home():
-                yield ancestor / inside
+        yield from (ancestor / inside for ancestor in (folder, *folder.parents[:2]) if not is_private(ancestor))
 
     def _find_relocated(self, path: Path, relative_to: Path | None) -> Path | None:
         """Search the last components of an absolute path from another machine, in packages that exist here."""

@@ -9,6 +9,9 @@ from itertools import islice
 from pathlib import Path
 from urllib.parse import unquote
 
+_MANIFESTS = ("model.config", "model.sdf", "package.xml", "manifest.xml")
+_ASSETS = ("materials", "media", "meshes", "textures")
+
 
 def package_uri(uri: str) -> str:
     """Convert `$(find pkg)/...`, alone or after `file://`, to `package://pkg/...`."""
@@ -42,6 +45,18 @@ def leaves_folder(rest: str) -> bool:
         if depth < 0:
             return True
     return rest.split("/")[0] in ("..", ".")
+
+
+def is_private(folder: Path) -> bool:
+    """Check whether a folder exists, but a file near it must not read it by its name.
+
+    A model, a package, and a folder with meshes or textures may be read. The home folder and the two highest levels of
+    the file system are always private.
+    """
+    if len(folder.parts) < 3 or folder == Path.home():
+        return True
+    is_open = any(is_file(folder / name) for name in _MANIFESTS) or any(is_folder(folder / name) for name in _ASSETS)
+    return not is_open and is_existing(folder)
 
 
 def first_existing(candidates: Iterable[Path]) -> tuple[Path | None, list[Path]]:

@@ -427,3 +427,41 @@ def test_invalid_topic_names_are_refused_or_corrected(tmp_path, topic):
 def test_the_memory_of_this_process_stays_small():
     """The limit applies to all tests above that ran in this process, together with MuJoCo and other libraries."""
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 < LARGEST
+
+
+# ---------------------------------------------------------------------- folders near the file
+
+
+@pytest.fixture
+def neighbours(write):
+    """Return a world of alice, `home/alice/proj/worlds/w.sdf`, which names URI, and a model of bob beside her folder."""
+    for name in ("home/bob/private/model.sdf", "home/alice/proj/secret/model.xml", "home/alice/notes/model.xml"):
+        write(name, '<sdf version="1.9"><model name="m"><link name="l"/></model></sdf>')
+
+    def _world(uri: str) -> Path:
+        return write("home/alice/proj/worlds/w.sdf", WORLD.format(f"<include><uri>{uri}</uri></include>"))
+
+    return _world
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "model://home/bob/private",
+        "model://home/bob/private/model.sdf",
+        "package://home/bob/private/model.sdf",
+        "package://anything/bob/private/model.sdf",
+        "package://anything/secret/model.xml",
+        "model://alice/notes/model.xml",
+        "model://proj/secret/model.xml",
+        "model://secret/model.xml",
+    ],
+)
+def test_a_world_opens_no_folder_near_it_that_is_neither_a_model_nor_a_package(neighbours, uri):
+    assert errors(neighbours(uri)) == ["SK-URI-009" if uri.startswith("package") else "SK-URI-001"]
+
+
+@pytest.mark.parametrize("manifest", ["model.config", "package.xml"])
+def test_a_world_finds_its_own_model_or_package_by_the_name_of_the_folder(neighbours, write, manifest):
+    write(f"home/alice/proj/{manifest}", "<package><name>proj</name></package>")
+    assert errors(neighbours("model://proj/secret/model.xml")) == []
