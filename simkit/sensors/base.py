@@ -46,17 +46,19 @@ class Sensor(Sampler):
         example: smallest content that a `<sensor>` of the kind needs besides the elements common to all sensors.
         belongs_to: parent elements in a file: `link`, `joint` or both.
         is_deferred: True if noise and message of a captured sample may be computed later, when they are read.
-        gathers: True if a capture is so small that many samples may be captured before their messages are made, where
-            no callback waits for them.
+        gathers: True if the captured values are so small that the sensor may capture many samples before it makes
+            their messages. It does so only while no callback waits for the messages.
         needs_acceleration: True if `measure` reads body accelerations or forces between bodies.
         reads_contacts: True if `measure` reads contacts. Bodies that rest on a static link with such a sensor never
             sleep.
-        has_dynamic_bias: True if Gazebo passes the time between samples to the kind's noise, so that its bias drifts.
+        has_dynamic_bias: True if the bias of this kind drifts in Gazebo, which then passes the time between samples to
+            the noise.
         name, scoped, kind: names as in the file.
         update_rate: rate [Hz]; 0 is every step. Change it with `set_rate`.
         frame_id: frame of the messages.
         options: parameters of the kind.
-        noise: noise of the channels, where a kind sets it in `prepare`. The base class evolves, restarts and saves it.
+        noise: noise of the channels, if the kind sets it in `prepare`. The base class advances, restarts and saves
+            this noise.
     """
 
     kinds: ClassVar[tuple[str, ...]] = ()
@@ -95,7 +97,7 @@ class Sensor(Sampler):
         return self.options
 
     def describe(self) -> dict[str, object]:
-        """Return the kind's block of `inspect --json`."""
+        """Return the kind's own data for `simkit inspect --json`."""
         return {}
 
     def build(self, builder: SpecBuilder) -> None:
@@ -103,11 +105,11 @@ class Sensor(Sampler):
 
     @abc.abstractmethod
     def products(self) -> dict[str, Product]:
-        """Return the messages that the kind can publish; `latest` shows the first."""
+        """Return the messages that the kind can publish, by product; `latest` shows the first product."""
 
     @abc.abstractmethod
     def default_topics(self) -> dict[str, str]:
-        """Return the topic of each product, as Gazebo would name it; `latest` shows the first."""
+        """Return Gazebo's default topic of each product; `latest` shows the first product."""
 
     # ------------------------------------------------------------------ readings
 
@@ -152,7 +154,7 @@ class Sensor(Sampler):
         return Pose(data.xpos[self._body], data.xquat[self._body]) @ self._offset
 
     def set_rate(self, rate: float) -> None:
-        """Sample at `rate` [Hz] from now on, still on the grid of t = 0; 0 is every step.
+        """Sample at `rate` [Hz] from now on; 0 samples at every step. The grid of samples still begins at t = 0.
 
         Raises:
             ValueError: the rate is negative, NaN or infinite.
@@ -161,12 +163,12 @@ class Sensor(Sampler):
             raise ValueError(f"the rate must be a finite number of at least 0 [Hz], got {rate}")
         self.sim.communication.bus.settle()
         if self._noises and self._sample is not None:
-            self.latest  # noqa: B018 - its message may contain the rate that it was measured at
+            self.latest  # noqa: B018 - make this message now, because it may contain the rate of its sample
         self._apply_rate(float(rate))
         self.sim.engine.reschedule()
 
     def optical_frames(self) -> dict[str, Pose]:
-        """Return the poses, in the sensor's frame, of the other frames that its messages name."""
+        """Return the poses of all other frames that the messages name, in the sensor's frame."""
         return {}
 
     def publish_on(self, topics: Mapping[str, str]) -> None:
@@ -175,7 +177,7 @@ class Sensor(Sampler):
         A second plugin on the same sensor adds its topics to those of the first.
 
         Args:
-            topics: absolute topic by product; `latest` shows the first product.
+            topics: absolute topic of each product; `latest` shows the first product.
         """
         if not self._has_plugin_topics:
             for _, publisher, _ in self._publishers:
@@ -210,7 +212,7 @@ class Sensor(Sampler):
             sim.communication.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)
         self.prepare()
         if self.noise is not None:
-            self._register_noise(self.noise)  # the kind made this noise itself
+            self._register_noise(self.noise)  # a kind may make its noise without `_make_noise`
         self._products = self.products()
         self._open(self.default_topics())
         self.restart()
@@ -229,9 +231,10 @@ class Sensor(Sampler):
         """Find the sensor in a compiled model; called again after every change of structure."""
         self._process_pending()
         for sample in self._kept_samples():
-            self._finish_sample(sample)  # the held state belongs to the previous model
+            self._finish_sample(sample)  # the physics state of the sample belongs to the previous model
         for _, publisher, _ in self._publishers:
-            self.sim.communication.bus.settle_topic(publisher.topic)  # and so do the messages that wait for a reader
+            # messages that wait for a reader belong to the previous model too
+            self.sim.communication.bus.settle_topic(publisher.topic)
         self._link_name = self._find_link(compiled.names)
         link = compiled.names.link(self._link_name)
         self._body = int(link.body)
@@ -278,25 +281,25 @@ class Sensor(Sampler):
     def _register_noise(self, noise: AnyNoiseProcess) -> AnyNoiseProcess:
         if noise not in self._noises:
             self._noises.append(noise)
-        if noise.wanders:
-            self._wandering = tuple(n for n in self._noises if n.wanders)
+        if noise.evolves:
+            self._evolving = tuple(n for n in self._noises if n.evolves)
             self._evolves = True
         self.is_deferred = True
         return noise
 
     def _on_rate(self, message: msgs.Float64) -> None:
-        """Apply a rate received on a topic; with `<gazebo_quirks>` it is at most the file's."""
+        """Apply a rate received on a topic; with `<gazebo_quirks>`, the rate of the file is the upper limit."""
         rate, file_rate = float(message.data), self.scene.rate
-        refused = ""
+        problem = ""
         if not (math.isfinite(rate) and rate >= 0):
-            refused = "expected a finite number of at least 0"
+            problem = "expected a finite number of at least 0"
         elif self.sim.world.gazebo_quirks and file_rate > 0 and not 0 < rate <= file_rate:
-            refused = f"Gazebo allows at most the file's {file_rate:g} Hz"
-        if not refused:
+            problem = f"Gazebo allows at most {file_rate:g} Hz, the rate of the file"
+        if not problem:
             self.set_rate(rate)
             return
-        problem = f"sensor {self.scoped!r}: ignored {rate:g} Hz from {self.timing.set_rate_topic!r}: {refused}"
-        self.sim.engine.reports.warning("SK-SENSOR-026", problem, self.scene.where)
+        message_text = f"sensor {self.scoped!r}: ignored {rate:g} Hz from {self.timing.set_rate_topic!r}: {problem}"
+        self.sim.engine.reports.warning("SK-SENSOR-026", message_text, self.scene.where)
 
     def _default_topic(self, suffix: str) -> str:
         """Return the file's `<topic>`, or Gazebo's default where the file has none."""
@@ -317,7 +320,7 @@ class Sensor(Sampler):
         return np.array((vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x))
 
     def _find_link(self, names: NameMap) -> str:
-        """Return the name of the sensor's link; for a joint's sensor, that is the joint's child link."""
+        """Return the name of the sensor's link; a sensor on a joint belongs to the joint's child link."""
         parent = self.scene.parent
         return str(names.joint(parent).scene.child_link) if self.scene.on_joint else parent
 

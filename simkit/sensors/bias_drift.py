@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStreams
 
 ALLAN_FLOOR: Final = math.sqrt(2.0 * math.log(2.0) / math.pi)
-"""Allan deviation of flicker noise over its coefficient B, 0.664 (IEEE Std 952-1997, annex C)."""
+"""Ratio of flicker noise's Allan deviation to its coefficient B, 0.664 (IEEE Std 952-1997, annex C)."""
 
 ALLAN_PEAK: Final = 0.6174
 """Greatest Allan deviation of a Gauss-Markov process over its standard deviation, at 1.89 times its correlation time.
@@ -30,7 +30,7 @@ The Allan variance at x = (averaging time)/T is 2σ²/x·(1 - (3 - 4·e^-x + e^-
 """
 
 FLICKER_TIMES: Final = tuple(10.0**k for k in range(-1, 5))
-"""Correlation times [s] of the processes that give a flat floor from 1 s to 1000 s, within 2.5 %."""
+"""Correlation times [s] of the processes whose sum has a constant Allan deviation from 1 s to 1000 s, within 2.5 %."""
 
 _MIN_TIME: Final = 1e-100  # [s] shortest correlation time; below any time step the process is white noise
 
@@ -40,16 +40,16 @@ class BiasDrift:
     """Drifting bias of one kind on several channels, as one or more Gauss-Markov processes per channel.
 
     Attributes:
-        driving: K [unit/√s], shape (processes · channels,), process by process; 0 where a channel has none.
-        time: T [s], same shape; infinite for a random walk.
-        begins: standard deviation of the initial value, same shape; 0 starts at zero.
+        driving: driving noise K [unit/√s], shape (processes · channels,), ordered by process; 0 for no bias.
+        time: correlation time T [s], same shape; infinite for a random walk.
+        initial_stddev: standard deviation of the initial value, same shape; with 0, the bias starts at zero.
         name: name of the random stream within the group.
         processes: number of processes per channel.
     """
 
     driving: Vector
     time: Vector
-    begins: Vector
+    initial_stddev: Vector
     name: str
     processes: int = 1
 
@@ -68,7 +68,7 @@ class BiasDrift:
 
 
 def gauss_markov_drift(driving: Sequence[float], times: Sequence[float], name: str) -> BiasDrift:
-    """Return a bias that starts at zero.
+    """Return a bias with one Gauss-Markov process per channel, which starts at zero.
 
     Args:
         driving: K of each channel [unit/√s].
@@ -81,7 +81,7 @@ def gauss_markov_drift(driving: Sequence[float], times: Sequence[float], name: s
 
 
 def instability_drift(coefficients: Sequence[float], times: Sequence[float], name: str) -> BiasDrift:
-    """Return the bias instability B [unit] of each channel, in its steady state from the start.
+    """Return a bias with the instability B [unit] of each channel, in its steady state from the start.
 
     With a correlation time T [s], one Gauss-Markov process represents the instability. Its Allan deviation has
     its peak, 0.664·B, at 1.89·T. Without T, the bias is flicker noise with 0.664·B from 1 s to 1000 s. Flicker
@@ -121,23 +121,23 @@ class NoiseInterval:
 
 
 class NoiseState:
-    """State of a sensor's noise at one sample; replaced and never modified.
+    """State of a sensor's noise at one sample. Each sample gets a new object, and no object is modified.
 
     Attributes:
         interval: constants for the time since the previous sample.
-        parts: current values of each drifting bias.
+        biases: current values of each drifting bias.
         constant: sum of all noise except white noise, shape (channels,).
     """
 
-    __slots__ = ("_numbers", "constant", "interval", "parts")
+    __slots__ = ("_numbers", "biases", "constant", "interval")
 
-    def __init__(self, interval: NoiseInterval, parts: tuple[Vector, ...], constant: Vector) -> None:
-        self.interval, self.parts, self.constant = interval, parts, constant
+    def __init__(self, interval: NoiseInterval, biases: tuple[Vector, ...], constant: Vector) -> None:
+        self.interval, self.biases, self.constant = interval, biases, constant
         self._numbers: tuple[list[float], list[float]] | None = None
 
     @property
     def numbers(self) -> tuple[list[float], list[float]]:
-        """Lists of `constant` and of the standard deviation of the white noise."""
+        """`constant` and the standard deviation of the white noise, as two lists of numbers."""
         if self._numbers is None:
             self._numbers = self.constant.tolist(), self.interval.stddev.tolist()
         return self._numbers
@@ -150,40 +150,40 @@ class BiasDriftGenerator:
     """Generator of the steps of drifting biases.
 
     Args:
-        wanders: drifting biases; those that no channel has are dropped.
+        drifts: drifting biases; a bias that no channel has is left out.
         streams: random streams of the simulation.
-        scoped, group: names of the sensor and the group, which name the streams.
+        scoped, group: scoped name of the sensor and name of the noise group; together they name the streams.
     """
 
-    def __init__(self, wanders: Sequence[BiasDrift], streams: RandomStreams, scoped: str, group: str) -> None:
-        self.wanders = tuple(w for w in wanders if not w.is_idle)
-        self._streams = [streams.stream(scoped, f"{group}/{w.name}", w.driving.size) for w in self.wanders]
+    def __init__(self, drifts: Sequence[BiasDrift], streams: RandomStreams, scoped: str, group: str) -> None:
+        self.drifts = tuple(drift for drift in drifts if not drift.is_idle)
+        self._streams = [streams.stream(scoped, f"{group}/{drift.name}", drift.driving.size) for drift in self.drifts]
 
     def begin(self) -> tuple[Vector, ...]:
-        """Return the values before the first step."""
+        """Return the initial values of all biases, in the form of `NoiseState.biases`."""
         return tuple(
-            w.begins * s.normal(0) if w.begins.any() else w.begins
-            for w, s in zip(self.wanders, self._streams, strict=True)
+            drift.initial_stddev * stream.normal(0) if drift.initial_stddev.any() else drift.initial_stddev
+            for drift, stream in zip(self.drifts, self._streams, strict=True)
         )
 
     def factors(self, dt: float) -> tuple[tuple[Vector, Vector], ...]:
-        return tuple(w.factors(dt) for w in self.wanders)
+        return tuple(drift.factors(dt) for drift in self.drifts)
 
     def step(
-        self, parts: tuple[Vector, ...], factors: tuple[tuple[Vector, Vector], ...], index: int
+        self, biases: tuple[Vector, ...], factors: tuple[tuple[Vector, Vector], ...], index: int
     ) -> tuple[Vector, ...]:
-        """Return the values at sample `index`, one interval later."""
+        """Return the values of all biases at sample `index`, one interval after the values `biases`."""
         moved = []
         for i, stream in enumerate(self._streams):
             decay, spread = factors[i]
             step = spread * stream.normal(index)
-            step += decay * parts[i]
+            step += decay * biases[i]
             moved.append(step)
         return tuple(moved)
 
-    def sums(self, parts: tuple[Vector, ...]) -> list[Vector]:
-        """Return each bias summed over its processes, shape (channels,)."""
+    def sums(self, biases: tuple[Vector, ...]) -> list[Vector]:
+        """Return the sum of each bias's processes, shape (channels,)."""
         return [
-            part if w.processes == 1 else np.add.reduce(part.reshape(w.processes, -1))
-            for w, part in zip(self.wanders, parts)  # noqa: B905 - runs at every sample, and strict costs time
+            part if drift.processes == 1 else np.add.reduce(part.reshape(drift.processes, -1))
+            for drift, part in zip(self.drifts, biases)  # noqa: B905 - runs at every sample, and strict costs time
         ]

@@ -1,8 +1,8 @@
 """Gaussian noise of sensors: white noise, a bias drawn once, biases that drift, and quantisation.
 
 Two properties differ from Gazebo unless the world sets `<gazebo_quirks>`: the bias keeps the sign of the file, and a
-drifting bias always uses the true time between samples. The numbers of a data sheet for white noise and biases can be
-written without conversion (see `NoiseModel`).
+drifting bias always uses the true time between samples. A file can contain a data sheet's numbers for white noise and
+biases without conversion (see `NoiseModel`).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _TYPES = ("none", "gaussian", "gaussian_quantized")
 _DATA_SHEET_ELEMENTS = ("noise_density", "random_walk", "bias_instability", "correlation_time")
 _DYNAMIC_BIAS_ELEMENTS = ("dynamic_bias_stddev", "dynamic_bias_correlation_time")
 _MIN_PRECISION = 1e-6  # Gazebo ignores a smaller precision
-_MAX_INTERVALS = 64  # size of the cache; with jitter, every interval is new
+_MAX_INTERVALS = 64  # size of the cache of intervals, because each interval differs if the sensor has jitter
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +67,8 @@ class NoiseModel:
     is_quantized: bool = False
 
     @property
-    def wanders(self) -> bool:
-        """True if the bias changes from sample to sample."""
+    def drifts(self) -> bool:
+        """True if the bias drifts from sample to sample."""
         dynamic = self.dynamic_bias_stddev > 0 and self.dynamic_bias_correlation_time > 0
         return dynamic or self.random_walk > 0 or self.bias_instability > 0
 
@@ -77,7 +77,7 @@ class NoiseModel:
         return self.noise_density / math.sqrt(interval) if self.noise_density > 0 else self.stddev
 
     def as_gazebo(self, has_dynamic_bias: bool) -> NoiseModel:
-        """Return the noise as Gazebo would apply it, except for the sign of the bias; simkit's own elements stay."""
+        """Return the noise as Gazebo applies it, except for the sign of the bias; keep simkit's own elements."""
         dynamic = self.dynamic_bias_stddev if has_dynamic_bias else 0.0
         precision = self.precision if self.precision > _MIN_PRECISION else 0.0
         return replace(self, dynamic_bias_stddev=dynamic, precision=precision)
@@ -94,7 +94,7 @@ ThreeAxes = tuple[NoiseModel, NoiseModel, NoiseModel]
 def read_noise(owner: Params, default: str = "none") -> NoiseModel:
     """Read the `<noise>` of a block; the type may be an attribute or an element.
 
-    Without a type, `default` applies, except that elements of a data sheet, which SDF does not define, mean `gaussian`.
+    Without a type, `default` applies. A noise with data-sheet elements, which are simkit's own, is always `gaussian`.
 
     Args:
         owner: block that contains the `<noise>`.
@@ -123,7 +123,7 @@ def read_noise(owner: Params, default: str = "none") -> NoiseModel:
 
 
 def read_axes(block: Params, default: NoiseModel = NO_NOISE) -> ThreeAxes:
-    """Read the `<noise>` of `<x>`, `<y>` and `<z>` of a block; an axis without one gets `default`."""
+    """Read the `<noise>` of `<x>`, `<y>` and `<z>` of a block; an axis without `<noise>` gets `default`."""
     x, y, z = (read_noise(block.block(axis)) if block.block(axis).has("noise") else default for axis in "xyz")
     return x, y, z
 
@@ -140,11 +140,11 @@ def _prefer_data_sheet(model: NoiseModel, params: Params) -> NoiseModel:
     if model.noise_density > 0 and model.stddev > 0:
         _report_duplicate(params, "<stddev>", "<noise_density>")
         model = replace(model, stddev=0.0)
-    wandering = next((name for name in ("random_walk", "bias_instability") if getattr(model, name) > 0), "")
-    if wandering and model.dynamic_bias_stddev > 0:
-        _report_duplicate(params, f"<{_DYNAMIC_BIAS_ELEMENTS[0]}>", f"<{wandering}>")
+    drift_element = next((name for name in ("random_walk", "bias_instability") if getattr(model, name) > 0), "")
+    if drift_element and model.dynamic_bias_stddev > 0:
+        _report_duplicate(params, f"<{_DYNAMIC_BIAS_ELEMENTS[0]}>", f"<{drift_element}>")
         model = replace(model, dynamic_bias_stddev=0.0)
-    if model.correlation_time > 0 and not wandering:
+    if model.correlation_time > 0 and not drift_element:
         message = "<correlation_time> has no effect without a <random_walk> or a <bias_instability>"
         params.diagnostics.warning("SK-SENSOR-021", message, params.block("correlation_time").where)
     return model
@@ -158,7 +158,7 @@ def _report_duplicate(params: Params, unused: str, used: str) -> None:
 class Noise:
     """Noise of a group of channels.
 
-    The random numbers of a sample depend on its index only. Noise without a deviation draws no numbers.
+    The random numbers of a sample depend on its index only. Noise whose standard deviation is 0 draws no numbers.
 
     Args:
         models: noise models, one per channel.
@@ -169,7 +169,7 @@ class Noise:
         random_sign: True gives each channel's bias either sign with equal odds, as Gazebo does.
 
     Attributes:
-        state: part that depends on the sample; samples that are finished later keep their own.
+        state: state at the newest sample; a sample that is finished later has a reference to its own state.
     """
 
     state: NoiseState
@@ -203,18 +203,18 @@ class Noise:
         walks = gauss_markov_drift(
             column("random_walk").tolist(), np.where(unstable > 0, 0.0, bound).tolist(), "random_walk"
         )
-        parts = (gauss_markov_drift(dynamic.tolist(), times.tolist(), "walk"), walks)
-        self._wanderer = BiasDriftGenerator(
-            (*parts, instability_drift(unstable.tolist(), bound.tolist(), "instability")), streams, scoped, group
+        drifts = (gauss_markov_drift(dynamic.tolist(), times.tolist(), "walk"), walks)
+        self._bias_drift = BiasDriftGenerator(
+            (*drifts, instability_drift(unstable.tolist(), bound.tolist(), "instability")), streams, scoped, group
         )
         self._has_density = any(m.noise_density > 0 for m in models)
-        self.wanders = bool(self._wanderer.wanders) or self._has_density
+        self.evolves = bool(self._bias_drift.drifts) or self._has_density
         self._intervals: dict[float, NoiseInterval] = {}
         self._nominal = interval
         self.restart()
         # noise without any effect is skipped
         self.is_silent = not (
-            self._white or self._wanderer.wanders or self._is_quantised or bool(self.state.constant.any())
+            self._white or self._bias_drift.drifts or self._is_quantised or bool(self.state.constant.any())
         )
 
     def _open_white_noise(self, streams: RandomStreams, scoped: str, group: str) -> RandomStream | None:
@@ -222,36 +222,36 @@ class Noise:
         return streams.stream(scoped, group, self.width) if is_white else None
 
     def set_interval(self, interval: float) -> None:
-        """Set the time [s] between samples that is assumed where the true one is unknown."""
+        """Set the time between samples [s] that the first sample uses, because it has no previous sample."""
         self._nominal = interval
 
     def restart(self) -> None:
-        """Repeat the draws that are made once."""
+        """Return to t = 0, and draw the constant biases again."""
         bias = self._bias_mean.copy()
         if self._drawn_bias is not None:
             bias += self._bias_stddev * self._drawn_bias.normal(0)
         if self._sign is not None:
             bias = np.where(self._sign.normal(0) < 0, -bias, bias)
         self._fixed = np.where(self._is_dynamic, 0.0, bias) + self._mean
-        parts = self._wanderer.begin()
+        biases = self._bias_drift.begin()
         if self._is_dynamic.any():
-            parts = (parts[0] + np.where(self._is_dynamic, bias, 0.0), *parts[1:])
-        self._replace(self._of(self._nominal), parts)
+            biases = (biases[0] + np.where(self._is_dynamic, bias, 0.0), *biases[1:])
+        self._replace(self._of(self._nominal), biases)
 
     def evolve(self, index: int, dt: float) -> None:
-        """Advance by `dt` [s] to sample `index`; `dt` is 0 where no sample precedes it."""
+        """Advance by `dt` [s] to sample `index`; `dt` is 0 for the first sample."""
         before = self.state
         interval = self._of(dt if dt > 0 else self._nominal)
-        if dt > 0 and before.parts:
-            self._replace(interval, self._wanderer.step(before.parts, interval.factors, index))
+        if dt > 0 and before.biases:
+            self._replace(interval, self._bias_drift.step(before.biases, interval.factors, index))
         elif interval is not before.interval:
-            self.state = NoiseState(interval, before.parts, before.constant)
+            self.state = NoiseState(interval, before.biases, before.constant)
 
-    def _replace(self, interval: NoiseInterval, parts: tuple[Vector, ...]) -> None:
+    def _replace(self, interval: NoiseInterval, biases: tuple[Vector, ...]) -> None:
         constant = self._fixed
-        for moved in self._wanderer.sums(parts):
+        for moved in self._bias_drift.sums(biases):
             constant = constant + moved
-        self.state = NoiseState(interval, parts, constant)
+        self.state = NoiseState(interval, biases, constant)
 
     def _of(self, dt: float) -> NoiseInterval:
         known = self._intervals.get(dt)
@@ -259,7 +259,7 @@ class Noise:
             if len(self._intervals) >= _MAX_INTERVALS:
                 self._intervals.clear()
             stddev = np.array([m.white(dt) for m in self.models])
-            known = self._intervals[dt] = NoiseInterval(stddev, self._wanderer.factors(dt))
+            known = self._intervals[dt] = NoiseInterval(stddev, self._bias_drift.factors(dt))
         return known
 
     def apply(self, values: Vector, index: int) -> Vector:
@@ -273,7 +273,7 @@ class Noise:
         return out
 
     def apply_to_numbers(self, values: Sequence[float], index: int) -> Sequence[float]:
-        """Return the same bits as `apply`; for a few numbers, adding one by one is faster than NumPy."""
+        """Return the same bits as `apply`, faster for a few numbers because each is added without NumPy."""
         if self._is_quantised:
             rounded: list[float] = self.apply(np.array(values), index).tolist()
             return rounded

@@ -27,7 +27,7 @@ class Product:
     Attributes:
         type_name: ROS 2 type.
         make: function `make(reading, time_ns)` that returns the message.
-        needs_reading: False where the message contains no measurement; its reading may then be None.
+        needs_reading: False if the message contains no measurement; `make` then accepts None as the reading.
     """
 
     type_name: str
@@ -45,9 +45,9 @@ class Sample:
         truth: reading without noise.
         noisy: reading with noise.
         messages: messages made so far, by product.
-        drifts: states at this sample of the noise processes that change from sample to sample.
+        noise_states: states at this sample of the noise processes that change from sample to sample.
         unpublished: products of this sample that are not published.
-        surroundings: state besides the physics that the kind measures, where it measures more than the physics.
+        surroundings: state besides the physics that the kind measures; None if the kind measures only the physics.
         work: job of another thread on this sample; a reader of the sample waits for it first.
     """
 
@@ -57,7 +57,7 @@ class Sample:
     truth: Reading = None
     noisy: Reading = None
     truth_message: object = None
-    drifts: tuple[object, ...] = ()
+    noise_states: tuple[object, ...] = ()
     unpublished: tuple[str, ...] = ()
     surroundings: Memory = None
     work: Any = None
@@ -71,23 +71,24 @@ class NoiseProcess(Protocol):
     """State besides the physics that continues from sample to sample: noise, and any other state that a kind keeps.
 
     Attributes:
-        state: part that depends on the sample. It is replaced and never modified, because waiting samples keep theirs.
+        state: state at the newest sample. Each sample gets a new object, because an older sample that is read later
+            has a reference to its own state.
     """
 
     state: Memory
 
     @property
-    def wanders(self) -> bool:
-        """True if the state changes from sample to sample."""
+    def evolves(self) -> bool:
+        """True if `evolve` changes the state."""
 
     def evolve(self, index: int, dt: float) -> None:
-        """Advance by `dt` [s] to sample `index`; `dt` is 0 where no sample precedes it."""
+        """Advance by `dt` [s] to sample `index`; `dt` is 0 for the first sample."""
 
     def restart(self) -> None:
         """Return to t = 0."""
 
     def set_interval(self, interval: float) -> None:
-        """Set the time between samples [s] that is assumed where the true one is unknown."""
+        """Set the time between samples [s] that the first sample uses, because it has no previous sample."""
 
 
 class Batch(Protocol):

@@ -1,4 +1,4 @@
-"""Sampling of a sensor: samples are taken when due, kept until they are read, and published when they arrive."""
+"""Sampling of a sensor: samples are taken at due times, stored until they are read, and published when they arrive."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from simkit.runtime.engine.scheduler import Timetable
 from simkit.sensors.sample import Batch, Memory, NoiseProcess, Product, Reading, ReadingFunction, Sample
 from simkit.sensors.sample_times import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
 
-_MAX_GATHERED = 64  # captures gathered before samples are made of them
+_MAX_GATHERED = 64  # number of gathered captures at which samples are made from them
 
 
 def _is_always_on() -> bool:
@@ -40,7 +40,7 @@ class Sampler(abc.ABC):
 
     def __init__(self) -> None:
         self._noises: list[NoiseProcess] = []
-        self._wandering: tuple[NoiseProcess, ...] = ()
+        self._evolving: tuple[NoiseProcess, ...] = ()
         self._topics: dict[str, str] = {}
         self._products: Mapping[str, Product] = {}
         self._has_plugin_topics = False
@@ -55,7 +55,7 @@ class Sampler(abc.ABC):
         self._index, self._time_ns = 0, -1
         self._delayed: DelayedReadings | None = None
         self._latency_timetable: LatencyTimetable | None = None
-        # a method that a kind does not override is not called at every sample
+        # these flags avoid a call at every sample of a method that the kind does not override
         self._selects_ticks, self._selects_products_of_sample = self._overrides("accepts"), self._overrides("publishes")
         self._evolves = self._overrides("evolve")
         self._is_on: Callable[[], bool] = _is_always_on
@@ -71,7 +71,7 @@ class Sampler(abc.ABC):
 
     @abc.abstractmethod
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
-        """Return the reading without noise, from data with everything computed; its arrays are never modified later."""
+        """Return the reading without noise, from up-to-date data; the reading's arrays are never modified later."""
 
     def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
         """Copy from the data the values that `finish` needs; by default, the reading itself."""
@@ -90,13 +90,13 @@ class Sampler(abc.ABC):
         return reading
 
     def evolve(self, index: int, dt: float) -> None:
-        """Advance noise that has a state by `dt` [s] (0 at the first sample), whether the sample is read or not."""
+        """Advance noise that has a state by `dt` [s], also for samples without a reader; 0 at the first sample."""
         for noise in self._noises:
-            if noise.wanders:
+            if noise.evolves:
                 noise.evolve(index, dt)
 
     def restart(self) -> None:
-        """Return to t = 0, and repeat the draws that are made once."""
+        """Return to t = 0, and draw the constant biases again."""
         for noise in self._noises:
             noise.restart()
 
@@ -187,12 +187,12 @@ class Sampler(abc.ABC):
             self._publish(sample, read_publishers)
 
     def take_held(self) -> None:
-        """Capture the kept samples before the model that they belong to is modified."""
+        """Capture the samples that are not captured yet, before their model is modified."""
         for sample in self._kept_samples():
             self._capture_sample(sample)
 
     def leave(self) -> None:
-        """Finish the kept samples; called when the sensor's model is removed."""
+        """Finish the samples that may still be read; called when the sensor's model is removed."""
         self._process_pending()
         for sample in self._kept_samples():
             self._finish_sample(sample)
@@ -240,8 +240,8 @@ class Sampler(abc.ABC):
             self.evolve(index, (time_ns - self._time_ns) * 1e-9 if self._time_ns >= 0 else 0.0)
         self._time_ns = time_ns
         sample = Sample(index, time_ns)
-        if self._wandering:
-            sample.drifts = tuple([noise.state for noise in self._wandering])
+        if self._evolving:
+            sample.noise_states = tuple([noise.state for noise in self._evolving])
         return sample
 
     def _capture_now(self, tick: int) -> object:
@@ -250,7 +250,7 @@ class Sampler(abc.ABC):
         if batch is not None:
             if batch.is_ready(self, tick):
                 return batch.captured(self.batch_index)
-            self.batch = None  # until the next schedule
+            self.batch = None  # the sensor samples alone until the simulation schedules its sensors again
         return self.capture(self.sim.mj_model, self._computed_data())
 
     def _computed_data(self) -> mujoco.MjData:
@@ -270,12 +270,12 @@ class Sampler(abc.ABC):
         patience = [publisher.patience for publisher in publishers]
         is_plain = self._delayed is None and not (self._selects_ticks or self._selects_products_of_sample)
         self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)
-        changes = self._evolves or self._wandering or self._overrides("_begin_sample")
+        changes = self._evolves or self._evolving or self._overrides("_begin_sample")
         self._is_unread = not (self._read_publishers or changes or self._delayed)
         self._patience = max(patience, default=0.0)
 
     def _process_pending(self) -> None:
-        """Make samples of the gathered captures, and publish those that a reader keeps."""
+        """Make samples of the gathered captures, and publish the newest ones, which a reader's queue can keep."""
         if self._held is not None and self._skipped:
             (tick, held), count = self._held, self._skipped
             self._skipped, self._held = 0, None
@@ -365,7 +365,7 @@ class Sampler(abc.ABC):
             self._capture_sample(sample)
         if sample.raw is not None:
             sample.truth = truth = self.finish(sample.raw)
-            if sample.drifts:
+            if sample.noise_states:
                 sample.noisy = self._with_noise_of(sample, self.perturb, truth, sample.index)
             else:
                 sample.noisy = self.perturb(truth, sample.index)
@@ -381,17 +381,17 @@ class Sampler(abc.ABC):
 
     def _make_message(self, sample: Sample, product: str, reading: Reading) -> object:
         make = self._products[product].make
-        if sample.drifts:
+        if sample.noise_states:
             return self._with_noise_of(sample, make, reading, sample.time_ns)
         return make(reading, sample.time_ns)
 
     def _with_noise_of(self, sample: Sample, make: ReadingFunction, reading: Reading, number: int) -> object:
-        """Call `make(reading, number)` with the state that the noise had at a sample."""
-        now = [noise.state for noise in self._wandering]
-        for noise, state in zip(self._wandering, sample.drifts, strict=True):
+        """Call `make(reading, number)` while the noise has its state of that sample."""
+        now = [noise.state for noise in self._evolving]
+        for noise, state in zip(self._evolving, sample.noise_states, strict=True):
             noise.state = state
         try:
             return make(reading, number)
         finally:
-            for noise, state in zip(self._wandering, now, strict=True):
+            for noise, state in zip(self._evolving, now, strict=True):
                 noise.state = state

@@ -24,7 +24,7 @@ def entity_topic(world: str, sensor: SceneSensor, suffix: str = "") -> str:
 
 
 def sibling_topic(topic: str, name: str) -> str:
-    """Return a topic in the same namespace as another: `/a/image` and `camera_info` give `/a/camera_info`."""
+    """Return the topic `name` in the namespace of another topic: `/a/image` and `camera_info` give `/a/camera_info`."""
     return topic.rsplit("/", 1)[0] + "/" + name
 
 

@@ -18,7 +18,7 @@ from simkit.sensors.noise import NoiseModel, read_noise
 from simkit.sensors.topics_and_frames import read_frame_id
 
 _COMMON_ELEMENTS = ("always_on", "visualize", "enable_metrics", "pose", "update_rate", "topic")
-_DVL_ELEMENTS = ("gz:dvl", "ignition:dvl")  # each reader reports unknown elements with other prefixes
+_DVL_ELEMENTS = ("gz:dvl", "ignition:dvl")
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 def temporary_values(
     array: npt.NDArray[np.generic], indices: Sequence[int] | npt.NDArray[np.integer], values: Any
 ) -> Iterator[None]:
-    """Set values of an array at these indices while the context lasts; restore the old values at its end."""
+    """Set values of an array at these indices, inside the `with` block; restore the old values at its end."""
     indices = np.asarray(indices, dtype=np.intp)
     old_values = array[indices]
     array[indices] = values

@@ -36,7 +36,7 @@ class ArrayPool:
 
     def take(self) -> AnyArray:
         """Return an array without other references, with undefined content."""
-        with self._lock:  # held until the caller has a reference to the array
+        with self._lock:  # until the caller has a reference to the array
             for i in range(len(self._arrays)):
                 if self._count_references(i) <= self._idle:
                     return self._arrays[i]

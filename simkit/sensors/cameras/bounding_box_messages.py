@@ -1,4 +1,4 @@
-"""Bounding boxes as `vision_msgs`, as ros_gz_bridge converts Gazebo's, and drawn into an image."""
+"""Conversion of bounding boxes into `vision_msgs`, like ros_gz_bridge, and drawing of boxes into an image."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _OGRE: Final = np.array(((0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)))
 
 
 def detections_2d(header: msgs.Header, boxes: Sequence[Box2D]) -> msgs.Detection2DArray:
-    """Return a `Detection2DArray`; the class is the label in digits with a score of 1, the id is the model's name."""
+    """Return a `Detection2DArray`; each class id is a label as a decimal number, and each id is a model's name."""
     detection, corner = msgs.type_of("vision_msgs/msg/Detection2D"), msgs.type_of("vision_msgs/msg/Point2D")
     centre, bounding_box = msgs.type_of("vision_msgs/msg/Pose2D"), msgs.type_of("vision_msgs/msg/BoundingBox2D")
     found = []

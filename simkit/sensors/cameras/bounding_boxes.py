@@ -1,4 +1,4 @@
-"""Bounding boxes of labelled objects: by visible pixels, by projection and in space, or with Gazebo's own errors."""
+"""Bounding boxes of labelled objects: around visible pixels, around projections, in space, or as Gazebo has them."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ class LabelledShapes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PosedShapes:
-    """Labelled shapes at their poses in the sensor's frame at one time, each by its number.
+    """Labelled shapes at their poses in the sensor's frame at one time.
 
     Attributes:
         shapes: shapes without poses.
@@ -217,7 +217,7 @@ def visible_boxes(position_of: Numbers, items: Sequence[LabelledObject]) -> list
         items: labelled objects.
     """
     height, width = position_of.shape
-    # the two ends of each run of equal pixels in a row determine the box, so the others are skipped
+    # in each row, only the first and the last of adjacent equal pixels can determine the box
     changes = np.ones((height, width + 1), bool)
     np.not_equal(position_of[:, 1:], position_of[:, :-1], out=changes[:, 1:-1])
     pixel = np.flatnonzero((changes[:, 1:] | changes[:, :-1]) & (position_of >= 0))
@@ -271,11 +271,11 @@ def _cached(cache: dict[int, Corners], model: mujoco.MjModel, geom: int) -> Corn
 def gazebo_boxes(
     kind: str, geoms: Ids, items: LabelledObjects, shapes: PosedShapes | None, projection: Projection
 ) -> list[Box2D] | list[Box3D]:
-    """Return boxes as Gazebo computes them: of visible visuals only, with the label of a model's first visible one.
+    """Return boxes as Gazebo computes them: around visible visuals, with the label of a model's first visible visual.
 
-    A visible box ends at the number of the last pixel. A full box ends one pixel before the right edge. A visual that
-    extends beyond opposite sides of the image has no full box. Boxes in space around several visuals are along the
-    principal axes of their corners.
+    A visible box ends at the index u of its last pixel instead of u + 1. A full box ends at most one pixel before the
+    right edge of the image. A visual that extends beyond the image on all four sides has no full box. A box in space
+    around several visuals has the principal axes of their corners.
 
     Args:
         kind: visible_2d, full_2d or 3d.

@@ -44,7 +44,7 @@ _BOX_TYPES: Final = {
 
 @dataclass(frozen=True, slots=True)
 class BoundingBoxOptions(CameraOptions):
-    """The `<camera>` block; depths, clip planes and noise as for every camera, in m.
+    """Options of the `<camera>` block. Depths, clip planes and noise are in m, as for every camera.
 
     Attributes:
         type: visible_2d, full_2d or 3d.

@@ -33,7 +33,7 @@ class CameraModel:
         hfov: horizontal opening angle [rad].
         tx, ty: last column of the projection matrix [px·m].
         rectified: focal lengths and principal point [px] of the projection matrix; None uses the intrinsics.
-        info_model: model that `CameraInfo` describes, if it differs from the drawn one.
+        info_model: model that `CameraInfo` describes, if it differs from the model of the drawn image.
     """
 
     width: int
@@ -54,7 +54,7 @@ class CameraModel:
 
     @property
     def is_distorted(self) -> bool:
-        """True if a rasteriser cannot draw the image alone: lens distortion, or skewed pixels."""
+        """True if the image has lens distortion or skewed pixels, which a rasteriser cannot draw."""
         return bool(self.distortion) or self.skew != 0
 
     def view(self) -> View:
@@ -72,7 +72,7 @@ class CameraModel:
     def projection(self) -> Vector:
         """Matrix P of the rectified image, row by row, shape (12,).
 
-        It has K's skew unless `rectified` is given.
+        Without `rectified`, P has the skew of K; with `rectified`, P has no skew.
         """
         fx, fy, cx, cy = self.rectified or (self.fx, self.fy, self.cx, self.cy)
         skew = 0.0 if self.rectified else self.skew
@@ -92,9 +92,8 @@ class CameraModel:
         """Return y/x and z/x of the direction of each pixel, x forward, y left, z up.
 
         Returns:
-            One value per column, shape (width,), and one per row, shape (height,). If `is_distorted`, both have one
-                value
-            per pixel, shape (height, width). Pixels where the lens shows nothing are NaN.
+            y/x of each column, shape (width,), and z/x of each row, shape (height,). If `is_distorted`, both have the
+            shape (height, width). Pixels where the lens shows nothing are NaN.
         """
         if self.is_distorted:
             x, y = self.directions()
@@ -202,7 +201,7 @@ def _read_field_of_view(params: Params) -> float:
 
 
 def _read_projection(projection: Params, model: CameraModel) -> CameraModel:
-    """Read P as the file gives it; the image is drawn with the intrinsics, which K contains."""
+    """Read the matrix P of `<projection>`. The image is drawn with the intrinsics, which the matrix K contains."""
     intrinsics = model.fx, model.fy, model.cx, model.cy
     names = ("p_fx", "p_fy", "p_cx", "p_cy")
     least = (1e-3, 1e-3, -_MAX_FOCAL_PIXELS, -_MAX_FOCAL_PIXELS)
@@ -217,7 +216,7 @@ def _read_projection(projection: Params, model: CameraModel) -> CameraModel:
     for name, value, own in zip(names, values, intrinsics, strict=True):
         if abs(value - own) > 1e-6 * max(1.0, abs(own)):
             message = f"<{name}>{value:g}</{name}> differs from {own:g} in <intrinsics>"
-            effect = "P contains it, and the image is drawn with <intrinsics>; Gazebo draws with <projection>"
+            effect = "P contains this value, but the image is drawn with <intrinsics>; Gazebo draws with <projection>"
             where = (projection.child(name) or projection).where
             projection.diagnostics.note("SK-SENSOR-006", f"{message}: {effect}", where)
     return replace(model, tx=tx, ty=ty, rectified=rectified if rectified != intrinsics else None)
@@ -244,7 +243,7 @@ def _read_distortion(params: Params, model: CameraModel) -> Distortion:
 
 
 def _check_fold(block: Params, model: CameraModel) -> None:
-    """Report a lens that shows nothing in a part of the image."""
+    """Report a distortion that folds back within the image, because the lens then shows nothing in some pixels."""
     coarse = max(1, max(model.width, model.height) // 64)
     steps = replace(
         model,
@@ -257,8 +256,8 @@ def _check_fold(block: Params, model: CameraModel) -> None:
         skew=model.skew / coarse,
     )
     x, _ = steps.directions()
-    lost = np.count_nonzero(np.isnan(x)) / x.size
-    if lost > 0:
-        message = f"the distortion folds back within the image: {lost:.0%} of the pixels stay black"
+    black_fraction = np.count_nonzero(np.isnan(x)) / x.size
+    if black_fraction > 0:
+        message = f"the distortion folds back within the image: {black_fraction:.0%} of the pixels stay black"
         hint = "reduce k1, k2, k3: Brown's model is valid up to the radius where 1 + 3·k1·r² + 5·k2·r⁴ + 7·k3·r⁶ is 0"
         block.diagnostics.warning("SK-SENSOR-101", message, block.where, hint)

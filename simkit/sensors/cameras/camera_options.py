@@ -50,12 +50,12 @@ class CameraOptions:
     Attributes:
         model: optics of the camera.
         encoding: ROS encoding of colour images.
-        noise: white noise; 1 is white for colours, 1 m for depths.
+        noise: white noise, in m for depths; for colours, 1 is the range from black to white.
         triggered: True takes images only after a message on `trigger_topic`.
         trigger_topic: topic of the trigger; empty for the default.
         info_topic: topic of `CameraInfo`; empty for the default.
         depth_near, depth_far: range of depths [m].
-        anti_aliasing: samples per pixel; any number except 0 uses the samples of the world's quality.
+        anti_aliasing: 0 draws without smooth edges. Any other number uses the samples per pixel of the world's quality.
         name: `<camera name="…">`, or empty.
         pose: pose of the camera in the sensor's frame.
         optical_frame_id: frame of images and their `CameraInfo`, z forward; empty for the sensor's frame.
@@ -83,7 +83,7 @@ AnyOptions = TypeVar("AnyOptions", bound=CameraOptions)
 
 
 def extend_options(options: CameraOptions, kind: type[AnyOptions], **more: Any) -> AnyOptions:
-    """Return the options of a camera as those of a kind with additional fields."""
+    """Return a copy of the options as an object of the class `kind`, with values for its additional fields."""
     return kind(**{field.name: getattr(options, field.name) for field in fields(CameraOptions)}, **more)
 
 
@@ -144,7 +144,7 @@ def _read_encoding(image: Params, has_depth: bool) -> str:
 
 def _read_image_noise(block: Params) -> NoiseModel:
     noise = read_noise(block, "gaussian")
-    extras = (noise.bias_mean, noise.bias_stddev, noise.precision, noise.wanders, noise.noise_density)
+    extras = (noise.bias_mean, noise.bias_stddev, noise.precision, noise.drifts, noise.noise_density)
     if any(extras):
         message = "only <mean> and <stddev> of a camera's <noise> have an effect, as in Gazebo"
         block.diagnostics.warning("SK-SENSOR-008", message, block.block("noise").where)

@@ -43,8 +43,8 @@ class _Face:
 class CubeMap:
     """Image of a wide lens, drawn from the faces of a cube.
 
-    Only the faces within the lens's view are drawn, and only their visible parts. Every face is drawn two pixels wider
-    than it is used, so that no pixel is interpolated across a border of two faces.
+    Only the visible parts of the faces are drawn. Each part is drawn with a margin of two pixels, so that no pixel is
+    interpolated across the border of two faces.
 
     Args:
         model: model of the camera.
@@ -131,7 +131,7 @@ def _face(rotation: Vector, pixels: npt.NDArray[np.bool_], directions: Vector, m
 
 
 def _pixel_density(right: Vector, down: Vector, pixels: npt.NDArray[np.bool_]) -> float:
-    """Return the pixels per unit of tangent that make a face as fine as nearly all of the image."""
+    """Return the pixels per unit of tangent that a face needs for the resolution of nearly all image pixels."""
     number = np.full(pixels.shape, -1, np.int32)
     number[pixels] = np.arange(len(right))
     steps = []
@@ -147,7 +147,7 @@ def _pixel_density(right: Vector, down: Vector, pixels: npt.NDArray[np.bool_]) -
 
 
 def _pixel_bounds(values: Vector, scale: float) -> tuple[float, int]:
-    """Return the start of a part of a face, two pixels before the lowest value, and its number of pixels."""
+    """Return the first pixel of a part of a face, two pixels before the lowest value, and the number of its pixels."""
     low, high = float(values.min()) - 2 / scale, float(values.max()) + 2 / scale
     return low, math.ceil((high - low) * scale)
 

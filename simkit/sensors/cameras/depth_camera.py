@@ -16,7 +16,7 @@ from simkit.sensors.sample import Reading
 
 
 class DepthCamera(RgbdCamera):
-    """Depth camera: depths, and their cloud in shades of grey, where near is bright."""
+    """Depth camera: depth images, and point clouds in shades of grey, in which near points are bright."""
 
     kinds = ("depth_camera", "depth")
 

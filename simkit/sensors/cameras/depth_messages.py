@@ -105,7 +105,7 @@ def depths_in_millimetres(image: msgs.Image, near: float, far: float) -> msgs.Im
     """Return a depth image as `16UC1` in millimetres, truncated; 0 where the depth is not from `near` to `far` [m]."""
     depths = image_messages.pixels_of(image)
     with np.errstate(invalid="ignore"):
-        # the rounding error of a float must not cost a millimetre: 1.5 m is 1500
+        # a rounding error of the float must not change the result by a millimetre: 1.5 m must become 1500
         whole = np.floor(depths.astype(np.float64) * _MILLIMETRES + 1e-3)
         seen = (depths >= near) & (depths <= far) & (whole >= 0) & (whole <= _LARGEST_16)
     return image_messages.image_message(image.header, np.where(seen, whole, 0).astype(np.uint16), "16UC1")

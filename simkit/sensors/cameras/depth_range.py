@@ -10,8 +10,9 @@ import numpy as np
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.rendering.view import Depths, View
 
-_ROWS = 32  # rows at once, so that they fit into a processor's cache and further operations need no memory traffic
-_NEARER = 0.1  # drawn near plane over the near plane; Gazebo uses 0.9, but a lens's housing must not hide the image
+_ROWS = 32  # number of rows processed at once; so few stay in the processor's cache for all operations
+# ratio of the drawn near plane to `near`; Gazebo uses 0.9, but then the housing of the lens may hide the image
+_NEARER = 0.1
 _STEP = 2.0**-24  # step of raw depths: half of the last bit of a float just above 1
 _ROUNDING = 2.0**-21  # relative rounding of a 32-bit depth
 
@@ -39,7 +40,7 @@ class DepthRange:
     """Range of depths of one camera.
 
     A depth is +inf if the straight distance to the camera is `<clip><far>` or more, or if the distance along the axis
-    exceeds the depths' own range. A depth is -inf if the distance along the axis is below the start of both ranges
+    exceeds `far`. A depth is -inf if the distance along the axis is below both `<clip><near>` and `near`
     (gz-rendering, depth_camera_fs.glsl; gz-sensors, RgbdCameraSensor.cc).
 
     Args:
@@ -51,10 +52,10 @@ class DepthRange:
         self._lowest = max(model.near, near)
         left, up = model.rays()
         squares = left * left + (up if up.ndim == 2 else up[:, None]) ** 2
-        stretch: Depths = np.sqrt(1 + squares, dtype=np.float32)  # distance over depth of each pixel
+        stretch: Depths = np.sqrt(1 + squares, dtype=np.float32)  # ratio of distance to depth at each pixel
         stretch[np.isnan(stretch)] = np.inf  # the lens shows nothing there
         after = np.nextafter(np.float32(min(far, model.far)), np.float32(np.inf))
-        # depth of each pixel from which the result is infinite
+        # smallest depth at each pixel that becomes infinite
         self._limit: Depths = np.minimum(np.float32(model.far * (1 - _ROUNDING)) / stretch, after)
         self._least = float(self._limit.min())
 
@@ -87,7 +88,7 @@ class DepthRange:
         """Apply the range to a few rows."""
         import cv2
 
-        if np.maximum.reduce(part, axis=None) >= self._least:  # otherwise the limit need not be read from memory
+        if np.maximum.reduce(part, axis=None) >= self._least:  # the check avoids reading the limits from memory
             cv2.copyTo(_constant_row(part.shape[1], np.inf)[: len(part)], cv2.compare(part, limit, cv2.CMP_GE), part)
         nearest = np.float32(self._lowest)
         if self._lowest > 0 and np.minimum.reduce(part, axis=None) < nearest:

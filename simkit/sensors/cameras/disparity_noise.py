@@ -47,8 +47,8 @@ def read_disparity_noise(block: Params, model: CameraModel) -> DisparityOptions 
 class DisparityNoise:
     """Gaussian noise on the disparity d = f·B/z of every pixel, which is then rounded to whole steps.
 
-    To first order, the deviation of a depth is z²/(f·B) times that of a disparity. The distance of neighbouring depths
-    is z²/(f·B) times a step. A disparity of 0 or less gives a depth of +inf.
+    To first order, the standard deviation of a depth is z²/(f·B) times the standard deviation of a disparity. Two
+    neighbouring depths differ by z²/(f·B) times a step. A disparity of 0 or less gives a depth of +inf.
 
     Args:
         options: options of the camera.

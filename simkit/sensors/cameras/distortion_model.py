@@ -61,45 +61,48 @@ def undistort(bent_x: Vector, bent_y: Vector, lens: Distortion) -> tuple[Vector,
     Points beyond the radius where the model folds back, and farther than 88 degrees off the axis, are NaN.
     """
     out_x, out_y = np.empty_like(bent_x), np.empty_like(bent_y)
-    seen, straight = _radial_table(lens)
+    distorted_radii, radii = _radial_table(lens)
     for first in range(0, len(bent_x), _ROWS):
         rows = slice(first, first + _ROWS)
-        out_x[rows], out_y[rows] = _solve(bent_x[rows], bent_y[rows], lens, seen, straight)
+        out_x[rows], out_y[rows] = _solve(bent_x[rows], bent_y[rows], lens, distorted_radii, radii)
     return out_x, out_y
 
 
 def _radial_table(lens: Distortion) -> tuple[Vector, Vector]:
-    """Return ascending distorted radii and the undistorted radii that they belong to."""
-    straight = np.sinh(np.linspace(0, math.asinh(_WIDEST * 100), 8192)) / 100  # dense at the radii of common images
-    r2 = straight * straight
+    """Return distorted radii in ascending order, and the undistorted radius of each."""
+    radii = np.sinh(np.linspace(0, math.asinh(_WIDEST * 100), 8192)) / 100  # dense at the radii of common images
+    r2 = radii * radii
     slope = 1 + r2 * (3 * lens.k1 + r2 * (5 * lens.k2 + r2 * 7 * lens.k3))
     folds = np.flatnonzero(slope <= 0)
-    straight = straight[: folds[0]] if len(folds) else straight
-    r2 = straight * straight
-    return straight * (1 + r2 * (lens.k1 + r2 * (lens.k2 + r2 * lens.k3))), straight
+    radii = radii[: folds[0]] if len(folds) else radii
+    r2 = radii * radii
+    return radii * (1 + r2 * (lens.k1 + r2 * (lens.k2 + r2 * lens.k3))), radii
 
 
-def _solve(bent_x: Vector, bent_y: Vector, lens: Distortion, seen: Vector, straight: Vector) -> tuple[Vector, Vector]:
-    """Solve the distortion by Newton's method in two dimensions, from the radial solution."""
+def _solve(
+    bent_x: Vector, bent_y: Vector, lens: Distortion, distorted_radii: Vector, radii: Vector
+) -> tuple[Vector, Vector]:
+    """Invert the distortion by Newton's method in two dimensions, starting from the radial solution of the table."""
     radius = np.hypot(bent_x, bent_y)
-    ratio = np.interp(radius, seen, straight) / np.maximum(radius, 1e-300)
+    ratio = np.interp(radius, distorted_radii, radii) / np.maximum(radius, 1e-300)
     x, y = bent_x * ratio, bent_y * ratio
-    limit = straight[-1]
+    limit = radii[-1]
     with np.errstate(all="ignore"):
         for _ in range(12):
             r2 = x * x + y * y
             radial = 1 + r2 * (lens.k1 + r2 * (lens.k2 + r2 * lens.k3))
             rise = 2 * (lens.k1 + r2 * (2 * lens.k2 + r2 * 3 * lens.k3))
-            found_x, found_y = distort(x, y, lens)
-            miss_x, miss_y = found_x - bent_x, found_y - bent_y
+            trial_x, trial_y = distort(x, y, lens)
+            error_x, error_y = trial_x - bent_x, trial_y - bent_y
             xx = radial + rise * x * x + 2 * lens.p1 * y + 6 * lens.p2 * x
             yy = radial + rise * y * y + 6 * lens.p1 * y + 2 * lens.p2 * x
             xy = rise * x * y + 2 * lens.p1 * x + 2 * lens.p2 * y
             determinant = xx * yy - xy * xy
-            x = np.clip(x - (yy * miss_x - xy * miss_y) / determinant, -2 * limit, 2 * limit)
-            y = np.clip(y - (xx * miss_y - xy * miss_x) / determinant, -2 * limit, 2 * limit)
-            if not np.nanmax(np.maximum(np.abs(miss_x), np.abs(miss_y)), initial=0.0) > 1e-10:
+            x = np.clip(x - (yy * error_x - xy * error_y) / determinant, -2 * limit, 2 * limit)
+            y = np.clip(y - (xx * error_y - xy * error_x) / determinant, -2 * limit, 2 * limit)
+            if not np.nanmax(np.maximum(np.abs(error_x), np.abs(error_y)), initial=0.0) > 1e-10:
                 break
-        lost = ~((np.abs(miss_x) + np.abs(miss_y) < 1e-7) & (determinant > 0) & (x * x + y * y <= (1.01 * limit) ** 2))
-    x[lost] = y[lost] = np.nan
+        is_solved = (np.abs(error_x) + np.abs(error_y) < 1e-7) & (determinant > 0)
+        is_solved &= x * x + y * y <= (1.01 * limit) ** 2
+    x[~is_solved] = y[~is_solved] = np.nan
     return x, y

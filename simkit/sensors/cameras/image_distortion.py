@@ -15,9 +15,10 @@ from simkit.sensors.cameras.rendering.view import View
 
 _MOST_DRAWN = 4096  # largest edge of the drawn image [px]
 _MOST_TIMES = 4.0  # largest ratio of drawn pixels to pixels of the result
-_FINEST = 1.5  # largest resolution over that of the result in its middle
-_DENSE = 1.5  # drawn pixels per pixel of the result from which they are averaged first
-_EDGE = 0.01  # relative change of raw depths between neighbours, beyond a plane's, that separates two surfaces
+_FINEST = 1.5  # largest ratio of the drawn resolution to the result's resolution in the middle
+_DENSE = 1.5  # number of drawn pixels per pixel of the result, per axis, above which drawn pixels are averaged
+# smallest relative deviation of a raw depth from its neighbours' mean that marks the edge of a surface; 0 on a plane
+_EDGE = 0.01
 
 
 _Maps = tuple[AnyArray, AnyArray]  # integer and fractional source position of each pixel, in OpenCV's format
@@ -58,9 +59,9 @@ class ImageDistorter:
         if min(row.shape) > 1:
             step = np.maximum(*(np.hypot(np.gradient(column, axis=a), np.gradient(row, axis=a)) for a in (0, 1)))
             if np.count_nonzero(step > _DENSE) > 0.01 * step.size:
-                share = np.clip(2 * (step - 1), 0.0, 1.0).astype(np.float32)
+                weight = np.clip(2 * (step - 1), 0.0, 1.0).astype(np.float32)
                 # the half-size image has its pixels at every second pixel of the full one
-                self._coarse = cv2.convertMaps(column / 2, row / 2, cv2.CV_16SC2), 1 - share, share
+                self._coarse = cv2.convertMaps(column / 2, row / 2, cv2.CV_16SC2), 1 - weight, weight
 
     def view(self) -> View:
         """Return the view to draw, which contains everything that the lens shows."""
@@ -89,9 +90,9 @@ class ImageDistorter:
     def distort_depths(self, raw: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
         """Return raw depths through the lens, 0 (no object) where the lens shows nothing.
 
-        Raw depths change as 1/z, which is linear on planes. Neighbours on one surface are therefore interpolated, which
-        is exact on a plane. Where two surfaces meet, the nearest pixel is used, so that no point lies between the
-        surfaces.
+        On one surface, pixels are interpolated. This is exact on a plane, because raw depths are proportional to 1/z,
+        which is linear in the image of a plane. Where two surfaces meet, the nearest pixel is used, so that no point
+        lies between the surfaces.
         """
         import cv2
 
@@ -99,7 +100,8 @@ class ImageDistorter:
         bent: npt.NDArray[np.float32] = self._remap(raw, self._maps)
         uneven = cv2.Laplacian(raw, cv2.CV_32F, ksize=1, borderType=cv2.BORDER_REPLICATE)
         edges = cv2.compare(np.abs(uneven), raw * np.float32(_EDGE), cv2.CMP_GT)
-        edges[[0, -1]] = edges[:, [0, -1]] = 0  # at the border of the drawn image, a slope looks like an edge
+        # at the border of the drawn image, a neighbour is missing, and a slope would count as an edge
+        edges[[0, -1]] = edges[:, [0, -1]] = 0
         if edges.any():
             edges = cv2.dilate(edges, np.ones((3, 3), np.uint8))
             near_edges = self._take_nearest(edges)
@@ -130,7 +132,8 @@ class ImageDistorter:
 def _pixel_density(x: Vector, y: Vector, known: npt.NDArray[np.bool_], model: CameraModel) -> tuple[float, float]:
     """Return the pixels to draw per unit of x and y on the plane at distance 1.
 
-    The density matches most of the result, so that nothing that the lens magnifies is blurred, within bounds.
+    The density is high enough for 90 % of the result's pixels, so that the lens magnifies no blurred parts. The size
+    of the drawn image limits the density.
     """
     step = np.abs(np.diff(x, axis=1)) * model.fx if x.shape[1] > 1 else np.ones(1)
     step = step[np.isfinite(step) & (step > 1e-9)]

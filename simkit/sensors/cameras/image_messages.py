@@ -50,7 +50,7 @@ Pixels = AnyArray
 
 
 def image_message(header: msgs.Header, pixels: Pixels, encoding: str) -> msgs.Image:
-    """Return a message of pixels, shape (h, w) or (h, w, n), in their own byte order (little-endian)."""
+    """Return an `Image` of pixels, shape (h, w) or (h, w, n), little-endian like the array."""
     data = np.ascontiguousarray(pixels)
     height, width = data.shape[:2]
     return msgs.Image(header, height, width, encoding, 0, data.nbytes // height, data.reshape(-1).view(np.uint8))

@@ -1,4 +1,4 @@
-"""Readings of cameras, and independent Gaussian noise for every pixel of every image, by random words and a table."""
+"""Readings of cameras, and their Gaussian noise: a random word of 16 bits per pixel selects a value of a table."""
 
 from __future__ import annotations
 
@@ -41,8 +41,9 @@ class NoisyCameraReading:
 
 _WORDS = 1 << 16
 _LONGEST = 1e30  # [m] limit of the noise of a 32-bit depth
-_PIXELS = 1 << 16  # pixels at once: they fit into a processor's cache, and OpenCV uses one thread for so few
-_MIDDLE = 128  # value for no change where brighter and darker share a byte
+# number of pixels processed at once: so few fit into a processor's cache, and OpenCV uses one thread for them
+_PIXELS = 1 << 16
+_MIDDLE = 128  # value for "no change" in a table that contains both increases and decreases
 _OGRE_EXPONENT = 2.1
 
 
@@ -127,7 +128,11 @@ class ImageNoise:
 
     @functools.cached_property
     def _step_tables(self) -> tuple[npt.NDArray[np.uint8], ...]:
-        """Tables of the change of a byte by random word: one table around 128 if it fits, else one up and one down."""
+        """Tables from a random word to the change of a byte.
+
+        If all changes fit into one table, 128 means no change. Otherwise one table has the increases and one has the
+        decreases.
+        """
         noise = self._draw_noise()
         if self._as_ogre:
             noise = np.sign(noise) * np.abs(noise) ** _OGRE_EXPONENT
@@ -139,7 +144,7 @@ class ImageNoise:
 
     @functools.cached_property
     def _length_table(self) -> npt.NDArray[np.float32]:
-        """Table of the change of a depth [m] by random word."""
+        """Table from a random word to the change of a depth [m]."""
         return np.clip(self._draw_noise(), -_LONGEST, _LONGEST).astype(np.float32)
 
     def on_colours(self, picture: npt.NDArray[np.uint8], index: int) -> npt.NDArray[np.uint8]:

@@ -83,7 +83,7 @@ class LabelCamera(RenderedCamera):
 
     @property
     def structure(self) -> WorldStructure:
-        """Structure of the world at that sample."""
+        """Structure of the world at the time of the sample that is measured, or was measured last."""
         return self._labelled_surroundings()[1]
 
     def _labelled_surroundings(self) -> tuple[LabelledObjects, WorldStructure]:

@@ -69,7 +69,7 @@ class Frustum:
         self._is_broken = as_gazebo and options.near == 0
 
     def contains(self, points: Vector) -> npt.NDArray[np.bool_]:
-        """Check which points, shape (n, 3) [m] in the sensor's frame, are inside; points on a plane are."""
+        """Check which points, shape (n, 3) [m] in the sensor's frame, are inside or on a plane of the frustum."""
         x, y, z = points.T
         within = (x <= self._far + _ROUNDING) & (-y <= x * self._across + _ROUNDING)
         if not self._is_broken:
@@ -121,9 +121,8 @@ class LogicalCamera(Sensor):
         for top in self.sim.engine.structure.models.values():
             poses = {model.scoped: model.pose_world for model in top.all_models()}
             for model in top.all_models():
-                # Gazebo publishes the last part of a name, so that one model hides another, and uses a nested model's
-                # pose in its parent as its pose in the world
-                # in its parent for one in the world
+                # Gazebo publishes only the last part of a model's name, so models with equal last parts replace each
+                # other; it also uses a nested model's pose in its parent model as its pose in the world
                 if quirks and model is not top:
                     carriers[model.name] = 0, poses[model.scoped.rpartition("::")[0]].inverse() @ model.pose_world
                 else:

@@ -105,7 +105,7 @@ class MultiCamera(RenderedCamera):
         )
 
     def _report_shared(self) -> None:
-        """Report options that apply to all cameras of a sensor, and that differ between its cameras."""
+        """Report options that differ between the cameras, although one value applies to the whole sensor."""
         options = [eye.options for eye in self.eyes]
         values_by_element: dict[str, set[object]] = {
             "<visibility_mask>": {o.visibility_mask for o in options},
@@ -115,12 +115,14 @@ class MultiCamera(RenderedCamera):
         }
         for element, values in values_by_element.items():
             if len(values) > 1:
-                message = f"the cameras of one sensor share one {element}, of {len(values)} the first is used"
+                message = (
+                    f"found {len(values)} different values of {element}; the sensor uses the first for all cameras"
+                )
                 self.diagnostics.warning("SK-SENSOR-125", message, self.scene.where, "use one sensor per camera")
 
     @property
     def reference(self) -> CameraUnit:
-        """Camera that the others of a stereo rig are described relative to."""
+        """Camera of the stereo rig that the offsets of all other cameras refer to."""
         return next((eye for eye in self.eyes if "left" in eye.name), self.eyes[0])
 
     def _find_offsets(self) -> None:
@@ -138,7 +140,7 @@ class MultiCamera(RenderedCamera):
                 self.diagnostics.note("SK-SENSOR-124", f"{message}: {effect}", self.scene.where)
 
     def set_baseline(self, baseline: float) -> None:
-        """Set the distance [m] of the other cameras to the right of the reference in `CameraInfo`; their poses stay."""
+        """Set how far all other cameras are to the right of the reference [m] in `CameraInfo`; no pose changes."""
         for eye in self.eyes:
             if eye is not self.reference:
                 eye.offset = -baseline, 0.0
@@ -236,13 +238,13 @@ class MultiCamera(RenderedCamera):
 
 
 def _is_parallel(relative: Pose) -> bool:
-    """Check whether a camera at a pose has the same axes as one at the origin, and lies in its image plane."""
+    """Check whether a pose relative to the reference camera has parallel axes and lies in its image plane."""
     angle = 2 * math.atan2(float(np.linalg.norm(relative.quaternion[1:])), abs(relative.quaternion[0]))
     return angle < _PARALLEL and abs(relative.position[0]) < _PARALLEL
 
 
 def _free_name(others: Sequence[CameraUnit], name: str, block: Params) -> str:
-    """Return the name, or report an error and return another one if the name is already used."""
+    """Return the name; if another camera already has the name, report an error and return a different name."""
     used = {eye.name for eye in others}
     if name not in used:
         return name

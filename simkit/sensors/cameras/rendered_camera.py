@@ -41,12 +41,12 @@ TRIGGER_TYPES = ("std_msgs/msg/Bool", "std_msgs/msg/Empty")
 
 
 class Trigger:
-    """Messages that each request an image at the next due time.
+    """Counter of the images that trigger messages requested for the next due times.
 
     Attributes:
         pending: number of requested images.
-        counts: True if several messages before a due time request one image each, at this and the next due times;
-            False if they request one image together.
+        counts: True if each message requests an image of its own, at this or a later due time. False if all messages
+            before a due time request one image together.
     """
 
     def __init__(self) -> None:
@@ -58,7 +58,7 @@ class Trigger:
         self.pending = self.pending + 1 if self.counts else 1
 
     def take(self) -> bool:
-        """Check whether an image is requested, and count it as taken."""
+        """Return True and reduce the number of requested images by one, or return False if none is requested."""
         if self.pending == 0:
             return False
         self.pending -= 1
@@ -81,7 +81,7 @@ class PictureMaker:
 
     @cached_property
     def distorter(self) -> ImageDistorter | None:
-        """Lens distortion, made for the first image because that takes a while; None without distortion."""
+        """Lens distortion, computed at the first image because its tables take time; None without distortion."""
         return ImageDistorter(self._model) if self._model.is_distorted else None
 
     @cached_property
@@ -90,7 +90,7 @@ class PictureMaker:
         return self.distorter.view() if self.distorter else self._model.view()
 
     def process(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-        """Return drawn colours (h, w, 3) through the lens, in memory of their own; brightness (h, w) for grey."""
+        """Return drawn colours (h, w, 3) as seen through the lens, as a copy; brightness (h, w) for grey encodings."""
         if self.distorter:
             colours = self.distorter.distort(colours)
         if image_messages.is_grey(self._encoding):
@@ -143,7 +143,7 @@ class RenderedCamera(RenderedSampler):
     def attach(self, sim: Simulation) -> None:
         if sim.world.gazebo_quirks:
             self.options = replace(self.options, model=self.options.model.as_gazebo())
-            self.optical_frame_id = ""  # gz-sensors' main branch ignores it (CameraSensor.cc, OpticalFrameId)
+            self.optical_frame_id = ""  # gz-sensors ignores the element (main branch, CameraSensor.cc, OpticalFrameId)
         options = self.options
         self._pictures = PictureMaker(options, sim, self.scoped)
         self._info = CameraInfoMaker(options.model, self._baseline)
@@ -163,7 +163,7 @@ class RenderedCamera(RenderedSampler):
         """Publish another camera's model in `CameraInfo`; the images stay the same.
 
         Args:
-            change: function that returns the model to publish for the true model.
+            change: function from the model of the images to the model to publish.
         """
         model = self.options.model
         self.options = replace(self.options, model=replace(model, info_model=change(model)))
@@ -184,7 +184,7 @@ class RenderedCamera(RenderedSampler):
         return {self.optical_frame_id: OPTICAL_POSE} if self.optical_frame_id else {}
 
     def set_baseline(self, baseline: float) -> None:
-        """Set the distance [m] to the left camera of a stereo pair, for the projection matrix."""
+        """Set the distance [m] to the left camera of a stereo pair, which the projection matrix P contains."""
         self._baseline = baseline
         self._info = CameraInfoMaker(self.options.model, baseline)
 
@@ -197,7 +197,7 @@ class RenderedCamera(RenderedSampler):
 
         Args:
             topic: absolute topic.
-            types: accepted message types; the first is the listed one.
+            types: accepted message types; lists of topics show the first.
             counts: see `Trigger`.
         """
         if self._trigger is None:

@@ -157,7 +157,7 @@ class RenderedSampler(Sensor):
     def _publish(self, sample: Sample, read_publishers: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
         deferred = super()._publish(sample, read_publishers)
         drawing = self._pending_job(sample)
-        # messages with a certain reader are made as soon as the image is drawn; messages that may stay unread are not
+        # messages that a reader certainly reads are made as soon as the image is drawn, all others only when read
         awaited = [later for later in deferred if later.is_awaited]
         if drawing is not None and awaited:
             sample.work = render_thread.submit(functools.partial(_make_messages_early, drawing, awaited))

@@ -99,7 +99,7 @@ class RgbdCamera(RenderedCamera):
         super().attach(sim)
 
     def set_depth_range(self, near: float | None, far: float | None) -> None:
-        """Set the range of depths [m]; None keeps an end."""
+        """Set the range of depths [m]; None does not change that end of the range."""
         old = self.options
         near, far = old.depth_near if near is None else near, old.depth_far if far is None else far
         self.options = replace(old, depth_near=near, depth_far=far)
@@ -109,7 +109,7 @@ class RgbdCamera(RenderedCamera):
         if self._view is None:
             options = self.options
             self._range = DepthRange(options.model, options.depth_near, options.depth_far)
-            # an object that is too near must be visible and not clipped
+            # an object that is too near must be drawn, so the near plane must not clip it
             near, far = clip_planes(options.model.near, options.model.far)
             self._view = replace(super()._drawn_view(), near=near, far=far)
         return self._view
@@ -148,7 +148,7 @@ class RgbdCamera(RenderedCamera):
     def use_optical_cloud_axes(self) -> None:
         """Make clouds as Gazebo Classic does: z forward, x right, y down, 32 bytes per point, in any frame.
 
-        A note reports clouds that are published in the frame of a link with other axes in the same model.
+        If the frame of the cloud is a link of the same model with other axes, a note reports the cloud.
         """
         self._is_classic = True
         self._clouds_made = None
@@ -232,7 +232,7 @@ class RgbdCamera(RenderedCamera):
         return self._clouds_made
 
     def _shift(self, reading: Reading) -> Depths | None:
-        """Return the noise that Gazebo adds to all three coordinates alike (gaussian_noise_depth_fs.glsl)."""
+        """Return the noise that Gazebo adds equally to all three coordinates (gaussian_noise_depth_fs.glsl)."""
         if not self.sim.world.gazebo_quirks or not isinstance(reading, NoisyDepths):
             return None
         with np.errstate(invalid="ignore"):
@@ -266,7 +266,7 @@ class RgbdCamera(RenderedCamera):
         return found
 
     def _angle_to_frame(self) -> float:
-        """Return the angle between the frame's axes and optical axes [rad]; 0 if the frame is no link of the model."""
+        """Return the angle between the frame's axes and optical axes [rad]; 0 if the model has no such link."""
         frame, (owner, _, _) = self._cloud_frame, self.scene.parent.rpartition("::")
         links = [link for model in self.sim.models.values() for link in model.scene.all_links()]
         named = [link for link in links if link.name == frame and link.scoped.rpartition("::")[0] == owner]

@@ -68,7 +68,7 @@ class ImageSaver(Publisher):
     __slots__ = ("_count", "_far", "_folder", "_is_over", "_name", "_sensor", "_sim")
 
     def __init__(self, sim: Simulation, sensor: SceneSensor, folder: Path, name: str, far: float | None) -> None:
-        sides = TopicSides(TopicReaders(), [])  # files have no subscribers
+        sides = TopicSides(TopicReaders(), [])  # no subscribers, because this publisher only writes files
         super().__init__(sim.communication.bus, sides, f"/{name}/saved", IMAGE_TYPE, False, None)
         self._sim, self._sensor, self._folder, self._far = sim, sensor, folder, far
         self._name = re.sub(r"[^A-Za-z0-9_.:-]", "_", name)[:_MAX_NAME_LENGTH]

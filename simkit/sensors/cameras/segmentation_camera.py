@@ -1,6 +1,6 @@
 """Segmentation cameras: the label, and the number of the object with that label, at each pixel.
 
-The colours of coloured maps are Gazebo's, which draws them from a generator seeded with the number.
+Coloured maps have Gazebo's colours, which come from a random generator seeded with the number.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ def label_colours(numbers: Iterable[int]) -> dict[int, Colour]:
     """Return a colour for each number; all are different, and none is black.
 
     Gazebo draws a number's red, green and blue one after the other from C++'s `default_random_engine`, seeded with that
-    number, through `uniform_int_distribution` from 0 to 255 (gz-rendering, Ogre2SegmentationMaterialSwitcher.cc). With
-    GNU's library that is Lehmer's generator with the factor 16807, in 256 equal parts. If a colour is already used, the
-    later number draws again.
+    number, through `uniform_int_distribution` from 0 to 255 (gz-rendering, Ogre2SegmentationMaterialSwitcher.cc). In
+    GNU's library, this generator is Lehmer's with the factor 16807, and its range is divided into 256 equal parts. If
+    a colour is already used, the generator draws again.
     """
     used = {BACKGROUND}
     found: dict[int, Colour] = {}
@@ -71,7 +71,7 @@ _TYPES: Final = {"semantic": "semantic", "instance": "panoptic", "panoptic": "pa
 
 @dataclass(frozen=True, slots=True)
 class SegmentationOptions(CameraOptions):
-    """The `<camera>` block; depths, clip planes and noise as for every camera, in m.
+    """Options of the `<camera>` block. Depths, clip planes and noise are in m, as for every camera.
 
     Attributes:
         type: `semantic` for labels, `panoptic` to distinguish objects of one label as well.
@@ -95,7 +95,7 @@ class Segmentation:
     Attributes:
         geoms: geom id at each pixel, -1 for none, shape (h, w).
         palette: pixel values of each geom.
-        colours: camera image, shape (h, w, 3), if images are saved as well.
+        colours: camera image, shape (h, w, 3); present if the sensor saves images too.
     """
 
     geoms: Ids

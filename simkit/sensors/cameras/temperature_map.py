@@ -118,7 +118,7 @@ class HeatSurface:
         return coldest + (hottest - coldest) * share
 
     def temperatures(self, eye: Vector, rotation: Vector, directions: Vector) -> Kelvins:
-        """Return the temperatures where rays hit the surface [K], shape (n,); the mean where rays miss its triangles.
+        """Return the temperatures where rays hit the surface [K], shape (n,); the mean where rays miss all triangles.
 
         Args:
             eye: position of the camera in the visual's frame [m].
@@ -165,9 +165,9 @@ def make_temperature_map(sim: Simulation, air: float, span: float) -> Temperatur
 
     Args:
         sim: simulation.
-        air: temperature of objects without one of their own [K].
-        span: difference between a black and a white object of that temperature [K], half of it below and half of it
-            above, as in Gazebo.
+        air: temperature of all objects that have no temperature in the file [K].
+        span: temperature difference between a white and a black object [K], as in Gazebo. Half of the difference is
+            above `air`, and half is below.
     """
     model, names = sim.mj_model, sim.engine.names
     table = np.full(model.ngeom + 1, air, np.float32)
@@ -193,7 +193,7 @@ def make_temperature_map(sim: Simulation, air: float, span: float) -> Temperatur
 
 
 def _brightness(model: mujoco.MjModel) -> Vector:
-    """Return the brightness of each geom's unlit colour, from 0 to 1 (Rec. 601); of a texture, its mean is used."""
+    """Return the brightness of each geom's unlit colour, from 0 to 1 (Rec. 601); a texture counts with its mean."""
     shown = model.geom_rgba[:, :3].astype(np.float64)
     material = model.geom_matid
     of_material = material >= 0
@@ -226,7 +226,7 @@ def _load_heat_texture(path: Path) -> HeatTexture:
 
 @lru_cache(maxsize=64)
 def _make_textured_mesh(shape: Geometry) -> TexturedMesh | None:
-    """Return the triangles of a shape; None for a shape without texture coordinates, and without Embree."""
+    """Return the triangles of a shape; None if the shape has no texture coordinates or Embree is not installed."""
     if not has_embree():
         return None
     parts = list(_triangles(shape))

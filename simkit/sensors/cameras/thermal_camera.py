@@ -25,11 +25,11 @@ from simkit.sensors.cameras.temperature_map import Kelvins, TemperatureMap, make
 from simkit.sensors.sample import Reading
 
 _FINE, _COARSE = 0.01, 3.0
-"""Step of the temperature, as in Gazebo, of images with 16 and with 8 bits [K]."""
+"""Temperature steps [K] of images with 16 and with 8 bits per pixel, as in Gazebo."""
 
 _BITS_BY_FORMAT: Final = {"L8": 8, "L_INT8": 8, "L16": 16, "L_INT16": 16}
 _NEARER: Final = 0.1
-"""Drawn near plane over the near plane: Gazebo does not clip objects nearer than the near plane."""
+"""Ratio of the drawn near plane to the file's: Gazebo shows objects nearer than the near plane too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +65,9 @@ class ThermalCamera(RenderedCamera):
     """Thermal camera, `thermal_camera`: temperatures as multiples of a resolution, in 16 or 8 bits.
 
     An object with a temperature of its own shows that temperature, uniform or by its heat signature. All other objects
-    and the sky have the temperature of the air. As in Gazebo, their colour shifts it by up to half a span: down for
-    black, up for white. The span is the air's temperature gradient times the height of the view at its far plane.
+    and the sky have the temperature of the air. As in Gazebo, their colour changes this temperature by up to half a
+    span: black is colder, white is warmer. The span is the air's temperature gradient times the height of the view at
+    its far plane.
     """
 
     kinds = ("thermal_camera", "thermal")

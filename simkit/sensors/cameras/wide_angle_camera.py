@@ -33,7 +33,7 @@ class WideAngleCamera(Camera):
         return {"camera": {**self._describe_image(), "lens": model.lens.type}}
 
     def shots(self) -> Sequence[Shot]:
-        """Return the views to draw for one sample, computed for the first image because a lens takes a while."""
+        """Return the views to draw for one sample, computed at the first image because the computation takes long."""
         if self._cube is None:
             model = self.options.model
             assert isinstance(model, WideAngleModel)

@@ -55,7 +55,7 @@ class Lens:
         return self.c1 * self.f * (np.sin(argument) if self.function == "sin" else np.tan(argument))
 
     def angle(self, radius: Vector) -> Vector:
-        """Return the angle off the axis [rad] of a radius [half widths]; NaN where there is none."""
+        """Return the angle off the axis [rad] of a radius [half widths]; NaN if no angle has this radius."""
         value = radius / (self.c1 * self.f)
         with np.errstate(invalid="ignore"):
             if self.function == "sin":
@@ -94,13 +94,13 @@ class WideAngleModel(CameraModel):
         lens: scaled lens.
         face_size: edge of a face of the cube that the image is made of [px]; 0 uses the necessary size.
         polynomial: k1 to k4 of ROS's `equidistant` model, fitted to the lens.
-        given: fx, fy, cx, cy of `<intrinsics>`, which do not affect the image, or SDF's defaults.
+        file_intrinsics: fx, fy, cx, cy of `<intrinsics>`, which do not affect the image, or SDF's defaults.
     """
 
     lens: Lens = LENSES["stereographic"]
     face_size: int = 0
     polynomial: tuple[float, ...] = (0.0,) * _TERMS
-    given: tuple[float, float, float, float] = _INTRINSICS
+    file_intrinsics: tuple[float, float, float, float] = _INTRINSICS
 
     @property
     def distortion_model(self) -> str:
@@ -129,7 +129,7 @@ class WideAngleModel(CameraModel):
         Gazebo ignores `<scale_to_hfov>` and `<cutoff_angle>`. Its `CameraInfo` contains the intrinsics of the file, or
         SDF's defaults, for every lens (gz-sensors, WideAngleCameraSensor.cc).
         """
-        fx, fy, cx, cy = self.given
+        fx, fy, cx, cy = self.file_intrinsics
         info_model = CameraModel(self.width, self.height, fx, fy, cx, cy, self.hfov, self.near, self.far)
         lens = replace(self.lens, cutoff=math.pi / 2)
         return replace(
@@ -145,18 +145,19 @@ def read_wide_angle_model(params: Params, width: int, height: int) -> WideAngleM
     if block.boolean("scale_to_hfov", True):
         lens, hfov = _scale_to_view(params, lens, hfov)
     face_size = block.integer("env_texture_size", 0, minimum=8, maximum=MAX_PIXELS)
-    focal, polynomial, miss = _fit_equidistant(lens, width, height)
-    if miss > 0.5 and lens.type != "gnomonical":
-        message = f"CameraInfo has an error of {miss:.1f} px: ROS has only four coefficients for the lens"
+    focal, polynomial, error = _fit_equidistant(lens, width, height)
+    if error > 0.5 and lens.type != "gnomonical":
+        message = f"CameraInfo has an error of {error:.1f} px: ROS has only four coefficients for the lens"
         block.diagnostics.note("SK-SENSOR-102", message, block.where, "reduce <cutoff_angle> for a better fit")
     distortion = params.child("distortion")
     if distortion is not None:
         distortion.mark_all_read()
         message = "<distortion> has no effect on a wide_angle_camera, which uses its <lens>"
-        params.diagnostics.warning("SK-SENSOR-103", message, distortion.where, "remove it; Gazebo ignores it too")
+        hint = "remove <distortion>; Gazebo ignores it too"
+        params.diagnostics.warning("SK-SENSOR-103", message, distortion.where, hint)
     return WideAngleModel(
         width, height, focal, focal, width / 2, height / 2, hfov, near, far,
-        lens=lens, face_size=face_size, polynomial=polynomial, given=_read_intrinsics(block),
+        lens=lens, face_size=face_size, polynomial=polynomial, file_intrinsics=_read_intrinsics(block),
     )  # fmt: skip
 
 
@@ -171,7 +172,8 @@ def _read_lens(block: Params) -> Lens:
         c3 = source.number("c3", 0.0, minimum=-_MOST, maximum=_MOST)
         lens = Lens(name, c1, c2, c3, f, source.choice("fun", ("sin", "tan", "id"), "tan"))
         if not (lens.widest > 0 and float(lens.radius(np.array(lens.widest))) > 0):
-            source.error("SK-PARAM-002", f"found c2 {c2:g} and c3 {c3:g}; expected a wider lens")
+            expected = "expected values for which the lens has a positive image radius"
+            source.error("SK-PARAM-002", f"found c2 {c2:g} and c3 {c3:g}; {expected}")
             lens = LENSES["stereographic"]
     else:
         lens = LENSES[name]
@@ -183,24 +185,25 @@ def _read_lens(block: Params) -> Lens:
 
 
 def _scale_to_view(params: Params, lens: Lens, hfov: float) -> tuple[Lens, float]:
-    """Return the lens that shows `hfov` [rad] across the image, and that angle after a correction of invalid values."""
+    """Return the lens that shows `hfov` [rad] across the image, and `hfov`; report and replace an invalid `hfov`."""
     if hfov / 2 > lens.widest + 1e-4 or not float(lens.radius(np.array(hfov / 2))) > 0:
         found, widest = params.block("horizontal_fov"), 2 * lens.widest
-        message = f"found <horizontal_fov>{hfov:g}</horizontal_fov>, allowed for a lens of type {lens.type} is"
         least = max(_NARROWEST, -2 * lens.c2 * lens.c3)
+        allowed = f"a number from {least:.4g} to {widest:.4g} for a lens of type {lens.type}"
         hint = "choose another <type> of <lens>"
-        found.error("SK-PARAM-002", f"{message} a number from {least:.4g} to {widest:.4g}", hint)
+        message = f"found <horizontal_fov>{hfov:g}</horizontal_fov>; expected {allowed}"
+        found.error("SK-PARAM-002", message, hint)
         hfov = widest
     return lens.scaled_to(min(hfov, 2 * lens.widest)), hfov
 
 
 def _read_intrinsics(block: Params) -> tuple[float, float, float, float]:
     intrinsics, projection = block.child("intrinsics"), block.child("projection")
-    for found in (intrinsics, projection):
-        if found is not None:
-            message = f"<{found.name}> does not affect the image: <lens><type> and <horizontal_fov> define it"
-            block.diagnostics.warning("SK-SENSOR-103", message, found.where, "Gazebo draws the same image")
-            found.mark_all_read()
+    for element in (intrinsics, projection):
+        if element is not None:
+            message = f"<{element.name}> does not affect the image, which <lens><type> and <horizontal_fov> define"
+            block.diagnostics.warning("SK-SENSOR-103", message, element.where, "Gazebo draws the same image")
+            element.mark_all_read()
     if intrinsics is None:
         return _INTRINSICS
     values = [intrinsics.number(key, value) for key, value in zip(("fx", "fy", "cx", "cy"), _INTRINSICS, strict=True)]
@@ -227,5 +230,5 @@ def _fit_equidistant(lens: Lens, width: int, height: int) -> tuple[float, tuple[
     powers = angles[:, None] ** np.arange(3, 3 + 2 * _TERMS, 2)
     scale = powers[-1]
     factors = np.linalg.lstsq(powers / scale, radii / focal - angles, rcond=None)[0]
-    miss = np.abs(powers / scale @ factors + angles - radii / focal).max() * focal
-    return focal, tuple(float(f) for f in factors / scale), float(miss)
+    error = np.abs(powers / scale @ factors + angles - radii / focal).max() * focal
+    return focal, tuple(float(f) for f in factors / scale), float(error)

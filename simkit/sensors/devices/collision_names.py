@@ -1,4 +1,4 @@
-"""Search for the collision that a contact sensor names.
+"""Search for the collision that a contact sensor refers to by name.
 
 In SDF the name belongs to a collision of the sensor's own link. Gazebo converts a URDF robot into SDF first: links
 behind fixed joints are merged into their parent link, and every collision gets a new name. Many files use those names,
@@ -34,7 +34,7 @@ def find_collision(name: str, link: SceneLink, model: SceneModel) -> SceneCollis
         found = rigid.converted(carrier).get(name)
         if found is not None:
             return found
-    # the number depends on the collisions that Gazebo merged, so it may be wrong or of an older version
+    # the number in a merged name depends on all merged collisions and may be outdated, so only base names are compared
     stem = _NUMBER_SUFFIX.sub("", name.rsplit(_LUMPED_INFIX, 1)[-1])
     near = [c for base, c in rigid.lumped(carriers[-1]) if stem == f"{base}_collision"]
     return near[0] if len(near) == 1 else None
@@ -53,7 +53,7 @@ class _RigidLinks:
                 self._below.setdefault(joint.parent_link, []).append(joint)
 
     def carriers(self, link: SceneLink) -> Iterator[SceneLink]:
-        """Yield the link, the link that it is fixed to, and so on up to the first."""
+        """Yield the link, and then each parent link that fixed joints connect to it, up to the root."""
         seen: set[str] = set()
         current: SceneLink | None = link
         while current is not None and current.scoped not in seen:
@@ -65,7 +65,7 @@ class _RigidLinks:
                 return
 
     def lumped(self, link: SceneLink, seen: frozenset[str] = frozenset()) -> Iterator[tuple[str, SceneCollision]]:
-        """Yield a link's collisions and those of all links fixed to it, in Gazebo's order, each with its base name.
+        """Yield the collisions of a link and of all links fixed to the link, in Gazebo's order, with their base names.
 
         Child links are in the order of their joints' names.
         """

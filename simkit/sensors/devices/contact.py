@@ -33,7 +33,7 @@ class ContactOptions:
     """The `<contact>` block.
 
     Attributes:
-        collisions: names of collisions as in the file, each with its place.
+        collisions: names of collisions as in the file, each with its line in the file.
         topic: topic as in the file, or empty.
     """
 
@@ -42,7 +42,7 @@ class ContactOptions:
 
 
 class Contact(Sensor):
-    """Contact sensor, `contact`: the contacts of collisions of its link, published where there are any.
+    """Contact sensor, `contact`: the contacts of some collisions of its link; without contacts it publishes nothing.
 
     The sensor has no noise; `truth` is the same message.
 
@@ -128,11 +128,12 @@ class Contact(Sensor):
     # ------------------------------------------------------------------ states of Gazebo Classic's bumper
 
     def publish_states(self, topic: str, frame: str) -> bool:
-        """Publish `ContactsState` instead, at every sample.
+        """Publish `ContactsState` instead of `Contacts`, at every sample.
 
         Args:
             topic: absolute topic.
-            frame: link that all values are relative to, or `world`. Without such a link they are in the world frame.
+            frame: link that all values are relative to, or `world`. If the link does not exist, the values are in the
+                world frame.
 
         Returns:
             False if no link of that name exists yet.
@@ -144,7 +145,7 @@ class Contact(Sensor):
         return self._frame is not None or self._states_frame in _WORLD_FRAMES
 
     def _find_frame(self, names: NameMap) -> tuple[int, Vector, Vector] | None:
-        """Return the body of the states' frame with the frame's position and rotation in it; None for the world."""
+        """Return the body of the frame of `ContactsState`, and the frame's pose in that body; None for the world."""
         frame = self._states_frame
         if frame is None or frame in _WORLD_FRAMES or self._quirks:
             return None

@@ -63,7 +63,7 @@ class RawContacts:
     """Values captured from the engine at a sample.
 
     Attributes:
-        touches: contacts; None where nothing touches.
+        touches: contacts; None if there are none.
         collisions: collisions of the model at that time.
         order: positions of the sensor's collisions in the file, by collision number.
         centres: centres of mass of the links, by collision number; present if states are published.

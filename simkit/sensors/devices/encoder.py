@@ -30,11 +30,11 @@ class EncoderOptions:
     """The `<encoder>` block, which is simkit's own.
 
     Attributes:
-        resolution: size of a position count [rad or m]; 0 disables the rounding.
+        resolution: size of a position count [rad or m]; 0 disables the rounding of positions.
         absolute: True for the joint's position, False for the change of position since the start.
-        from_counts: True computes the velocity from the counts, False uses the joint's own.
+        from_counts: True computes the velocity from the counts, False uses the velocity of the joint.
         window: shortest time [s] between the two counts that give a velocity; 0 is one sample.
-        velocity_resolution: size of a velocity count [rad/s or m/s]; 0 disables the rounding.
+        velocity_resolution: size of a velocity count [rad/s or m/s]; 0 disables the rounding of velocities.
         position_noise, velocity_noise: noise on every axis before the rounding [rad and rad/s, or m and m/s].
     """
 
@@ -58,9 +58,9 @@ class JointReading:
 class Encoder(Sensor):
     """Joint encoder, `encoder` (`<sensor type="custom" gz:type="encoder">`), under a joint: its position and velocity.
 
-    The position is the true one with noise, rounded to the nearest count. The velocity is computed from two counts,
-    as in a drive without a velocity sensor, or is the joint's own with separate noise and resolution. The truth is not
-    rounded.
+    The measured position is the true position with noise, rounded to the nearest count. The velocity is computed from
+    two counts, as in a drive without a velocity sensor. With `from_counts` false, it is the joint's velocity with its
+    own noise and resolution. `truth` is not rounded.
     """
 
     kinds = ("encoder",)
@@ -100,7 +100,9 @@ class Encoder(Sensor):
             message = f"sensor {self.scoped!r}: an encoder cannot measure a {joint.type} joint"
             self.diagnostics.error("SK-SENSOR-051", message, where, "move it to a joint that turns or slides")
         elif joint.type in _LINEAR_TYPES and self.scene.params.block("encoder").has("counts_per_revolution"):
-            message = f"sensor {self.scoped!r}: <counts_per_revolution> on a {joint.type} joint, which slides"
+            message = (
+                f"sensor {self.scoped!r}: <counts_per_revolution> is invalid on a {joint.type} joint, which slides"
+            )
             self.diagnostics.error("SK-SENSOR-051", message, where, "use <resolution> in metres")
 
     def prepare(self) -> None:
@@ -148,7 +150,7 @@ class Encoder(Sensor):
         return JointReading(position, quantise(velocity, self._velocity_step))
 
     def mark(self, index: int) -> CountMark:
-        """Return the values from which `read` computes the position of this tick, as sample `index`, later."""
+        """Store the state of this tick, so that `read` can compute the position of sample `index` later."""
         position = self._position_in(self.sim.mj_data)
         return self.sim.time_ns, position, index, self._position_noise.state
 
@@ -199,14 +201,17 @@ class CountHistory:
         state: marks that are still needed, the newest last; replaced and never modified.
     """
 
-    wanders: ClassVar[bool] = True
+    evolves: ClassVar[bool] = True
 
     def __init__(self, encoder: Encoder, window: int) -> None:
         self._encoder, self._window = encoder, window
         self.state: tuple[CountMark, ...] = ()
 
     def position_and_velocity(self) -> tuple[Vector, Vector]:
-        """Return the newest position, and the mean velocity from the oldest position to it; 0 if there is only one."""
+        """Return the newest position, and the mean velocity since the oldest stored position.
+
+        The velocity is 0 if only one position is stored.
+        """
         first, last = self.state[0], self.state[-1]
         position = self._encoder.read(last)
         if first is last:
@@ -214,7 +219,7 @@ class CountHistory:
         return position, self._encoder.change(self._encoder.read(first), position) / ((last[0] - first[0]) * 1e-9)
 
     def evolve(self, index: int, dt: float) -> None:
-        """Add the mark of sample `index`, and drop the marks that are older than the window needs."""
+        """Add the mark of sample `index`, and remove marks that are too old for the window."""
         mark = self._encoder.mark(index)
         now, marks = mark[0], (*self.state, mark)
         first = max((k for k in range(len(marks) - 1) if now - marks[k][0] >= self._window), default=0)

@@ -37,9 +37,9 @@ class ForceTorqueOptions:
 class ForceTorque(VectorSensor):
     """Force and torque sensor, `force_torque`, under a joint: the wrench that the parent link exerts on the child link.
 
-    The measure direction can reverse it. The torque is about the sensor's origin. Gazebo's formula agrees only if the
-    sensor is not rotated against the joint frame or if the two origins coincide. A world with `<gazebo_quirks>` uses
-    Gazebo's formula.
+    `<measure_direction>` can reverse the wrench. The torque is about the sensor's origin. Gazebo's formula for the
+    torque agrees only if the sensor's axes are parallel to the joint frame's, or if the two origins coincide. A world
+    with `<gazebo_quirks>` uses Gazebo's formula.
     """
 
     kinds = ("force_torque",)
@@ -75,11 +75,13 @@ class ForceTorque(VectorSensor):
         names = compiled.names
         joint = self._joint = names.joint(self.scene.parent)
         if joint.moved_body <= 0:
-            message = f"sensor {self.scoped!r} reads zero: joint {joint.scoped!r} ({joint.type}) carries nothing"
-            hint = "floating joints, gearboxes and links that never move transmit nothing; use another joint"
+            message = f"sensor {self.scoped!r} reads zero: joint {joint.scoped!r} ({joint.type}) transmits no force"
+            hint = (
+                "use a joint that holds a link; floating joints, gearboxes and joints of static links transmit no force"
+            )
             self.diagnostics.warning("SK-SENSOR-050", message, self.scene.where, hint)
         self._link = names.link(joint.scene.child_link)
-        # the wrench is expressed in the axes of this body, rotated; None means the world's axes
+        # the wrench is expressed in the axes of this body, rotated by `_axes_turn`; without a link, in the world's axes
         frame = self.options.frame
         link = names.links.get(joint.scene.parent_link) if frame == "parent" else self._link
         self._axes_body = link.body if link is not None else 0
@@ -119,7 +121,10 @@ class ForceTorque(VectorSensor):
         return transmitted_wrench(model, data, self._joint, self._position + self._attitude @ self._arm)
 
     def _as_gazebo(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Vector, Vector]:
-        """Return them as Gazebo does: the lever arm is in the joint's axes although the force is in the sensor's."""
+        """Return the force and torque as Gazebo computes them.
+
+        Gazebo multiplies a lever arm in the joint's axes by a force in the sensor's axes.
+        """
         body = data.xmat[self._body].reshape(3, 3)
         origin = data.xpos[self._body] + body @ self._joint_frame.position
         force, torque = transmitted_wrench(model, data, self._joint, origin)

@@ -41,7 +41,7 @@ class AirPressure(AirSensor):
         return AirPressureOptions(altitude, read_noise(block.block("pressure")))
 
     def describe(self) -> dict[str, object]:
-        """Return the origin's height in the file [m] and the standard deviation [Pa]."""
+        """Return the height of the world's origin in the file [m], and the standard deviation of the noise [Pa]."""
         options = self.options
         altitude, stddev = options.reference_altitude, options.pressure.stddev
         return {"air_pressure": {"reference_altitude": altitude, "pressure_stddev": stddev}}
@@ -60,5 +60,5 @@ class AirPressure(AirSensor):
     def _message_of(self, reading: Vector, time_ns: int) -> msgs.FluidPressure:
         variance = self.noise.variance()
         if self.sim.world.gazebo_quirks:
-            variance = variance**0.25  # square root of the standard deviation
+            variance = variance**0.25  # Gazebo publishes the square root of the standard deviation
         return msgs.FluidPressure(msgs.header(time_ns, self.frame_id), float(reading[0]), variance)

@@ -13,16 +13,16 @@ from simkit.sensors.vector_sensor import VectorSensor
 class AirSensor(VectorSensor):
     """Sensor of the surrounding air.
 
-    Its height above sea level is its z in the world plus the height of the world's origin in the sensor's block. Gazebo
-    ignores that height and the world's `<atmosphere>`, and so does a world with `<gazebo_quirks>`. The elevation of
-    `<spherical_coordinates>` is not used, as in Gazebo.
+    The sensor's height above sea level is its z in the world plus the height of the world's origin, which the sensor's
+    block gives. Gazebo ignores the height of the origin and the world's `<atmosphere>`. A world with `<gazebo_quirks>`
+    ignores them too. The elevation of `<spherical_coordinates>` is not used, as in Gazebo.
     """
 
     def _read_air_column(self, origin: float = 0.0) -> None:
         """Read the world's air column; call this method in `prepare`.
 
         Args:
-            origin: height of the world's origin above sea level [m] in the sensor's block.
+            origin: height of the world's origin above sea level [m], from the sensor's block.
         """
         world = self.sim.world
         quirks = world.gazebo_quirks

@@ -39,7 +39,7 @@ class AirSpeed(AirSensor):
         return AirSpeedOptions(read_noise(params.block("air_speed").block("pressure")))
 
     def describe(self) -> dict[str, object]:
-        """Return the standard deviation [Pa]."""
+        """Return the standard deviation of the noise [Pa]."""
         return {"air_speed": {"pressure_stddev": self.options.pressure.stddev}}
 
     def prepare(self) -> None:
@@ -58,7 +58,7 @@ class AirSpeed(AirSensor):
         return np.array((0.5 * air.density * speed * abs(speed), air.temperature))
 
     def _wind(self, data: mujoco.MjData) -> Vector:
-        """Return the wind velocity [m/s], shape (3,), in the step that led to a state; Gazebo's sensor ignores wind."""
+        """Return the wind velocity of the last step [m/s], shape (3,); zero with Gazebo's quirks, which ignore wind."""
         if self._is_calm:
             return np.zeros(3)
         return np.array(self.sim.engine.wind.at(max(round(data.time / self.sim.timestep) - 1, 0)))

@@ -44,7 +44,7 @@ class Altimeter(VectorSensor):
         )
 
     def describe(self) -> dict[str, object]:
-        """Return the standard deviations [m, m/s]."""
+        """Return the standard deviations of height [m] and velocity [m/s]."""
         options = self.options
         return {"altimeter": {"position_stddev": options.position.stddev, "velocity_stddev": options.velocity.stddev}}
 

@@ -1,8 +1,8 @@
 """Temperature, pressure and density of the air at a height: the U.S. Standard Atmosphere of 1976, or a world's own.
 
 The air is an ideal gas at rest. Its temperature changes linearly with the geopotential height within a layer. A world's
-`<atmosphere>` gives temperature and pressure at sea level and the rate of the lowest layer. The layers above are the
-standard's. Above the standard's last layer, the temperature is constant.
+`<atmosphere>` gives temperature and pressure at sea level and the rate of the lowest layer. The rates of all higher
+layers are from the standard. Above the standard's last layer, the temperature is constant.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _HYDROSTATIC: Final = GRAVITY * MOLAR_MASS / GAS_CONSTANT  # [K/m]
 
 
 class Layer(NamedTuple):
-    """Layer of air above a geopotential height [m]: temperature [K] and pressure [Pa] there, rate [K/m]."""
+    """Layer of air that begins at a geopotential height [m], with temperature [K], pressure [Pa] and rate [K/m]."""
 
     base: float
     temperature: float
@@ -92,7 +92,7 @@ class AirColumn:
 
     def at(self, height: float) -> AirState:
         """Return the air at a geometric height above sea level [m]; finite and never negative at any height."""
-        # below half the Earth's radius the model has no meaning, and the formula would reach a pole
+        # below half the Earth's radius the model is meaningless, and the formula would divide by zero
         height = max(height, -0.5 * EARTH_RADIUS)
         geopotential = EARTH_RADIUS * (height / (EARTH_RADIUS + height))
         layer = self._layers[bisect_right(self._bounds, geopotential)]

@@ -17,7 +17,9 @@ from simkit.scene import SphericalCoordinates
 Geodetic = tuple[float, float, float]
 """Latitude [rad], longitude [rad, from -π to π] and height above the ellipsoid [m]."""
 
-_ROUNDS: Final = 4  # iterations of Bowring's method: 1e-14 rad anywhere above the evolute, with any planet's ellipsoid
+_ROUNDS: Final = (
+    4  # iterations of Bowring's method; the error above the evolute is 1e-14 rad for any planet's ellipsoid
+)
 
 
 class Ellipsoid:
@@ -60,7 +62,7 @@ class Ellipsoid:
 
 
 def east_north_up(latitude: float, longitude: float) -> Vector:
-    """Return the directions east, north and up at a point, as columns in the planet's axes, shape (3, 3)."""
+    """Return the unit vectors east, north and up at a point, as columns in the planet's axes, shape (3, 3)."""
     sine, cosine = math.sin(latitude), math.cos(latitude)
     across, along = math.sin(longitude), math.cos(longitude)
     return np.array(

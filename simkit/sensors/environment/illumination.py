@@ -1,4 +1,4 @@
-"""Light that a point of the world receives from one lamp: direction, share, and shadow caster."""
+"""Light that a point of the world receives from one lamp: direction, received fraction, and shadow caster."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LEAST_OPACITY: Final = 0.5
 
 _MIN_DISTANCE: Final = 1e-3  # [m]; a smaller distance to a lamp counts as this one
 _OPEN_GROUP: Final = 0
-"""Group that simkit leaves empty, so the geoms that a ray can hit are moved into it temporarily."""
+"""Geom group that simkit leaves empty; geoms that a ray can hit are in this group while the ray is cast."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +34,13 @@ class Beam:
     Attributes:
         direction: unit vector from the point to the light, world frame, shape (3,).
         distance: distance to the light [m]; infinite for parallel rays.
-        share: share of the light that reaches the point, from 0 to 1; 0 if the light is off or the point is outside its
-            cone.
+        fraction: fraction of the light that reaches the point, from 0 to 1. It is 0 if the light is off or the point is
+            outside the light's cone.
     """
 
     direction: Vector
     distance: float
-    share: float
+    fraction: float
 
 
 class Lamp:
@@ -48,8 +48,8 @@ class Lamp:
 
     Args:
         light: handle of the light.
-        by_position: True treats a directional light as a point at its pose, as the course's sensor does. False uses
-            parallel rays against the light's direction.
+        by_position: True treats a directional light as a point at its pose, as the plugin `libsolar_sensor.so` does.
+            False uses parallel rays against the light's direction.
     """
 
     def __init__(self, light: Light, by_position: bool = False) -> None:
@@ -76,9 +76,9 @@ class Lamp:
     def at(self, state: LightState, data: mujoco.MjData, point: Vector) -> Beam:
         """Return the light at a world point [m], shape (3,), from a state of the light and the physics data."""
         pose = self.pose(state, data)
-        share = 1.0 if state.on else 0.0
+        fraction = 1.0 if state.on else 0.0
         if self.is_parallel:
-            return Beam(-pose.rotate(self.scene.direction), math.inf, share)
+            return Beam(-pose.rotate(self.scene.direction), math.inf, fraction)
         towards = pose.position - point
         distance = math.sqrt(towards @ towards)
         if distance <= 0.0:
@@ -86,11 +86,11 @@ class Lamp:
         direction = towards / distance
         if self.scene.type == "spot":
             cosine = float(-direction @ pose.rotate(self.scene.direction))
-            share *= spot_share(self.scene, math.acos(max(-1.0, min(1.0, cosine))))
-        return Beam(direction, distance, share)
+            fraction *= spot_share(self.scene, math.acos(max(-1.0, min(1.0, cosine))))
+        return Beam(direction, distance, fraction)
 
 
-def falloff_share(scene: SceneLight, distance: float, rule: str) -> float:
+def falloff_factor(scene: SceneLight, distance: float, rule: str) -> float:
     """Return the factor by which a lamp fades over a distance.
 
     Args:

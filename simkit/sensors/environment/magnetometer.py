@@ -54,7 +54,7 @@ def _read_year(block: Params) -> float:
         year = float("nan")
     if FIRST_YEAR <= year <= LAST_YEAR:
         return year
-    allowed = f"expected a date as 2026-07-01 or 2026.5 from {FIRST_YEAR:g} to {LAST_YEAR:g}"
+    allowed = f"expected a date such as 2026-07-01 or 2026.5, from {FIRST_YEAR:g} to {LAST_YEAR:g}"
     message = f"found <date>{element.value[:60]}</date>, {allowed}"
     element.error("SK-SENSOR-063", message)
     return DEFAULT_DATE
@@ -64,8 +64,8 @@ class Magnetometer(VectorSensor):
     """Magnetometer, `magnetometer`: the world's `<magnetic_field>`, or the Earth's field if the world has a location.
 
     The reading is in tesla, in the sensor's axes; `<spherical_coordinates>` give the location. Gazebo's Magnetometer
-    system uses gauss instead of tesla, and north, east, down along the world's x, y, z. Both apply where the file sets
-    them in the system's plugin, and in a world with `<gazebo_quirks>`.
+    system uses gauss instead of tesla, and north, east, down along the world's x, y, z. simkit does the same if the
+    file sets these options in the system's plugin, or in a world with `<gazebo_quirks>`.
     """
 
     kinds = ("magnetometer",)
@@ -116,7 +116,7 @@ class Magnetometer(VectorSensor):
         if _read_system_switch(world, "use_units_gauss"):
             self._scale = _GAUSS
         if _read_system_switch(world, "use_earth_frame_ned"):
-            # Gazebo maps north, east, down to the world's axes without its heading
+            # Gazebo ignores the world's heading when it maps north, east and down to the world's axes
             sine, cosine = np.sin(coordinates.heading), np.cos(coordinates.heading)
             self._to_world = np.array(((sine, cosine, 0.0), (cosine, -sine, 0.0), (0.0, 0.0, -1.0)))
 
@@ -136,7 +136,7 @@ class Magnetometer(VectorSensor):
 
 
 def _read_system_switch(world: SceneWorld, name: str) -> bool:
-    """Read a switch of the world's Magnetometer system; Gazebo's default, true, applies only with its quirks."""
+    """Read a boolean option of the world's Magnetometer system; the default is true only with `<gazebo_quirks>`."""
     for plugin in world.plugins:
         if _SYSTEM in plugin.filename or plugin.name.endswith("::Magnetometer"):
             child = next((c for c in plugin.params.children if c.name == name), None)

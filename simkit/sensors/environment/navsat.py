@@ -21,7 +21,7 @@ FIX, VELOCITY, GPS = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/Vector3Stam
 _UNKNOWN, _DIAGONAL = 0, 2  # covariance types of NavSatFix
 _STATUS_FIX, _SERVICE_GPS = 0, 1
 _SOURCE_GPS, _SOURCE_DOPPLER = 1, 4
-# gpsd's uncertainties contain 95 % of the readings; these are the factors for one and for two normal axes
+# gpsd's uncertainties contain 95 % of the readings; factors of the standard deviation, for one axis and for two axes
 _SIGMAS_95_ONE_AXIS, _SIGMAS_95_TWO_AXES = 1.959964, math.sqrt(-2.0 * math.log(0.05))
 _FARTHEST: Final = 1e30  # [m] limit of noise, so that its square is finite
 
@@ -58,9 +58,9 @@ class NavSatReading:
 class NavSat(Sensor):
     """Satellite receiver, `navsat` or `gps`; without `<spherical_coordinates>` in the world it publishes nothing.
 
-    Noise of the position is in metres. Gazebo applies it to latitude and longitude in degrees, publishes no
-    covariance, and gives the velocity along the world's axes without their heading. A world with `<gazebo_quirks>`
-    does the same.
+    Noise of the position is in metres. Gazebo differs in three ways: it adds the noise to latitude and longitude in
+    degrees, publishes no covariance, and publishes the velocity along the world's axes without the heading. A world
+    with `<gazebo_quirks>` does the same.
     """
 
     kinds = ("navsat", "gps")
@@ -78,7 +78,7 @@ class NavSat(Sensor):
         return NavSatOptions(**noises)
 
     def describe(self) -> dict[str, object]:
-        """Return the standard deviations [m, m/s]."""
+        """Return the standard deviations of position [m] and velocity [m/s]."""
         return {"navsat": {f"{f.name}_stddev": getattr(self.options, f.name).stddev for f in fields(NavSatOptions)}}
 
     def prepare(self) -> None:
@@ -110,7 +110,7 @@ class NavSat(Sensor):
         self._heading = np.array(((cosine, -sine), (sine, cosine)))
 
     def use_classic_noise(self) -> None:
-        """Replace the quirks of a world with `<gazebo_quirks>` by Classic's: a heading rotated by half a turn."""
+        """Use the quirk of Gazebo Classic, a heading rotated by half a turn, in a world with `<gazebo_quirks>`."""
         coordinates = self.sim.world.spherical_coordinates
         if self._quirks and coordinates is not None:
             self._quirks, self._heading_offset = False, math.pi

@@ -14,10 +14,10 @@ from simkit.params import LARGEST, Params
 from simkit.pose import Vector, quat_from_rpy, quat_multiply
 from simkit.runtime.handles.light import Light, LightState
 from simkit.scene.geometry import Vec3
-from simkit.sensors.environment.illumination import Lamp, ShadowRay, falloff_share
+from simkit.sensors.environment.illumination import Lamp, ShadowRay, falloff_factor
 
 STANDARD_IRRADIANCE: Final = 1000.0
-"""Irradiance of a light without a value of its own [W/m²]; that of standard test conditions (IEC 60904-3)."""
+"""Irradiance of a light whose state has no irradiance [W/m²], from the standard test conditions (IEC 60904-3)."""
 
 _UP: Final = (0.0, 0.0, 1.0)
 _FULL_CIRCLE: Final = 2 * math.pi
@@ -30,7 +30,7 @@ class Panel:
 
     Attributes:
         area: area [m²].
-        efficiency: electrical power over the power of the light on the area, from 0 to 1.
+        efficiency: ratio of the electrical power to the power of the light on the area, from 0 to 1.
         normal: unit vector out of the panel's face, sensor frame.
     """
 
@@ -46,8 +46,8 @@ class SolarOptions:
     Attributes:
         shadow: True if an object between sensor and light makes a reading invalid.
         towards: `direction` points against the rays of a directional light; `position` points at the light's pose.
-        irradiance: irradiance of a surface that faces the light [W/m²], for a lamp at 1 m; None for the light's own.
-        falloff: rule by which a lamp fades with the distance; see `illumination.falloff_share`.
+        irradiance: irradiance of a surface that faces the light [W/m²], for a lamp at 1 m; None uses the light's value.
+        falloff: rule by which a lamp fades with the distance; see `illumination.falloff_factor`.
         normal: unit vector out of the sensor's face, sensor frame.
         field_of_view: full angle of the cone about the normal in which a light is visible [rad].
         panel: solar panel, or None.
@@ -74,7 +74,7 @@ class SolarReading:
         shadow: scoped name of the visual or collision that casts its shadow on the sensor, or empty.
         incidence: angle between the sensor's normal and the direction to the light [rad].
         irradiance: irradiance of the sensor's face [W/m²].
-        power: power of the panel [W]; 0 without one.
+        power: power of the panel [W]; 0 without a panel.
     """
 
     orientation: Vector
@@ -89,7 +89,7 @@ NO_LIGHT: Final = SolarReading(np.array((1.0, 0.0, 0.0, 0.0)), False, "", math.p
 
 
 def read_solar_options(params: Params, towards: str) -> SolarOptions:
-    """Read the elements that the sensor and the course's plugin have in common.
+    """Read the elements that the `solar` sensor and the plugin `libsolar_sensor.so` have in common.
 
     Args:
         params: block that contains the elements.
@@ -190,13 +190,13 @@ class SolarView:
             return NO_LIGHT
         direction = beam.direction @ rotation
         incidence = angle_between(direction, options.normal)
-        shadow = self._ray.find(model, data, origin, beam) if self._ray is not None and beam.share > 0 else ""
+        shadow = self._ray.find(model, data, origin, beam) if self._ray is not None and beam.fraction > 0 else ""
         orientation = orientation_towards(direction)
-        if shadow or beam.share <= 0.0:
+        if shadow or beam.fraction <= 0.0:
             return SolarReading(orientation, False, shadow, incidence, 0.0, 0.0)
-        facing = self._facing(state) * beam.share
+        facing = self._facing(state) * beam.fraction
         if not self.lamp.is_parallel and self.light.scene.type != "directional":
-            facing *= falloff_share(self.light.scene, beam.distance, options.falloff)
+            facing *= falloff_factor(self.light.scene, beam.distance, options.falloff)
         panel, power = options.panel, 0.0
         if panel is not None:
             power = facing * max(0.0, float(direction @ panel.normal)) * panel.area * panel.efficiency
@@ -233,7 +233,7 @@ def angle_between(first: Vector, second: Vec3) -> float:
 
 
 def deflect_orientation(orientation: Vector, errors: Vector) -> Vector:
-    """Return an orientation rotated about its own y and z axes together by two angles [rad], so that its x axis errs.
+    """Return an orientation with an error of its x axis: one rotation by a vector about its own y and z axes [rad].
 
     With independent normal angles of standard deviation σ, the x axis turns about a random axis perpendicular to it.
     The angle of that turn has Rayleigh's distribution of scale σ.

@@ -146,7 +146,7 @@ class SolarSensor(Sensor):
         motion, motions = self.light.motion if self.light is not None else None, self._motions
         if motions and motions[-1][1] is motion:
             return
-        # a sample that is measured later keeps the light's motion at its own time
+        # a sample that is measured later needs the light's motion at the time of the sample
         oldest = min((sample.index for sample in self._kept_samples()), default=index)
         while len(motions) > 1 and motions[1][0] <= oldest:
             del motions[0]

@@ -25,9 +25,9 @@ _NS = 1_000_000_000
 
 
 def _batch_key(imu: ImuMeasurement) -> Hashable | None:
-    """Return the properties that select the arithmetic; None if an IMU needs more than a batch computes."""
+    """Return the properties that all IMUs of a batch share; None if a batch cannot compute this IMU's reading."""
     noise = imu.noise
-    if noise.wanders or noise._is_quantised or not imu._attitude_noise.is_silent or imu._more_noise is not None:
+    if noise.evolves or noise._is_quantised or not imu._attitude_noise.is_silent or imu._more_noise is not None:
         return None
     return imu.is_mounted_straight, imu.is_against_world, noise.is_silent, noise._white is None
 

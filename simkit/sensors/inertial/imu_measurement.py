@@ -79,7 +79,7 @@ class ImuMeasurement(Sensor):
     """Base of `imu`: specific force, angular rate and attitude with noise and covariances, without messages.
 
     Attributes:
-        reference: rotation (w, x, y, z) in the world of the frame that the orientation is measured against.
+        reference: reference frame of the orientation, as a rotation (w, x, y, z) in the world.
     """
 
     gathers = True
@@ -118,8 +118,8 @@ class ImuMeasurement(Sensor):
         self.set_orientation_reference(reference_orientation(options.reference, self.scene, self.sim))
 
     def set_orientation_reference(self, reference: Vector | QuaternionTuple) -> None:
-        """Set the frame that the orientation is measured against, as a rotation (w, x, y, z) in the world."""
-        self.batch = None  # until the batches are formed again
+        """Set the reference frame of the orientation, as a rotation (w, x, y, z) in the world."""
+        self.batch = None  # the sensor samples alone until the batches are formed again
         self.reference = np.array(reference, dtype=np.float64)
         w, x, y, z = self.reference.tolist()
         self._from_reference: QuaternionTuple = (w, -x, -y, -z)
@@ -129,19 +129,19 @@ class ImuMeasurement(Sensor):
         self.set_orientation_reference(quat_multiply(self.reference, quat_conjugate(quat_from_rpy(*rpy))))
 
     def add_white_noise(self, stddev: float) -> None:
-        """Add white noise of one deviation to every rate [rad/s], acceleration [m/s²] and angle [rad]."""
+        """Add white noise with one standard deviation to each rate [rad/s], acceleration [m/s²] and angle [rad]."""
         self.batch = None
         self._more_noise = self._make_noise((NoiseModel(stddev=stddev),) * 9, "more")
         self._covariances_of = None
 
     @property
     def is_mounted_straight(self) -> bool:
-        """True if the sensor's axes are parallel to those of its body."""
+        """True if the sensor's axes are parallel to the axes of its body."""
         return self._mount == NO_ROTATION
 
     @property
     def is_against_world(self) -> bool:
-        """True if the orientation is measured against the world's axes."""
+        """True if the world's axes are the reference frame of the orientation."""
         return self._from_reference == NO_ROTATION
 
     def bind(self, compiled: Compiled) -> None:
@@ -158,7 +158,7 @@ class ImuMeasurement(Sensor):
         return self.finish(self.capture(model, data))
 
     def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> bytes:
-        """Return the body's state, see `_bind_views`, as bytes, which are the fastest to copy."""
+        """Return the body's state (see `_bind_views`) as bytes, because bytes are the fastest to copy."""
         if data is not self._viewed:
             self._bind_views(model, data)
         return b"".join(self._views)

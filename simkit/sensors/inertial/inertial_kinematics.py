@@ -32,7 +32,7 @@ def sensor_motion(
             reference point (3) of the spatial motion, spatial velocity (6) and spatial acceleration (6). Spatial
             vectors have the rotation first and are in world axes.
         arm: position of the sensor in the body [m].
-        mount: quaternion of the sensor in the body; None where their axes are parallel.
+        mount: quaternion of the sensor in the body; None if the axes of both are parallel.
         rotation: rotation matrix of the sensor in the body, nine numbers.
         reference: quaternion of the world in the reference frame of the attitude; None for the world.
 

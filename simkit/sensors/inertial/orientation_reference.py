@@ -31,7 +31,7 @@ class OrientationReference:
         rpy: for CUSTOM: roll, pitch, yaw [rad] of the reference in the parent frame.
         x_direction: for GRAV_UP and GRAV_DOWN: direction in the parent frame whose horizontal part is the x axis.
         parent_frame: `world`, a name in the model or in the world, or empty for the sensor's own frame.
-        where: place of the element that names the parent frame.
+        where: line in the file of the element that names the parent frame.
     """
 
     localization: str
@@ -75,7 +75,7 @@ def reference_orientation(reference: OrientationReference | None, sensor: SceneS
     if parent is None:
         return own
     if reference.localization == "CUSTOM":
-        # Gazebo rotates the world by the heading here too, so the axes are those of the map
+        # Gazebo applies the heading here too, so the parent frame `world` means east-north-up
         start = _heading(sim) if reference.parent_frame == WORLD else parent.quaternion
         return quat_multiply(start, quat_from_rpy(*reference.rpy))
     up = -_GRAVITY_SIGNS[reference.localization] * np.array(sim.world.gravity)
@@ -99,7 +99,7 @@ def _is_unsupported_by_gazebo(reference: OrientationReference, diagnostics: Diag
     if localization in _NAMED_AXES or (is_custom and parent == WORLD):
         return False
     if is_custom and not parent and not any(reference.rpy):
-        return True  # the file requests that attitude itself
+        return True  # the file itself requests the attitude at the start
     name = f"CUSTOM in {parent or 'the frame of the sensor'}" if is_custom else localization
     message = f"orientation reference {name} is replaced by the attitude at the start, as in Gazebo"
     diagnostics.warning("SK-SENSOR-002", message, reference.where, "remove <gazebo_quirks> to use this reference")

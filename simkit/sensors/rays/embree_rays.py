@@ -93,7 +93,7 @@ class TriangleScene:
             starts += local_origin.astype(np.float32)
         else:
             starts = np.broadcast_to(local_origin.astype(np.float32), rays.shape)
-        # slightly farther, because float32 may move a surface just within the limit beyond it
+        # a slightly larger limit, because rounding to float32 may move a surface just beyond the limit
         reach = (limit - np.float32(start)) * np.float32(1.000001)
         reach += np.float32(1e-5)
         found = self._scene.run(starts, rays, dists=reach)
@@ -115,7 +115,7 @@ class TriangleScene:
     def _clamp_grazing(
         self, distances: Vector, origin: Vector, directions: Vector, triangles: npt.NDArray[np.int32]
     ) -> Vector:
-        """Clamp the distances of rays almost parallel to their triangle to those of the triangle's corners."""
+        """Clamp the distance of each ray almost parallel to its triangle to the distances of the triangle's corners."""
         corners = self.vertices[self.faces[triangles]] - origin
         along = np.einsum("ijk,ik->ij", corners, directions)
         low, high = along.min(axis=1), along.max(axis=1)
@@ -176,7 +176,7 @@ class TriangleBody:
 
 
 class MovingBodies:
-    """Bodies with triangles that move or have a sensor."""
+    """Bodies with triangles, except static bodies without a sensor."""
 
     def __init__(self, bodies: list[TriangleBody]) -> None:
         self._bodies = bodies

@@ -32,7 +32,7 @@ class Lidar(LidarMeasurement):
         cloud_range: shortest and longest range in a `velodyne` cloud [m], both excluded.
         keeps_order: True if a `velodyne` cloud has a point for every ray.
         radiation: radiation type of `Range` messages: 0 ultrasound, 1 infrared.
-        field_of_view: field of view of `Range` messages [rad]; None is that of the rays.
+        field_of_view: field of view of `Range` messages [rad]; None uses the angle between the outer rays.
     """
 
     kinds = ("lidar", "ray", "gpu_lidar", "gpu_ray")
@@ -136,7 +136,7 @@ class Lidar(LidarMeasurement):
         return legacy_point_cloud(msgs.header(time_ns, self.frame_id), positions, intensities)
 
     def _block_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
-        """Make a cloud of all rays, layer by layer from the lowest; without a reading, a ray ends at its limit."""
+        """Make a cloud of all rays, layer by layer from the lowest; rays without a hit end at the range limit."""
         positions = self._directions * np.clip(reading.ranges, *self._limits)[:, None]
         intensities = np.maximum(reading.intensities, self.min_intensity)
         if reading.scatter is not None:

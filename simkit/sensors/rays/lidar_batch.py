@@ -1,4 +1,4 @@
-"""Batches of equal lidars whose rays are cast together, to the same bits as separately."""
+"""Batches of equal lidars, whose rays are cast together; the results have the same bits as separate casts."""
 
 from __future__ import annotations
 
@@ -56,11 +56,11 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
 
     def captured(self, member_index: int) -> LidarReading:
         reading = self._readings.pop(member_index, None)
-        # without a reading, the first reader arrived within this step
+        # a lidar whose first reader subscribed within this step has no reading yet
         return self.members[member_index].measure_now() if reading is None else reading
 
     def _cast(self, fans: Sequence[RayFan], data: mujoco.MjData, origins: Vector, rotations: Vector) -> None:
-        """Compute `distances`, `hits` and `infinite` of some fans, to the same bits as separately.
+        """Set `distances`, `hits` and `infinite` of some fans, with the same bits as separate casts.
 
         Args:
             fans: k fans.
@@ -89,7 +89,7 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
     def _near(
         self, fans: Sequence[RayFan], data: mujoco.MjData, origins: Vector, rotations: Vector
     ) -> Iterator[tuple[Ids, Ids]]:
-        """Yield pairs of fan and shape that rays may connect, for some fans at a time; no pair is missed."""
+        """Yield pairs of a fan and a shape that its rays may hit, for some fans at a time; no such pair is missing."""
         carriers = np.array([fan._carrier for fan in fans], dtype=np.intp)
         centres = data.geom_xpos.take(self._geoms, 0)
         reach = (self._radii + fans[0].reach) * (1 + 1e-9) + _MARGIN

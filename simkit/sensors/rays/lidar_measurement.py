@@ -91,8 +91,8 @@ class LidarMeasurement(Sensor):
     through nearer surfaces. Rendered lidars read -inf for a nearer surface. The sensor's own link is never hit.
 
     Attributes:
-        ray_noise: noise of each ray, besides its own noise.
-        range_noise: noise [m] with one draw for all rays of a sample, besides the noise of each ray.
+        ray_noise: noise of each ray [m] that a plugin adds to the noise of the file.
+        range_noise: noise [m] with one draw for all rays of a sample, added to the noise of each ray.
         point_noise: noise of x, y, z [m] and intensity of each ray in a `block` cloud.
     """
 
@@ -118,7 +118,7 @@ class LidarMeasurement(Sensor):
         # shared by all readings and messages, and therefore read-only
         self._dark, self._dark_layer = np.zeros(self._fan.count), np.zeros(options.horizontal.samples, np.float32)
         self._dark.flags.writeable = self._dark_layer.flags.writeable = False
-        # arrays, because converting a number takes NumPy as long as a whole planar scan
+        # arrays, because NumPy needs as long to convert a number as to process a whole planar scan
         self._limits = np.array(options.range_min), np.array(options.range_max)
 
     def read_options(self, params: Params) -> LidarOptions:
@@ -226,7 +226,7 @@ class LidarMeasurement(Sensor):
         return LidarReading(ranges, self._intensities(infinite), infinite, fan.hits, fan.ids, self._names)
 
     def ray_frame(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
-        """Return position and rotation matrix in the world like `_frame_in_world`, but skip an offset of zero."""
+        """Return position and rotation matrix in the world, like `_frame_in_world` but faster for an offset of zero."""
         position, rotation = data.xpos[self._body], data.xmat[self._body].reshape(3, 3)
         if self._is_moved:
             position = position + rotation @ self._offset_position

@@ -121,7 +121,7 @@ class ReducedModelCaster:
             carrier: carrier that the fan does not hit.
             body: body that carries the fan.
             offset: the fan's frame in the body's frame; None where it may change.
-            lowest: lowest elevation of the rays above the plane across the frame's z axis [rad].
+            lowest: lowest elevation of the rays above the plane perpendicular to the frame's z axis [rad].
             highest: highest elevation of the rays above that plane [rad].
         """
         is_reachable = self._carriers != carrier
@@ -156,7 +156,7 @@ class ReducedModelCaster:
         xipos[:], ximat[:] = xpos, xmat
 
     def _reaches_plane(self, rays: RayBundle) -> bool:
-        """Check whether a ray may hit one of the static planes; a False is always correct."""
+        """Check whether a ray may hit one of the static planes; False is always correct, True may be wrong."""
         return any(reaches_plane(rays, point, normal) for point, normal in self._planes)
 
 
@@ -168,7 +168,7 @@ def _compile_reduced_model(model: mujoco.MjModel, geoms: Ids, carriers: Ids) -> 
 
 
 def _reduced_mjcf(model: mujoco.MjModel, geoms: Ids, carriers: Ids) -> str:
-    """Return MJCF of some geoms sorted by carrier: those of carrier 0 in the world, the others in one body each."""
+    """Return MJCF of some geoms sorted by carrier: carrier 0 is the world body, each other carrier is a body."""
     parts, carrier = [_MJCF_HEADER], 0
     for geom, geom_carrier in zip(geoms.tolist(), carriers.tolist(), strict=True):
         if geom_carrier != carrier:

@@ -70,7 +70,7 @@ def _box(o: Vector, d: Vector, size: Vector) -> Interval:
 
 
 def _infinite_cylinder(o: Vector, d: Vector, radius: Vector) -> Interval:
-    """Return the interval of a cylinder without ends."""
+    """Return the distances at which rays enter and leave an infinite cylinder along z."""
     a = np.maximum(d[0] * d[0] + d[1] * d[1], _TINY)
     b = o[0] * d[0] + o[1] * d[1]
     distance = b / a
@@ -79,7 +79,7 @@ def _infinite_cylinder(o: Vector, d: Vector, radius: Vector) -> Interval:
 
 
 def _slab(o: Vector, d: Vector, half: Vector) -> Interval:
-    """Return the interval between two planes perpendicular to z."""
+    """Return the distances at which rays enter and leave the space between two planes perpendicular to z."""
     inverse = 1.0 / np.where(d[2] == 0.0, _TINY, d[2])
     wide, middle = np.abs(half * inverse), -o[2] * inverse
     return middle - wide, middle + wide
@@ -182,13 +182,13 @@ class FanDirections:
 
 
 def _count_within_runs(counts: Ids) -> Ids:
-    """Return 0, 1, ... up to each count, concatenated."""
+    """Return the numbers 0, 1, ... below each count, concatenated."""
     counted: Ids = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
     return counted
 
 
-def _expand_runs(owners: Ids, starts: Ids, counts: Ids) -> Iterator[tuple[Ids, Ids]]:
-    """Yield runs of rays as pairs of an owner and a ray."""
+def _expand_runs(spheres: Ids, starts: Ids, counts: Ids) -> Iterator[tuple[Ids, Ids]]:
+    """Yield the rays of each run with the sphere that the run belongs to, some thousands at a time."""
     ends = np.cumsum(counts)
     done = 0
     while done < len(ends):
@@ -196,7 +196,7 @@ def _expand_runs(owners: Ids, starts: Ids, counts: Ids) -> Iterator[tuple[Ids, I
         stop = max(done + 1, int(np.searchsorted(ends, before + _CHUNK, "right")))
         run_counts = counts[done:stop]
         rays = np.repeat(starts[done:stop], run_counts) + _count_within_runs(run_counts)
-        yield np.repeat(owners[done:stop], run_counts), rays
+        yield np.repeat(spheres[done:stop], run_counts), rays
         done = stop
 
 
@@ -224,7 +224,7 @@ class Shapes(NamedTuple):
 
 
 def in_frame(positions: Vector, turns: Vector, origin: Vector, rotation: Vector) -> tuple[Vector, Vector]:
-    """Transform positions (m, 3) and rotation matrices (m, 3, 3) from the world into one frame or into one frame each.
+    """Transform positions (m, 3) and rotation matrices (m, 3, 3) from the world into one frame, or into m frames.
 
     The sums are written out, so that the bits do not depend on the number of shapes.
 
@@ -295,7 +295,10 @@ def cast_on_shapes(
 def cast_on_plane(
     origin: Vector, directions: Vector, position: Vector, turn: Vector, size: Vector, start: float
 ) -> Vector | None:
-    """Return distances [m], shape (n,), to the front of a plane or rectangle, infinite for misses; None for no hit."""
+    """Return distances [m], shape (n,), to the front of a plane or rectangle, infinite for misses.
+
+    The result is None if the origin is behind the plane.
+    """
     normal = turn[:, 2]
     height = float((origin - position) @ normal)
     if height <= 0:
@@ -313,6 +316,6 @@ def cast_on_plane(
                 offset *= out
                 offset += float((origin - position) @ side)
                 np.abs(offset, out=offset)
-                # for a ray that misses the plane it is NaN or infinite
+                # `offset` is NaN or infinite for a ray that misses the plane
                 out[~(offset <= size[axis])] = np.inf
     return out

@@ -29,7 +29,7 @@ class RayBundle:
         reach: distance beyond which hits are ignored [m].
         limit: bits of the reach (see `finite_limit_bits`).
         axis: unit vector in the world, shape (3,).
-        lowest, highest: elevations between which the rays leave the plane across the axis [rad].
+        lowest, highest: elevations above the plane perpendicular to `axis` that contain all rays [rad].
     """
 
     origin: Vector
@@ -47,7 +47,7 @@ RayHits = tuple[Vector, npt.NDArray[np.int32], npt.NDArray[np.bool_]]
 
 
 def reaches_plane(rays: RayBundle, point: Sequence[float], normal: Sequence[float]) -> bool:
-    """Check whether a ray may hit the front of a plane within the reach; a False is always correct."""
+    """Check whether a ray may hit the front of a plane within the reach; False is always correct, True may be wrong."""
     (x, y, z), (ax, ay, az), (nx, ny, nz) = rays.origin.tolist(), rays.axis.tolist(), normal
     height = nx * (x - point[0]) + ny * (y - point[1]) + nz * (z - point[2])
     steepest = max(abs(rays.lowest), abs(rays.highest))
@@ -95,7 +95,7 @@ def reaches_between_cones(
         height: distances of the centres along the fan's axis [m].
         side: distances of the centres from the fan's axis [m].
         radius: radii of the spheres [m].
-        lowest: elevation of the lower cone above the plane across the axis [rad].
+        lowest: elevation of the lower cone above the plane perpendicular to the axis [rad].
         highest: elevation of the upper cone above that plane [rad].
     """
     above = height * math.cos(highest) - side * math.sin(highest)
@@ -127,7 +127,7 @@ class NearbyGeoms:
         self._radii, self._halves = np.where(bounds > 0, bounds, ENDLESS), geom_half_sizes(model, geoms)
 
     def reached(self, data: mujoco.MjData, rays: RayBundle) -> npt.NDArray[np.intp]:
-        """Return the numbers of the geoms within reach and between the fan's elevations; no such geom is missed."""
+        """Return the numbers of the geoms within reach and between the fan's elevations; no such geom is missing."""
         centres = data.geom_xpos.take(self._geoms, 0)
         centres -= rays.origin
         square = np.einsum("ij,ij->i", centres, centres)
@@ -153,14 +153,14 @@ class NearbyGeoms:
 def can_reach(
     model: mujoco.MjModel, body: int, offset: Pose, geoms: npt.NDArray[np.intp], lowest: float, highest: float
 ) -> npt.NDArray[np.bool_]:
-    """Check which geoms rays can ever hit, shape (m,); a False is always correct.
+    """Check which geoms rays can ever hit, shape (m,); False is always correct, True may be wrong.
 
     Args:
         model: compiled model.
         body: body that carries the fan.
         offset: the fan's frame in that body.
         geoms: geom ids, shape (m,).
-        lowest: lowest elevation of the rays above the plane across the frame's z axis [rad].
+        lowest: lowest elevation of the rays above the plane perpendicular to the frame's z axis [rad].
         highest: highest elevation of the rays above that plane [rad].
     """
     ties = _tied_bodies(model, body, offset)
@@ -184,7 +184,7 @@ def can_reach(
 
 
 def _tied_bodies(model: mujoco.MjModel, body: int, offset: Pose) -> dict[int, BodyTie]:
-    """Return the ties of all bodies that only hinges and ball joints connect to a body, except the world."""
+    """Return the ties of all bodies that only hinges and ball joints connect to `body`, except the world body."""
     if body <= 0:
         return {}
     children: dict[int, list[int]] = {}
@@ -207,7 +207,7 @@ def _tied_bodies(model: mujoco.MjModel, body: int, offset: Pose) -> dict[int, Bo
 
 
 def _tie_of_neighbour(model: mujoco.MjModel, tie: BodyTie, current: int, neighbour: int) -> BodyTie | None:
-    """Return the tie of a neighbouring body; None if another joint than a hinge or ball joint is between them."""
+    """Return the tie of a neighbouring body; None if a joint other than a hinge or ball joint connects the two."""
     child = neighbour if int(model.body_parentid[neighbour]) == current else current
     step = Pose(model.body_pos[child], model.body_quat[child])  # pose of the child in its parent
     to_neighbour = step.inverse() if child == neighbour else step

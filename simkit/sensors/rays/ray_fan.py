@@ -110,7 +110,8 @@ class RayFan:
             body: body that carries the rays; a moving one is not hit.
             own_geoms: geoms of a static carrier that are not hit.
             hidden: other geoms that are not visible.
-            offset: constant frame of the directions in the body's frame, or None; it excludes geoms out of sight.
+            offset: pose of the fan in the body's frame, None if it may change. A constant pose excludes geoms that no
+                ray can ever hit.
         """
         self.body = body if body > 0 else 0
         self._own = [] if body > 0 else list(own_geoms)
@@ -121,7 +122,7 @@ class RayFan:
             self._carrier = 0
         self._offset, self._static, self._nearby = offset, None, None
         targets = self._targets
-        # only the reduced model has ids of its own
+        # ids of the compiled model; `cast` replaces them with the ids of the reduced model if it casts all rays
         self.ids = np.append(np.arange(model.ngeom), -1).astype(np.int32)
         self._by_engine = self.count < MANY_RAYS and targets.moving_shapes <= MAX_MOVING_BODIES
         if not self._by_engine and self._fan is None:
@@ -134,8 +135,8 @@ class RayFan:
             return RayTargets(model, names, seen, self._use_embree)
 
         key = f"seen by rays: groups {self.groups.tolist()}, {self._use_embree}, without {sorted(hidden)}"
-        found: RayTargets = names.shared(key, find)
-        return found
+        targets: RayTargets = names.shared(key, find)
+        return targets
 
     def cast(
         self, model: mujoco.MjModel, data: mujoco.MjData, origin: Vector, rotation: Vector, start: float = 0.0
@@ -232,11 +233,11 @@ class RayFan:
             found = body.cast(data, rays.origin, rays.directions.take(rays_of_body, 0), rays.start, limit)
             self._shorten(rays_of_body[found[0]], *found[1:])
 
-    def _shorten(self, which: Ids, found: Vector, geoms: npt.NDArray[np.int32]) -> None:
-        """Replace the distances of some rays where the new ones are shorter."""
-        nearer = found < self.distances.take(which)
-        which = which[nearer]
-        self.distances[which], self.hits[which] = found[nearer], geoms[nearer]
+    def _shorten(self, rays: Ids, distances: Vector, geoms: npt.NDArray[np.int32]) -> None:
+        """Replace the distances and geoms of those rays whose new distance is shorter."""
+        nearer = distances < self.distances.take(rays)
+        rays = rays[nearer]
+        self.distances[rays], self.hits[rays] = distances[nearer], geoms[nearer]
 
     def _can_reach(self, body: TriangleBody) -> bool:
         if body.carrier == self._carrier:

@@ -22,7 +22,7 @@ from simkit.sensors.rays.ray_fan import RayFan
 TYPE = "sensor_msgs/msg/Range"
 ULTRASOUND = 0
 MIN_RAY_ANGLE = math.radians(0.5)
-"""Angle between the rings of a cone, where that needs at most `MAX_RINGS` rings [rad]."""
+"""Largest angle between the rings of a cone [rad]; larger if the cone would need more than `MAX_RINGS` rings."""
 MAX_RINGS = 24
 SPHERE_RAYS = 2000
 _GOLDEN = math.pi * (3.0 - math.sqrt(5.0))  # [rad]
@@ -64,7 +64,7 @@ def _read_axis(block: Params) -> tuple[float, float, float]:
     x, y, z = block.vector3("axis", (0.0, 0.0, -1.0))
     length = math.hypot(x, y, z)
     if length == 0:
-        block.block("axis").error("SK-PARAM-002", "found an <axis> of length 0; expected any other")
+        block.block("axis").error("SK-PARAM-002", "found an <axis> of length 0; expected any other vector")
         return (0.0, 0.0, -1.0)
     return (x / length, y / length, z / length)
 
@@ -166,9 +166,9 @@ class Sonar(Sensor):
 def cone_directions(half_angle: float, axis: tuple[float, float, float]) -> Vector:
     """Return unit vectors that sample a cone, shape (n, 3); the first is the axis.
 
-    Around the axis are rings k = 1, 2, ... of 6k rays, the last ring on the edge. Rays of a ring are as far apart as
-    the rings. Every direction in the cone is closer to a ray than 0.75 of that distance. From a half angle of pi (all
-    directions), the rays are the axis and its opposite, two perpendicular pairs, and a Fibonacci spiral.
+    Ring k around the axis, k = 1, 2, ..., has 6k rays; the last ring is on the edge. Neighbouring rays of a ring are
+    as far apart as neighbouring rings. Each direction in the cone is closer to a ray than 0.75 of this distance. With a
+    half angle of pi (all directions), the rays are both directions of three perpendicular axes and a Fibonacci spiral.
 
     Args:
         half_angle: angle between axis and edge [rad].

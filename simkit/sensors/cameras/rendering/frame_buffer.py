@@ -22,7 +22,7 @@ def read(
     context: mujoco.MjrContext,
     background: Colours | None = None,
 ) -> None:
-    """Read the drawn image, bottom row first; the context must be current, and its offscreen buffer must be drawn to.
+    """Read the drawn image from the offscreen buffer, bottom row first; the OpenGL context must be current.
 
     Without multisampling, colours are read in their stored format of four bytes per pixel. Removing the fourth byte
     afterwards takes a fifth of the time that the graphics library needs for it. The fourth byte marks the drawn pixels.
@@ -32,7 +32,8 @@ def read(
         depths: output array, shape (h, w); None reads no depths.
         rectangle: rectangle of the image.
         context: MuJoCo's rendering context.
-        background: colour of pixels that were not drawn to, shape (3,); None keeps them. Not for multisampling.
+        background: colour for pixels without a shape, shape (3,); None does not change them. Multisampling ignores
+            this argument.
     """
     if context.offSamples:
         mujoco.mjr_readPixels(colours, depths, rectangle, context)

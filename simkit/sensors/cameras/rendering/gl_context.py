@@ -81,7 +81,7 @@ class _ProcessContext:
 
     def close(self) -> None:
         """Free everything at exit before the libraries are closed; a context freed later writes to the terminal."""
-        stop_other_loops()  # their cameras would otherwise find no context
+        stop_other_loops()  # cameras of simulations that still run would find no context
         render_thread.end()
         with self.lock:  # a thread that is drawing finishes its image first
             if self.context is None:
@@ -94,7 +94,7 @@ class _ProcessContext:
 
     def reset_after_fork(self) -> None:
         """Forbid drawing in a forked child, because the threads of the software renderer do not exist there."""
-        self.lock = threading.RLock()  # another thread may have held the old one at the fork
+        self.lock = threading.RLock()  # another thread may have locked the old lock at the fork
         if self.context is None:
             return
         # these objects belong to the parent; the extra references keep the child's interpreter from freeing them
@@ -116,8 +116,8 @@ if hasattr(os, "register_at_fork"):
 def current() -> Iterator[None]:
     """Make the context of the process current in this thread; the first use opens it.
 
-    Threads take turns. A context of other code that was current becomes current again afterwards. An interrupt is
-    deferred until then.
+    Other threads wait until the block ends. If a context of other code was current, it is current again afterwards.
+    Interrupts are deferred until then.
 
     Raises:
         RenderError: no library provides a context; every call raises the same error without trying again.
@@ -227,7 +227,7 @@ def _open() -> tuple[Any, str]:
     """Return a new context and the name of its renderer."""
     library = find_library()
     try:
-        logging.getLogger("OpenGL.acceleratesupport").setLevel(logging.WARNING)  # its messages are of no use to a user
+        logging.getLogger("OpenGL.acceleratesupport").setLevel(logging.WARNING)  # hides messages about optional modules
         with _platform(library):
             context = importlib.import_module(f"mujoco.{library}").GLContext(16, 16)
             with context.as_current():
@@ -240,7 +240,7 @@ def _open() -> tuple[Any, str]:
 
 @contextmanager
 def _platform(library: str) -> Iterator[None]:
-    """Set PyOpenGL's library while the context lasts; PyOpenGL reads the variable once, when it is imported."""
+    """Set the variable that selects PyOpenGL's library, inside the `with` block; PyOpenGL reads it only at import."""
     previous = os.environ.get("PYOPENGL_PLATFORM")
     if library in ("egl", "osmesa"):
         os.environ["PYOPENGL_PLATFORM"] = library

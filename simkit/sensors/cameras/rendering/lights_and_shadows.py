@@ -29,7 +29,7 @@ def read_lights(model: mujoco.MjModel) -> Lights:
 
 @contextmanager
 def use_lights(model: mujoco.MjModel, data: mujoco.MjData, lights: Lights) -> Iterator[None]:
-    """Set earlier lights in a model and its data while the context lasts."""
+    """Set saved lights in a model and its data, inside the `with` block."""
     current = read_lights(model)
     is_same = all(np.array_equal(*pair) for pair in zip(lights, current, strict=True))
     if not is_same:
@@ -46,7 +46,8 @@ def _write_lights(model: mujoco.MjModel, data: mujoco.MjData, lights: Lights) ->
         getattr(model, field)[:] = values
     options = model.opt
     flags = options.enableflags
-    options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # lights of sleeping bodies too
+    # without sleep, `mj_camlight` also updates the lights of sleeping bodies
+    options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     mujoco.mj_camlight(model, data)
     options.enableflags = flags
 
@@ -55,9 +56,10 @@ def _write_lights(model: mujoco.MjModel, data: mujoco.MjData, lights: Lights) ->
 def keep_strongest_lights(
     model: mujoco.MjModel, data: mujoco.MjData, position: Vector, rotation: Vector
 ) -> Iterator[None]:
-    """Limit the active lights to the number that can be drawn while the context lasts, and keep the strongest ones.
+    """Switch off the weakest lights inside the `with` block, if more lights are on than the engine can draw.
 
-    Directional lights come first. Other lights follow by their strength at the camera or a little ahead of it.
+    Directional lights count as the strongest. All other lights are compared by their strength at the camera or 3 m
+    ahead of the camera.
     """
     active = model.light_active
     shining = np.flatnonzero(active)
@@ -95,9 +97,9 @@ def place_directional_lights(
 ) -> None:
     """Move directional lights so that their shadow maps cover the visible part of the scene.
 
-    The maps are as deep as the view, starting at the light's position. A small scene is covered as a whole. Of a larger
-    one, the part ahead of the camera is covered, and it moves by whole pixels of the map, so that shadows do not
-    flicker.
+    A map begins at the light's position and is as deep as the view. It covers a small scene as a whole. Of a larger
+    scene, the map covers the part ahead of the camera. That part moves by whole pixels of the map, so that shadows do
+    not flicker.
 
     Args:
         scene: scene whose lights are moved.
@@ -124,10 +126,10 @@ def place_directional_lights(
 
 
 def fit_shadow_maps(context: mujoco.MjrContext) -> None:
-    """Make the engine read a shadow map at the position where it is drawn, which is inside a border of one pixel.
+    """Correct where the engine reads a shadow map, because it draws the map inside a border of one pixel.
 
-    The engine ignores that border when it reads the map. The error is up to a pixel at the edge of the map, which is
-    more than the engine's tolerance, and sunlit ground would show dots of shadow.
+    The engine ignores that border when it reads the map. At the edge of the map, the error is a whole pixel, which is
+    more than the engine's tolerance. Sunlit ground would then show dots of shadow.
     """
     from OpenGL import GL
 

@@ -68,7 +68,7 @@ def render_view(
 
 
 def _add_headlight(scene: mujoco.MjvScene) -> None:
-    """Add a headlight; a bare model has no sun, and without light all its sides look the same."""
+    """Add a headlight: a model without a world has no sun, and without light all its sides look the same."""
     for light in scene.lights[: scene.nlight]:
         if light.headlight and not light.diffuse.any():
             light.diffuse = (0.6, 0.6, 0.6)

@@ -1,4 +1,4 @@
-"""Drawing thread: one per process, because there is one OpenGL context; interrupts wait until an image is complete."""
+"""Render thread: one per process, because there is one OpenGL context; interrupts wait until an image is complete."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ReceivedSignals = list[tuple[int, FrameType | None]]
 
 @contextmanager
 def defer_interrupts() -> Iterator[ReceivedSignals]:
-    """Defer interrupts until the block ends, and yield the list of received ones.
+    """Defer interrupts until the block ends, and yield the list of received interrupts.
 
     Inside a call of the graphics library, ctypes would turn the interrupt into an error of that library. Inside a wait
     for a lock, an interrupt would appear as an error about a lock that no thread holds.
@@ -42,7 +42,7 @@ _WAIT_INTERVAL = 0.05  # [s] interval of the checks for an interrupt
 
 
 class RenderJob:
-    """Job that another thread runs, or that was run at once.
+    """Job for the render thread, or a job that the submitting thread runs at once.
 
     Args:
         do: function that returns the result or raises.
@@ -63,7 +63,7 @@ class RenderJob:
         return self._done.is_set()
 
     def wait(self) -> None:
-        """Wait until the job is done, successfully or not; return at once in the thread that runs jobs."""
+        """Wait until the job has succeeded or failed; return at once if this thread is the render thread."""
         if not self._done.is_set() and threading.get_ident() != _thread.number:
             if self._owner is not _thread:
                 raise RenderError("this process was forked while the image was being drawn", "SK-RENDER-011")
@@ -85,10 +85,10 @@ class RenderJob:
         assert do is not None
         try:
             self._result = do()
-        except BaseException as error:  # raised again in `result`
+        except BaseException as error:  # `result` raises this error again
             self._error = error
             if not isinstance(error, Exception) and threading.get_ident() != _thread.number:
-                raise  # an interrupt is also raised where it occurs
+                raise  # an interrupt must also stop the thread that received it
         finally:
             self._done.set()
 
@@ -97,7 +97,7 @@ class _RenderThread:
     """Render thread and its queue of jobs.
 
     Attributes:
-        number: identifier of the thread; None while there is none.
+        number: identifier of the thread; None before the thread starts.
     """
 
     def __init__(self) -> None:
@@ -109,7 +109,7 @@ class _RenderThread:
 
     def submit(self, work: RenderJob) -> None:
         if threading.get_ident() == self.number:
-            work.run()  # the render thread must not wait for a place in its own queue
+            work.run()  # the render thread must not wait until its own queue has room
             return
         self._wait_while(lambda: len(self._queue) >= _MAX_WAITING and not self._is_ended)
         with defer_interrupts(), self._changed:
@@ -135,7 +135,7 @@ class _RenderThread:
                     self._changed.wait(_WAIT_INTERVAL)
 
     def end(self) -> None:
-        """Finish the queued jobs and stop the thread; later jobs run where they are submitted."""
+        """Finish the queued jobs and stop the thread; a later job runs in the thread that submits it."""
         with self._changed:
             self._is_ended = True
             self._changed.notify_all()
@@ -143,7 +143,7 @@ class _RenderThread:
             self._thread.join()
 
     def _start(self) -> None:
-        # a daemon thread, because at exit the interpreter waits for all others before they could be stopped
+        # a daemon thread, because at exit the interpreter waits for other threads before `end` is called
         self._thread = threading.Thread(target=self._work, name="simkit-render", daemon=True)
         self._thread.start()
 
@@ -189,7 +189,7 @@ def drain() -> None:
 
 
 def end() -> None:
-    """Finish the render thread, and never start another one."""
+    """Finish the queued jobs and stop the render thread for good."""
     _thread.end()
 
 

@@ -37,7 +37,7 @@ class Quality:
     """Quality settings of images.
 
     Attributes:
-        samples: samples per pixel, which smooth edges; 0 takes one. Drivers limit the number.
+        samples: samples per pixel, for smooth edges; 0 means one sample. A driver may use fewer samples.
         shadow_map: width of a light's shadow map [px]; 0 draws no shadows.
         slices: number of sides of round shapes.
     """
@@ -119,14 +119,14 @@ class GpuModel:
 
 
 def _upload(model: mujoco.MjModel, quality: Quality, smooth: bool) -> mujoco.MjrContext:
-    own = model.vis.quality
-    kept = own.offsamples, own.shadowsize, own.numslices, own.numstacks
-    own.offsamples, own.shadowsize = quality.samples if smooth else 0, quality.shadow_map
-    own.numslices, own.numstacks = max(kept[2], quality.slices), max(kept[3], quality.slices // 2)
+    settings = model.vis.quality
+    original = settings.offsamples, settings.shadowsize, settings.numslices, settings.numstacks
+    settings.offsamples, settings.shadowsize = quality.samples if smooth else 0, quality.shadow_map
+    settings.numslices, settings.numstacks = max(original[2], quality.slices), max(original[3], quality.slices // 2)
     try:
         context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
     finally:
-        own.offsamples, own.shadowsize, own.numslices, own.numstacks = kept
+        settings.offsamples, settings.shadowsize, settings.numslices, settings.numstacks = original
     context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
     context.shadowScale = 1.0  # the map covers the whole cone of a spot light
     return context
@@ -150,16 +150,17 @@ def draw_ids(
     with draw_plain_colours(scene):
         mujoco.mjr_render(rectangle, scene, context)
         mujoco.mjr_readPixels(colours, depths if shot.depth else None, rectangle, context)
-    names = np.full(scene.ngeom + 1, -1, np.int32)  # the engine draws the index of a shape in the list, from 1
+    # the engine draws each shape in a colour that is the shape's index in the list plus 1
+    geom_by_colour = np.full(scene.ngeom + 1, -1, np.int32)
     for geom in scene.geoms[: scene.ngeom]:
         if geom.objtype == mujoco.mjtObj.mjOBJ_GEOM and 0 <= geom.segid < scene.ngeom:
-            names[geom.segid + 1] = geom.objid
-    ids = names.take(_colours_to_numbers(colours), mode="clip")
+            geom_by_colour[geom.segid + 1] = geom.objid
+    ids = geom_by_colour.take(_colours_to_numbers(colours), mode="clip")
     return DrawnView(shot.view, None, depths[::-1] if shot.depth else None, ids[::-1])
 
 
 def _colours_to_numbers(colours: Colours) -> Ids:
-    """Return red, green and blue as the bytes of one number, lowest first; ten times as fast as a matrix product."""
+    """Return each colour as one number with red as its lowest byte; ten times as fast as a matrix product."""
     import cv2
 
     numbers: Ids = cv2.cvtColor(colours, cv2.COLOR_RGB2RGBA).view(np.int32)[..., 0]
@@ -173,7 +174,7 @@ _FLAGS = mujoco.mjtRndFlag
 class Renderer:
     """Renderer of the visuals of one simulation, including new models after a change of structure.
 
-    A composition of one thread may be drawn by another thread.
+    One thread may compose a scene, and another thread may draw it.
 
     Args:
         appearance: appearance of the images.
@@ -244,16 +245,19 @@ class Renderer:
                     fit_shadow_maps(context)
                 self._render(scene, context, rectangle, hidden, glassy)
                 is_masked = not glassy and self._can_paint_background(composition.model)
-                # a transparent shape colours the background and leaves its depth, so that colour must not be learned
-                learns = not (is_masked or glassy) and self._backdrop.is_plain and self._background_colour is None
+                # a transparent shape changes the colour of empty pixels but not their depth, so their colour is not
+                # the background's
+                saves_colour = not (is_masked or glassy) and self._backdrop.is_plain and self._background_colour is None
                 if not is_masked:
                     self._backdrop.draw()
                 if glassy:
                     draw_transparent(scene, context, glassy, position)
                 background = self._background_colour if is_masked else None
-                frame_buffer.read(colours, depths if shot.depth or learns else None, rectangle, context, background)
-                if learns:
-                    self._learn_background_colour(colours, depths)
+                frame_buffer.read(
+                    colours, depths if shot.depth or saves_colour else None, rectangle, context, background
+                )
+                if saves_colour:
+                    self._save_background_colour(colours, depths)
             except mujoco.FatalError as error:
                 raise RenderError(f"drawing an image failed: {error}", "SK-RENDER-002") from error
         return DrawnView(view, colours[::-1], depths[::-1] if shot.depth else None)
@@ -289,17 +293,17 @@ class Renderer:
             mujoco.mjr_render(rectangle, scene, context)
 
     def _can_paint_background(self, model: mujoco.MjModel) -> bool:
-        """Check whether the background can be painted while the image is read, because empty pixels are marked.
+        """Check whether the background can be filled in while the image is read.
 
-        This is five times as fast as painting with a software renderer. It needs plain colour, no blended edges, and no
-        textures with transparency.
+        This takes a fifth of the time that a software renderer needs. The background must have one colour, and the
+        image must mark its empty pixels, so there must be no blended edges and no textures with transparency.
         """
         is_plain = (
             self._backdrop.is_plain and not self._appearance.quality.samples and self._background_colour is not None
         )
         return is_plain and not (model.tex_nchannel == 4).any()
 
-    def _learn_background_colour(self, colours: Colours, depths: Depths) -> None:
+    def _save_background_colour(self, colours: Colours, depths: Depths) -> None:
         """Save the background's colour as rounded by the driver."""
         empty = int(depths.argmin())
         if depths.flat[empty] == 0:

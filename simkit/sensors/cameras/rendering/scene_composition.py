@@ -23,8 +23,8 @@ SOLID: Final = 0.995
 """Opacity below which the engine draws a shape as transparent."""
 
 _ALL: Final = int(mujoco.mjtCatBit.mjCAT_ALL)
-_MAX_SCENES: Final = 8  # scenes kept for reuse
-_SPARE: Final = 16  # places for shapes besides those of the model
+_MAX_SCENES: Final = 8  # number of scenes kept for reuse
+_SPARE: Final = 16  # number of shapes that a list can contain besides the model's
 _DECORATIONS: Final = 10_000
 _NOWHERE: Final = 0  # a group that is never drawn
 _GEOM: Final = int(mujoco.mjtObj.mjOBJ_GEOM)
@@ -38,7 +38,7 @@ class Composition:
     Attributes:
         position: position of the sensor in the world [m], shape (3,).
         rotation: rotation matrix of the sensor's frame (x forward, y left, z up), shape (3, 3).
-        smooth: True if edges may be smoothed.
+        smooth: True draws smooth edges if the quality has several samples per pixel.
         glassy: indices of transparent shapes in the list.
         planes: indices of planes in the list, which are invisible from behind.
         bounds: bounds of the shapes; None if they are unknown, or if invisible shapes cast shadows.
@@ -86,12 +86,12 @@ class Composer:
 
         Args:
             model: compiled model.
-            data: data of the model with everything computed.
+            data: data of the model, up to date.
             position: position of the sensor in the world [m], shape (3,).
             rotation: rotation matrix of the sensor's frame (x forward, y left, z up), shape (3, 3).
             decorate: function that is called with the `MjvScene`, to add geoms.
             unseen: ids of geoms that are not drawn.
-            smooth: True if edges may be smoothed, where the quality does so.
+            smooth: True draws smooth edges if the quality has several samples per pixel.
         """
         scene = self._spare_scene(model) if decorate is None else self._fresh_scene(model, _DECORATIONS)
         hidden = temporary_values(model.geom_group, unseen, _NOWHERE)
@@ -142,7 +142,10 @@ def _has_transparent_geoms(model: mujoco.MjModel) -> bool:
 
 
 def _scene_index(scene: mujoco.MjvScene, geom: int) -> list[int]:
-    """Return the index of a geom in the list, whose beginning is sorted by geom id; empty if it is not there."""
+    """Return the index of a geom in the scene's list, as a list that is empty if the scene does not contain the geom.
+
+    The search is binary, because geoms are at the beginning of the scene's list in the order of their ids.
+    """
     geoms = scene.geoms
     index = bisect_left(range(min(geom, scene.ngeom)), geom, key=lambda i: geoms[i].objid)
     is_listed = index < scene.ngeom and geoms[index].objid == geom and geoms[index].objtype == _GEOM
@@ -150,7 +153,7 @@ def _scene_index(scene: mujoco.MjvScene, geom: int) -> list[int]:
 
 
 def visuals_only_options() -> mujoco.MjvOption:
-    """Return the engine's options that draw what cameras see, and nothing else."""
+    """Return the engine's options that draw only the visuals that cameras see, without decorations."""
     option = mujoco.MjvOption()
     option.flags[:] = 0
     flags = mujoco.mjtVisFlag
@@ -158,7 +161,7 @@ def visuals_only_options() -> mujoco.MjvOption:
     option.flags[list(map(int, shown))] = 1
     for groups in (option.geomgroup, option.sitegroup, option.jointgroup, option.tendongroup, option.actuatorgroup):
         groups[:] = 0
-    for groups in (option.flexgroup, option.skingroup):  # defaults of MJCF, the only format with them
+    for groups in (option.flexgroup, option.skingroup):  # MJCF's default groups, because only MJCF has flexes and skins
         groups[:] = 0
         groups[:3] = 1
     option.geomgroup[[DRAWN_COLLISION, VISUAL]] = 1
@@ -193,13 +196,13 @@ def transparent_shapes(composition: Composition) -> list[int]:
 
 
 def draw_plain_colours(scene: mujoco.MjvScene) -> AbstractContextManager[None]:
-    """Draw shapes in plain colours, without light and shadow, while the context lasts."""
+    """Draw shapes in plain colours, without light and shadow, inside the `with` block."""
     return temporary_values(scene.flags, (_FLAGS.mjRND_SHADOW, _FLAGS.mjRND_SEGMENT, _FLAGS.mjRND_IDCOLOR), (0, 1, 1))
 
 
 @contextmanager
 def hide_shapes(scene: mujoco.MjvScene, indices: Sequence[int]) -> Iterator[None]:
-    """Exclude shapes of the list from drawing while the context lasts."""
+    """Exclude shapes of the list from drawing, inside the `with` block."""
     geoms = scene.geoms if indices else ()
     kinds = [geoms[i].type for i in indices]
     for i in indices:
@@ -213,7 +216,7 @@ def hide_shapes(scene: mujoco.MjvScene, indices: Sequence[int]) -> Iterator[None
 
 @contextmanager
 def make_transparent(scene: mujoco.MjvScene, indices: Sequence[int]) -> Iterator[None]:
-    """Make shapes of the list fully transparent while the context lasts."""
+    """Make shapes of the list fully transparent, inside the `with` block."""
     geoms = scene.geoms if indices else ()
     opacities = [float(geoms[i].rgba[3]) for i in indices]
     for i in indices:

@@ -19,7 +19,7 @@ _RISES: Final = (-90.0, -12.0, -2.0, 0.0, 4.0, 10.0, 20.0, 35.0, 60.0, 90.0)  # 
 
 
 class Background:
-    """Painter of the empty pixels. The engine clears to black, and its only sky is a texture.
+    """Painter of the empty pixels, because the engine clears them to black and supports only textures as a sky.
 
     The background is a display list, because painting empty pixels on the processor takes as long as the whole image.
     """
@@ -110,7 +110,7 @@ def _plain(colour: tuple[float, float, float]) -> int:
 
 
 def _sky() -> int:
-    """Return a display list with coloured rings from below to the zenith, at infinity (w = 0 gives the last depth)."""
+    """Return a display list with coloured rings from below to the zenith, at infinity (w = 0 gives the far depth)."""
     from OpenGL import GL
 
     number = _begin()

@@ -1,7 +1,8 @@
-"""Drawing of transparent shapes after everything else, from the back to the front, each once.
+"""Drawing of transparent shapes after all other shapes, each once, in the order from the farthest to the nearest.
 
-The engine draws such shapes twice, from the front and from the back, so that a half opaque shape hides three quarters.
-It also draws them before the background, which is then missing behind them.
+The engine itself draws the back and the front of a transparent shape. A shape with an opacity of 0.5 then hides three
+quarters of the scene behind it. The engine also draws transparent shapes before the background, which is then missing
+behind them.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ def draw_transparent(scene: mujoco.MjvScene, context: mujoco.MjrContext, indices
         scene: scene with the shapes.
         context: MuJoCo's rendering context.
         indices: indices of shapes in the list, of types in `DRAWN_HERE`.
-        eye: position of the camera [m], shape (3,). Planes are drawn first, then shapes by falling distance.
+        eye: position of the camera [m], shape (3,). Planes are drawn first, then shapes by decreasing distance.
     """
     from OpenGL import GL
 
@@ -73,12 +74,12 @@ def _draw(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> N
     gl.glMultMatrixf(np.ascontiguousarray(pose.T))
     _call(gl, geom, context)
     gl.glPopMatrix()
-    for switch in enabled:
-        gl.glDisable(switch)
+    for capability in enabled:
+        gl.glDisable(capability)
 
 
 def _call(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
-    """Draw the shape in its own frame."""
+    """Draw a shape at the current pose of the OpenGL matrix stack, with the display lists of the engine."""
     kind, size, builtin = int(geom.type), [float(s) for s in geom.size], int(context.baseBuiltin)
     if kind == _KINDS.mjGEOM_PLANE:
         if geom.dataid < 0:
@@ -103,7 +104,7 @@ def _call(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> N
 
 
 def _bind_texture(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> tuple[int, ...]:
-    """Apply the texture of the shape's material, and return the switches to disable afterwards."""
+    """Apply the texture of the shape's material, and return the OpenGL capabilities to disable afterwards."""
     role = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
     number = int(context.mat_texid.reshape(-1, int(mujoco.mjtTextureRole.mjNTEXROLE))[geom.matid, role])
     if geom.matid < 0 or number < 0 or context.textureType[number] != mujoco.mjtTexture.mjTEXTURE_2D:

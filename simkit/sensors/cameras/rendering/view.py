@@ -42,11 +42,11 @@ class Shot:
         view: image size and frustum.
         depth: True reads depths besides the colours.
         ids: True draws geom ids instead of colours.
-        sharp: True draws depths only, at each pixel's middle. With several samples per pixel, a depth would be that of
-            one sample.
+        sharp: True draws only depths, with one sample in the middle of each pixel. With several samples per pixel, the
+            depth would belong to a sample beside the middle.
         position: position of the view in the sensor's frame [m], shape (3,); None is the origin.
         rotation: rotation matrix of the view (x forward, y left, z up) in the sensor's frame, shape (3, 3); None is
-            none.
+            the identity.
     """
 
     view: View

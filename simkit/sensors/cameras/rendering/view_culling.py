@@ -1,4 +1,4 @@
-"""Search for shapes outside a view, which MuJoCo would pass through the whole of OpenGL."""
+"""Search for shapes outside a view, because MuJoCo passes every shape to OpenGL."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from simkit.pose import Vector
 from simkit.sensors.cameras.rendering.view import View
 
 _LEAST: Final = 8
-"""Smallest number of shapes for which the search pays."""
+"""Smallest number of shapes for which the search saves time."""
 
 _SLACK: Final = 1e-3
 """Relative margin of a shape's radius, because its corners are rounded to single precision."""
@@ -61,7 +61,7 @@ def _planes(view: View) -> tuple[Vector, Vector]:
 def bounds_of(
     model: mujoco.MjModel, data: mujoco.MjData, scene: mujoco.MjvScene, groups: npt.NDArray[np.uint8]
 ) -> Bounds | None:
-    """Return bounding spheres of the shapes of a scene that was composed from a state; None if culling does not pay.
+    """Return bounding spheres of the shapes of a composed scene; None if culling would not save time.
 
     Args:
         model: compiled model.
