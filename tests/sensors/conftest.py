@@ -1,4 +1,4 @@
-"""Lets the tests here share their small worlds."""
+"""Pytest configuration: makes the small worlds importable by all tests of this folder."""
 
 from __future__ import annotations
 

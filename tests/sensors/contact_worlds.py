@@ -34,7 +34,7 @@ def body(
     friction: str = "",
     more: str = "",
 ) -> str:
-    """A model of one link `l`, 0.2 m wide, with one collision `c`; `friction` is what stands in `<friction>`."""
+    """Return a model with a link `l`, 0.2 m wide, and a collision `c`; `friction` is the content of `<friction>`."""
     moment = mass * 0.2**2 / 6
     inertia = "".join(f"<{axis}>{moment}</{axis}>" for axis in ("ixx", "iyy", "izz"))
     surface = f"<surface><friction>{friction}</friction></surface>"
@@ -62,7 +62,7 @@ def xyz(message: Any) -> npt.NDArray[np.float64]:
 
 
 def total_force(message: Any) -> npt.NDArray[np.float64]:
-    """On the sensor's own collisions [N]."""
+    """Return the sum of all forces on the sensor's own collisions [N]."""
     forces = [xyz(w.body_1_wrench.force) for c in message.contacts for w in c.wrenches]
     return np.sum(forces, axis=0) if forces else np.zeros(3)
 

@@ -1,4 +1,4 @@
-"""One small world for any kind of sensor, and what is heard of it; run as a program it prints the readings' digests."""
+"""A small world for any kind of sensor, and its messages; run as a program, it prints the digests of the readings."""
 
 from __future__ import annotations
 
@@ -51,13 +51,13 @@ NOISY = {
     **dict.fromkeys(("camera", "depth", "depth_camera", "rgbd_camera"), _CAMERA),
     **dict.fromkeys(("wide_angle_camera", "wideanglecamera"), _CAMERA),
 }
-"""Kind -> its block with noise at every N; a kind that is not here has none."""
+"""Block of each kind, in which every N stands for a noise; a kind that is not listed has no noise."""
 
 _PLAIN_CAMERA = "<camera><image><width>32</width><height>24</height></image></camera>"
 NOISELESS = {
     **dict.fromkeys(("segmentation_camera", "segmentation", "boundingbox_camera", "boundingbox"), _PLAIN_CAMERA),
 }
-"""Kind -> a block that makes little work; a kind that is in neither has its example."""
+"""Block of each kind without noise that needs little computation; a kind that is not listed has its example."""
 _LABEL = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>{}</label></plugin>'
 
 _INERTIAL = "<inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.02</iyy><izz>0.03</izz></inertia></inertial>"
@@ -132,7 +132,7 @@ def plain(message: Any) -> Any:
 
 
 def published_digests(sim: Any, duration: float = DURATION) -> list[tuple[int, str, str]]:
-    """(tick of arrival, topic, digest) of everything that a sensor publishes."""
+    """Return (tick of arrival, topic, digest) of every message that a sensor publishes."""
     out: list[tuple[int, str, str]] = []
     taps = [
         sim.communication.bus.tap(topic, lambda m, topic=topic: out.append((sim.tick, topic, digest(m))))

@@ -1,4 +1,4 @@
-"""Small worlds with a depth camera, and its messages."""
+"""Small worlds with a depth camera, and the messages of that camera."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def scene(sensors: str, others: str = "", **how: Any) -> str:
 
 
 def loaded(text: str, *topics: str) -> tuple[Any, list[Any]]:
-    """A closed simulation and the first message of each topic."""
+    """Return a simulation that is already closed, and the first message of each topic."""
     with simkit.load(text) as sim:
         subs = [sim.subscribe(topic) for topic in topics]
         sim.run(0.02)
@@ -63,7 +63,7 @@ def points_of(message: Any) -> npt.NDArray[np.float32]:
 
 
 def seen_at(points: npt.NDArray[Any], info: Any) -> npt.NDArray[Any]:
-    """Pixels (n, 2) of points (n, 3) in optical axes, by K and D."""
+    """Return the pixels (n, 2) of points (n, 3) in optical axes, from K and D."""
     k, (k1, k2, p1, p2, k3) = info.k.reshape(3, 3), info.d
     x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
     r2 = x * x + y * y

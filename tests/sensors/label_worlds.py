@@ -15,7 +15,7 @@ FOCAL = WIDTH / (2 * np.tan(FOV / 2))
 
 
 def label(number: int | str) -> str:
-    """gz's Label plugin."""
+    """Return the Label plugin of Gazebo."""
     return f'<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>{number}</label></plugin>'
 
 
@@ -28,7 +28,7 @@ def cube(edge: float = 1.0) -> str:
 
 
 def labelled_model(name: str, pose: str, content: str, number: int | None = None, *, static: bool = True) -> str:
-    """A model with one link that has `content`, a visual or several."""
+    """Return a model with one link that contains `content`, which is one or more visuals."""
     plugin = "" if number is None else label(number)
     fixed = str(static).lower()
     head = f'<model name="{name}"><static>{fixed}</static><pose>{pose}</pose>'
@@ -42,12 +42,12 @@ def camera(kind: str, block: str = "", *, size: tuple[int, int] = (WIDTH, HEIGHT
 
 
 def load(kind: str, models: str, block: str = "", *, top: str = "", **how: Any) -> Any:
-    """Load a camera at the origin that looks along x, and models."""
+    """Load a world with models and a camera at the origin that looks along x."""
     return simkit.load(sensor_worlds.world(camera(kind, block, **how), others=models, pose="0 0 0 0 0 0", top=top))
 
 
 def bare(content: str) -> Any:
-    """A static model `m` in the world `w` whose link has `content`."""
+    """Return a world `w` with a static model `m`, whose link contains `content`."""
     link = f'<link name="l">{content}</link>'
     return simkit.load(
         f'<sdf version="1.9"><world name="w"><model name="m"><static>true</static>{link}</model></world></sdf>'
@@ -59,7 +59,7 @@ def eye(sim: Any) -> Any:
 
 
 def labels(sim: Any) -> npt.NDArray[np.uint8]:
-    """The newest map of labels, shape (h, w, 3)."""
+    """Return the newest map of labels, shape (h, w, 3)."""
     return sensor_worlds.colours(eye(sim).latest)
 
 
@@ -70,6 +70,6 @@ def counts(image: npt.NDArray[np.uint8]) -> dict[tuple[int, ...], int]:
 
 
 def edges(box: Any) -> tuple[float, float, float, float]:
-    """Left, top, right, bottom of a `BoundingBox2D`."""
+    """Return the left, top, right and bottom edge of a `BoundingBox2D`."""
     x, y = box.center.position.x, box.center.position.y
     return x - box.size_x / 2, y - box.size_y / 2, x + box.size_x / 2, y + box.size_y / 2

@@ -18,7 +18,7 @@ def sensor(
 def world(
     sensors: str, *, others: str = "", static: bool = True, pose: str = "0 0 1 0 0 0", body: str = "", top: str = ""
 ) -> str:
-    """One model `m` with one link `l` that carries the sensors (and `body`), and other models."""
+    """Return a world with other models and a model `m`, whose link `l` contains the sensors and `body`."""
     return f"""<sdf version="1.9"><world name="w">{top}
       <model name="m"><static>{str(static).lower()}</static><pose>{pose}</pose>
       <link name="l">{body}{sensors}</link></model>
@@ -52,19 +52,19 @@ def xyz(message: Any) -> npt.NDArray[np.float64]:
 
 
 def colours(message: Any) -> npt.NDArray[np.uint8]:
-    """Pixels of an image, shape (h, w, 3), or (h, w) for a grey one."""
+    """Return the pixels of an image, shape (h, w, 3), or (h, w) for a grey image."""
     shape = (message.height, message.width, 3) if message.step == 3 * message.width else (message.height, message.width)
     return np.asarray(message.data, dtype=np.uint8).reshape(shape)
 
 
 def depths(message: Any) -> npt.NDArray[np.float32]:
-    """Pixels of a depth image [m], shape (h, w)."""
+    """Return the pixels of a depth image [m], shape (h, w)."""
     assert message.encoding == "32FC1"
     return np.asarray(message.data).view(np.float32).reshape(message.height, message.width)
 
 
 def cloud(message: Any) -> npt.NDArray[Any]:
-    """Points of a cloud as a structured array, shape (height, width)."""
+    """Return the points of a cloud as a structured array, shape (height, width)."""
     formats = {2: "u1", 4: "<u2", 7: "<f4"}
     dtype = np.dtype(
         {

@@ -34,7 +34,7 @@ PAGES = {
     "segmentation": "segmentation_camera",
     "boundingbox": "boundingbox_camera",
 }
-"""Kind -> its page under `docs/sensors`, where that has another name."""
+"""Page under `docs/sensors` of each kind whose page has another name."""
 
 
 KINDS = [k for k in sensor_kinds() if not worlds.is_rendered(k) or RENDERS]
@@ -63,7 +63,7 @@ def test_another_process_gives_the_same_bits() -> None:
     script = Path(worlds.__file__)
     path = os.pathsep.join([str(ROOT), str(script.parent)])
     environment = {**os.environ, "PYTHONHASHSEED": "4711", "PYTHONPATH": path}
-    # a picture takes longer than all else together
+    # drawing an image takes longer than the rest of the test
     asked = [k for k in KINDS if not worlds.is_rendered(k) or k == "rgbd_camera"]
     done = subprocess.run([sys.executable, str(script), *asked], env=environment, capture_output=True, check=True)
     there = json.loads(done.stdout)
@@ -73,9 +73,9 @@ def test_another_process_gives_the_same_bits() -> None:
 
 @kinds
 @pytest.mark.parametrize("is_read", [True, False])
-def test_a_sensor_that_was_removed_holds_on_to_no_world(kind: str, is_read: bool) -> None:
+def test_a_removed_sensor_keeps_no_reference_to_its_world(kind: str, is_read: bool) -> None:
     with load(kind) as sim:
-        # a reset goes back to the world of the file, so that one stays
+        # a reset returns to the world of the file, so the model of the file stays
         sim.spawn('<sdf version="1.9"><model name="post"><static>1</static><link name="l"/></model></sdf>')
         sensor = sensor_of(sim)
         subscriptions = [sim.subscribe(topic, keep=1) for topic in sensor._topics.values() if is_read]
@@ -177,7 +177,7 @@ _UNIT = re.compile(
 
 @pytest.mark.parametrize("kind", list(sensor_kinds()))
 def test_options_say_their_units(kind: str) -> None:
-    """Each in its own line under "Attributes:", or all at once above."""
+    """Each attribute has its unit in its own line under "Attributes:", or the summary has one unit for all."""
     with simkit.load(worlds.source(kind)) as sim:
         options = type(sensor_of(sim).options)
     assert dataclasses.is_dataclass(options)
@@ -191,6 +191,6 @@ def test_options_say_their_units(kind: str) -> None:
 
 
 @kinds
-def test_what_it_shows_in_inspect_is_plain(kind: str) -> None:
+def test_the_description_for_inspect_is_plain_json(kind: str) -> None:
     with simkit.load(worlds.source(kind)) as sim:
         json.dumps(sensor_of(sim).describe())

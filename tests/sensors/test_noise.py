@@ -1,4 +1,4 @@
-"""Noise: bias, wandering bias, quantisation, independence."""
+"""Noise: bias, drifting bias, quantisation, independence."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_a_bias_keeps_its_sign_and_is_drawn_once() -> None:
     assert firsts.std() == pytest.approx(0.1, rel=0.2)
 
 
-def test_numbers_at_the_ends_of_their_range_stay_numbers() -> None:
+def test_numbers_at_the_limits_of_their_range_stay_finite() -> None:
     far = np.array([1e100, -1e300, math.inf])
     np.testing.assert_array_equal(quantise(far, np.array([1e-300])), far)
     with np.errstate(all="raise", under="ignore"):
@@ -53,7 +53,7 @@ def test_a_channel_that_leaves_the_numbers_is_an_error(element: str) -> None:
 
 
 @pytest.mark.parametrize("dt", [0.01, 0.1])
-def test_a_wandering_bias_has_its_spread_and_its_memory(dt: float) -> None:
+def test_a_drifting_bias_has_its_variance_and_autocorrelation(dt: float) -> None:
     tau, sigma = 0.5, 0.3
     x = samples(NoiseModel(dynamic_bias_stddev=sigma, dynamic_bias_correlation_time=tau), 40_000, dt)
     assert x.std() == pytest.approx(sigma * math.sqrt(tau / 2), rel=0.1)
@@ -99,7 +99,7 @@ def test_infinite_ranges_stay_infinite() -> None:
     assert math.isfinite(out[2])
 
 
-def test_variances_stand_on_the_diagonal() -> None:
+def test_variances_are_on_the_diagonal() -> None:
     noise = Noise([NoiseModel(stddev=s) for s in (5.0, 1.0, 2.0, 3.0)], RandomStreams(1), "s", "x")
     np.testing.assert_array_equal(noise.covariance(1).reshape(3, 3), np.diag((1.0, 4.0, 9.0)))
     assert noise.variance(3) == 9.0
@@ -122,7 +122,7 @@ def test_an_unknown_type_is_an_error() -> None:
 
 
 def read(text: str, kind: str = "gaussian") -> tuple[NoiseModel, list[str]]:
-    """A model of `name=value` words, and the codes of what was found."""
+    """Read a noise model from words `name=value`; return the model and the codes of all diagnostics."""
     found = Diagnostics()
     children = [Params(*word.split("="), diagnostics=found) for word in text.split()]
     block = Params("noise", attributes={"type": kind} if kind else {}, children=children, diagnostics=found)
@@ -134,7 +134,7 @@ def test_a_negative_deviation_or_precision_is_an_error(text: str) -> None:
     assert read(text)[1] == ["SK-PARAM-002"]
 
 
-def test_without_a_type_it_is_none_and_said_unless_in_a_data_sheets_words() -> None:
+def test_without_a_type_noise_is_reported_as_none_except_data_sheet_noise() -> None:
     assert read("stddev=0.1", "") == (NO_NOISE, ["SK-SENSOR-020"])
     assert read("stddev=0.0", "") == (NO_NOISE, [])
     assert read("stddev=0.1", "none") == (NO_NOISE, [])
@@ -173,7 +173,7 @@ def test_each_interval_has_its_own_white_noise_and_the_covariance_follows() -> N
 
 def test_a_random_walk_grows_with_the_root_of_time() -> None:
     ends = [samples(NoiseModel(random_walk=0.3), 20, 0.5, seed)[-1] for seed in range(800)]
-    # the first sample is one interval on as well
+    # the first sample also evolves by one interval
     assert np.std(ends) == pytest.approx(0.3 * math.sqrt(20 * 0.5), rel=0.07)
     assert abs(np.mean(ends)) < 4 * 0.95 / math.sqrt(800)
 
@@ -185,7 +185,7 @@ def test_a_correlation_time_bounds_a_random_walk() -> None:
 
 
 def allan(x: np.ndarray, n: int) -> float:
-    """Overlapping Allan deviation of readings at averages over n of them."""
+    """Return the overlapping Allan deviation of readings x for averages over n readings."""
     theta = np.concatenate(([0.0], np.cumsum(x)))
     second = theta[2 * n :] - 2 * theta[n:-n] + theta[: -2 * n]
     return math.sqrt((second**2).mean() / 2) / n
@@ -213,7 +213,7 @@ def test_the_processes_of_flicker_noise_make_a_flat_floor() -> None:
 
 
 def test_bias_instability_is_the_floor_of_the_allan_deviation() -> None:
-    # the mean over several seeds: one run of this length knows its floor to 10 % or so
+    # mean over several seeds, because one run of this length estimates its floor only to about 10 %
     floors = []
     for seed in range(8):
         x = samples(NoiseModel(bias_instability=0.2), 20_000, 0.5, seed)
@@ -221,7 +221,7 @@ def test_bias_instability_is_the_floor_of_the_allan_deviation() -> None:
     np.testing.assert_allclose(np.sqrt(np.square(floors).mean(axis=0)), 0.664 * 0.2, rtol=0.12)
 
 
-def test_with_a_correlation_time_the_floor_is_the_peak_at_189_of_it() -> None:
+def test_with_a_correlation_time_the_floor_is_the_peak_at_189_percent_of_that_time() -> None:
     tau = 2.0
     model = NoiseModel(bias_instability=0.2, correlation_time=tau)
     x = samples(model, 60_000, 0.2)
@@ -232,7 +232,7 @@ def test_with_a_correlation_time_the_floor_is_the_peak_at_189_of_it() -> None:
     )  # in its steady state from the start
 
 
-def test_twenty_minutes_of_an_imu_at_rest_give_density_and_instability_back() -> None:
+def test_an_imu_at_rest_for_20_minutes_shows_its_density_and_instability() -> None:
     density, instability, rate = 6e-3, 6e-3, 10
     block = gaussian(f"<noise_density>{density}</noise_density><bias_instability>{instability}</bias_instability>")
     step = "<physics name='p' type='ode'><max_step_size>0.1</max_step_size></physics>"
@@ -241,7 +241,7 @@ def test_twenty_minutes_of_an_imu_at_rest_give_density_and_instability_back() ->
         read = sim.subscribe("/i")
         sim.run(1200)
         x = np.array([(m.angular_velocity.x, m.angular_velocity.y, m.angular_velocity.z) for m in read.messages]).T
-    # white noise alone from one reading to the next, but for the little that flicker moves in 0.1 s
+    # between two readings there is almost only white noise; flicker noise changes little in 0.1 s
     found = math.sqrt(np.diff(x).var() / 2 / rate)
     assert found == pytest.approx(density, rel=0.05)
     floor = [np.mean([allan(axis, n) ** 2 for axis in x]) - found**2 * rate / n for n in (60, 100, 200, 400)]
@@ -266,7 +266,7 @@ def gaussian(content: str) -> str:
     return f'<noise type="gaussian">{content}</noise>'
 
 
-def test_the_density_follows_the_rate_and_so_does_the_covariance() -> None:
+def test_the_white_noise_of_a_density_and_its_covariance_follow_the_rate() -> None:
     with simkit.load(imu(gaussian("<noise_density>0.01</noise_density>"), rate=100)) as sim:
         found, read = {}, sim.subscribe("/i")
         for rate in (100, 400, 0):
@@ -292,11 +292,11 @@ def test_a_message_that_waits_has_the_bias_of_its_own_sample() -> None:
         other.run(2)
         biases = [m.angular_velocity.x for m in kept.messages]
         assert biases == [m.angular_velocity.x for m in heard]
-        assert np.ptp(biases) > 0.1  # it did wander
+        assert np.ptp(biases) > 0.1  # the bias has drifted
         assert sim.sensor("m::l::s").latest.angular_velocity.x == other.sensor("m::l::s").latest.angular_velocity.x
 
 
-def test_an_unread_sensor_wanders_as_a_read_one_does() -> None:
+def test_the_bias_of_an_unread_sensor_drifts_like_that_of_a_read_sensor() -> None:
     world_of = imu(gaussian(DYNAMIC + "<bias_stddev>1</bias_stddev>"))
     with simkit.load(world_of) as sim, simkit.load(world_of) as other:
         other.subscribe("/i")
@@ -379,7 +379,7 @@ def test_frames_and_pixels_are_not_correlated() -> None:
     for shift in ((0, 1), (1, 0), (1, 1), (0, 64), (64, 0), (128, 128)):
         moved = np.roll(pixels, shift, axis=(1, 2))
         assert abs((pixels * moved).mean()) < limit
-    # no tile of words comes back within a frame or in another
+    # no tile of random words repeats within a frame or in another frame
     rows = frames.reshape(-1, 64)
     assert len(np.unique(rows, axis=0)) == len(rows)
 
@@ -395,7 +395,7 @@ def test_image_noise_depends_on_seed_name_and_frame_alone() -> None:
 
 
 def test_without_a_type_the_kind_has_sdfs_default() -> None:
-    """None, but gaussian on rays (and on cameras)."""
+    """SDF's default is `none`, and `gaussian` for rays and cameras."""
     wall = box("wall", "3.5 0 1 0 0 0", "1 4 4")
     biased = "<noise><mean>1</mean></noise>"
     ray = "<scan><horizontal><samples>1</samples></horizontal></scan><range><min>0.1</min><max>10</max></range>"

@@ -1,4 +1,4 @@
-"""Timing: the grid and its shift, jitter, latency, rates that change, and what is said of them."""
+"""Timing: the grid and its phase, jitter, latency, rates that change, and their diagnostics."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def load(extra: str = "", rate: float = 10, noise: str = "", top: str = "", seed
 
 
 def stamp(message: Any) -> int:
-    """[ns]"""
+    """Return the stamp of a message [ns]."""
     return int(message.header.stamp.sec) * 10**9 + int(message.header.stamp.nanosec)
 
 
@@ -47,7 +47,7 @@ class Arrivals:
 
     @property
     def stamps(self) -> list[int]:
-        """[ms]"""
+        """Return the stamps of all messages [ms]."""
         return [stamp(m) // 1_000_000 for m in self.messages]
 
     @property
@@ -87,7 +87,8 @@ def test_gazebo_cuts_the_period_to_whole_milliseconds() -> None:
         arrivals = Arrivals(sim)
         sim.run(0.2)
         assert arrivals.stamps == [1, 33, 66, 99, 132, 165, 198]
-    with load(rate=5000, top="<gazebo_quirks>true</gazebo_quirks>") as sim:  # cut to nothing: Gazebo would hang
+    # Gazebo truncates this period to 0 ms and would hang
+    with load(rate=5000, top="<gazebo_quirks>true</gazebo_quirks>") as sim:
         arrivals = Arrivals(sim)
         sim.run(0.003)
         assert arrivals.stamps == [1, 2, 3]
@@ -99,7 +100,7 @@ def test_a_phase_shifts_the_grid_and_the_first_sample() -> None:
         assert sim.sensor("m::l::s").latest is None
         sim.run(0.35)
         assert arrivals.stamps == [31, 131, 231, 331]
-    with load("<phase>0.25</phase>") as sim:  # longer than a period: it begins later
+    with load("<phase>0.25</phase>") as sim:  # longer than a period, so the grid begins later
         arrivals = Arrivals(sim)
         sim.run(0.5)
         assert arrivals.stamps == [250, 350, 450]
@@ -126,7 +127,7 @@ def test_jitter_scatters_samples_evenly_around_the_grid_and_keeps_their_number()
     assert off.std() == pytest.approx(40 / math.sqrt(3), rel=0.08)
 
 
-def test_the_jitter_of_any_sample_can_be_had_without_those_before() -> None:
+def test_the_jitter_of_a_sample_does_not_depend_on_earlier_samples() -> None:
     clock, draws = Clock(0.001), np.random.default_rng(0).uniform(-1, 1, 400)
     grid = clock.samples(SampleTiming(Fraction(1, 97), Fraction(1, 500), Fraction(1, 250), lambda k: float(draws[k])))
     assert grid is not None
@@ -382,14 +383,14 @@ def test_a_sensor_under_the_wrong_parent_is_left_out_with_a_warning(place: str) 
         simkit.load(JOINT.format(**parts), strict=True)
 
 
-def test_a_sensor_on_a_joint_without_a_child_is_no_traceback() -> None:
+def test_a_sensor_on_a_joint_without_a_child_is_reported_without_a_traceback() -> None:
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(JOINT.format(link="", child="nobody", joint='<sensor name="s" type="force_torque"/>'))
     assert [d.code for d in caught.value.diagnostics if d.severity == "error"] == ["SK-SDF-004"]
 
 
 def test_a_rate_below_zero_is_every_step_as_in_gazebo() -> None:
-    """Worlds of Gazebo's own write `<update_rate>-1`."""
+    """Some of Gazebo's own worlds contain `<update_rate>-1`."""
     with load(rate=-1) as sim:
         sub = sim.subscribe("/i")
         sim.step(7)

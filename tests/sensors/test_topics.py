@@ -1,4 +1,4 @@
-"""Topics that sensors share, and names that no topic may have."""
+"""Topics that several sensors publish on, and invalid topic names."""
 
 from __future__ import annotations
 

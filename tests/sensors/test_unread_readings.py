@@ -1,4 +1,4 @@
-"""Readings that are read after the model has changed: they have the values of their own time."""
+"""Readings that are read after the model has changed: they have the values at the time of their samples."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LIDAR = (
 
 
 def arm() -> str:
-    """A link that is hinged to the world, with sensors, and a wall."""
+    """Return a world with a wall and a link with sensors on a hinge."""
     sensors = (
         sensor("gpu_lidar", LIDAR, name="lidar", rate=10)
         + sensor("altimeter", "", name="height", rate=10)
@@ -41,7 +41,7 @@ def has_another_limit(sim: Any) -> None:
 
 
 def read(change: Callable[[Any], None], is_read: bool, *, back: bool = False) -> dict[str, bytes]:
-    """The newest reading of each sensor after a change, looked at as it was made or only then."""
+    """Return the newest reading of each sensor after a change; with `is_read`, sensors have subscribers before."""
     with simkit.load(arm()) as sim:
         for one in sim.contents.sensors.values() if is_read else ():
             for topic in one._topics.values():
@@ -59,11 +59,11 @@ def read(change: Callable[[Any], None], is_read: bool, *, back: bool = False) ->
 
 @pytest.mark.parametrize("back", [False, True])
 @pytest.mark.parametrize("change", [is_put_elsewhere, has_another_limit], ids=lambda change: change.__name__)
-def test_a_reading_that_is_looked_at_later_is_the_same(change: Callable[[Any], None], back: bool) -> None:
+def test_a_reading_that_is_read_later_is_the_same(change: Callable[[Any], None], back: bool) -> None:
     assert read(change, False, back=back) == read(change, True, back=back)
 
 
-def test_putting_it_elsewhere_shows_in_the_next_reading() -> None:
+def test_a_new_pose_shows_in_the_next_reading() -> None:
     with simkit.load(arm()) as sim:
         sim.run(0.1)
         first = sim.sensor("arm::l::lidar").latest.ranges[2]

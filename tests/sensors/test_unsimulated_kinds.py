@@ -1,4 +1,4 @@
-"""Kinds that are known and not simulated: read in full, their values checked, and said once."""
+"""Kinds that are known and not simulated: they are read in full, checked, and reported once."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_there_is_exactly_one_report(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", UNSIMULATED_READERS)
-def test_an_element_that_it_does_not_have_is_said_too(kind: str) -> None:
+def test_an_unknown_element_is_reported_too(kind: str) -> None:
     inner = BLOCKS[kind].replace("</transceiver>", "<gian/></transceiver>").replace("</gz:dvl>", "<gian/></gz:dvl>")
     text = sensor(kind, inner if "gian" in inner else inner + "<gian/>")
     with simkit.load(text) as sim:
@@ -72,7 +72,7 @@ def test_an_element_that_it_does_not_have_is_said_too(kind: str) -> None:
         ("dvl", DVL.replace("<maximum_range>80.", "<maximum_range>0.05")),
     ],
 )
-def test_a_value_that_is_not_allowed_is_an_error(kind: str, block: str) -> None:
+def test_an_invalid_value_is_an_error(kind: str, block: str) -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
         simkit.load(sensor(kind, block))
 

@@ -1,4 +1,4 @@
-"""Bounding box cameras against boxes worked out by hand."""
+"""Bounding box cameras, compared with boxes computed by hand."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ VISIBLE, FULL, SPACE = ("2d", "full_2d", "3d")
 
 
 def boxes(models: str, kind: str, block: str = "", **how: Any) -> list[tuple[str, int, Any]]:
-    """(model, label, bbox) of what is detected."""
+    """Return (model, label, bbox) of each detected object."""
     with load("boundingbox_camera", models, f"<box_type>{kind}</box_type>{block}", **how) as sim:
         sim.run(0.01)
         return [(d.id, int(d.results[0].hypothesis.class_id), d.bbox) for d in eye(sim).latest.detections]
@@ -33,7 +33,7 @@ def flat(models: str, kind: str, block: str = "", **how: Any) -> dict[tuple[str,
 
 
 def plate_at(distance: float, y: float = 0.0, z: float = 0.0, wide: float = 1.0, high: float = 0.5) -> np.ndarray:
-    """Left, top, right, bottom of a plate across the axis [px]."""
+    """Return the left, top, right and bottom edge [px] of a plate perpendicular to the camera's axis."""
     scale = FOCAL / distance
     return np.array(
         (
@@ -63,7 +63,7 @@ def turn(box: Any) -> Pose:
 
 
 @pytest.mark.parametrize("name", ["2d", "visible_2d", "visible_box_2d", "full_2d", "full_box_2d"])
-def test_a_box_is_around_what_is_seen_of_a_plate(name: str) -> None:
+def test_a_box_is_around_the_visible_part_of_a_plate(name: str) -> None:
     found = flat(labelled_model("a", "3 0.2 -0.1 0 0 0", visual(PLATE), 7), name)
     assert set(found) == {("a", 7)}
     bound = 0.51 if "full" not in name else 0.05
@@ -76,7 +76,7 @@ def test_a_visible_box_covers_its_pixels_and_gazebos_ends_at_the_number_of_the_l
     np.testing.assert_array_equal(np.subtract(own, gazebos), (0, 0, 1, 1))
 
 
-def test_what_is_half_hidden_has_a_smaller_visible_box_and_the_same_full_one() -> None:
+def test_a_half_hidden_object_has_a_smaller_visible_box_and_the_same_full_box() -> None:
     models = labelled_model("a", "4 0 0 0 0 0", visual(PLATE), 7) + labelled_model(
         "wall", "2 -1 0 0 0 0", visual(cube(2))
     )
@@ -87,7 +87,7 @@ def test_what_is_half_hidden_has_a_smaller_visible_box_and_the_same_full_one() -
 
 
 @pytest.mark.parametrize("kind", [VISIBLE, FULL, SPACE])
-def test_what_is_hidden_or_behind_or_beside_or_without_a_label_has_no_box(kind: str) -> None:
+def test_hidden_outside_and_unlabelled_objects_have_no_box(kind: str) -> None:
     models = (
         labelled_model("hidden", "6 0 0 0 0 0", visual(PLATE), 1)
         + labelled_model("wall", "3 0 0 0 0 0", visual(cube(2)))
@@ -109,7 +109,7 @@ def test_a_full_box_ends_at_the_edges_of_the_image() -> None:
     assert flat(wall, FULL, top=QUIRKS) == {}, "Gazebo has none for what leaves the picture on both sides"
 
 
-def test_what_reaches_behind_the_camera_is_cut_at_the_near_plane() -> None:
+def test_a_box_that_extends_behind_the_camera_is_cut_at_the_near_plane() -> None:
     # a floor from 5 m behind to 5 m ahead, 1 m below: its far edge is the upper one of its box
     floor = labelled_model("floor", "0 0 -1 0 0 0", visual("<box><size>10 2 0.02</size></box>"), 5)
     found = flat(floor, FULL)["floor", 5]
@@ -158,7 +158,7 @@ def test_a_model_of_several_links_has_one_box_and_two_labels_have_two() -> None:
     np.testing.assert_allclose(flat(model, FULL, top=QUIRKS)["b", 7], plate_at(4.995, wide=3), atol=0.51)
 
 
-def test_boxes_come_from_the_end_of_the_alphabet_as_in_gazebo() -> None:
+def test_boxes_are_in_reverse_alphabetical_order_as_in_gazebo() -> None:
     models = "".join(
         labelled_model(n, f"5 {y} 0 0 0 0", visual(PLATE), 7) for n, y in (("a", 1.5), ("c", -1.5), ("b", 0))
     )
@@ -185,7 +185,7 @@ def test_through_a_lens_boxes_are_around_what_the_lens_shows() -> None:
     assert np.abs(np.subtract(seen["a", 7], flat(models, VISIBLE, **image)["a", 7])).max() > 5
 
 
-def test_a_object_that_moves_is_where_it_was_when_the_image_was_taken() -> None:
+def test_a_moving_object_is_at_its_pose_at_the_time_of_the_image() -> None:
     ball = labelled_model(
         "a",
         "3 0 0.4 0 0 0",
@@ -282,7 +282,7 @@ def test_its_topics_and_messages_are_those_of_the_bridge() -> None:
 
 
 @pytest.mark.parametrize("kind", [VISIBLE, FULL, SPACE])
-def test_the_boxes_are_drawn_in_green_into_a_image_of_their_own(kind: str) -> None:
+def test_the_boxes_are_drawn_in_green_into_a_separate_image(kind: str) -> None:
     models = labelled_model("a", "3 0 0 0 0 0", visual(PLATE), 7)
     with load("boundingbox", models, f"<box_type>{kind}</box_type>") as sim:
         images = sim.subscribe("/eye_image")

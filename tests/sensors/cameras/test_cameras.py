@@ -36,7 +36,7 @@ def scene(sensors: str, others: str = "", **more: Any) -> str:
 
 
 def first_messages(text: str, topics: tuple[str, ...]) -> list[Any]:
-    """The first message of each topic."""
+    """Return the first message of each topic."""
     with simkit.load(text) as sim:
         subs = [sim.subscribe(t) for t in topics]
         sim.run(0.02)
@@ -216,7 +216,7 @@ def test_noise_is_on_the_image_and_not_on_its_truth() -> None:
         assert (depths(sub.latest) - 3.0).std() == pytest.approx(0.02, rel=0.03)
 
 
-def test_a_bent_image_follows_browns_model() -> None:
+def test_a_distorted_image_follows_browns_model() -> None:
     lens = "<distortion><k1>-0.2</k1><k2>0.03</k2><p1>0.001</p1></distortion>"
     spot = box("spot", "4.05 1 1.6 0 0 0", "0.1 0.06 0.06", colour="1 1 1")
     optics = {"width": 640, "height": 480}
@@ -278,7 +278,7 @@ def test_classics_depth_camera_has_colour_depth_and_points() -> None:
 # ---------------------------------------------------------------------- life
 
 
-def test_images_follow_what_is_spawned_removed_and_restored() -> None:
+def test_images_show_spawned_removed_and_restored_models() -> None:
     with simkit.load(scene(sensor("depth_camera", camera(width=8, height=8), extra="<topic>d</topic>"), WALL)) as sim:
         sub = sim.subscribe("/d")
 

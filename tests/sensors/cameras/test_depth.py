@@ -1,4 +1,4 @@
-"""Depth: exact, in range by Gazebo's rule, and one with K, colours, clouds and frames."""
+"""Depth images: exactness, Gazebo's rule for the range, and agreement with K, colours, clouds and frames."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ NORMALS = {
 
 
 def tilted(turn: str) -> str:
-    """A plate whose face to the camera goes through a point 3 m ahead of it."""
+    """Return a plate whose face contains the point 3 m in front of the camera."""
     x, y, z = np.array((3.0, 0.0, 1.0)) - 0.5 * NORMALS[turn]
     return box("plate", f"{x} {y} {z} {turn}", "1 30 30")
 
@@ -77,7 +77,7 @@ def tilted(turn: str) -> str:
 @pytest.mark.parametrize("turn", list(NORMALS), ids=["down", "aside"])
 @pytest.mark.parametrize("quality", ["fast", "gazebo"])
 def test_a_tilted_plane_reprojects_onto_a_plane_by_k_and_d(lens: str, turn: str, quality: str) -> None:
-    """Within 1 mm at 3 m, and within 0.01 mm where nothing is bent; multisampling is no matter of depths."""
+    """The error at 3 m is below 1 mm, and below 0.01 mm without distortion; multisampling does not affect depths."""
     look = f"<scene><quality>{quality}</quality></scene>"
     depth, info = first_messages(
         world(camera(lens, width=160, height=120), others=tilted(turn), top=look), "/c/depth_image", "/c/camera_info"
@@ -92,7 +92,7 @@ def test_a_tilted_plane_reprojects_onto_a_plane_by_k_and_d(lens: str, turn: str,
     assert off.max() < (1e-3 if lens else 1e-5)
 
 
-def test_a_surface_a_tenth_of_the_near_plane_away_is_too_near_and_not_gone_but_the_lens_may_have_a_housing() -> None:
+def test_a_surface_at_a_tenth_of_the_near_plane_is_too_near_and_a_nearer_housing_is_invisible() -> None:
     found = depth_of(scene(camera(), box("lid", "0.51 0 1 0 0 0", "1 9 9") + WALL))
     assert (found == -math.inf).all()
     found = depth_of(scene(camera(), box("housing", "0.503 0 1 0 0 0", "1 9 9") + WALL))
@@ -103,7 +103,7 @@ def test_a_surface_a_tenth_of_the_near_plane_away_is_too_near_and_not_gone_but_t
 
 
 def test_far_is_a_distance_and_near_a_depth() -> None:
-    """gz-rendering's rule: the far plane bounds the distance from the camera, the near plane the depth."""
+    """In gz-rendering, the far plane limits the distance from the camera, and the near plane limits the depth."""
     found = depth_of(scene(camera(clip="<near>0.1</near><far>3.2</far>"), WALL))
     beyond = found == math.inf
     assert beyond.any()
@@ -124,7 +124,7 @@ def test_far_is_a_distance_and_near_a_depth() -> None:
     [("<far>2.9</far>", math.inf), ("<near>3.1</near>", -math.inf), ("<near>0.2</near><far>3.1</far>", 3.0)],
 )
 def test_an_rgbd_cameras_own_clip_bounds_depths_along_the_axis(own: str, expected: float) -> None:
-    """An end that is not given is the camera's."""
+    """If `<depth_camera><clip>` sets only one end of the range, the other end is that of the camera's `<clip>`."""
     more = f"<depth_camera><clip>{own}</clip></depth_camera>"
     image, depth, points = first_messages(scene(camera(more), WALL), "/c/image", "/c/depth_image", "/c/points")
     np.testing.assert_allclose(depths(depth), expected, rtol=1e-6)
@@ -155,7 +155,7 @@ def test_a_range_that_ends_before_it_begins_and_an_unknown_output_are_reported()
 
 
 def plates() -> tuple[str, npt.NDArray[Any]]:
-    """Four plates, dark and bright, that meet in one point of a tilted plane; and that point."""
+    """Return four dark and bright plates that meet in one point of a tilted plane, and that point."""
     pivot, size = simkit.Pose.from_rpy(2.5, 0.25, 1.2, 0.3, 0.2, 0.5), 0.6
     parts = ""
     for number, (y, z) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
@@ -183,7 +183,7 @@ def test_a_corner_in_the_colours_is_at_its_own_point_of_the_cloud(lens: str, qua
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-3)
     found = cv2.cornerSubPix(grey, start.reshape(1, 1, 2).copy(), (5, 5), (-1, -1), stop).reshape(2) + 0.5
     np.testing.assert_allclose(found, expected, atol=blur)  # px
-    # the cloud's points around it, taken at the corner's place between them
+    # interpolate between the cloud's points around the corner
     own = cv2.remap(points_of(points), *(found - 0.5).astype(np.float32)[:, None, None], cv2.INTER_LINEAR)[0, 0]
     np.testing.assert_allclose(seen_at(own[None], info)[0], found, atol=0.05)
     np.testing.assert_allclose(own, optical, atol=blur * 3 / info.k[0])
@@ -206,7 +206,7 @@ def test_noise_comes_before_the_range_and_leaves_infinities() -> None:
     assert np.mean(found[hit] == -math.inf) == pytest.approx(0.1587, abs=0.02)  # one deviation below
 
 
-def test_with_gazebos_quirks_noise_moves_points_along_all_axes_alike() -> None:
+def test_with_gazebos_quirks_noise_moves_points_equally_along_all_axes() -> None:
     for quirks in ("true", "false"):
         text = scene(camera(noise(0.02)), WALL, top=f"<gazebo_quirks>{quirks}</gazebo_quirks>")
         with simkit.load(text) as sim:
@@ -284,7 +284,7 @@ def test_a_preset_has_its_cameras_geometry_and_noise() -> None:
 # ---------------------------------------------------------------------- what is drawn
 
 
-def test_a_depth_camera_draws_no_colours_unless_they_are_asked_for() -> None:
+def test_a_depth_camera_draws_colours_only_for_a_reader() -> None:
     for plugin, count in (("", 1), (CLASSIC.format(""), 1)):
         with simkit.load(scene(camera(kind="depth", plugin=plugin), WALL)) as sim:
             sim.run(0.02)
@@ -295,7 +295,7 @@ def test_a_depth_camera_draws_no_colours_unless_they_are_asked_for() -> None:
             np.testing.assert_allclose(sensor_.depth, 3.0, rtol=1e-6)
 
 
-def test_what_can_be_seen_through_has_no_depth() -> None:
+def test_transparent_objects_have_no_depth() -> None:
     pane = box("pane", "1.5 0 1 0 0 0", "0.1 9 9").replace("</material>", "</material><transparency>0.5</transparency>")
     for kind, topic in (("rgbd_camera", "/c/depth_image"), ("depth_camera", "/c")):
         (depth,) = first_messages(scene(camera(kind=kind), WALL + pane), topic)

@@ -1,4 +1,4 @@
-"""Clouds of depth cameras, and the frames that they are in."""
+"""Point clouds of depth cameras, and their frames."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_points_as_an_array_are_the_messages() -> None:
 
 
 def transforms(sim: Any) -> dict[str, tuple[str, simkit.Pose]]:
-    """Child -> parent and pose."""
+    """Return the parent frame and the pose of each child frame on `/tf_static`."""
     sub = sim.subscribe("/tf_static")
     sim.step()
     found = {}
@@ -147,7 +147,7 @@ def test_a_static_model_takes_no_frame_from_a_robot() -> None:
     assert frames["m::l::s"][0] == "m/l"
 
 
-def test_with_gazebos_quirks_an_optical_frame_is_passed_over() -> None:
+def test_with_gazebos_quirks_an_optical_frame_is_ignored() -> None:
     text = scene(camera(OPTICAL), WALL, top="<gazebo_quirks>true</gazebo_quirks>")
     (points,) = first_messages(text, "/c/points")
     assert points.header.frame_id == "m::l::s"
@@ -165,7 +165,7 @@ def test_classics_cloud_is_in_optical_axes_whatever_the_frame() -> None:
     assert "SK-SENSOR-112" in {d.code for d in sim.diagnostics}
 
 
-def test_classics_cloud_in_the_frame_of_an_optical_link_needs_no_word() -> None:
+def test_classics_cloud_in_the_frame_of_an_optical_link_is_not_reported() -> None:
     link = (
         '<link name="eye"><pose relative_to="l">0 0 0 -1.5707963 0 -1.5707963</pose></link>'
         '<joint name="j" type="fixed"><parent>l</parent><child>eye</child></joint>'

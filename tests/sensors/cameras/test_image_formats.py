@@ -47,7 +47,7 @@ def picture(fmt: str, kind: str = "camera") -> Any:
 
 @pytest.fixture(scope="module")
 def colours() -> np.ndarray:
-    """The picture as it is in 8 bits, red, green, blue, shape (48, 64, 3)."""
+    """Return the image with 8 bits of red, green and blue, shape (48, 64, 3)."""
     found = image_messages.pixels_of(picture("R8G8B8"))
     assert found.shape == (HEIGHT, WIDTH, 3)
     assert found[24, 16].argmax() == 0
@@ -148,7 +148,7 @@ def test_a_depth_cameras_float_format_is_of_its_depths() -> None:
 
 
 @pytest.mark.parametrize("fmt", image_messages.WITHOUT_ENCODING)
-def test_what_no_message_can_hold_is_said_and_drawn_in_colours(fmt: str) -> None:
+def test_a_format_without_a_ros_encoding_is_reported_and_drawn_in_colours(fmt: str) -> None:
     with simkit.load(camera_world(camera(fmt=fmt))) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-120"]
         assert fmt in found.message
@@ -178,7 +178,7 @@ def test_a_trigger_gives_one_image_at_the_next_due_time() -> None:
         assert not image.messages
         assert not info.messages
         sim.run(0.01)
-        for _ in range(3):  # while the rate holds it back, as in Gazebo: one is waiting, or none
+        for _ in range(3):  # before the next due time, several messages request one image, as in Gazebo
             sim.publish("/cam/image/trigger", {"data": True})
         sim.run(0.3)
         assert [m.header.stamp.nanosec for m in image.messages] == [250_000_000]
@@ -297,7 +297,7 @@ def test_the_user_may_allow_another_folder(save_folder: Path, monkeypatch: pytes
     assert [p.name for p in (save_folder / "kept/today").iterdir()] == ["m::l::s_0.png"]
 
 
-def test_what_cannot_be_written_is_said_once_and_the_run_goes_on(save_folder: Path) -> None:
+def test_a_write_error_is_reported_once_and_the_run_continues(save_folder: Path) -> None:
     (save_folder / "seen").write_text("a file where the folder should be")
     with simkit.load(saving("seen")) as sim:
         sim.run(0.1)
@@ -306,7 +306,7 @@ def test_what_cannot_be_written_is_said_once_and_the_run_goes_on(save_folder: Pa
     assert [p.name for p in save_folder.iterdir()] == ["seen"]
 
 
-def test_saving_needs_a_path_and_a_word_that_is_one(save_folder: Path) -> None:
+def test_saving_needs_a_path_and_a_valid_boolean(save_folder: Path) -> None:
     for block in ('<save enabled="true"/>', '<save enabled="perhaps"><path>x</path></save>'):
         with pytest.raises(simkit.LoadError) as caught:
             simkit.load(camera_world(camera(block)))
@@ -345,8 +345,8 @@ def test_an_optical_frame_is_named_by_image_and_info() -> None:
             assert image.latest.header.frame_id == info.latest.header.frame_id == expected
 
 
-def test_a_camera_block_has_a_name_and_a_place() -> None:
-    """The camera is at `<pose>` in its sensor, as in Classic."""
+def test_a_camera_block_has_a_name_and_a_pose() -> None:
+    """`<pose>` of the camera is relative to the sensor, as in Gazebo Classic."""
     turned = camera("<pose>0 0 0 0 0 0.4</pose>", attributes=' name="eye"')
     with simkit.load(camera_world(turned)) as sim, simkit.load(camera_world(camera(), pose="0 0 0 0 0 0.4")) as same:
         assert not [d for d in sim.diagnostics if d.code.startswith("SK-PARAM")]

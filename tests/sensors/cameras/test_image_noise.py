@@ -1,4 +1,4 @@
-"""Noise on pictures: of the right size, fresh for every pixel of every frame, without any pattern."""
+"""Noise of images: correct standard deviation, independent for every pixel of every frame, without any pattern."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def on_depth(of: ImageNoise, frames: int = FRAMES) -> npt.NDArray[np.float64]:
 
 
 def correlation(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> float:
-    """In units of what is to be expected of that many independent draws."""
+    """Return the correlation of two arrays, divided by the expected correlation of as many independent draws."""
     return float(np.corrcoef(a.ravel(), b.ravel())[0, 1]) * math.sqrt(a.size)
 
 
@@ -62,7 +62,7 @@ def test_neighbours_in_a_row_a_column_and_time_are_uncorrelated(added: npt.NDArr
 
 @BOTH
 def test_no_frequency_stands_out(added: npt.NDArray[np.float64]) -> None:
-    """Each frequency's power is exponentially distributed where there is no pattern: the largest of n is near log n."""
+    """Without a pattern, the power of a frequency is exponentially distributed; the largest of n is near log n."""
     for axis in (0, 1, 2):
         power = (np.abs(np.fft.rfft(added - added.mean(), axis=axis)) ** 2).mean(axis=tuple({0, 1, 2} - {axis}))
         assert power[1:-1].max() < 1.5 * power[1:-1].mean()
@@ -127,8 +127,8 @@ def test_it_is_normally_distributed() -> None:
 
 
 @pytest.mark.parametrize(("stddev", "mean"), [(0.3, 0.0), (1.0, 0.2), (5.0, -3.0)])
-def test_large_noise_is_cut_off_at_black_and_white(stddev: float, mean: float) -> None:
-    """Shares of black, of white, and the mean between, by the normal distribution."""
+def test_large_noise_is_clipped_at_black_and_white(stddev: float, mean: float) -> None:
+    """The fractions of black and white pixels and the mean of all others agree with the normal distribution."""
     level = 100
     added = on_grey(new_noise(stddev, mean), level)
     found = np.rint(added * 255 + level)
@@ -153,12 +153,13 @@ def test_infinite_depths_stay() -> None:
     assert new_noise(0.1).on_depths(plain, 1)[0, :2].tolist() == [math.inf, -math.inf]
 
 
-def test_gazebos_own_rule_bends_what_is_added() -> None:
+def test_gazebos_formula_distorts_the_noise() -> None:
     straight, bent = on_depth(new_noise(0.3)), on_grey(new_noise(0.3, as_ogre=True))
     expected = np.sort(np.sign(straight) * np.abs(straight) ** 2.1, axis=None)
     quarters = [round(q * bent.size) for q in (0.05, 0.25, 0.75, 0.95)]
     np.testing.assert_allclose(np.sort(bent, axis=None)[quarters], expected[quarters], atol=0.006)
-    assert np.abs(on_grey(new_noise(0.007, as_ogre=True))).max() == 0  # Gazebo's ordinary noise is none
+    # with Gazebo's formula, noise of a common size changes no pixel
+    assert np.abs(on_grey(new_noise(0.007, as_ogre=True))).max() == 0
 
 
 def test_grey_images_have_the_same_noise() -> None:

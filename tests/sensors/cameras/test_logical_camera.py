@@ -106,7 +106,7 @@ def test_defaults_are_those_of_sdf() -> None:
         "<far>nan</far>",
     ],
 )
-def test_a_frustum_that_is_none_is_an_error(block: str) -> None:
+def test_an_invalid_frustum_is_an_error(block: str) -> None:
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(world("", block))
     assert [d.code for d in caught.value.diagnostics if d.severity == "error"] == ["SK-PARAM-002"]
@@ -116,7 +116,7 @@ def test_a_frustum_that_is_none_is_an_error(block: str) -> None:
 
 
 def test_the_pose_is_that_of_the_model_in_the_sensors_frame() -> None:
-    """The box of gz-sensors' own test, and the sensor turned about to look at it from the side."""
+    """The box and pose of gz-sensors' own test, and a rotated sensor that looks at the box from the side."""
     for place in ((0.25, 0, 0.5, 0, 0, 0), (2, 2, 0.5, 0, 0, -1.57), (2.1, -0.1, 3, 0.3, math.pi / 2, 0.2)):
         text = world(ball_model("box", "2 0 0.5 0.1 0.2 1.57"), pose=" ".join(map(str, place)))
         with simkit.load(text) as sim:
@@ -156,7 +156,7 @@ def test_nested_models_have_their_scoped_names_and_their_own_poses() -> None:
 
 
 def test_the_origin_counts_and_not_the_canonical_link() -> None:
-    """The link is out of view, its model's origin is in it."""
+    """The link is outside the view, and the origin of its model is inside."""
     far = '<model name="far"><pose>2 0 0.5 0 0 0</pose><link name="l"><pose>0 9 0 0 0 0</pose></link></model>'
     with simkit.load(world(far)) as sim:
         sim.run(0.05)
@@ -181,7 +181,7 @@ def test_an_image_without_models_is_published_too() -> None:
 
 
 def test_a_model_that_passes_is_seen_while_it_is_inside() -> None:
-    """At 1 m/s across a frustum that is 2·2·tan(0.5) m wide at 2 m."""
+    """The model moves at 1 m/s through a frustum, which is 2·2·tan(0.5) m wide at a distance of 2 m."""
     block = "<near>0.1</near><far>5</far><horizontal_fov>1</horizontal_fov>"
     with simkit.load(world(ball_model("ball", "2 -2 0.5 0 0 0"), block, pose="0 0 0.5 0 0 0")) as sim:
         sim.model("ball").set_velocity((0, 1, 0))
@@ -194,14 +194,14 @@ def test_a_model_that_passes_is_seen_while_it_is_inside() -> None:
     assert len(inside) == pytest.approx(2 * half / 0.05, abs=1)
 
 
-def test_an_image_that_is_looked_at_later_shows_the_state_of_its_time() -> None:
+def test_an_image_that_is_read_later_shows_the_state_at_its_stamp() -> None:
     with simkit.load(world(ball_model("ball", "2 0 0.5 0 0 0"))) as sim:
         sim.model("ball").set_velocity((1, 0, 0))
         sim.run(0.07)
         assert numbers(poses_by_name(sim)["ball"])[0] == pytest.approx(1.75 + 0.05, abs=1e-9)
 
 
-def test_what_is_spawned_removed_or_set_shows_in_the_next_image() -> None:
+def test_spawned_removed_and_changed_models_show_in_the_next_image() -> None:
     with simkit.load(world(ball_model("a", "2 0 0.5 0 0 0"))) as sim:
         sim.run(0.05)
         sim.spawn(f'<sdf version="1.9">{ball_model("c", "3 0 0.5 0 0 0")}</sdf>', name="b")
@@ -229,7 +229,7 @@ def test_a_static_model_that_is_moved_is_where_it_was_put() -> None:
         np.testing.assert_allclose(numbers(poses_by_name(sim)["post"])[:3], (1.75, 0, 0), atol=1e-12)
 
 
-def test_what_sleeps_is_seen_as_well() -> None:
+def test_sleeping_bodies_are_seen() -> None:
     ground = "<include><uri>model://ground_plane</uri></include>"
     box = """<model name="box"><pose>2 0 0.5 0 0 0</pose><link name="l"><collision name="c"><geometry><box><size>1 1 1
       </size></box></geometry></collision></link></model>"""
@@ -252,7 +252,7 @@ def test_image_and_frustum_have_gazebos_topics_and_the_bridges_type() -> None:
     assert (told.near_clip, told.far_clip, told.horizontal_fov, told.aspect_ratio) == (0.55, 5, 1.04719755, 1.778)
 
 
-def test_a_topic_of_its_own_takes_the_frustum_along() -> None:
+def test_the_frustum_topic_is_below_the_sensors_own_topic() -> None:
     with simkit.load(world("", extra="<topic>/what is/there</topic>")) as sim:
         assert {"/what_is/there", "/what_is/there/frustum"} <= set(sim.topics())
 
@@ -270,8 +270,8 @@ def quirky(models: str, block: str, pose: str = "0 0 0 0 0 0") -> list[str]:
     return first(world(models, block, pose=pose, top="<simkit:gazebo_quirks>true</simkit:gazebo_quirks>"))
 
 
-def test_gazebo_sees_left_right_behind_and_above_with_a_frustum_that_begins_at_its_tip() -> None:
-    """Four of six planes are defined by two equal corners if <near> is 0, and so have no direction."""
+def test_with_near_0_gazebos_frustum_contains_models_on_all_sides() -> None:
+    """If <near> is 0, two equal corners define four of the six planes, so these planes have no direction."""
     models = (
         ball_model("behind", "-3 0.1 0 0 0 0") + ball_model("left", "1 9 0 0 0 0") + ball_model("above", "1 0 9 0 0 0")
     )
@@ -281,7 +281,7 @@ def test_gazebo_sees_left_right_behind_and_above_with_a_frustum_that_begins_at_i
     assert quirky(models, "<near>0.01</near><far>5</far>") == []
 
 
-def test_gazebo_takes_a_nested_model_for_a_top_level_one() -> None:
+def test_gazebo_treats_a_nested_model_as_a_top_level_model() -> None:
     inner = '<model name="in"><pose>1 0.2 0 0 0 0</pose><link name="l"/></model>'
     models = ball_model("out", "20 0 0.5 0 0 0", inner)
     assert quirky(models, "<near>0.1</near><far>5</far>") == ["in"]

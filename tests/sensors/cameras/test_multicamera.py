@@ -1,4 +1,4 @@
-"""Several cameras in one sensor: one instant, own places, own intrinsics and noise; stereo geometry."""
+"""Several cameras in one sensor: one sample time; separate poses, intrinsics and noise; stereo geometry."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def latest_messages(text: str, *topics: str) -> list[Any]:
 
 
 def middle(message: Any) -> float:
-    """Column [px] of the middle of what is red."""
+    """Return the column [px] of the middle of all red pixels."""
     red = colours(message)[..., 0].sum(axis=0, dtype=float)
     return float(red @ (np.arange(message.width) + 0.5) / red.sum())
 
@@ -80,7 +80,7 @@ def test_a_projection_of_the_file_is_published_unchanged() -> None:
 
 
 @pytest.mark.parametrize("pose", ["0 -0.1 0 0 0 0.1", "0.05 -0.1 0 0 0 0"])
-def test_cameras_that_are_no_rectified_pair_tell_no_baseline_which_is_noted(pose: str) -> None:
+def test_cameras_that_are_not_parallel_have_no_baseline_which_is_reported(pose: str) -> None:
     with simkit.load(scene(camera("left") + camera("right", pose))) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-124"] == ["note"]
         info = sim.subscribe("/rig/right/camera_info")

@@ -1,4 +1,4 @@
-"""Without a renderer all but the cameras goes on, and the reason and the cure are said."""
+"""Without a renderer, all sensors except cameras work, and a report gives the reason and the remedy."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def test_nothing_touches_opengl_before_the_first_image() -> None:
 
 
 @pytest.mark.parametrize("value", ["foo", "osmesa"])
-def test_a_renderer_that_is_not_there_stops_only_what_draws(value: str) -> None:
+def test_a_missing_renderer_stops_only_cameras(value: str) -> None:
     done = run(
         f"""
         import ctypes.util, os
@@ -141,7 +141,7 @@ def test_a_renderer_that_is_not_there_stops_only_what_draws(value: str) -> None:
 
 
 @pytest.mark.parametrize("command", ["run", "convert"])
-def test_no_command_minds_a_renderer_that_it_does_not_need(command: str, tmp_path: Path) -> None:
+def test_no_command_fails_for_a_renderer_that_it_does_not_need(command: str, tmp_path: Path) -> None:
     (tmp_path / "world.sdf").write_text(WORLD)
     more = {"run": ["--duration", "0.02", "--record", "bag.mcap"], "convert": ["-o", "other.sdf"]}
     done = subprocess.run(
@@ -154,7 +154,7 @@ def test_no_command_minds_a_renderer_that_it_does_not_need(command: str, tmp_pat
     assert done.stderr.count("MUJOCO_GL=foo: unknown renderer") == (command == "run")
 
 
-def test_what_ails_all_cameras_is_said_once_and_reported_of_each() -> None:
+def test_an_error_of_all_cameras_is_logged_once_and_reported_for_each() -> None:
     cameras = "".join(sensor("camera", CAMERA, name=f"c{n}") for n in range(3))
     done = run(
         f"""

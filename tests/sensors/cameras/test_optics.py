@@ -1,4 +1,4 @@
-"""Optics of pinhole cameras: intrinsics, skew, projection, lens distortion; OpenCV is the independent word on it."""
+"""Optics of pinhole cameras: intrinsics, skew, projection and lens distortion, compared with OpenCV."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def load(block: str, others: str = "", *, kind: str = "camera", top: str = DARK)
 
 
 def shown(sim: Any, *products: str) -> list[Any]:
-    """The first message of each of a camera's products."""
+    """Return the first message of each product of a camera."""
     found = sim.sensor("m::l::s")._topics
     subs = [sim.subscribe(found[p]) for p in products]
     sim.run(0.02)
@@ -55,7 +55,8 @@ def distortion(lens: Distortion, more: str = "") -> str:
 def spots(places: Sequence[tuple[float, float]], size: float = 0.08, distance: float = 1.0) -> str:
     """Squares around (x, y) at distance 1 of the camera, x to its right and y downwards, scaled to `distance`.
 
-    They stand askew, so that their edges cross pixels everywhere and their middle is found to a part of a pixel.
+    The squares are rotated, so that their edges cross pixels at many positions. The centre of a square is then known
+    more exactly than one pixel.
     """
     return "".join(
         box(f"spot{i}", f"{distance} {-x * distance} {1 - y * distance} 0.5 0 0", f"0.0002 {size} {size}")
@@ -64,7 +65,7 @@ def spots(places: Sequence[tuple[float, float]], size: float = 0.08, distance: f
 
 
 def middles(message: Any) -> np.ndarray:
-    """Centres (u, v) of what is bright, weighted by brightness, shape (n, 2), from the left."""
+    """Return the centres (u, v) of bright spots, weighted by brightness, shape (n, 2), from left to right."""
     grey = colours(message)[..., 0].astype(float)
     count, labels = cv2.connectedComponents((grey > 60).astype(np.uint8))
     found = []
@@ -183,7 +184,7 @@ def test_with_gazebos_quirks_skew_is_opposite_and_there_is_no_distortion() -> No
 
 
 @ALL_LENSES
-def test_straightening_is_what_opencv_finds(lens: Distortion) -> None:
+def test_undistorted_points_agree_with_opencv(lens: Distortion) -> None:
     y, x = np.meshgrid(np.linspace(-0.4, 0.4, 9), np.linspace(-0.5, 0.5, 11), indexing="ij")
     points = np.stack((x, y), axis=-1).reshape(-1, 1, 2)
     stop = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 500, 1e-12)
@@ -192,7 +193,7 @@ def test_straightening_is_what_opencv_finds(lens: Distortion) -> None:
 
 
 @ALL_LENSES
-def test_bending_is_what_opencv_projects(lens: Distortion) -> None:
+def test_distorted_points_agree_with_opencv(lens: Distortion) -> None:
     y, x = np.meshgrid(np.linspace(-0.5, 0.5, 9), np.linspace(-0.7, 0.7, 11), indexing="ij")
     points = np.stack((x, y, np.ones_like(x)), axis=-1).reshape(-1, 1, 3)
     expected, _ = cv2.projectPoints(points, np.zeros(3), np.zeros(3), np.eye(3), lens.coefficients)
@@ -200,7 +201,7 @@ def test_bending_is_what_opencv_projects(lens: Distortion) -> None:
     np.testing.assert_allclose(undistort(*distort(x, y, lens), lens), (x, y), atol=1e-9)
 
 
-def test_beyond_the_fold_there_is_no_answer() -> None:
+def test_beyond_the_fold_directions_are_nan() -> None:
     lens = Distortion(-0.5)  # folds back at r² = 1 / 1.5, seen at r = 0.5443
     x = np.array([[0.0, 0.544, 0.545, 2.0]])
     found, _ = undistort(x, np.zeros_like(x), lens)
@@ -209,7 +210,7 @@ def test_beyond_the_fold_there_is_no_answer() -> None:
 
 @draws
 @ALL_LENSES
-def test_a_bent_image_is_where_opencv_projects_it(lens: Distortion) -> None:
+def test_a_distorted_image_agrees_with_opencvs_projection(lens: Distortion) -> None:
     places = [(-0.6, -0.4), (-0.3, 0.1), (0.02, -0.25), (0.25, 0.42), (0.6, -0.1)]
     block = camera(distortion(lens), width=320, height=240, hfov=1.5)
     with load(block, spots(places, size=0.05)) as sim:
@@ -220,7 +221,7 @@ def test_a_bent_image_is_where_opencv_projects_it(lens: Distortion) -> None:
 
 @draws
 @ALL_LENSES
-def test_a_bent_image_has_no_black_corners(lens: Distortion) -> None:
+def test_a_distorted_image_has_no_black_corners(lens: Distortion) -> None:
     with load(camera(distortion(lens), hfov=1.0), top=BRIGHT) as sim:
         (image,) = shown(sim, "image")
     assert colours(image).min() > 100
@@ -237,7 +238,7 @@ def test_distortion_is_about_the_principal_point_and_with_skew_too() -> None:
 
 
 @draws
-def test_a_centre_elsewhere_is_drawn_and_said() -> None:
+def test_a_centre_off_the_principal_point_is_drawn_and_reported() -> None:
     with load(camera(distortion(LENSES[0], "<center>0.4 0.6</center>")), spots(PLACES)) as sim:
         image, info = shown(sim, "image", "camera_info")
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-100"] == ["warning"]
@@ -248,14 +249,14 @@ def test_a_centre_elsewhere_is_drawn_and_said() -> None:
     np.testing.assert_allclose(middles(image), expected, atol=0.3)
 
 
-def test_a_centre_on_the_principal_point_needs_no_word() -> None:
+def test_a_centre_on_the_principal_point_is_not_reported() -> None:
     lens = INTRINSICS.format(0)
     with load(camera(f"<lens>{lens}</lens>{distortion(LENSES[0], '<center>0.4375 0.55</center>')}")) as sim:
         assert "SK-SENSOR-100" not in {d.code for d in sim.diagnostics}
 
 
 @draws
-def test_a_lens_that_folds_back_is_said_and_black_there() -> None:
+def test_a_lens_that_folds_back_is_reported_and_black_beyond_the_fold() -> None:
     with load(camera(distortion(Distortion(-0.5)), hfov=1.5), top=BRIGHT) as sim:
         (found,) = (d for d in sim.diagnostics if d.code == "SK-SENSOR-101")
         (image,) = shown(sim, "image")
@@ -268,8 +269,8 @@ def test_a_lens_that_folds_back_is_said_and_black_there() -> None:
     assert f"{black.mean():.0%}"[:1] in found.message
 
 
-def test_what_a_strong_lens_crowds_is_averaged() -> None:
-    """Stripes one pixel wide: in a corner, where two of them fall on one pixel, grey comes of them and no pattern."""
+def test_pixels_that_a_strong_lens_compresses_are_averaged() -> None:
+    """Stripes are one pixel wide. In a corner, two stripes fall on one pixel and give grey instead of a pattern."""
     lens = ImageDistorter(CameraModel(160, 120, 90, 90, 80, 60, 1.4, 0.1, 100, distortion=Distortion(-0.3, 0.08)))
     view = lens.view()
     stripes = np.zeros((view.height, view.width, 3), np.uint8)
@@ -282,7 +283,7 @@ def test_what_a_strong_lens_crowds_is_averaged() -> None:
 
 @draws
 @pytest.mark.parametrize("size", [(1, 1), (1, 7), (7, 1)])
-def test_the_smallest_images_are_bent_too(size: tuple[int, int]) -> None:
+def test_the_smallest_images_are_distorted_too(size: tuple[int, int]) -> None:
     block = camera(distortion(LENSES[0]), width=size[0], height=size[1])
     with load(block, top=BRIGHT) as sim:
         (image,) = shown(sim, "image")
@@ -310,7 +311,7 @@ def points_of(message: Any) -> np.ndarray:
 
 
 def projected(points: np.ndarray, info: Any) -> np.ndarray:
-    """Pixels (u, v) of points (x forward, y left, z up), by K with its skew and D, shape (n, 2)."""
+    """Return the pixels (u, v), shape (n, 2), of points (x forward, y left, z up), from K (with skew) and D."""
     lens = Distortion(info.d[0], info.d[1], info.d[4], info.d[2], info.d[3])
     x, y = distort(-points[..., 1] / points[..., 0], -points[..., 2] / points[..., 0], lens)
     k = np.array(info.k).reshape(3, 3)
@@ -336,7 +337,7 @@ def test_a_tilted_plane_stays_a_plane(lens: str) -> None:
 @draws
 @pytest.mark.parametrize("lens", BENT, ids=BENT_IDS)
 def test_a_colours_corner_lies_at_its_own_point(lens: str) -> None:
-    """A white square before a red wall: what is white is what is near, and its corners are where they project to."""
+    """A white square is in front of a red wall: white pixels have near depths, and corners project to their pixels."""
     wall = box("wall", "4 0 1 0 0 0", "0.1 20 20", colour="1 0 0")
     others = box("square", "2.01 0.3 1.4 0 0 0", "0.02 0.6 0.5") + wall
     with load(camera(lens), others, kind="rgbd_camera") as sim:
@@ -352,7 +353,7 @@ def test_a_colours_corner_lies_at_its_own_point(lens: str) -> None:
 
 @draws
 @pytest.mark.parametrize("lens", BENT, ids=BENT_IDS)
-def test_no_point_hangs_between_two_surfaces(lens: str) -> None:
+def test_no_point_is_between_two_surfaces(lens: str) -> None:
     others = box("near", "1.5 0 1 0.4 0 0", "0.02 0.6 0.5") + box("wall", "4 0 1 0 0 0", "0.1 20 20")
     with load(camera(lens), others, kind="depth_camera") as sim:
         (depth,) = shown(sim, "depth_image")

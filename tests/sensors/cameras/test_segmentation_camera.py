@@ -1,4 +1,4 @@
-"""Segmentation cameras against pixels counted by hand."""
+"""Segmentation cameras, compared with numbers of pixels computed by hand."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def map_of(models: str, block: str = "", **how: object) -> np.ndarray:
 
 
 def pixels_of_plate(distance: float, width: float = 1.0, height: float = 0.5) -> int:
-    """Pixels whose middle lies in the picture of a plate across the axis."""
+    """Return the number of pixels whose middle is inside the image of a plate perpendicular to the camera's axis."""
     across, down = width / 2 * FOCAL / distance, height / 2 * FOCAL / distance
     column, row = np.arange(WIDTH) + 0.5 - WIDTH / 2, np.arange(HEIGHT) + 0.5 - HEIGHT / 2
     return int((np.abs(column) < across).sum() * (np.abs(row) < down).sum())
@@ -40,7 +40,7 @@ def test_a_labelled_plate_covers_the_pixels_that_it_should() -> None:
     assert found == {(40, 40, 40): seen, (0, 0, 0): WIDTH * HEIGHT - seen}
 
 
-def test_what_has_no_label_is_background_and_hides_what_is_behind_it() -> None:
+def test_an_object_without_a_label_is_background_and_hides_others() -> None:
     behind = labelled_model("a", "4 0 0 0 0 0", visual(PLATE), 40)
     assert (40, 40, 40) in counts(map_of(behind))
     assert counts(map_of(behind + labelled_model("b", "2 0 0 0 0 0", visual(PLATE)))) == {(0, 0, 0): WIDTH * HEIGHT}
@@ -63,7 +63,7 @@ def test_transparent_objects_have_their_own_labels() -> None:
 
 
 @pytest.mark.parametrize("quality", ["fast", "gazebo"])
-def test_no_edge_is_blended(quality: str) -> None:
+def test_labels_are_not_blended_at_edges(quality: str) -> None:
     top = f"<scene><quality>{quality}</quality></scene>"
     models = labelled_model("a", "3 0.3 0 0.3 0.4 0.5", visual(cube()), 200) + labelled_model(
         "b", "4 -0.5 0 0 0 0", visual(cube()), 100
@@ -98,7 +98,7 @@ def test_no_two_numbers_have_one_colour() -> None:
 
 
 @pytest.mark.parametrize("kind", ["panoptic", "instance", "Panoptic"])
-def test_objects_of_one_label_are_counted_from_the_end_of_the_alphabet(kind: str) -> None:
+def test_objects_of_one_label_are_counted_in_reverse_alphabetical_order(kind: str) -> None:
     models = "".join(
         labelled_model(n, f"4 {y} 0 0 0 0", visual(PLATE), 12) for n, y in (("a", 1.5), ("b", 0), ("c", -1.5))
     )
@@ -110,7 +110,7 @@ def test_objects_of_one_label_are_counted_from_the_end_of_the_alphabet(kind: str
     assert set(counts(image)) == {(0, 0, 0), (1, 0, 12), (2, 0, 12), (3, 0, 12), (1, 0, 13)}
 
 
-def test_the_number_of_a_object_has_two_bytes() -> None:
+def test_the_number_of_an_object_has_two_bytes() -> None:
     hidden = "".join(labelled_model(f"n{i:03}", "-5 0 0 0 0 0", visual(PLATE), 3) for i in range(300))
     image = map_of(labelled_model("a", "2 0 0 0 0 0", visual(PLATE), 3) + hidden, PANOPTIC)
     assert (301 & 255, 301 >> 8, 3) in counts(image)
@@ -122,7 +122,7 @@ def test_a_model_of_several_links_is_one_object() -> None:
     assert set(counts(map_of(model, PANOPTIC))) == {(0, 0, 0), (1, 0, 12)}
 
 
-def test_two_labels_of_one_model_are_counted_each_for_itself_and_in_gazebo_not() -> None:
+def test_two_labels_of_one_model_are_counted_separately_unlike_in_gazebo() -> None:
     parts = visual(PLATE, "v", "0 1 0 0 0 0", label(7)) + visual(PLATE, "w", "0 -1 0 0 0 0", label(8))
     model = labelled_model("a", "3 0 0 0 0 0", parts)
     assert set(counts(map_of(model, PANOPTIC))) == {(0, 0, 0), (1, 0, 7), (1, 0, 8)}
@@ -146,7 +146,7 @@ def test_a_colour_is_that_of_one_object() -> None:
 # ---------------------------------------------------------------------- through a lens, and in time
 
 
-def test_through_a_lens_only_labels_are_seen_and_the_plate_shrinks() -> None:
+def test_through_a_lens_labels_are_not_blended_and_the_plate_is_smaller() -> None:
     lens = "<distortion><k1>-0.3</k1><k2>0.05</k2></distortion>"
     plate = labelled_model("a", "1.2 0 0 0 0 0", visual(PLATE), 40)
     straight, bent = counts(map_of(plate)), counts(map_of(plate, lens))
@@ -217,7 +217,7 @@ def test_its_topics_and_messages_are_gazebos() -> None:
         assert message.header.frame_id == "m::l::s"
 
 
-def test_without_a_topic_it_has_gazebos() -> None:
+def test_without_a_topic_gazebos_default_applies() -> None:
     sensor = '<sensor name="s" type="segmentation"><camera/></sensor>'
     with bare(sensor) as sim:
         assert "/world/w/model/m/link/l/sensor/s/segmentation/labels_map" in sim.topics()

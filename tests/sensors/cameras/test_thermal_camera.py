@@ -1,4 +1,4 @@
-"""Thermal cameras: temperatures of what is seen, of the air and of the sky, in steps of a resolution."""
+"""Thermal cameras: temperatures of objects, of the air and of the sky, in steps of a resolution."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ pytestmark = NEEDS_RENDERER
 
 WIDTH, HEIGHT, HFOV, FAR = 64, 48, 1.047, 100.0
 SPAN = 0.0065 * 2 * FAR * math.tan(HFOV / 2) * HEIGHT / WIDTH
-"""What the standard air's gradient makes over the height of the view [K]."""
+"""Temperature difference of the standard air over the height of the view [K]."""
 AIR = 288.15
 BOX = "<box><size>1 1 1</size></box>"
 
@@ -80,7 +80,7 @@ MIDDLE = (HEIGHT // 2, WIDTH // 2)
 
 
 def test_a_warm_box_shows_its_temperature_and_all_around_it_the_airs() -> None:
-    """The scene of gz-sensors' own test: a box of 310 K, 3 m ahead, in air of 296 K."""
+    """As in gz-sensors' own test, a box of 310 K is 3 m ahead in air of 296 K."""
     box = box_model("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>"))
     picture = first_image(world(box, top=atmosphere(296)))
     half = 0.5 / 2.5 * WIDTH / 2 / math.tan(HFOV / 2)
@@ -102,7 +102,7 @@ def test_objects_without_a_temperature_vary_a_little_with_their_colour(colour: s
     assert picture[0, 0] == 28815
 
 
-def test_the_span_of_that_is_the_gradient_over_the_height_of_the_view() -> None:
+def test_the_temperature_span_is_the_gradient_times_the_height_of_the_view() -> None:
     white, black = box_model("a", "3 0.7 0 0 0 0", paint("1 1 1")), box_model("b", "3 -0.7 0 0 0 0", paint("0 0 0"))
     row = first_image(world(white + black, top=atmosphere(300, 0.1)))[MIDDLE[0]]
     assert row.max() - row.min() == pytest.approx(0.1 / 0.0065 * SPAN * 100, abs=2)
@@ -115,7 +115,7 @@ def test_light_and_shadow_do_not_warm() -> None:
     assert set(np.unique(first_image(world(box)))) == set(np.unique(first_image(world(box, top=lamp))))
 
 
-def test_what_is_in_front_hides_what_is_behind() -> None:
+def test_an_object_in_front_hides_the_object_behind() -> None:
     hot = box_model("hot", "4 0 0 0 0 0", warm("<temperature>400</temperature>"))
     cold = box_model(
         "cold", "2 0 0 0 0 0", warm("<temperature>250</temperature>"), "<sphere><radius>0.1</radius></sphere>"
@@ -125,8 +125,8 @@ def test_what_is_in_front_hides_what_is_behind() -> None:
     assert (picture == 40000).sum() > (picture == 25000).sum() > 10
 
 
-def test_what_is_nearer_than_the_near_plane_is_seen_and_what_is_beyond_the_far_one_is_not() -> None:
-    """Same test as in gz-sensors: a box with its face halfway to the near plane, and one beyond the far plane."""
+def test_objects_before_the_near_plane_are_seen_and_objects_beyond_the_far_plane_are_not() -> None:
+    """As in gz-sensors' own test, one box has its face halfway to the near plane, and one is beyond the far plane."""
     clip = "<near>0.2</near><far>10</far>"
     hot = warm("<temperature>310</temperature>")
     assert first_image(world(box_model("box", "0.6 0 0 0 0 0", hot), clip=clip))[MIDDLE] == 31000
@@ -137,14 +137,14 @@ def test_what_is_nearer_than_the_near_plane_is_seen_and_what_is_beyond_the_far_o
 
 
 def test_eight_bits_come_in_steps_of_three_kelvin() -> None:
-    """The values of gz-sim's own test: 600 K is 200 steps, 800 K more than the last one, -10 K is 0."""
+    """As in gz-sim's own test, 600 K is step 200, 800 K is more than the last step, and -10 K is step 0."""
     temperatures = {600: 200, 800: 255, -10: 0, 310: 103}
     for kelvins, steps in temperatures.items():
         box = box_model("box", "3 0 0 0 0 0", warm(f"<temperature>{kelvins}</temperature>"))
         assert first_image(world(box, fmt="L8"))[MIDDLE] == steps
 
 
-def test_what_no_pixel_can_tell_is_the_largest_it_can() -> None:
+def test_a_temperature_above_the_largest_pixel_value_is_clipped() -> None:
     assert first_image(world(box_model("box", "3 0 0 0 0 0", warm("<temperature>900</temperature>"))))[MIDDLE] == 65535
 
 
@@ -171,7 +171,7 @@ def test_the_image_and_its_camera_info_are_in_the_optical_frame_where_one_is_nam
         assert [sub.latest.header.frame_id for sub in subs] == ["eye_optical", "eye_optical"]
 
 
-def test_a_format_without_temperatures_is_said() -> None:
+def test_a_format_without_temperatures_is_reported() -> None:
     with simkit.load(world(fmt="R8G8B8")) as sim:
         assert [d.code for d in sim.diagnostics] == ["SK-SENSOR-140"]
         sim.run(0.001)
@@ -193,8 +193,8 @@ def test_one_end_of_the_range_leaves_the_other_open() -> None:
     assert (picture[MIDDLE], picture[0, 0]) == (50000, 28815)
 
 
-def test_a_range_upside_down_and_no_resolution_are_warnings_and_the_defaults_count() -> None:
-    """gz-sim's own test of it."""
+def test_an_inverted_range_or_no_resolution_is_a_warning_and_uses_the_defaults() -> None:
+    """The values are those of gz-sim's own test."""
     hot = box_model("hot", "3 0 0 0 0 0", warm("<temperature>600</temperature>"))
     plugin = "<min_temp>999</min_temp><max_temp>-590</max_temp><resolution>0</resolution>"
     with simkit.load(world(hot, fmt="L8", plugin=plugin)) as sim:
@@ -203,7 +203,7 @@ def test_a_range_upside_down_and_no_resolution_are_warnings_and_the_defaults_cou
         assert pixels(sim.sensor("eye::l::s").latest)[MIDDLE] == 200
 
 
-def test_topics_are_gazebos_and_camera_info_is_beside() -> None:
+def test_topics_are_gazebos_and_camera_info_is_in_the_same_namespace() -> None:
     for kind in ("thermal_camera", "thermal"):
         with simkit.load(world(kind=kind)) as sim:
             base = "/world/w/model/eye/link/l/sensor/s"
@@ -262,8 +262,8 @@ def test_an_even_signature_is_between_the_coldest_and_the_hottest(tmp_path: Path
     assert shown(tmp_path, world(box))[MIDDLE] == 14000
 
 
-def test_a_signature_lies_on_the_surface_as_a_texture_does(tmp_path: Path) -> None:
-    """Seen from -x, a box's picture has its left at +y and its first row on top."""
+def test_a_signature_is_mapped_onto_the_surface_like_a_texture(tmp_path: Path) -> None:
+    """Seen from -x, the left edge of the image is at the box's +y side, and the first row is at the top."""
     red = np.zeros((64, 64))
     red[:32, :32], red[:32, 32:], red[32:, :32], red[32:, 32:] = 0, 51, 102, 255
     path = picture_of(tmp_path / "quarters.png", red)
@@ -275,7 +275,7 @@ def test_a_signature_lies_on_the_surface_as_a_texture_does(tmp_path: Path) -> No
 
 
 def test_a_signature_is_looked_up_exactly_where_a_ray_hits(tmp_path: Path) -> None:
-    """A slope in the picture is a slope on the face: 0 K more at its left edge, 100 K at its right one."""
+    """The image is a linear slope, so the face is 0 K warmer at its left edge and 100 K warmer at its right edge."""
     slope = np.tile(np.linspace(0, 255, 256).round(), (4, 1))
     path = picture_of(tmp_path / "slope.png", slope)
     shape = "<box><size>0.2 2 2</size></box>"
@@ -304,7 +304,7 @@ def test_a_signature_is_looked_up_exactly_where_a_ray_hits(tmp_path: Path) -> No
         "<capsule><radius>0.4</radius><length>0.6</length></capsule>",
     ],
 )
-def test_every_shape_wears_its_signature_upright(shape: str, tmp_path: Path) -> None:
+def test_every_shape_shows_its_signature_upright(shape: str, tmp_path: Path) -> None:
     red = np.zeros((32, 32))
     red[16:] = 255
     path = picture_of(tmp_path / "halves.png", red)
@@ -316,8 +316,8 @@ def test_every_shape_wears_its_signature_upright(shape: str, tmp_path: Path) -> 
     assert (found[0], found[-1]) == (20000, 40000)
 
 
-def test_a_plane_wears_its_signature_once_over_its_size(tmp_path: Path) -> None:
-    """Looked at from above, with the plane's x to the top of the picture."""
+def test_a_plane_shows_its_signature_once_over_its_size(tmp_path: Path) -> None:
+    """The camera looks from above, and the plane's x axis points to the top of the image."""
     red = np.zeros((32, 32))
     red[:, 16:] = 255  # at +x of the plane
     path = picture_of(tmp_path / "halves.png", red)
@@ -330,8 +330,8 @@ def test_a_plane_wears_its_signature_once_over_its_size(tmp_path: Path) -> None:
     assert set(column[(depth > 3.1) & (depth < 3.9)]) == {40000}
 
 
-def test_a_mesh_wears_its_signature_by_its_own_coordinates_and_one_without_them_has_the_mean(tmp_path: Path) -> None:
-    """A square that faces the camera; its coordinates show only the left half of the picture, turned about."""
+def test_a_mesh_has_its_signature_by_texture_coordinates_or_its_mean_without_them(tmp_path: Path) -> None:
+    """A square faces the camera; its texture coordinates show only the left half of the heat image, rotated."""
     red = np.zeros((32, 32))
     red[:, 16:], red[16:, :16] = 255, 51
     path = picture_of(tmp_path / "picture.png", red)
@@ -349,7 +349,7 @@ def test_a_mesh_wears_its_signature_by_its_own_coordinates_and_one_without_them_
     assert found["bare"] == (25500, 25500)
 
 
-def test_ends_that_are_not_given_are_the_airs(tmp_path: Path) -> None:
+def test_missing_ends_of_a_heat_signature_are_the_temperature_of_the_air(tmp_path: Path) -> None:
     red = picture_of(tmp_path / "red.png", np.full((8, 8), 255))
     top = atmosphere(300)
     for ends, expected in (("", 30000), ("<max_temp>310</max_temp>", 31000), ("<max_temp>290</max_temp>", 30000)):
@@ -377,7 +377,7 @@ def test_a_signature_that_moves_turns_with_its_body(tmp_path: Path) -> None:
 # ---------------------------------------------------------------------- Gazebo's quirks
 
 
-def test_gazebo_hands_temperatures_on_in_eight_bits_and_has_a_cold_sky() -> None:
+def test_gazebo_has_temperatures_of_eight_bits_and_a_cold_sky() -> None:
     quirks = "<simkit:gazebo_quirks>true</simkit:gazebo_quirks>"
     box = box_model("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>"))
     noise = '<noise type="gaussian"><stddev>0.01</stddev></noise>'

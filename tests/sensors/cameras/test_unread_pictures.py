@@ -48,7 +48,7 @@ def surrounding_models() -> str:
 
 
 def latest_bytes(script: Callable[[Any], None], is_read: bool) -> dict[str, bytes]:
-    """Return the newest image of each camera after a script, read at once or only then."""
+    """Return the newest image of each camera after a script; with `is_read`, all images have subscribers before."""
     with simkit.load(world(cameras(), others=surrounding_models())) as sim:
         subs = [
             sim.subscribe(topic)
@@ -118,7 +118,7 @@ SCRIPTS = (
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.__name__)
-def test_a_image_that_is_looked_at_later_is_the_same(script: Callable[[Any], None]) -> None:
+def test_an_image_that_is_read_later_is_the_same(script: Callable[[Any], None]) -> None:
     at_once, later = latest_bytes(script, True), latest_bytes(script, False)
     assert [name for name in at_once if at_once[name] != later[name]] == []
 

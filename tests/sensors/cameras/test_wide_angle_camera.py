@@ -1,4 +1,4 @@
-"""Cameras with wide lenses: each of SDF's lens models against its own formula, seams, what is black, CameraInfo."""
+"""Cameras with wide lenses: formulas of SDF's lens models, borders of faces, black pixels, and CameraInfo."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ def shown(sim: Any, *topics: str) -> list[Any]:
 
 
 def direction(angle: float, turn: float) -> np.ndarray:
-    """`angle` off the axis, `turn` from the picture's right downwards; x forward, y left, z up."""
+    """Return the direction at `angle` off the axis and at `turn` from the image's right edge downwards."""
     across = math.sin(angle)
     return np.array((math.cos(angle), -across * math.cos(turn), -across * math.sin(turn)))
 
 
 def target(i: int, angle: float, turn: float, colour: str) -> str:
-    """A square of 0.09 m, 1 m away, that faces the camera."""
+    """Return a square of 0.09 m at a distance of 1 m that faces the camera."""
     x, y, z = direction(angle, turn)
     pose = f"{x} {y} {z} 0 {-math.asin(z)} {math.atan2(y, x)}"
     return box(f"t{i}", pose, "0.001 0.09 0.09", colour=colour)
@@ -126,7 +126,7 @@ def test_behind_is_seen_too() -> None:
 
 
 def around(lens: str, hfov: float) -> Any:
-    """Something of one colour in every direction."""
+    """Load a camera inside six walls of one colour."""
     shape = "<geometry><box><size>0.1 12 12</size></box></geometry>"
     glow = "".join(f"<{n}>0 0 0 1</{n}>" for n in ("ambient", "diffuse", "specular"))
     glow += "<emissive>0.6 0.6 0.6 1</emissive>"
@@ -150,8 +150,8 @@ def test_no_border_of_two_faces_shows(size: str) -> None:
 
 
 @draws
-def test_a_bar_goes_on_across_a_border_of_two_faces() -> None:
-    """A bar 1 m above the axis, from in front to far left; at y = 2 it crosses from one face to the next."""
+def test_a_bar_is_continuous_across_the_border_of_two_faces() -> None:
+    """The bar is 1 m above the axis, from the front to the far left; at y = 2 it crosses the border of two faces."""
     bar = box("bar", "2 2 1 0 0 0", "0.01 5 0.12")
     with load(camera("<type>equidistant</type>", 3.1), bar) as sim:
         (image,) = shown(sim, "image")
@@ -181,7 +181,7 @@ def test_only_faces_that_are_seen_are_drawn() -> None:
     assert all(s.view.width * s.view.height < 0.8 * front.view.width * front.view.height for s in sides)
 
 
-def test_a_face_has_the_size_that_is_asked_for() -> None:
+def test_a_face_has_the_size_of_the_file() -> None:
     lens = LENSES["equidistant"].scaled_to(3.1)
     model = WideAngleModel(64, 64, 1, 1, 32, 32, 3.1, 0.1, 100, lens=lens, face_size=128)
     front = CubeMap(model).shots[0].view
@@ -203,7 +203,9 @@ def test_beyond_the_cutoff_angle_it_is_black() -> None:
     full = picture[radius < 0.48]
     assert full.min() == full.max() > 100
     rim = picture[(radius > 0.485) & (radius < 0.497)]
-    assert 0 < rim.min() < rim.max() < full.max()  # it fades within the last fiftieth, as in Gazebo
+    assert (
+        0 < rim.min() < rim.max() < full.max()
+    )  # the image fades within the last fiftieth of the radius, as in Gazebo
 
 
 @draws
@@ -244,7 +246,7 @@ def test_a_gnomonical_lens_is_a_pinhole() -> None:
     assert info.k[0] == pytest.approx(100 / math.tan(0.6), rel=1e-6)
 
 
-def test_a_lens_that_ros_cannot_describe_is_said() -> None:
+def test_a_lens_that_ros_cannot_describe_is_reported() -> None:
     with load(camera(f"<type>stereographic</type>{ALL_ROUND}", 5.8)) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-102"] == ["note"]
 
@@ -294,7 +296,7 @@ def test_bad_lenses_are_errors(lens: str, hfov: float, words: tuple[str, ...]) -
     assert all(word in found.message for word in words)
 
 
-def test_what_a_wide_lens_has_no_use_for_is_said() -> None:
+def test_elements_without_effect_on_a_wide_lens_are_reported() -> None:
     lens = "<type>equidistant</type><custom_function><c1>2</c1></custom_function><intrinsics><fx>9</fx></intrinsics>"
     more = "<distortion><k1>0.1</k1></distortion>"
     with load(camera(lens, 3.0, more=more)) as sim:

@@ -1,4 +1,4 @@
-"""The names that collisions of a URDF robot have in Gazebo."""
+"""Names that collisions of a URDF robot have in Gazebo."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def joint(name: str, parent: str, child: str, kind: str = "fixed") -> str:
 
 
 def robot(on: str, *names: str) -> str:
-    """base_footprint carries base_link, which carries a bumper, a lidar and (on a hinge) an arm with a tip."""
+    """Return a URDF robot with a contact sensor on the link `on`; the sensor names some collisions."""
     named = "".join(f"<collision>{n}</collision>" for n in names)
     return f"""<robot name="r">
       {link("base_footprint")}{link("base_link", "", "", "shell")}{link("bumper", "")}{link("lidar", "body")}
@@ -39,7 +39,7 @@ def robot(on: str, *names: str) -> str:
         ("base_link", "base_link_collision", "base_link::base_link_collision"),
         ("base_link", "base_link_collision_1", "base_link::base_link_collision_1"),
         ("base_link", "shell", "base_link::shell"),
-        # as Gazebo calls them: all on the link at the root, counted in the order of the joints' names
+        # Gazebo's names: all collisions belong to the root link and are counted in the order of the joints' names
         ("base_link", "base_footprint_fixed_joint_lump__base_link_collision", "base_link::base_link_collision"),
         ("base_link", "base_footprint_fixed_joint_lump__base_link_collision_1", "base_link::base_link_collision_1"),
         ("base_link", "base_footprint_fixed_joint_lump__shell_collision_2", "base_link::shell"),
@@ -67,14 +67,14 @@ def test_a_name_of_gazebos_finds_the_collision(on: str, name: str, means: str) -
     ("on", "name"),
     [("base_link", "arm_tube_collision"), ("arm", "base_link_collision"), ("tip", "tip_colision"), ("arm", "bumper")],
 )
-def test_what_a_hinge_parts_is_not_of_the_link(on: str, name: str) -> None:
+def test_collisions_behind_a_hinge_do_not_belong_to_the_link(on: str, name: str) -> None:
     with simkit.load(robot(on, name)) as sim:
         assert sim.sensor(f"r::{on}::s").collisions == ()
         assert "SK-SENSOR-040" in {d.code for d in sim.diagnostics}
 
 
-def test_a_ring_of_fixed_joints_is_gone_round_once() -> None:
-    """In SDF a model may close one."""
+def test_a_loop_of_fixed_joints_is_followed_once() -> None:
+    """The fixed joints of an SDF model may form a loop."""
     links = "".join(
         f'<link name="{n}"><collision name="{n}"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>'
         '<sensor name="s" type="contact"><contact><collision>nothing</collision></contact></sensor></link>'

@@ -1,4 +1,4 @@
-"""Contact sensors: forces against mechanics, reported contacts, and their times."""
+"""Contact sensors: forces compared with mechanics, reported contacts, and their times."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_at_rest_the_forces_are_the_weight(shape: str, step: float) -> None:
         assert len(touch.positions) == len(touch.normals) == len(touch.wrenches) == len(touch.depths)
 
 
-def test_what_pushes_it_is_answered_by_friction_up_to_the_cone() -> None:
+def test_friction_opposes_a_push_up_to_the_friction_cone() -> None:
     with simkit.load(world(GROUND, body("b", mass=2, sensor=contact(), friction=mu(0.6)))) as sim:
         sensor = sim.sensor("b::l::s")
         sim.run(0.5)
@@ -57,7 +57,7 @@ def test_what_pushes_it_is_answered_by_friction_up_to_the_cone() -> None:
         sliding = push(15, 0, 0)
         forces = [xyz(w.body_1_wrench.force) for c in sensor.latest.contacts for w in c.wrenches]
         assert all(np.hypot(x, y) <= 0.6 * z + 1e-6 for x, y, z in forces)
-        # what slides chatters, so the mean counts
+        # the force of a sliding contact oscillates, so the test uses the mean
         momentum = (np.array((15, 0, -2 * G)) + sliding.mean(axis=0)) * 0.2
         np.testing.assert_allclose(2 * (sim.link("b::l").linear_velocity - before), momentum, atol=0.1)
 
@@ -71,7 +71,7 @@ def test_without_friction_there_is_only_the_normal_force() -> None:
         np.testing.assert_allclose(total_force(sub.latest), (0, 0, 2 * G), atol=1e-6)
 
 
-def test_two_that_collide_feel_opposite_forces_and_change_each_others_momentum() -> None:
+def test_colliding_bodies_measure_opposite_forces_that_change_their_momentum() -> None:
     first = body("a", "0 0 0 0 0 0", sensor=contact())
     second = body("b", "0.3 0 0.02 0 0 0", "sphere", mass=3, sensor=contact())
     with simkit.load(world(first, second, top=NO_GRAVITY)) as sim:
@@ -87,13 +87,13 @@ def test_two_that_collide_feel_opposite_forces_and_change_each_others_momentum()
             wrench = touch.wrenches[0]
             np.testing.assert_array_equal(xyz(wrench.body_1_wrench.force), -xyz(wrench.body_2_wrench.force))
         assert xyz(felt["a"].messages[0].contacts[0].normals[0])[0] < -0.99
-        # a message has the force of the step that follows it; the two stay together, so the last step has not been yet
+        # a message contains the force of the step after it, so the force of the last step is not known yet
         on_a, on_b = on_a[:-1], on_b[:-1]
         np.testing.assert_allclose(on_b.sum(axis=0) * 0.001, 3 * sim.link("b::l").linear_velocity, atol=1e-9)
         np.testing.assert_allclose(on_a.sum(axis=0) * 0.001, sim.link("a::l").linear_velocity - (1, 0, 0), atol=1e-9)
 
 
-def test_the_torque_of_a_contact_is_what_stops_a_spinning_ball() -> None:
+def test_the_torque_of_a_contact_stops_a_spinning_ball() -> None:
     friction = mu(0.9) + "<torsional><coefficient>1</coefficient><patch_radius>0.05</patch_radius></torsional>"
     ball = body("b", shape="sphere", sensor=contact(), friction=friction)
     with simkit.load(world(GROUND, ball)) as sim:
@@ -114,7 +114,7 @@ def test_the_torque_of_a_contact_is_what_stops_a_spinning_ball() -> None:
 
 
 def test_a_collision_in_convex_pieces_is_one_collision() -> None:
-    """An L on its flat side: two pieces, one name."""
+    """The collision is an L on its flat side: two convex pieces with one name."""
     outline = ("0 0", "0.4 0", "0.4 0.1", "0.1 0.1", "0.1 0.4", "0 0.4")
     shape = "<polyline>" + "".join(f"<point>{p}</point>" for p in outline) + "<height>0.1</height></polyline>"
     part = body("b", "0 0 0.0 0 0 0", shape, sensor=contact())
@@ -144,7 +144,7 @@ def test_a_pair_is_published_once_in_the_order_of_the_sensors_collisions() -> No
         assert sim.sensor("b::l::s").collisions == ("b::l::right", "b::l::left")
 
 
-def test_a_link_of_a_nested_model_is_known_by_its_whole_name() -> None:
+def test_a_link_of_a_nested_model_is_found_by_its_scoped_name() -> None:
     inner = body("inner", "0 0 0 0 0 0", sensor=contact())
     outer = f'<model name="outer"><pose>0 0 0.1 0 0 0</pose>{inner}</model>'
     with simkit.load(world(GROUND, outer)) as sim:
@@ -155,7 +155,7 @@ def test_a_link_of_a_nested_model_is_known_by_its_whole_name() -> None:
 
 @pytest.mark.parametrize("held", ["static", "joint"])
 def test_a_static_link_keeps_detecting_resting_bodies(held: str) -> None:
-    """Boxes at rest would fall asleep, and the contacts of a sleeper are not there."""
+    """Boxes at rest would fall asleep, and the engine computes no contacts of sleeping bodies."""
     fixed = '<joint name="j" type="fixed"><parent>world</parent><child>l</child></joint>'
     stand = table(contact(rate=10), "<static>true</static>" if held == "static" else fixed)
     boxes = [body(f"b{x}", f"{x * 0.5} 0 0.7 0 0 0") for x in (0, 1)]
@@ -165,19 +165,19 @@ def test_a_static_link_keeps_detecting_resting_bodies(held: str) -> None:
         assert len(sub.messages) == 41
         np.testing.assert_allclose(total_force(sub.latest), (0, 0, -2 * G), atol=1e-3)
         assert names(sub.latest) == [("table::l::c", "b0::l::c"), ("table::l::c", "b1::l::c")]
-        if held == "static":  # it becomes a body that follows its pose
+        if held == "static":  # the static table becomes a kinematic body
             sim.model("table").set_pose(simkit.Pose((0, 0, 0.45)))
             sim.run(1.0)
             np.testing.assert_allclose(total_force(sub.latest), (0, 0, -2 * G), atol=1e-3)
 
 
-def test_what_a_sensor_does_not_watch_may_sleep() -> None:
+def test_bodies_without_a_contact_sensor_may_sleep() -> None:
     with simkit.load(world(GROUND, BOX, body("other", "2 0 0.1 0 0 0"))) as sim:
         sim.run(4.0)
         assert (sim.mj_data.tree_asleep >= 0).tolist() == [False, True]
 
 
-def test_planes_and_heightmaps_detect_and_are_detected(tmp_path: Any) -> None:
+def test_planes_and_heightmaps_have_contacts(tmp_path: Any) -> None:
     from PIL import Image
 
     Image.fromarray(np.full((17, 17), 255, np.uint8)).save(tmp_path / "flat.png")
@@ -199,7 +199,7 @@ def test_planes_and_heightmaps_detect_and_are_detected(tmp_path: Any) -> None:
 # ---------------------------------------------------------------------- when
 
 
-def test_there_is_no_message_while_nothing_touches_but_a_reading() -> None:
+def test_without_contacts_there_is_a_reading_but_no_message() -> None:
     with simkit.load(world(GROUND, body("b", "0 0 0.2 0 0 0", sensor=contact()))) as sim:
         sub = sim.subscribe(topic("b"))
         sim.run(0.1)
@@ -219,14 +219,14 @@ def test_there_is_no_message_while_nothing_touches_but_a_reading() -> None:
 
 
 @pytest.mark.parametrize(("quirks", "count"), [("", 11), ("<gazebo_quirks>true</gazebo_quirks>", 1000)])
-def test_the_rate_of_the_file_counts_unless_gazebos_ways_are_asked_for(quirks: str, count: int) -> None:
+def test_the_rate_of_the_file_applies_without_gazebos_quirks(quirks: str, count: int) -> None:
     with simkit.load(world(GROUND, body("b", sensor=contact(rate=10)), top=quirks)) as sim:
         sub = sim.subscribe(topic("b"))
         sim.run(1.0)
         assert len(sub.messages) == count
 
 
-def test_who_listens_changes_nothing() -> None:
+def test_subscribers_change_no_message() -> None:
     def run(*listens: str) -> list[bytes]:
         heap = [body(n, f"{x} 0 {z} 0 0.3 0", s, sensor=contact(rate=100)) for n, x, z, s in
                 (("a", 0, 0.2, "box"), ("b", 0.05, 0.45, "cylinder"), ("c", 0.02, 0.7, "capsule"))]  # fmt: skip
@@ -256,7 +256,7 @@ def test_truth_is_the_same_message() -> None:
 @pytest.mark.parametrize(
     ("more", "name"), [("<topic>touch</topic>", "/touch"), ("<topic>__default_topic__</topic>", topic("b"))]
 )
-def test_its_topic_stands_in_its_block(more: str, name: str) -> None:
+def test_the_topic_is_in_the_sensors_block(more: str, name: str) -> None:
     block = contact().replace("</contact>", more + "</contact>")
     with simkit.load(world(GROUND, body("b", sensor=block))) as sim:
         assert sim.sensor("b::l::s").topic == name
@@ -283,7 +283,7 @@ def test_reset_and_restore_repeat_the_readings() -> None:
         assert record(sim) == first
 
 
-def test_models_come_and_go_while_they_touch() -> None:
+def test_models_in_contact_can_be_spawned_and_removed() -> None:
     with simkit.load(world(GROUND, BOX)) as sim:
         sub = sim.subscribe(topic("b"), keep=1)
         sim.run(0.5)
@@ -322,7 +322,7 @@ def codes(source: str) -> list[tuple[str, str, str]]:
         return [(d.code, d.severity, d.hint) for d in sim.diagnostics if d.severity != "note"]
 
 
-def test_a_collision_that_is_not_there_is_told_with_the_closest() -> None:
+def test_a_missing_collision_is_reported_with_the_closest_name() -> None:
     wrong = body("b", sensor=contact("shel foot"))
     own = wrong.replace('name="c"', 'name="shell"')
     assert codes(world(GROUND, own)) == [
@@ -335,7 +335,7 @@ def test_a_collision_that_is_not_there_is_told_with_the_closest() -> None:
     assert "'b::k'" in hint
 
 
-def test_one_that_names_no_collision_feels_nothing_as_in_gazebo() -> None:
+def test_a_contact_sensor_without_collisions_detects_nothing_as_in_gazebo() -> None:
     assert [c for c, *_ in codes(world(GROUND, body("b", sensor=contact(""))))] == ["SK-SENSOR-041"]
     with simkit.load(world(GROUND, body("b", sensor=contact("")))) as sim:
         sub = sim.subscribe(topic("b"))
@@ -351,7 +351,7 @@ def test_old_files_name_the_collision_in_an_attribute() -> None:
 
 
 @pytest.mark.parametrize("name", ["a b", "größe", "a/b#0", "c.1", "100%"])
-def test_odd_names_are_names(name: str) -> None:
+def test_unusual_names_are_accepted(name: str) -> None:
     block = contact("").replace("<contact>", f"<contact><collision>{name}</collision>")
     odd = body("b", sensor=block).replace('name="c"', f'name="{name}"')
     with simkit.load(world(GROUND, odd)) as sim:

@@ -32,7 +32,7 @@ def world(inside: str, kind: str = "revolute", axis: str = "0 0 1", more: str = 
 
 
 def run(text: str, velocity: Any, seconds: float = 1.0, start: Any = None) -> tuple[list[Any], Any]:
-    """Messages of a joint that is set going, and the last message without noise."""
+    """Return the messages of a joint that starts with `velocity`, and the last message without noise."""
     with simkit.load(text) as sim:
         sub = sim.subscribe("/e")
         if start is not None:
@@ -63,8 +63,8 @@ def test_the_error_of_counting_is_uniform_within_half_a_count() -> None:
     assert errors.mean() == pytest.approx(0, abs=step / 50)
 
 
-def test_a_velocity_of_counts_is_theirs_over_the_window() -> None:
-    """At 100 Hz a count of 0.01 rad is 1 rad/s; over ten samples it is a tenth of that."""
+def test_a_velocity_from_counts_is_their_difference_over_the_window() -> None:
+    """At 100 Hz, a count of 0.01 rad is 1 rad/s; with a window of ten samples, a count is 0.1 rad/s."""
     for window, unit in ((0.0, 1.0), (0.1, 0.1)):
         block = f"<resolution>0.01</resolution><velocity><window>{window}</window></velocity>"
         messages, _ = run(world(encoder(block)), 0.73)
@@ -77,7 +77,7 @@ def test_a_velocity_of_counts_is_theirs_over_the_window() -> None:
         steps = told[first:] / unit
         np.testing.assert_allclose(steps, np.round(steps), atol=1e-6)
         assert told[0] == 0.0
-        # before the window is full it is told from the first count
+        # before the window is full, the velocity is computed from the first count
         assert told[1] == pytest.approx(counts[1] / 0.009)
 
 
@@ -103,7 +103,7 @@ def test_noise_comes_before_the_counts_and_shows_in_their_differences() -> None:
     np.testing.assert_allclose(told[1:], np.diff(counts) * 0.01 / 0.001, atol=1e-6)
 
 
-def test_an_incremental_encoder_counts_from_where_it_stood_when_it_was_loaded() -> None:
+def test_an_incremental_encoder_counts_from_the_position_at_load() -> None:
     block = "<absolute>false</absolute><resolution>0.01</resolution>"
     initial = world(encoder(block)).replace(
         "</model>",
@@ -165,8 +165,8 @@ def test_on_a_planar_joint_of_a_urdf_robot_it_counts_lengths_and_the_angle() -> 
 
 
 @pytest.mark.parametrize("extra", ["", "<simkit:latency>0.05</simkit:latency>"])
-def test_a_reading_made_late_is_the_one_made_at_once(extra: str) -> None:
-    """Whoever listens, whenever, and however long a reading is on its way."""
+def test_a_reading_that_is_computed_later_is_the_same(extra: str) -> None:
+    """The reader, the time of reading and the latency do not change a reading."""
     block = f"<resolution>0.01</resolution><position>{noise(0.02)}</position><velocity><window>0.03</window></velocity>"
     text = world(encoder(block, extra=extra))
     with simkit.load(text) as heard, simkit.load(text) as unheard:
@@ -198,11 +198,11 @@ def test_a_reading_made_late_is_the_one_made_at_once(extra: str) -> None:
         (world(encoder(), "fixed", ""), "SK-SENSOR-051"),
     ],
 )
-def test_what_cannot_be_counted_is_an_error(text: str, code: str) -> None:
+def test_a_joint_that_an_encoder_cannot_measure_is_an_error(text: str, code: str) -> None:
     with pytest.raises(simkit.LoadError, match=code):
         simkit.load(text)
 
 
-def test_an_element_that_is_no_encoder_s_is_said_to_be_unused() -> None:
+def test_an_unknown_element_of_an_encoder_is_reported_as_unused() -> None:
     with simkit.load(world(encoder("<resolutoin>0.1</resolutoin>"))) as sim:
         assert any(d.code == "SK-PARAM-003" and "resolutoin" in d.message for d in sim.diagnostics)

@@ -1,4 +1,4 @@
-"""Force-torque sensors: what passes through joints of every kind, its frames, its direction, its noise."""
+"""Force-torque sensors: wrenches through joints of every kind, their frames, direction and noise."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def world(*parts: str, model: str = "", top: str = "", others: str = "") -> str:
 
 
 def read(text: str, steps: int = 1, name: str = "m::j::ft") -> tuple[Any, Any]:
-    """Force and torque after some steps, without noise."""
+    """Return the force and torque after some steps, without noise."""
     with simkit.load(text) as sim:
         sim.step(steps)
         return wrench_of(sim.sensor(name).truth)
@@ -78,29 +78,29 @@ def test_a_hanging_mass_pulls_with_its_weight_and_the_default_direction_is_to_th
 
 
 def test_a_cantilever_holds_mass_times_arm_times_gravity() -> None:
-    """2 kg at 0.5 m along x: the wall lifts with 19.6 N and turns against 9.8 N m."""
+    """The mass is 2 kg at 0.5 m along x: the wall's force is 19.6 N upwards, and its torque is 9.8 N m."""
     text = world(link("beam", mass=2, com="0.5 0 0"), joint("fixed", "world", "beam", ft()))
     force, torque = read(text)
     np.testing.assert_allclose(force, (0, 0, 2 * G), atol=1e-9)
     np.testing.assert_allclose(torque, (0, -2 * G * 0.5, 0), atol=1e-9)
 
 
-def test_the_torque_is_about_the_sensor_wherever_it_is_and_however_it_is_turned() -> None:
-    """The sensor stands at 0.3 m on the beam of before, and is turned every way."""
+def test_the_torque_is_about_the_sensor_at_any_position_and_rotation() -> None:
+    """The sensor is at 0.3 m on the beam of the previous test, rotated about all axes."""
     pose = "0.3 0 0.1 0.4 -0.7 1.1"
     text = world(link("beam", mass=2, com="0.5 0 0"), joint("fixed", "world", "beam", ft("sensor", pose=pose)))
     force, torque = read(text)
     turn = Pose.from_rpy(0, 0, 0, 0.4, -0.7, 1.1).matrix
     np.testing.assert_allclose(force, (0, 0, 2 * G) @ turn, atol=1e-9)
     np.testing.assert_allclose(torque, (0, -2 * G * 0.2, 0) @ turn, atol=1e-9)
-    # in the child's axes it is the same torque, about the same point
+    # in the child's axes, the vector is the same torque about the same point
     text = text.replace("<frame>sensor", "<frame>child")
     np.testing.assert_allclose(read(text)[1], (0, -2 * G * 0.2, 0), atol=1e-9)
 
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_with_gazebos_quirks_the_lever_is_in_the_joint_s_axes(turned: bool) -> None:
-    """T_s = R^T T_j - p x F_s: wrong as soon as the sensor is turned and off the joint's origin."""
+    """T_s = R^T T_j - p x F_s is wrong if the sensor is rotated and is not at the joint's origin."""
     angles = (0.4, -0.7, 1.1) if turned else (0.0, 0.0, 0.0)
     pose = "0.3 0 0.1 " + " ".join(map(str, angles))
     quirks = '<simkit:gazebo_quirks xmlns:simkit="x">true</simkit:gazebo_quirks>'
@@ -137,7 +137,7 @@ def test_tilted_frames_see_the_same_wrench_in_their_own_axes(frame: str, directi
 
 
 def test_the_parents_axes_turn_with_the_parent() -> None:
-    """The whole model swings by a right angle, so in the parent's axes the weight points along -y."""
+    """The whole model rotates by a right angle, so the weight points along -y in the parent's axes."""
     parent = link("arm") + joint("revolute", "world", "arm", axis="1 0 0", name="hinge")
     text = world(parent, link("load", mass=2), joint("fixed", "arm", "load", ft("parent")))
     with simkit.load(text) as sim:
@@ -151,7 +151,7 @@ def test_the_parents_axes_turn_with_the_parent() -> None:
 
 
 def test_a_spinning_mass_is_held_on_its_circle() -> None:
-    """m ω² r inwards: the child's x axis points outwards."""
+    """The force is m ω² r inwards, and the child's x axis points outwards."""
     text = world(link("arm", mass=2, com="0.5 0 0"), joint("revolute", "world", "arm", ft(), axis="0 0 1"))
     with simkit.load(text) as sim:
         sim.joint("m::j").set_velocity(3.0)
@@ -161,8 +161,8 @@ def test_a_spinning_mass_is_held_on_its_circle() -> None:
     np.testing.assert_allclose(torque, (0, -2 * G * 0.5, 0), atol=1e-6)
 
 
-def test_a_motor_s_effort_along_its_own_axis_is_part_of_what_passes() -> None:
-    """6 N push 2 kg along a free rail at 3 m/s²: the sensor feels the push as well as the weight, while it lasts."""
+def test_the_wrench_includes_a_motors_effort_along_its_axis() -> None:
+    """A force of 6 N accelerates 2 kg along a free rail at 3 m/s². The sensor measures this force and the weight."""
     text = world(link("cart", mass=2), joint("prismatic", "world", "cart", ft(), axis="1 0 0"))
     with simkit.load(text) as sim:
         sim.step()
@@ -182,7 +182,7 @@ def test_a_motor_s_effort_along_its_own_axis_is_part_of_what_passes() -> None:
 
 
 def test_an_arm_that_a_motor_holds_is_not_in_free_fall() -> None:
-    """A controller that sets an effort at every step holds the arm level: the torque is that of the weight."""
+    """A controller sets an effort at every step, so that the arm stays level: the torque balances the weight."""
 
     class Hold(simkit.WorldPlugin):
         def load(self, parent: Any, params: Any) -> None:
@@ -200,8 +200,8 @@ def test_an_arm_that_a_motor_holds_is_not_in_free_fall() -> None:
         np.testing.assert_allclose(torque, (0, -2 * G * 0.5, 0), atol=1e-6)
 
 
-def test_a_base_that_accelerates_pushes_its_load_along() -> None:
-    """A servo pulls the cart; between cart and load passes exactly what the load's acceleration needs."""
+def test_the_joint_transmits_the_force_that_accelerates_its_load() -> None:
+    """A servo pulls the cart; the joint transmits exactly the force that the load's acceleration needs."""
     cart = link("cart", mass=3) + joint("prismatic", "world", "cart", axis="1 0 0", name="rail")
     drive = (
         '<plugin filename="gz-sim-joint-controller-system" name="gz::sim::systems::JointController">'
@@ -233,8 +233,8 @@ HELD = {
 
 @pytest.mark.parametrize("kind", HELD)
 @pytest.mark.parametrize("reverse", [False, True])
-def test_every_kind_of_joint_passes_what_the_motion_needs(kind: str, reverse: bool) -> None:
-    """Newton and Euler of the load that hangs on the joint: the sum of forces on it is its change of momentum."""
+def test_every_kind_of_joint_transmits_the_wrench_of_the_motion(kind: str, reverse: bool) -> None:
+    """By Newton's and Euler's equations, the sum of all forces on the load is its change of momentum."""
     axis, more, _ = HELD[kind]
     ends = ("load", "base") if reverse else ("base", "load")
     base = link("base", "0 0 2 0 0 0") + joint("fixed", "world", "base", name="fix")
@@ -250,7 +250,7 @@ def test_every_kind_of_joint_passes_what_the_motion_needs(kind: str, reverse: bo
         force, torque = place.rotate(force), place.rotate(torque)
         if reverse:
             force, torque = -force, -torque
-        # the load by itself: acceleration of its centre of mass, rates and their change, from the engine
+        # free body of the load: the engine gives the acceleration of its centre of mass, its rates and their change
         model, data = sim.mj_model, sim.engine.physics.fresh_accelerations()
         body = sim.engine.names.link("m::load").body
         com = data.xipos[body]
@@ -266,7 +266,7 @@ def test_every_kind_of_joint_passes_what_the_motion_needs(kind: str, reverse: bo
 
 
 def test_a_joint_that_closes_a_loop_has_its_own_wrench() -> None:
-    """A beam on two legs, one by the tree and one by the loop: each of the two joints lifts half of it."""
+    """A beam is on two legs, one in the kinematic tree and one in the loop: each joint carries half of its weight."""
     legs = "".join(
         link(n, f"0 {y} 0 0 0 0") + joint("fixed", "world", n, name=f"f{n}") for n, y in (("a", -1), ("b", 1))
     )
@@ -283,7 +283,7 @@ def test_a_joint_that_closes_a_loop_has_its_own_wrench() -> None:
             np.testing.assert_allclose(torque, 0, atol=0.02)
 
 
-def test_links_without_mass_pass_on_what_they_carry() -> None:
+def test_links_without_mass_transmit_the_weight_of_their_children() -> None:
     empty = '<link name="frame"><inertial><mass>0</mass></inertial></link>'
     text = world(
         link("base"),
@@ -330,14 +330,14 @@ def test_a_sensor_on_a_static_models_joint_reads_zero_and_warns() -> None:
         np.testing.assert_allclose(wrench_of(sim.sensor("m::j::ft").latest), 0)
 
 
-def test_on_a_joint_of_the_world_itself_it_is_left_out_and_said() -> None:
+def test_on_a_joint_of_the_world_itself_a_sensor_is_left_out_and_reported() -> None:
     tie = joint("fixed", "world", "m::a", ft())
     with simkit.load(world(link("a"), others=tie)) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-053"] == ["warning"]
         assert not sim.contents.sensors
 
 
-def test_on_a_link_it_is_left_out_and_said() -> None:
+def test_on_a_link_the_sensor_is_left_out_and_reported() -> None:
     with simkit.load(world(link("a", more=ft()))) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-024"] == ["warning"]
         assert not sim.contents.sensors
@@ -354,8 +354,8 @@ def loaded_scale(frame: str = "child") -> str:
     return world(plate, others=weight)
 
 
-def test_a_load_at_rest_weighs_as_much_after_seconds_as_at_once() -> None:
-    """The plate never moves, and what lies on it would sleep: it must not, or it would weigh nothing."""
+def test_the_weight_of_a_load_at_rest_is_constant() -> None:
+    """The plate never moves, and a load on it would fall asleep; a sleeping load would have no contact forces."""
     with simkit.load(loaded_scale()) as sim:
         for seconds in (1.0, 3.0):
             sim.run(seconds)
@@ -364,8 +364,8 @@ def test_a_load_at_rest_weighs_as_much_after_seconds_as_at_once() -> None:
             np.testing.assert_allclose(torque, (0, -10 * G * 0.05, 0), atol=1e-3)
 
 
-def test_two_nested_models_that_no_joint_ties_touch_each_other() -> None:
-    """A scale and its weight in one model, as in Gazebo's own world for the sensor."""
+def test_two_nested_models_without_a_joint_touch_each_other() -> None:
+    """One model contains a scale and its weight, as in Gazebo's own world for this sensor."""
     scale = f'<model name="scale">{link("plate", more=SHAPE)}{joint("fixed", "world", "plate", ft())}</model>'
     weight = f'<model name="weight"><pose>0 0 0.1 0 0 0</pose>{link("l", mass=10, more=SHAPE)}</model>'
     force, _ = read(world(scale, weight), steps=300, name="m::scale::j::ft")
@@ -398,7 +398,7 @@ def test_topic_rate_and_noise_per_channel() -> None:
         np.testing.assert_allclose(truth, ((0, 0, 2 * G), (0, -G, 0)), atol=1e-9)
 
 
-def test_a_reading_made_later_is_the_one_made_at_once() -> None:
+def test_a_reading_that_is_computed_later_is_the_same() -> None:
     text = world(link("arm", mass=2, com="0.5 0 0"), joint("revolute", "world", "arm", ft(rate=50), axis="0 1 0"))
     with simkit.load(text) as heard, simkit.load(text) as unheard:
         sub = heard.subscribe("/world/w/model/m/joint/j/sensor/ft/forcetorque")
@@ -412,7 +412,7 @@ def test_a_reading_made_later_is_the_one_made_at_once() -> None:
 @pytest.mark.parametrize(
     "wrong", ["<frame>joint</frame>", "<measure_direction>up</measure_direction>", "<frame>Child</frame>"]
 )
-def test_a_value_that_is_not_allowed_is_an_error(wrong: str) -> None:
+def test_an_invalid_value_is_an_error(wrong: str) -> None:
     tag = f'<sensor name="ft" type="force_torque"><force_torque>{wrong}</force_torque></sensor>'
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
         simkit.load(world(link("a"), joint("fixed", "world", "a", tag)))

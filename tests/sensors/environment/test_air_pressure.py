@@ -1,4 +1,4 @@
-"""The barometer: heights, a world's own air, Gazebo's quirks, and input that is none."""
+"""Barometer: heights, a world's own atmosphere, Gazebo's quirks, and invalid input."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def pascal(text: str) -> float:
 
 
 def standard(height: float) -> float:
-    """Pressure [Pa] of the troposphere."""
+    """Return the pressure of the standard troposphere at a height [Pa]."""
     geopotential = 6356766.0 * height / (6356766.0 + height)
     return float(101325.0 * (1 - 0.0065 * geopotential / 288.15) ** (9.80665 * 28.9644 / (8314.32 * 0.0065)))
 
@@ -59,7 +59,7 @@ def test_a_world_has_its_own_atmosphere() -> None:
     assert pascal(barometer(top=air, z=500)) == pytest.approx(610 * math.exp(-500 / (1 + 500 / 6356766) / scale), 1e-9)
 
 
-def test_with_quirks_gazebo_knows_neither_reference_nor_elevation_nor_the_worlds_air() -> None:
+def test_with_gazebos_quirks_reference_elevation_and_atmosphere_are_ignored() -> None:
     air = "<atmosphere><pressure>610</pressure></atmosphere>"
     text = barometer("<reference_altitude>1000</reference_altitude>", top=QUIRKS + ZURICH + air, z=3)
     assert pascal(text) == pytest.approx(101288.9657925308, rel=1e-9)
@@ -89,7 +89,7 @@ def test_the_pressure_follows_the_height_of_a_falling_sensor() -> None:
 
 
 @pytest.mark.parametrize(("z", "said"), [(20e3, 0), (45e3, 0), (-10e3, 1), (1e6, 1), (1e14, 1), (-1e14, 1)])
-def test_far_up_and_far_down_it_is_a_number_and_said(z: float, said: int) -> None:
+def test_far_above_and_below_ground_the_pressure_is_finite_and_reported(z: float, said: int) -> None:
     with simkit.load(barometer(z=z)) as sim:
         sim.step(1)
         value = sim.sensor("m::l::s").latest.fluid_pressure
@@ -98,12 +98,12 @@ def test_far_up_and_far_down_it_is_a_number_and_said(z: float, said: int) -> Non
         assert len([d for d in sim.diagnostics if d.code == "SK-SENSOR-061"]) == said
 
 
-def test_air_at_absolute_zero_is_an_error_that_is_said_once() -> None:
+def test_air_at_absolute_zero_is_an_error_that_is_reported_once() -> None:
     two = sensor("air_pressure", "<air_pressure/>") + sensor("air_speed", "<air_speed/>", name="t")
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(world(two, top="<atmosphere><temperature>0</temperature></atmosphere>"))
     assert [d.code for d in caught.value.diagnostics] == ["SK-SENSOR-060"]
 
 
-def test_enormous_noise_is_a_number() -> None:
+def test_very_large_noise_gives_finite_readings() -> None:
     assert math.isfinite(pascal(barometer(f"<pressure>{noise(1e100)}</pressure>")))

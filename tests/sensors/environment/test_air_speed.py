@@ -39,7 +39,7 @@ def test_it_is_half_rho_v_squared_with_the_sign_of_the_speed(speed: float) -> No
 
 
 def test_it_looks_along_its_own_x() -> None:
-    """Yawed by 0.4 and moving along the world's y: v·sin(0.4)."""
+    """The sensor has a yaw of 0.4 rad and moves along the world's y axis: the air speed is v·sin(0.4)."""
     with read(pitot(mounted="0 0 0 0 0 0.4", top=CALM), (0.0, 30.0, 0.0)) as sim:
         speed = 30 * math.sin(0.4)
         assert sim.sensor("m::l::s").latest.diff_pressure == pytest.approx(0.5 * DENSITY * speed**2, rel=1e-6)

@@ -1,4 +1,4 @@
-"""The altimeter: what falls, what turns, and what its reference outlives."""
+"""Altimeter: falling and rotating models, and a reference that a reset does not change."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def altimeter(block: str = "", pose: str = "0 0 0 0 0 0", rate: float = 100) -> 
     return sensor("altimeter", f"<altimeter>{block}</altimeter>", extra=TOPIC, pose=pose, rate=rate)
 
 
-def test_a_falling_body_reads_what_it_fell_and_how_fast() -> None:
+def test_a_falling_body_reads_its_height_and_velocity() -> None:
     with simkit.load(world(altimeter(pose="0.1 0 0.25 0 0 0"), **FALLING)) as sim:
         sub = sim.subscribe("/a")
         sim.run(0.5)
@@ -30,8 +30,8 @@ def test_a_falling_body_reads_what_it_fell_and_how_fast() -> None:
             assert message.vertical_reference == pytest.approx(30.25, abs=1e-12)
 
 
-def test_on_a_turning_arm_it_has_the_velocity_of_its_own_place() -> None:
-    """0.5 m out on an arm that turns about y at 2 rad/s: its height is -0.5·sin, its rate -0.5·2·cos."""
+def test_on_a_turning_arm_the_altimeter_has_the_velocity_at_its_position() -> None:
+    """The sensor is 0.5 m out on an arm that turns about y at 2 rad/s: height -0.5·sin, rate -0.5·2·cos."""
     with simkit.load(f"""<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="m">
       <link name="base"><inertial><mass>1e6</mass><inertia><ixx>1e6</ixx><iyy>1e6</iyy><izz>1e6</izz></inertia>
       </inertial></link><link name="arm">{altimeter(pose="0.5 0 0 0 0 0", rate=0)}</link>
@@ -63,7 +63,7 @@ def test_a_pose_that_is_set_a_reset_and_a_restore_leave_the_reference_alone() ->
         assert eye.latest.vertical_position == pytest.approx(12.0, abs=1e-2)
 
 
-def test_one_that_is_spawned_measures_from_where_it_was_spawned() -> None:
+def test_a_spawned_altimeter_measures_from_its_spawn_height() -> None:
     model = f'<sdf version="1.9"><model name="d"><static>true</static><link name="l">{altimeter()}</link></model></sdf>'
     with simkit.load('<sdf version="1.9"><world name="w"/></sdf>') as sim:
         sim.step(10)

@@ -1,4 +1,4 @@
-"""The U.S. Standard Atmosphere of 1976, against its own table."""
+"""The U.S. Standard Atmosphere of 1976, compared with its published table."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ def test_the_standard_air_is_that_of_the_table(row: tuple[float, ...]) -> None:
     assert air.density == pytest.approx(density, rel=6e-5)
 
 
-def test_at_three_metres_it_is_gazebos_number() -> None:
+def test_at_three_metres_the_pressure_agrees_with_gazebo() -> None:
     assert air_column(Atmosphere()).at(3.0).pressure == pytest.approx(101288.9657925308, rel=1e-12)
     assert air_column(Atmosphere()).at(0.0).pressure == 101325.0
 
 
 @pytest.mark.parametrize("gradient", [-0.0065, 0.0, 0.004, 1e-13])
 def test_pressure_falls_by_the_weight_of_the_air(gradient: float) -> None:
-    """dp/dh = -ρ·g, with g as it is at that height: the law the column is made from, by differences."""
+    """The hydrostatic law dp/dh = -ρ·g, with g at that height, holds for finite differences of the column."""
     column = AirColumn(300.0, gradient, 9e4)
     for height in (-300.0, 10.0, 5000.0, 15e3, 40e3):
         slope = (column.at(height + 0.5).pressure - column.at(height - 0.5).pressure) / 1.0
@@ -59,7 +59,7 @@ def test_a_world_has_its_own_sea_level() -> None:
 
 @pytest.mark.parametrize("sea_level", [(288.15, -0.0065), (1.0, -1.0), (288.15, -1e9), (288.15, 1e9), (0.0, 0.0)])
 @pytest.mark.parametrize("height", [-1e15, -1e5, -1e4, 2e4, 4.5e4, 1e6, 1e15])
-def test_whatever_the_height_and_the_rate_the_air_is_a_number(sea_level: tuple[float, float], height: float) -> None:
+def test_the_air_is_finite_at_any_height_and_rate(sea_level: tuple[float, float], height: float) -> None:
     air = AirColumn(*sea_level, 101325.0).at(height)
     assert all(math.isfinite(v) and v >= 0 for v in air)
     assert air.temperature > 0.99

@@ -1,4 +1,4 @@
-"""From the flat world to latitude, longitude and height."""
+"""Conversion of positions in the flat world to latitude, longitude and height."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EGG = Ellipsoid(6.3e6, 6.4e6)
 
 
 @pytest.mark.parametrize("planet", [WGS84, MOON, EGG])
-def test_there_and_back_is_the_same_place(planet: Ellipsoid) -> None:
+def test_conversion_there_and_back_gives_the_same_position(planet: Ellipsoid) -> None:
     random = np.random.default_rng(0)
     for _ in range(500):
         latitude, longitude = random.uniform(-math.pi / 2, math.pi / 2), random.uniform(-math.pi, math.pi)
@@ -28,7 +28,7 @@ def test_there_and_back_is_the_same_place(planet: Ellipsoid) -> None:
 
 
 def test_known_places() -> None:
-    """The axes of WGS84, and 45 degrees north, whose coordinates are in any table of the ellipsoid."""
+    """The axes of WGS84, and 45 degrees north; tables of the ellipsoid contain these coordinates."""
     np.testing.assert_allclose(WGS84.cartesian(0, 0, 0), (6378137.0, 0, 0))
     np.testing.assert_allclose(WGS84.cartesian(math.pi / 2, 0, 0), (0, 0, 6356752.314245), atol=1e-9)
     np.testing.assert_allclose(WGS84.cartesian(math.pi / 4, 0, 0), (4517590.879, 0, 4487348.409), atol=1e-3)
@@ -41,7 +41,7 @@ def test_at_the_poles_latitude_and_height_are_exact(z: float) -> None:
     assert height == pytest.approx(12.5, abs=1e-9)
 
 
-def test_far_away_and_at_the_centre_it_is_a_number() -> None:
+def test_the_field_is_finite_far_away_and_at_the_centre() -> None:
     for place in ((0.0, 0.0, 0.0), (1e-9, 0.0, 0.0), (1e100, -1e100, 1e100)):
         assert all(map(math.isfinite, WGS84.geodetic(*place)))
 

@@ -1,4 +1,4 @@
-"""The Earth's magnetic field, against values that others published."""
+"""The Earth's magnetic field, compared with published values."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ PUBLISHED = [
 
 
 def north_east_down(year: float, height: float, latitude: float, longitude: float) -> np.ndarray:
-    """[nT], of degrees and metres."""
+    """Return the field [nT] at a height [m], latitude and longitude [degrees]."""
     at = math.radians(latitude), math.radians(longitude)
     east, north, up = magnetic_model(year).at(*WGS84.cartesian(*at, height).tolist()) @ east_north_up(*at) * 1e9
     return np.array((north, east, -up))
@@ -59,7 +59,7 @@ def test_at_the_poles_the_field_is_that_of_the_places_around_them(latitude: int)
 
 
 def test_the_field_has_no_sources_outside_the_core() -> None:
-    """Divergence and curl vanish; a fault in any of the weights would show in one of them."""
+    """Divergence and curl are zero; an error in any weight would change one of them."""
     model, step = magnetic_model(2027.3), 100.0
     for at in np.random.default_rng(3).normal(size=(5, 3)):
         centre = at / np.linalg.norm(at) * 6.6e6
@@ -74,13 +74,13 @@ def test_the_linear_pieces_are_the_field_to_a_hundredth_of_a_nanotesla() -> None
     field = EarthField(2025.0, WorldOnPlanet(SphericalCoordinates(0.8, 0.1, 200.0, 0.7)))
     for position in np.random.default_rng(1).uniform(-30e3, 30e3, (200, 3)):
         np.testing.assert_allclose(field.at(position), field.exactly_at(position), atol=1e-11)
-    # where two pieces meet as well
+    # also at the border of two linearised cells
     for x in (499.999999, 500.000001):
         np.testing.assert_allclose(field.at(np.array((x, 0, 0))), field.exactly_at(np.array((x, 0, 0))), atol=1e-11)
 
 
 @pytest.mark.parametrize("position", [(0.0, 0.0, 0.0), (1e-3, 0.0, 0.0), (0.0, 1e5, -2e6), (1e90, -1e90, 1e90)])
-def test_it_is_a_number_everywhere(position: tuple[float, float, float]) -> None:
+def test_conversion_is_finite_everywhere(position: tuple[float, float, float]) -> None:
     assert np.isfinite(magnetic_model(2025.0).at(*position)).all()
 
 

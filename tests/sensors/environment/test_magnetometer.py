@@ -1,4 +1,4 @@
-"""The magnetometer: a uniform field, the Earth's, headings, units, Gazebo's switches."""
+"""Magnetometer: a uniform field, the Earth's field, headings, units, and the options of Gazebo's system."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ARCTIC = np.array((6521.6, 145.9, 54791.5)) * 1e-9
 
 
 def arctic(heading: float = 0.0, surface: str = "EARTH_WGS84") -> str:
-    """A world there; heading in rad."""
+    """Return `<spherical_coordinates>` at the position of NOAA's test value, with a heading [rad]."""
     return f"""<spherical_coordinates><surface_model>{surface}</surface_model><latitude_deg>80</latitude_deg>
       <longitude_deg>0</longitude_deg><elevation>0</elevation><heading_deg>{math.degrees(heading)}</heading_deg>
       </spherical_coordinates>"""
@@ -34,7 +34,7 @@ def compass(block: str = "", top: str = "", pose: str = LEVEL, mounted: str = LE
 
 
 def field(text: str) -> np.ndarray:
-    """[T]"""
+    """Return the measured field [T]."""
     with simkit.load(text) as sim:
         sim.step(1)
         return xyz(sim.sensor("m::l::s").latest.magnetic_field)
@@ -55,7 +55,7 @@ def test_on_the_earth_the_field_is_the_models_in_east_north_up() -> None:
 
 @pytest.mark.parametrize("heading", [0.7, -2.0])
 def test_the_heading_of_the_world_turns_the_field(heading: float) -> None:
-    """The world's x is `heading` from east towards north."""
+    """The world's x axis is rotated by `heading` from east towards north."""
     north, east, down = ARCTIC
     x = east * math.cos(heading) + north * math.sin(heading)
     y = -east * math.sin(heading) + north * math.cos(heading)
@@ -63,7 +63,7 @@ def test_the_heading_of_the_world_turns_the_field(heading: float) -> None:
 
 
 def test_it_is_the_field_where_the_sensor_is() -> None:
-    """100 km up, by NOAA's test value."""
+    """NOAA publishes a test value at a height of 100 km."""
     found = field(compass("<simkit:date>2027.5</simkit:date>", top=arctic(), pose="0 0 100000 0 0 0"))
     np.testing.assert_allclose(found, np.array((233.8, 6196.7, -52670.5)) * 1e-9, atol=6e-11)
 
@@ -83,17 +83,17 @@ def test_gazebos_units_and_axes_are_honoured_where_the_world_writes_them() -> No
 
 
 def test_a_uniform_field_is_in_tesla_whatever_the_switches() -> None:
-    """They are about the Earth's field alone, in Gazebo too."""
+    """The options of Gazebo's system affect only the Earth's field, also in Gazebo."""
     np.testing.assert_allclose(field(compass(top=SYSTEM.format(GAUSS + NED) + QUIRKS + UNIFORM)), FIELD)
 
 
-def test_a_switch_that_is_none_is_an_error_said_once() -> None:
+def test_an_invalid_boolean_is_an_error_that_is_reported_once() -> None:
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(compass(top=SYSTEM.format("<use_units_gauss>perhaps</use_units_gauss>") + arctic()))
     assert [d.code for d in caught.value.diagnostics] == ["SK-PARAM-002"]
 
 
-def test_what_replaces_what_is_said_once() -> None:
+def test_a_replaced_noise_element_is_reported_once() -> None:
     two = sensor("magnetometer", "") + sensor("magnetometer", "", name="t")
     with simkit.load(world(two, top=UNIFORM + arctic())) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-065"] == ["warning"]
@@ -117,7 +117,7 @@ def test_the_date_moves_the_field() -> None:
 
 
 @pytest.mark.parametrize("elevation", ["1e9", "-1e9", "-6356752"])
-def test_far_from_the_ground_it_is_a_number_and_said(elevation: str) -> None:
+def test_far_from_the_ground_the_field_is_finite_and_reported(elevation: str) -> None:
     text = compass(top=arctic().replace("<elevation>0<", f"<elevation>{elevation}<"))
     assert np.isfinite(field(text)).all()
     with simkit.load(text) as sim:

@@ -1,4 +1,4 @@
-"""The satellite receiver: places far from the origin, poles, headings, noise in metres, and Gazebo's quirks."""
+"""Satellite receiver: positions far from the origin, poles, headings, noise in metres, and Gazebo's quirks."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ RADIUS = 6378137.0
 def spherical_coordinates(
     latitude: float, longitude: float, elevation: float = 0.0, heading: float = 0.0, surface: str = ""
 ) -> str:
-    """Degrees, metres, rad."""
+    """Return `<spherical_coordinates>` for a latitude and longitude [degrees], elevation [m] and heading [rad]."""
     return f"""<spherical_coordinates>{surface}<latitude_deg>{latitude}</latitude_deg>
       <longitude_deg>{longitude}</longitude_deg><elevation>{elevation}</elevation>
       <heading_deg>{math.degrees(heading)}</heading_deg></spherical_coordinates>"""
@@ -33,7 +33,7 @@ def receiver(
 
 
 def sensing(position: float = 0, height: float = 0, velocity: float = 0, climb: float = 0, more: str = "") -> str:
-    """Noise of the four channels."""
+    """Return the noise elements of the four channels."""
     groups = []
     for name, horizontal, vertical in (("position", position, height), ("velocity", velocity, climb)):
         parts = f"<horizontal>{noise(horizontal, more=more)}</horizontal><vertical>{noise(vertical)}</vertical>"
@@ -49,7 +49,7 @@ def fix(text: str) -> tuple[float, float, float]:
 
 
 def cartesian(latitude: float, longitude: float, height: float) -> np.ndarray:
-    """On WGS84; degrees, metres."""
+    """Return the position on WGS84 [m] of a latitude and longitude [degrees] and a height [m]."""
     e2 = 1 - (6356752.314245 / RADIUS) ** 2
     phi, lam = math.radians(latitude), math.radians(longitude)
     normal = RADIUS / math.sqrt(1 - e2 * math.sin(phi) ** 2)
@@ -57,7 +57,7 @@ def cartesian(latitude: float, longitude: float, height: float) -> np.ndarray:
     return np.array((out * math.cos(lam), out * math.sin(lam), (normal * (1 - e2) + height) * math.sin(phi)))
 
 
-def test_at_the_origin_it_is_the_place_of_the_world() -> None:
+def test_at_the_origin_the_fix_is_the_worlds_location() -> None:
     assert fix(receiver(top=spherical_coordinates(43.5, 1.5, 200))) == (
         pytest.approx(43.5, abs=1e-12),
         pytest.approx(1.5, abs=1e-12),
@@ -70,7 +70,7 @@ def test_at_the_origin_it_is_the_place_of_the_world() -> None:
 def test_a_position_kilometres_away_converts_back_to_the_world_position(
     origin: tuple[float, float, float], heading: float
 ) -> None:
-    """From the fix to Earth-centred coordinates and back to east, north, up at the origin: the displacement."""
+    """The fix is converted to Earth-centred coordinates, and then to east, north and up at the world's origin."""
     x, y, z = 3000.0, -20000.0, 150.0
     latitude, longitude, altitude = fix(
         receiver(top=spherical_coordinates(*origin, heading), pose=f"{x} {y} {z} 0 0 1.1")
@@ -83,7 +83,8 @@ def test_a_position_kilometres_away_converts_back_to_the_world_position(
     sine, cosine = math.sin(heading), math.cos(heading)
     np.testing.assert_allclose(found, (x * cosine - y * sine, x * sine + y * cosine, z), atol=2e-7)
     assert -180 <= longitude <= 180
-    assert altitude - origin[2] - z == pytest.approx((x * x + y * y) / 2 / RADIUS, rel=0.01)  # the ground falls away
+    # far from the origin, the world's plane is above the curved ground
+    assert altitude - origin[2] - z == pytest.approx((x * x + y * y) / 2 / RADIUS, rel=0.01)
 
 
 def test_over_the_antimeridian_the_longitude_changes_its_sign() -> None:
@@ -112,8 +113,8 @@ def test_the_moon_and_a_surface_of_ones_own_are_surfaces_too() -> None:
     assert altitude == pytest.approx(1000 * (math.sqrt(2) - 1))
 
 
-def test_the_velocity_is_to_east_north_and_up_of_the_sensors_own_place() -> None:
-    """Heading 0.7; the sensor is 2 m ahead on a body that turns: the lever's part is added."""
+def test_the_velocity_is_to_east_north_and_up_at_the_sensors_position() -> None:
+    """The heading is 0.7, and the sensor is 2 m in front of a rotating body's origin, which adds ω × r."""
     top = CALM + spherical_coordinates(10, 20, 0, 0.7)
     with simkit.load(receiver(top=top, static=False, mounted="2 0 0 0 0 0")) as sim:
         velocity = sim.subscribe("/fix/velocity")
@@ -134,7 +135,7 @@ def test_the_velocity_is_to_east_north_and_up_of_the_sensors_own_place() -> None
 
 
 def test_the_velocity_is_the_change_of_the_fix() -> None:
-    """Far from the origin too, where east and up are no longer the world's."""
+    """This is also true far from the origin, where east and up differ from the world's axes."""
     top = CALM + spherical_coordinates(50, 20, 0, 0.3)
     with simkit.load(receiver(top=top, static=False, pose="400000 200000 0 0 0 0", rate=0)) as sim:
         sub, velocity = sim.subscribe("/fix"), sim.subscribe("/fix/velocity")
@@ -185,7 +186,7 @@ def test_gazebos_noise_is_in_degrees_and_it_knows_no_covariance() -> None:
         assert not sub.latest.position_covariance.any()
 
 
-def test_velocity_has_its_noise_and_gps_its_uncertainties() -> None:
+def test_velocity_has_noise_and_gps_fix_has_uncertainties() -> None:
     with simkit.load(receiver(sensing(2, 3, 0.1, 0.2), top=spherical_coordinates(60, 30), rate=0), seed=3) as sim:
         sub, gps = sim.subscribe("/fix/velocity"), sim.subscribe("/fix/gps_fix")
         sim.step(2000)
@@ -196,7 +197,7 @@ def test_velocity_has_its_noise_and_gps_its_uncertainties() -> None:
         assert gps.latest.err_vert == pytest.approx(1.96 * 3, rel=1e-4)
 
 
-def test_a_wandering_position_is_metres_too() -> None:
+def test_a_drifting_position_bias_is_in_metres() -> None:
     time = "<dynamic_bias_correlation_time>50</dynamic_bias_correlation_time>"
     more = f"<dynamic_bias_stddev>1</dynamic_bias_stddev>{time}"
     with simkit.load(receiver(sensing(0, more=more), top=spherical_coordinates(45, 0), rate=10), seed=1) as sim:
@@ -218,7 +219,7 @@ def test_without_spherical_coordinates_it_warns_and_publishes_nothing() -> None:
         assert sim.sensor("m::l::s").truth is None
 
 
-def test_names_are_gazebos_and_gps_is_another_word_for_it() -> None:
+def test_names_are_gazebos_and_gps_is_an_alias() -> None:
     text = world(sensor("gps", f"<gps>{sensing(1.5)}</gps>"), top=spherical_coordinates(1, 2))
     with simkit.load(text) as sim:
         sim.step(1)
@@ -241,14 +242,14 @@ def test_latitude_91_is_an_error_with_what_is_allowed() -> None:
     receiver(top=spherical_coordinates(50, 20, -6356752.3)),
     receiver(top=spherical_coordinates(50, 20), pose="1e14 -1e14 1e14 0 0 0"),
 ], ids=["noise", "noise in degrees", "high", "the centre", "far"])  # fmt: skip
-def test_whatever_is_asked_the_fix_is_a_number(text: str) -> None:
+def test_the_fix_is_finite_for_any_input(text: str) -> None:
     latitude, longitude, altitude = fix(text)
     assert -180 <= latitude <= 180
     assert -180 <= longitude <= 180
     assert math.isfinite(altitude)
 
 
-def test_spawned_receivers_know_the_place_and_a_restored_run_repeats() -> None:
+def test_spawned_receivers_have_the_worlds_location_and_a_restored_run_repeats() -> None:
     eye = sensor("navsat", f"<navsat>{sensing(1)}</navsat>")
     model = f'<sdf version="1.9"><model name="d"><static>true</static><link name="l">{eye}</link></model></sdf>'
     on_earth = f'<world name="w">{spherical_coordinates(50, 20)}</world>'

@@ -1,4 +1,4 @@
-"""The solar sensor against geometry: direction, cone, shadow, cosine law, noise."""
+"""Solar sensor, compared with geometry: direction, cone, shadow, cosine law, noise."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def unit(*v: float) -> np.ndarray:
 
 
 def values(sim: simkit.Simulation, *names: str, seconds: float = 0.1) -> list[Any]:
-    """The newest value on each of the sensor's topics."""
+    """Return the newest value on each of the sensor's topics."""
     subscriptions = [sim.subscribe(f"{sim.sensor(S).topic}/{name}") for name in names]
     sim.run(seconds)
     return [s.latest.data for s in subscriptions]
@@ -107,7 +107,7 @@ def test_it_follows_a_light_that_is_moved_and_unread_samples_keep_the_light_of_t
         np.testing.assert_allclose(axis(sensor.latest), unit(1, 0, 1), atol=1e-12)
 
 
-def test_a_reading_on_its_way_keeps_the_light_of_its_time() -> None:
+def test_a_delayed_reading_has_the_light_at_the_time_of_its_sample() -> None:
     with opened(more="<latency>0.25</latency>", run=0.15) as sim:
         # samples at 0.001 and 0.1 are on their way
         sim.light("sun").set_pose(Pose.from_rpy(0, 0, 0, 0, 0, math.pi / 2))
@@ -126,7 +126,7 @@ def is_invalid(message: Any) -> bool:
 
 
 def test_beyond_its_field_of_view_a_reading_is_invalid() -> None:
-    # the light stands 45 degrees from the normal
+    # the direction to the light is 45 degrees from the normal
     for degrees, valid in ((89, False), (91, True)):
         with opened(f"<field_of_view>{math.radians(degrees)}</field_of_view>") as sim:
             assert values(sim, "valid") == [valid]
@@ -188,7 +188,7 @@ def test_the_sensors_irradiance_overrides_the_lights() -> None:
 
 
 @pytest.mark.parametrize("distance", [0.5, 1.0, 4.0])
-def test_a_lamp_fades_as_asked_for(distance: float) -> None:
+def test_a_lamp_fades_by_the_chosen_rule(distance: float) -> None:
     fade = (
         "<attenuation><range>3</range><constant>1</constant><linear>0.5</linear><quadratic>0.25</quadratic>"
         "</attenuation>"
@@ -252,7 +252,7 @@ def test_a_sun_256_million_kilometres_away_casts_shadows_too() -> None:
         assert shadow_of(box("tower", "30 2 31 0 0 0", "1 1 1"), block=block, lights=far) == ""
 
 
-def test_what_casts_no_shadow_lets_light_through() -> None:
+def test_a_visual_without_a_shadow_lets_light_through() -> None:
     tower = box("tower", "3 0 4 0 0 0", "1 1 1")
     assert shadow_of(tower.replace('<visual name="v">', '<visual name="v"><cast_shadows>false</cast_shadows>')) == ""
     for transparency, name in ((0.4, "tower::l::v"), (0.6, "")):
@@ -295,7 +295,7 @@ def test_the_lamps_own_link_is_its_housing() -> None:
 
 
 def test_a_box_that_falls_through_the_ray_casts_its_shadow_for_the_time_it_takes() -> None:
-    """The box's edges pass the ray after 0.5 g t² = 1 m and 3 m of its fall; late readers get the same values."""
+    """The box's edges cross the ray after a fall of 0.5 g t² = 1 m and 3 m; later readers get the same values."""
     falling = box("m2", "3 0 6 0 0 0", "1 1 1", collision=False).replace("<static>true</static>", "")
     found: dict[bool, list[str]] = {True: [], False: []}
     for listens in found:
@@ -319,7 +319,7 @@ def test_the_ray_leaves_the_model_as_it_was() -> None:
         np.testing.assert_array_equal(sim.mj_model.geom_group, before)
 
 
-def test_what_is_spawned_casts_a_shadow_and_what_is_removed_does_not() -> None:
+def test_a_spawned_model_casts_a_shadow_and_a_removed_model_does_not() -> None:
     with opened(SHADOW) as sim:
         sensor = sim.sensor(S)
         assert sensor.shadow == ""
@@ -349,7 +349,7 @@ def test_a_lamp_that_is_removed_leaves_darkness() -> None:
 
 
 def errors(sim: simkit.Simulation, count: int) -> np.ndarray:
-    """Angles [rad] about the sensor frame's axes by which readings are turned against the truth, shape (count, 3)."""
+    """Return the rotation errors of readings about the sensor frame's axes [rad], shape (count, 3)."""
     subscription = sim.subscribe(sim.sensor(S).topic)
     sim.run(count * sim.timestep)
     true = axis(sim.sensor(S).truth)
@@ -370,7 +370,7 @@ def test_the_direction_errs_by_an_angle_with_rayleighs_distribution() -> None:
     )
     assert (angles**2).mean() == pytest.approx(2 * sigma**2, abs=4 * 2 * sigma**2 / math.sqrt(n))
     assert np.mean(angles > 2 * sigma) == pytest.approx(math.exp(-2), abs=4 * math.sqrt(math.exp(-2) / n))
-    # all directions of the turn are alike
+    # all directions of the rotation axis are equally likely
     across = np.cross(true, (0, 1, 0))
     about = np.arctan2(turns @ across, turns[:, 1])
     assert abs(np.exp(1j * about).mean()) < 4 / math.sqrt(n)
@@ -421,7 +421,7 @@ def messages_by_code(block: str, *others: str, lights: str = SUN) -> dict[str, s
         return {d.code: f"{d.message} {d.hint}" for d in error.diagnostics}
 
 
-def test_bad_options_are_all_said_in_one_pass() -> None:
+def test_all_invalid_options_are_reported_in_one_pass() -> None:
     block = (
         "<shadow>maybe</shadow><towards>up</towards><falloff>linear</falloff><normal>0 0 0</normal>"
         "<irradiance>much</irradiance><field_of_view>7</field_of_view><panel><area>-1</area></panel>"
@@ -439,13 +439,13 @@ def test_an_unknown_light_is_an_error_that_lists_the_lights() -> None:
     assert messages_by_code("") == {}
 
 
-def test_an_option_without_effect_is_said() -> None:
+def test_an_option_without_effect_is_reported() -> None:
     assert "falloff" in messages_by_code("<falloff>inverse_square</falloff>")["SK-SENSOR-083"]
     block = "<light_name>lamp</light_name><towards>position</towards>"
     assert "towards" in messages_by_code(block, lights=lamp())["SK-SENSOR-083"]
 
 
-def test_a_bare_model_waits_for_a_light() -> None:
+def test_a_model_without_a_world_has_invalid_readings_until_a_light_exists() -> None:
     sensor = solar("<light_name>sun</light_name>")
     model = f'<sdf version="1.9"><model name="m"><link name="l">{sensor}</link></model></sdf>'
     with simkit.load(model, base="fixed") as sim:

@@ -1,4 +1,4 @@
-"""The IMU: levers, rates, reference frames, Classic's plugin."""
+"""IMU: lever arms, rates, reference frames, and the plugin of Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def classic(plugin: str, noises: str = "") -> str:
 
 
 @pytest.mark.parametrize("damping", [0.0, 3.0])
-def test_on_a_turning_arm_it_feels_the_acceleration_of_its_own_place(damping: float) -> None:
-    """0.5 m out and turned by 90 degrees about z: inwards is the sensor's +y, along the turn its +x."""
+def test_on_a_turning_arm_the_imu_measures_the_acceleration_at_its_position(damping: float) -> None:
+    """The sensor is 0.5 m out and has a yaw of 90 degrees: inwards is its +y axis, along the rotation is its +x."""
     with simkit.load(SPINNER.replace("DAMPING", str(damping))) as sim:
         sim.joint("m::j").set_velocity(2.0)
         sub = sim.subscribe("/i")
@@ -66,7 +66,7 @@ def test_classic_names_topic_and_frame() -> None:
         assert sim.sensor("m::l::s").latest.header.frame_id == "here"
 
 
-def test_a_given_frame_stands() -> None:
+def test_a_frame_of_the_file_is_not_changed() -> None:
     with simkit.load(world(sensor("imu", "<gz_frame_id>odd</gz_frame_id>"))) as sim:
         sim.run(0.02)
         assert sim.sensor("m::l::s").latest.header.frame_id == "odd"
@@ -124,7 +124,7 @@ def test_a_slower_rate_can_be_set() -> None:
             sim.sensor("m::l::s").set_rate(math.nan)
 
 
-def test_messages_not_yet_looked_at_keep_their_meaning_when_the_model_is_moved() -> None:
+def test_unread_messages_do_not_change_when_the_model_is_moved() -> None:
     with simkit.load(world(sensor("imu", "<imu/>", extra="<topic>i</topic>"), pose="0 0 1 0.3 0 0")) as sim:
         sub = sim.subscribe("/i")
         sim.run(0.05)

@@ -16,7 +16,7 @@ TOP = """<inertial><mass>2</mass><inertia><ixx>{0}</ixx><iyy>{1}</iyy><izz>{2}</
 
 
 def body(mount: str, inertia: tuple[float, float, float], *, gravity: str = "0 0 -9.8", link: str = "") -> str:
-    """A free body at 100 m with an IMU that samples at every step of 0.1 ms."""
+    """Return a world with a free body at a height of 100 m and an IMU that samples at every step of 0.1 ms."""
     return f"""<sdf version="1.9"><world name="w"><gravity>{gravity}</gravity>
       <physics name="p" type="ode"><max_step_size>0.0001</max_step_size></physics>
       <model name="m"><pose>0 0 100 0 0 0</pose><link name="l">{link}{TOP.format(*inertia)}
@@ -29,8 +29,8 @@ def felt(sim: simkit.Simulation) -> tuple[npt.NDArray[np.float64], npt.NDArray[n
     return xyz(message.angular_velocity), xyz(message.linear_acceleration)
 
 
-def test_a_falling_spinning_ball_feels_only_the_pull_towards_its_centre() -> None:
-    """Free fall is felt as nothing, and at r from the centre of mass ω×(ω×r) is left; the sensor is turned too."""
+def test_a_falling_spinning_ball_measures_only_the_centripetal_acceleration() -> None:
+    """In free fall, the specific force at r from the centre of mass is ω×(ω×r); the sensor is rotated too."""
     mount, turn = (0.3, -0.2, 0.1), (0.4, 0.5, -0.6)
     with simkit.load(body(" ".join(map(str, (*mount, *turn))), (0.1, 0.1, 0.1))) as sim:
         omega = np.array((3.0, -4.0, 5.0))
@@ -38,14 +38,14 @@ def test_a_falling_spinning_ball_feels_only_the_pull_towards_its_centre() -> Non
         sim.run(0.05)
         rate, force = felt(sim)
         back = np.asarray(quat_to_matrix(quat_from_rpy(*turn))).T
-        # of a ball the rate stays as it is, also in its own axes
+        # the rate of a ball is constant, also in its own axes
         expected = back @ np.cross(omega, np.cross(omega, mount))
         np.testing.assert_allclose(rate, back @ omega, atol=1e-5)
         np.testing.assert_allclose(force, expected, atol=1e-3)
 
 
-def test_a_tumbling_body_feels_eulers_equations() -> None:
-    """At r from the centre of mass: dω/dt × r + ω×(ω×r), with dω/dt = I⁻¹·(Iω × ω)."""
+def test_a_tumbling_body_measures_the_acceleration_of_eulers_equations() -> None:
+    """The acceleration at r from the centre of mass is dω/dt × r + ω×(ω×r), with dω/dt = I⁻¹·(Iω × ω)."""
     inertia, mount = np.array((0.10, 0.14, 0.2)), np.array((0.1, 0.2, -0.3))
     with simkit.load(body("0.1 0.2 -0.3 0 0 0", tuple(inertia))) as sim:
         sim.model("m").set_velocity((0.0, 0.0, 0.0), (2.0, 5.0, 1.0))
@@ -59,8 +59,8 @@ def test_a_tumbling_body_feels_eulers_equations() -> None:
             assert np.linalg.norm(change) > 1.0
 
 
-def test_sliding_out_on_a_turning_arm_it_feels_coriolis_once() -> None:
-    """A slider on a turntable: radially r'' - ω²r, along the turn 2·r'·ω + α·r; written out from the joints' states."""
+def test_on_a_turning_arm_a_slider_measures_the_coriolis_acceleration_once() -> None:
+    """A slider is on a turntable: the acceleration is r'' - ω²r radially, and 2·r'·ω + α·r along the rotation."""
     text = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity>
       <physics name="p" type="ode"><max_step_size>0.0001</max_step_size></physics><model name="m">
       <link name="base"/><joint name="f" type="fixed"><parent>world</parent><child>base</child></joint>
@@ -81,22 +81,22 @@ def test_sliding_out_on_a_turning_arm_it_feels_coriolis_once() -> None:
         r = 0.4 + sim.joint("m::slide").position
         rate, force = felt(sim)
         np.testing.assert_allclose(rate, (0, 0, omega), atol=1e-9)
-        # nothing pushes the slider outwards, so along the arm there is nothing to be felt
+        # no force acts on the slider along the arm, so the specific force along the arm is zero
         np.testing.assert_allclose(force, (faster - omega**2 * r, 2 * out * omega + alpha * r, 0), atol=1e-6)
         np.testing.assert_allclose(force[0], 0.0, atol=1e-2)
         assert abs(force[1]) > 0.5
         assert model.nv >= 2
 
 
-def test_thrown_up_and_caught_by_nobody_it_feels_nothing() -> None:
+def test_in_free_flight_the_specific_force_is_zero() -> None:
     with simkit.load(body("0.3 0 0 0 0 0", (0.1, 0.1, 0.1), gravity="1 2 -5")) as sim:
         sim.model("m").set_velocity((0.0, 0.0, 8.0), (0.0, 0.0, 0.0))
         sim.run(0.1)
         np.testing.assert_allclose(felt(sim)[1], 0.0, atol=1e-9)
 
 
-def test_a_link_that_gravity_leaves_alone_feels_it_all_the_same() -> None:
-    """It hovers, so it is held up as on a table: Gazebo takes the world's gravity too, whatever `<gravity>` says."""
+def test_a_link_without_gravity_measures_gravity_too() -> None:
+    """The link hovers, so it has the specific force of a link at rest. Gazebo uses the world's gravity here too."""
     with simkit.load(body("0 0 0 0 0 0", (0.1, 0.1, 0.1), link="<gravity>false</gravity>")) as sim:
         sim.run(0.1)
         np.testing.assert_allclose(felt(sim)[1], (0, 0, 9.8), atol=1e-9)
@@ -108,7 +108,7 @@ STATIC = """<sdf version="1.9"><world name="w"><model name="m"><static>true</sta
   </sensor></link></model></world></sdf>"""
 
 
-def test_gravity_that_is_changed_while_it_runs_is_felt_at_once() -> None:
+def test_changed_gravity_is_measured_at_once() -> None:
     for text in (STATIC, body("0 0 0 0.2 0 0", (0.1, 0.1, 0.1), link="<gravity>false</gravity>")):
         with simkit.load(text) as sim:
             sim.run(0.01)
@@ -117,7 +117,7 @@ def test_gravity_that_is_changed_while_it_runs_is_felt_at_once() -> None:
             np.testing.assert_allclose(felt(sim)[1], (0, 1.6 * math.sin(0.2), 1.6 * math.cos(0.2)), atol=1e-6)
 
 
-def test_a_static_model_that_is_put_elsewhere_feels_gravity_and_no_jump() -> None:
+def test_a_static_model_that_is_moved_measures_gravity_and_no_jump() -> None:
     with simkit.load(STATIC) as sim:
         sim.run(0.05)
         sim.model("m").set_pose(simkit.Pose.from_rpy(4, 5, 6, 0, 0.3, 0))
@@ -159,7 +159,7 @@ def bits(message: object) -> tuple[float, ...]:
 
 
 def run(how: str) -> list[tuple[float, ...]]:
-    """Every message of a second, however they are received."""
+    """Return all messages of one second, received in the way that `how` names."""
     got: list[tuple[float, ...]] = []
     with simkit.load(TUMBLER, seed=3) as sim:
         sim.model("m").set_velocity((0.0, 0.0, 0.0), (2.0, 5.0, 1.0))
@@ -210,7 +210,7 @@ def run(how: str) -> list[tuple[float, ...]]:
     return got
 
 
-def test_it_says_the_same_bits_whoever_listens_and_whenever() -> None:
+def test_readings_have_the_same_bits_for_any_subscriber_and_time() -> None:
     expected = run("called back")
     assert len(expected) == 131
     assert run("looked at later") == expected
@@ -222,7 +222,7 @@ def test_it_says_the_same_bits_whoever_listens_and_whenever() -> None:
     assert restored == expected[-len(restored) :]
 
 
-def test_what_arrived_before_a_subscription_closed_stays_and_what_came_after_does_not() -> None:
+def test_a_closed_subscription_keeps_only_earlier_messages() -> None:
     with simkit.load(TUMBLER) as sim:
         sub, other = sim.subscribe("/i"), sim.subscribe("/i", keep=2)
         sim.run(0.1)

@@ -1,4 +1,4 @@
-"""Reference of the IMU's orientation, and Classic's options; every case against its rotation matrix."""
+"""Reference frame of the IMU's orientation, and Classic's options, compared with rotation matrices."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def scene(block: str, pose: str = "0 0 1 0.3 -0.2 0.5", mount: str = "0.1 0 0 0 
 
 
 def measured(text: str) -> Matrix:
-    """The reading as a matrix: the sensor's axes in the reference's."""
+    """Return the measured orientation as a matrix, whose columns are the sensor's axes in the reference frame."""
     with simkit.load(text) as sim:
         sim.run(0.02)
         q = sim.sensor("m::l::s").latest.orientation
@@ -127,7 +127,7 @@ def test_at_rest_gravity_up_makes_the_specific_force_its_z_axis() -> None:
         (reference("UPWARDS"), "", "SK-PARAM-002", "GRAV_DOWN"),
     ],
 )
-def test_a_reference_that_means_nothing_is_an_error(block: str, top: str, code: str, words: str) -> None:
+def test_an_undefined_reference_is_an_error(block: str, top: str, code: str, words: str) -> None:
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(scene(block, top=top))
     found = [d for d in caught.value.diagnostics if d.code == code]
@@ -144,14 +144,14 @@ def test_a_reference_that_means_nothing_is_an_error(block: str, top: str, code: 
         (reference("CUSTOM"), 0),
     ],
 )
-def test_with_gazebos_quirks_what_it_does_not_know_is_the_attitude_at_the_start(block: str, says: int) -> None:
+def test_with_gazebos_quirks_an_unsupported_reference_is_the_attitude_at_the_start(block: str, says: int) -> None:
     text = scene(block, top="<gazebo_quirks>true</gazebo_quirks>")
     np.testing.assert_allclose(measured(text), np.eye(3), atol=1e-9)
     with simkit.load(text) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-002"] == ["warning"] * says
 
 
-def test_a_spawned_robot_measures_against_where_it_is_put() -> None:
+def test_a_spawned_robot_measures_orientation_relative_to_its_spawn_pose() -> None:
     with simkit.load(scene("<imu/>")) as sim:
         block = reference("CUSTOM", '<custom_rpy parent_frame="base">0 0 0</custom_rpy>')
         robot = f'<sdf version="1.9"><model name="r"><link name="base"/><link name="l">{sensor("imu", block)}</link>'
@@ -232,7 +232,7 @@ def test_classics_rate_and_frames() -> None:
         assert sub.latest.header.frame_id == "torso"
 
 
-def test_classics_position_offset_changes_nothing_and_says_so() -> None:
+def test_classics_position_offset_has_no_effect_and_is_reported() -> None:
     with simkit.load(classic("<xyzOffset>0 0 1</xyzOffset>")) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-072"] == ["note"]
     with simkit.load(classic("<xyzOffset>0 0 0</xyzOffset>")) as sim:

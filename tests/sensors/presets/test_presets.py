@@ -1,4 +1,4 @@
-"""Presets: every one loads and is seen, the file wins, wrong names are errors, the page is what the data say."""
+"""Presets: each preset loads, a file takes precedence, wrong names are errors, and the page agrees with the data."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def named(preset: str, kind: str, extra: str = "") -> str:
 
 
 def world_of(kind: str, inside: str) -> str:
-    """A world in which a sensor of that kind has all it needs."""
+    """Return a world with everything that a sensor of the kind needs."""
     top = PLACE if kind == "navsat" else ""
     if "link" in sensor_kinds()[kind].belongs_to:
         return world(inside, top=top)
@@ -65,7 +65,7 @@ KNOWN = [p for p in presets() if p.kind in sensor_kinds() and (_renders or p.blo
 
 
 @pytest.mark.parametrize("preset", KNOWN, ids=lambda p: f"{p.kind}-{p.name}")
-def test_every_preset_loads_without_a_word_but_its_note_and_reads(preset: Preset) -> None:
+def test_every_preset_loads_with_only_its_note_and_reads(preset: Preset) -> None:
     with load(world_of(preset.kind, named(preset.name, preset.kind))) as sim:
         spoken = [d for d in sim.diagnostics if "m::" in d.message]
         assert [d.code for d in spoken if d.severity != "note"] == []
@@ -81,7 +81,7 @@ def test_every_preset_loads_without_a_word_but_its_note_and_reads(preset: Preset
 
 
 @pytest.mark.parametrize("preset", presets(), ids=lambda p: f"{p.kind}-{p.name}")
-def test_a_preset_is_whole(preset: Preset) -> None:
+def test_a_preset_is_complete(preset: Preset) -> None:
     assert preset.maker and len(preset.source) > 15
     (block,) = preset.settings
     assert block == preset.block
@@ -94,7 +94,7 @@ def test_a_preset_is_whole(preset: Preset) -> None:
 
 
 @pytest.mark.parametrize("preset", presets(), ids=lambda p: f"{p.kind}-{p.name}")
-def test_what_is_unconfirmed_is_an_element_and_is_marked_wherever_a_preset_is_shown(preset: Preset) -> None:
+def test_unconfirmed_elements_exist_and_are_marked_in_descriptions(preset: Preset) -> None:
     paths = [set(path) for path, _ in leaves(preset.elements)]
     for names in preset.unconfirmed:
         assert any(set(names.split()) <= path for path in paths)
@@ -103,7 +103,7 @@ def test_what_is_unconfirmed_is_an_element_and_is_marked_wherever_a_preset_is_sh
 
 
 def test_the_page_marks_bands_used_as_deviations() -> None:
-    """An accuracy of ±x is no deviation: who takes it for one says that it is our choice."""
+    """A preset that uses an accuracy of ±x as a standard deviation says in its remark that this is our choice."""
     for preset in presets():
         if "deviation: " in preset.remark:
             assert "deviation: our choice" in preset.remark, preset.name
@@ -135,7 +135,7 @@ def test_a_lidar_gets_its_numbers_in_every_spelling_of_its_kind() -> None:
 
 
 @pytest.mark.parametrize("block", ["lidar", "ray"])
-def test_what_the_file_gives_wins_element_by_element(block: str) -> None:
+def test_each_element_of_the_file_takes_precedence(block: str) -> None:
     own = f"""<update_rate>20</update_rate><{block}><range><max>2</max></range>
       <scan><horizontal><samples>90</samples></horizontal></scan></{block}>"""
     with load(world(named("LDS-01", "ray", own))) as sim:
@@ -149,7 +149,7 @@ def test_what_the_file_gives_wins_element_by_element(block: str) -> None:
         assert [d for d in sim.diagnostics if d.severity == "warning"] == []
 
 
-def test_the_prefix_and_a_given_rate_of_zero_are_understood() -> None:
+def test_the_prefix_and_a_rate_of_zero_in_the_file_are_supported() -> None:
     text = world(
         '<sensor name="s" type="lidar"><simkit:preset>tim 571</simkit:preset><update_rate>0</update_rate></sensor>'
     )
@@ -166,7 +166,7 @@ def imu_noise(own: str) -> Any:
         return sim.sensor("m::l::s").options.angular_velocity
 
 
-def test_a_deviation_of_the_file_puts_the_presets_density_out() -> None:
+def test_a_deviation_of_the_file_replaces_the_presets_density() -> None:
     x, y, _ = imu_noise('<noise type="gaussian"><stddev>0.5</stddev></noise>')
     assert (x.stddev, x.noise_density) == (0.5, 0.0)
     assert x.bias_instability == y.bias_instability > 0
@@ -272,18 +272,18 @@ def test_a_urdf_names_one_in_its_gazebo_block() -> None:
 
 
 def test_the_settings_are_the_elements_of_a_file() -> None:
-    """Settings have the form that `Params.from_dict` reads, so that they can be passed on."""
+    """Settings have the form that `Params.from_dict` reads."""
     elements = find("LDS-01")["lidar"].elements
     block = Params.from_dict(dict(elements)).block("lidar").block("range")
     assert block.number("max") == 3.5
 
 
-def test_the_page_is_what_the_data_say() -> None:
-    """Written with `python -m simkit.sensors.presets > docs/sensors/presets.md`."""
+def test_the_page_agrees_with_the_data() -> None:
+    """The command `python -m simkit.sensors.presets > docs/sensors/presets.md` writes the page."""
     assert PAGE.read_text(encoding="utf-8") == presets_page()
 
 
-def test_one_preset_in_words() -> None:
+def test_one_preset_is_described() -> None:
     text = describe_preset(find("puck")["lidar"])
     assert "VLP-16 (Velodyne)" in text
     assert "also:   Puck" in text

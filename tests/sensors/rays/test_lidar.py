@@ -1,4 +1,4 @@
-"""Lidars: what is seen, how near, how far, and Classic's plugin."""
+"""Lidars: detected objects, range limits, and the plugin of Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_its_own_housing_is_not_hit(kind: str, static: bool) -> None:
 
 
 def test_a_housing_that_is_hidden_for_one_lidar_is_seen_by_another() -> None:
-    """The static world's other links stay visible, and nothing is left hidden."""
+    """All other static links stay visible, and no link stays hidden after a scan."""
     link = f'<link name="l">{sensor("lidar", block())}</link>'
     other = f'<model name="n"><static>true</static><pose>-2 0 1 0 0 0</pose>{link}</model>'
     with simkit.load(world(sensor("lidar", block()), others=AHEAD + other, body=HOUSING)) as sim:
@@ -197,7 +197,7 @@ def test_hits_names_the_object_of_each_ray() -> None:
             assert lidar.hits.tolist() == ["", f"ahead::l::{part}", f"left::l::{part}"]
 
 
-def test_what_is_too_near_is_named_and_what_is_too_far_is_not() -> None:
+def test_an_object_that_is_too_near_has_a_name_and_one_too_far_has_none() -> None:
     scene = box("near", "1.0 0 1 0 0 0", "1 0.1 1") + box("far", "0 9 1 0 0 0", "1 1 1")
     with simkit.load(world(sensor("gpu_lidar", block(rng=(1.0, 5))), others=scene)) as sim:
         sim.run(0.02)
@@ -205,8 +205,8 @@ def test_what_is_too_near_is_named_and_what_is_too_far_is_not() -> None:
         assert sim.sensor("m::l::s").hits.tolist() == ["", "near::l::v", ""]
 
 
-def test_a_reading_asked_for_later_names_what_was_there_then() -> None:
-    """Nobody read when it was taken; since then another box came, and geoms have other numbers."""
+def test_a_reading_that_is_read_later_has_the_names_at_its_time() -> None:
+    """The sample had no reader. Later a box was spawned, so that geom ids changed."""
     with simkit.load(world(sensor("lidar", block(), rate=1), others=AHEAD)) as sim:
         sim.run(0.5)
         sim.spawn(f'<sdf version="1.9">{box("aaa", "2.5 0 1 0 0 0", "1 1 1")}</sdf>')
@@ -305,7 +305,7 @@ def test_the_velodyne_plugin_gives_points_within_its_range_layer_by_layer() -> N
         np.testing.assert_allclose(found["x"], 3.0, atol=1e-5)
 
 
-def test_an_organised_velodyne_cloud_keeps_every_ray_in_its_place() -> None:
+def test_an_organised_velodyne_cloud_has_a_point_for_every_ray() -> None:
     more = "<organize_cloud>true</organize_cloud><gaussianNoise>0.001</gaussianNoise>"
     with simkit.load(velodyne(more)) as sim:
         points = sim.subscribe("/velodyne_points")

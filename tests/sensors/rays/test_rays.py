@@ -1,4 +1,4 @@
-"""Rays: every way of casting them says the same, and what geometry says."""
+"""Rays: all methods of casting give the same distances, which agree with geometry."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ TRIANGLES = {"hat": "<cone><radius>0.5</radius><length>1.1</length></cone>"}
 
 
 def scattered(shapes: dict[str, str], moving: bool) -> str:
-    """Each shape three times, round the origin, turned anyhow."""
+    """Return three copies of each shape around the origin, with different rotations."""
     random = np.random.default_rng(7)
     text = model("ground", SHAPES["ground"], "0 0 -1.5 0 0 0")
     for name, shape in shapes.items():
@@ -71,13 +71,13 @@ def cast(sim: Any, fan: RayFan, origin: Any = (0.1, 0.2, 0.1), start: float = 0.
 @pytest.mark.parametrize("start", [0.0, 2.5])
 @pytest.mark.parametrize("moving", [False, True])
 @pytest.mark.parametrize("shapes", [SHAPES, SHAPES | TRIANGLES], ids=["shapes", "triangles"])
-def test_all_ways_agree(shapes: dict[str, str], moving: bool, start: float) -> None:
+def test_all_methods_of_casting_agree(shapes: dict[str, str], moving: bool, start: float) -> None:
     assert FEW[0] * FEW[1] < MANY_RAYS <= MANY[0] * MANY[1]
     with simkit.load(scattered(shapes, moving)) as sim:
         for grid in (FEW, MANY):
             fan, other = cast(sim, fan_of(grid), start=start), fan_of(grid, use_embree=False)
             other.bind(sim.mj_model, sim.engine.names, 0, ())
-            other._targets.needs_engine = True  # everything by the engine alone
+            other._targets.needs_engine = True  # the engine alone casts all rays
             other.cast(sim.mj_model, sim.engine.physics.fresh(), np.array((0.1, 0.2, 0.1)), TURN, start)
             assert 0.2 < np.isfinite(fan.distances).mean() < 1.0
             np.testing.assert_allclose(fan.distances, other.distances, atol=AGREE)
@@ -101,7 +101,7 @@ def test_a_heightmap_is_the_engines(tmp_path: Path, use_embree: bool) -> None:
 
 
 def _alone(sim: Any, origin: Any, direction: Any, geom: Any) -> float:
-    """One ray by the engine."""
+    """Cast one ray with the engine."""
     groups = np.zeros(6, np.uint8)
     groups[list(GROUPS)] = 1
     args = sim.mj_model, sim.engine.physics.fresh(), np.array(origin, float), direction, groups, 1, -1, geom, None
@@ -140,7 +140,7 @@ def test_distances_are_geometrys(shape: str, pose: str, distance: float, grid: t
 
 @needs_embree
 def test_no_ray_slips_between_triangles() -> None:
-    """Rays at the corners and along the edges of a wall of many triangles."""
+    """The rays hit corners and edges of a wall that consists of many triangles."""
     from simkit.sensors.rays.embree_rays import TriangleScene
 
     side = 40
@@ -162,7 +162,7 @@ def test_no_ray_slips_between_triangles() -> None:
 
 @needs_embree
 def test_a_mesh_far_away_is_exact() -> None:
-    """Embree's float32 finds the triangle; the distance is of its plane."""
+    """Embree finds the triangle in float32; the distance to its plane is computed in float64."""
     with simkit.load(
         f'<sdf version="1.9"><world name="w">{model("m", TRIANGLES["hat"], "150 80 0 0 0.7 0.2")}</world></sdf>'
     ) as sim:
@@ -181,8 +181,8 @@ def test_a_mesh_far_away_is_exact() -> None:
 
 
 @pytest.mark.parametrize("grid", [None, (np.linspace(-0.7, 0.9, 13), np.linspace(-4.0, 5.0, 60))])
-def test_a_fan_knows_every_ray_towards_a_sphere(grid: Any) -> None:
-    """Also behind, over the pole, with the sensor inside, and where the fan goes round more than once."""
+def test_a_fan_finds_every_ray_towards_a_sphere(grid: Any) -> None:
+    """Spheres are also behind the sensor, over the pole and around the sensor, and fans may exceed one turn."""
     elevations, azimuths = grid or (np.linspace(-0.7, 0.9, 13), np.linspace(-4.0, 5.0, 60))
     directions = fan_directions(azimuths, elevations)
     fan = FanDirections(directions, grid)
@@ -212,7 +212,7 @@ SCAN = """<lidar><scan><horizontal>
 
 
 def test_an_arm_is_seen_when_it_is_raised_into_the_fan() -> None:
-    """Geoms that can never meet the fan are left out at once; an arm that can is not."""
+    """Geoms that the fan can never hit are left out; the arm is not, because it can reach the fan."""
     text = f'<sdf version="1.9"><world name="w">{ARM.format(sensor=sensor("lidar", SCAN))}</world></sdf>'
     with simkit.load(text) as sim:
         lidar = sim.sensor("robot::head::s")
@@ -239,7 +239,7 @@ def test_other_links_of_the_robot_are_seen_and_the_own_one_is_not() -> None:
 
 
 def test_a_static_housing_hides_no_other_object() -> None:
-    """One static model among others: its own link alone is not hit, in a scan and in a dense cloud."""
+    """A static sensor does not hit its own link, but hits all other static models, in a scan and in a dense cloud."""
     dense = SCAN.replace("<samples>3</samples>", f"<samples>{MANY_RAYS + 1}</samples>")
     can = "<geometry><cylinder><radius>0.2</radius><length>0.4</length></cylinder></geometry>"
     shell = f'<collision name="c">{can}</collision>'

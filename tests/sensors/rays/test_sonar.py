@@ -1,4 +1,4 @@
-"""The sonar against what geometry says of a cone."""
+"""Sonar, compared with the geometry of a cone."""
 
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ def test_a_wall_across_is_exactly_its_distance_away() -> None:
     assert problems == []
 
 
-def test_a_wall_askew_within_the_cone_is_met_at_its_foot() -> None:
-    """Turned by 5 degrees, less than the half angle: the foot of the perpendicular is in the cone."""
+def test_a_slightly_rotated_wall_is_detected_at_the_foot_of_the_perpendicular() -> None:
+    """The wall is rotated by 5 degrees, less than the half angle, so the foot of the perpendicular is in the cone."""
     turn = math.radians(5)
     message, *_ = reading(world(sonar(), others=box("wall", f"3 0 1 0 0 {turn}", "0.002 9 9")))
     assert message.range == pytest.approx(3 * math.cos(turn) - 0.001, rel=1e-4)
 
 
-def test_a_wall_more_askew_is_met_on_the_edge() -> None:
-    """Turned by 40 degrees: the nearest point is on the edge of the cone, where the wall comes towards it."""
+def test_a_strongly_rotated_wall_is_detected_on_the_edge_of_the_cone() -> None:
+    """The wall is rotated by 40 degrees, so the nearest point is on the edge of the cone."""
     turn = math.radians(40)
     message, *_ = reading(world(sonar(), others=box("wall", f"2 0 1 0 0 {turn}", "0.0002 9 9")))
     expected = 2 * math.cos(turn) / math.cos(turn - HALF)
@@ -67,7 +67,7 @@ def test_a_wall_more_askew_is_met_on_the_edge() -> None:
 
 
 @pytest.mark.parametrize("away", [0.0, 0.1, 0.3])
-def test_a_ball_in_the_cone_is_met_at_its_nearest_point(away: float) -> None:
+def test_a_ball_in_the_cone_is_detected_at_its_nearest_point(away: float) -> None:
     message, hit, _ = reading(world(sonar(), others=ball(f"3 {away} 1 0 0 0", 0.15)))
     exact = math.hypot(3, away) - 0.15
     spacing = HALF / math.ceil(HALF / MIN_RAY_ANGLE)
@@ -76,21 +76,21 @@ def test_a_ball_in_the_cone_is_met_at_its_nearest_point(away: float) -> None:
     assert hit == "ball::l::c"
 
 
-def test_a_ball_beside_the_cone_is_not_met() -> None:
+def test_a_ball_beside_the_cone_is_not_detected() -> None:
     for angle, seen in ((HALF - 0.02, True), (HALF + 0.06, False)):
         place = f"{2 * math.cos(angle)} {2 * math.sin(angle)} 1 0 0 0"
         message, *_ = reading(world(sonar(), others=ball(place, 0.1)))
         assert math.isfinite(message.range) == seen, angle
 
 
-def test_a_thin_pole_is_met() -> None:
-    """It spans half a degree at 2.3 m, and crosses the cone."""
+def test_a_thin_pole_is_detected() -> None:
+    """The pole covers half a degree at 2.3 m and crosses the cone."""
     message, *_ = reading(world(sonar(), others=pole("2.3 0.11 1 0 0 0", 0.01)))
     assert message.range == pytest.approx(math.hypot(2.3, 0.11) - 0.01, abs=4e-3)
 
 
-def test_without_an_axis_it_looks_down_as_classics_does() -> None:
-    """At 1 m above the ground and 2 m of range: 1 m, and nothing once it is turned to look sideways."""
+def test_without_an_axis_the_cone_points_down_as_in_classic() -> None:
+    """The sensor is 1 m above the ground with a range of 2 m: it reads 1 m, and inf after it turns sideways."""
     ground = box("ground", "0 0 -0.5 0 0 0", "20 20 1")
     down = sonar("", low=0, high=2, radius=0.2)
     assert reading(world(down, others=ground))[0].range == pytest.approx(1.0)
@@ -156,7 +156,7 @@ def test_gazebos_topic_and_inspect() -> None:
         ("<axis>0 0 0</axis>", "length 0"),
     ],
 )
-def test_what_is_wrong_is_said(block: str, said: str) -> None:
+def test_invalid_values_are_reported(block: str, said: str) -> None:
     with pytest.raises(simkit.LoadError, match=said):
         simkit.load(world(sensor("sonar", f"<sonar>{block}</sonar>")))
 

@@ -1,4 +1,4 @@
-"""Pictures drawn beside the physics: the same bits, in order, whatever happens while they are on their way."""
+"""Images drawn on the render thread: the same bits in the same order, whatever happens before they are finished."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def camera(more: str = "", width: int = 48, height: int = 32) -> str:
 
 
 def two_cameras(latency: str = "") -> str:
-    """A turning body with two noisy cameras of different rates and an IMU, a wall, and a ball that falls past."""
+    """Return a world with a rotating body, a wall and a falling ball; the body has two noisy cameras and an IMU."""
     sensors = (
         sensor("rgbd_camera", camera(noise(0.02)), rate=30, name="a", extra="<topic>a</topic>" + latency)
         + sensor("camera", camera(noise(0.05), width=32), rate=50, name="b", extra="<topic>b/image</topic>")
@@ -244,7 +244,7 @@ def test_messages_stay_after_the_simulation_is_closed() -> None:
     assert np.isfinite(np.asarray(sub.messages[-1].data).view(np.float32)).any()
 
 
-def test_only_so_much_waits() -> None:
+def test_the_number_of_waiting_images_is_limited() -> None:
     gate, count, done = threading.Event(), 40, []
     first = render_thread.submit(gate.wait)
     accepted: list[render_thread.RenderJob] = []
@@ -328,7 +328,7 @@ def test_an_interrupt_while_drawing_waits_for_the_image_and_is_no_render_error()
 @pytest.mark.parametrize(
     "wait", [render_thread.RenderJob.wait, lambda _: render_thread.drain()], ids=["for_one", "for_all"]
 )
-def test_waiting_for_images_is_interrupted_at_once(wait: Callable[[render_thread.RenderJob], None]) -> None:
+def test_an_interrupt_stops_waiting_for_images_at_once(wait: Callable[[render_thread.RenderJob], None]) -> None:
     gate = threading.Event()
 
     def interrupt() -> None:

@@ -82,7 +82,7 @@ def test_a_camera_inside_its_own_body_looks_through_it() -> None:
     np.testing.assert_array_equal(seen[16, 16], (255, 0, 0))
 
 
-def test_a_plane_has_no_other_side_unless_it_is_double_sided() -> None:
+def test_a_plane_is_invisible_from_behind_if_it_is_not_double_sided() -> None:
     floor = "<plane><normal>-1 0 0</normal><size>9 9</size></plane>"
     for normal, in_material, expected in (
         ("-1 0 0", "", (0, 255, 0)),
@@ -227,7 +227,7 @@ def test_shadows_are_drawn_if_quality_and_file_enable_them() -> None:
     assert shadowed("gazebo", box_flags="<cast_shadows>false</cast_shadows>") == 255
 
 
-def test_glass_throws_a_shadow_when_it_is_more_than_half_opaque() -> None:
+def test_glass_casts_a_shadow_if_it_is_more_than_half_opaque() -> None:
     assert shadowed("gazebo", box_flags="<transparency>0.3</transparency>") == pytest.approx(76, abs=2)
     assert shadowed("gazebo", box_flags="<transparency>0.7</transparency>") == 255
 
@@ -238,7 +238,7 @@ def test_shadows_around_the_camera_are_there_in_a_world_of_a_kilometre() -> None
 
 
 @pytest.mark.parametrize("direction", ["0.4 0.3 -0.9", "-0.5 0.4 -0.9", "0.4 0.3 -0.3"])
-def test_sunlit_ground_throws_no_shadow_on_itself(direction: str) -> None:
+def test_sunlit_ground_casts_no_shadow_on_itself(direction: str) -> None:
     floor = visual("floor", "0 0 0 0 0 0", "<plane><normal>0 0 1</normal><size>100 100</size></plane>", "1 1 1 1")
     crate = visual("crate", "0 0 0.5 0 0 0", "<box><size>1 1 1</size></box>", "1 0 0 1")
     sun = DOWN.replace("0 0 -1", direction)
@@ -262,7 +262,9 @@ def test_edges_are_smooth_at_gazebos_quality_where_the_camera_does_not_say_other
     assert counts[0] == counts[2] == 2 < counts[1]
 
 
-def test_the_quality_is_said_once_with_the_renderer_and_what_it_leaves_out(caplog: pytest.LogCaptureFixture) -> None:
+def test_the_quality_and_its_missing_features_are_logged_once_with_the_renderer(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     with caplog.at_level(logging.INFO, "simkit"):
         picture(world(camera() + camera(name="d"), top=scene()))
         picture(world(camera(), top=scene("<quality>gazebo</quality>")))
@@ -272,7 +274,7 @@ def test_the_quality_is_said_once_with_the_renderer_and_what_it_leaves_out(caplo
     assert "quality gazebo, with shadows" in said[1]
 
 
-def test_a_quality_that_there_is_not_is_refused() -> None:
+def test_an_unknown_quality_is_rejected() -> None:
     with pytest.raises(InputError, match="expected one of fast, gazebo, high"):
         simkit.load(world(""), overrides=["scene.quality=best"])
     with pytest.raises(simkit.LoadError, match="fast, gazebo, high"):
@@ -314,7 +316,7 @@ def test_ambient_and_diffuse_colours_count_each_under_their_own_light() -> None:
     assert both == pytest.approx(255 * (0.1 + 0.4), abs=2)
 
 
-def test_a_lamp_on_a_moving_link_lights_what_it_comes_to() -> None:
+def test_a_lamp_on_a_moving_link_lights_the_objects_near_it() -> None:
     body = lamp(1, "0 0 0 0 0 0") + "<inertial><mass>1</mass></inertial>"
     carrier = f'<model name="k"><pose>-40 0 1 0 0 0</pose><link name="l"><gravity>false</gravity>{body}</link></model>'
     with simkit.load(world(camera(), others=carrier + WALL, top=scene(ambient=0.0))) as sim:
