@@ -36,7 +36,7 @@ class Product:
 
 
 class Sample:
-    """Sample of a sensor at one due time, either measured or with the physics state to measure later.
+    """Sample of a sensor at one due time: its readings, or the physics state from which they are computed later.
 
     Attributes:
         index: number of the sample; the first is 1.

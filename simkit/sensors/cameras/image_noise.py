@@ -64,7 +64,7 @@ def _looks_up_words() -> bool:
 
 
 def _look_up(table: npt.NDArray[np.generic], words: npt.NDArray[np.uint16], out: npt.NDArray[np.generic]) -> None:
-    """Set `out[...] = table[words]`; OpenCV 5 and newer do so three times as fast as NumPy."""
+    """Set `out[...] = table[words]`; OpenCV 5 and newer are three times as fast as NumPy."""
     if _looks_up_words():
         import cv2
 

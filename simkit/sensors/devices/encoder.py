@@ -118,7 +118,7 @@ class Encoder(Sensor):
         self._velocity_noise = self._make_noise([options.velocity_noise] * width, "velocity")
         self._history: CountHistory | None = None
         if options.from_counts:
-            # registered last, so that the noise has advanced to a sample before its position is read
+            # registered after the noise, because a sample's noise must be known before the sample's position is read
             self._history = self._register_noise(CountHistory(self, round(options.window * 1e9)))
 
     def bind(self, compiled: Compiled) -> None:

@@ -1,4 +1,4 @@
-"""Inertial measurement unit: `imu` sensors and their messages, alone or in a batch, with the same bits."""
+"""Inertial measurement unit: `imu` sensors and their messages; a batch gives the same bits as single sensors."""
 
 from __future__ import annotations
 

@@ -169,7 +169,7 @@ class FanDirections:
         half = np.where(over_pole, np.pi, np.arcsin(np.minimum(side, 1.0)) + 1e-6)
         middle = np.arctan2(centres[:, 1], centres[:, 0])
         low, high = float(azimuths[0]), float(azimuths[-1])
-        # the azimuths may start anywhere and cover more than one turn
+        # the first azimuth may have any value, and the azimuths may cover more than one turn
         turns = np.arange(np.floor((low - 2 * np.pi) / (2 * np.pi)), np.ceil((high + 2 * np.pi) / (2 * np.pi)) + 1)
         begin = (middle - half)[:, None] + turns * (2 * np.pi)
         end = begin + 2 * half[:, None]

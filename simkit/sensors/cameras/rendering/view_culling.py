@@ -41,7 +41,7 @@ class Bounds:
             view: frustum of the view.
         """
         normals, distances = _planes(view)
-        # few NumPy calls, because after drawing an image the processor's cache no longer contains Python's code
+        # few NumPy calls, because each is slow after drawing: the processor's cache no longer contains Python's code
         rotated = normals @ rotation.T
         beyond = self.centres @ rotated.T - (distances + rotated @ position)
         found: list[int] = np.flatnonzero((beyond > self.radii[:, None]).any(axis=1)).tolist()
