@@ -1,8 +1,8 @@
-"""Gazebo's Python modules on top of simkit: systems and scripts import `gz.sim`, `gz.math`, `sdformat`, … from here.
+"""Replacement of Gazebo's Python modules `gz.sim`, `gz.math`, `sdformat`, … for systems and scripts that run in simkit.
 
-The input is an import of one of Gazebo's modules, in any version and spelling. The result is the module of simkit with
-the same names. A real installation of Gazebo has priority unless `shadow` is set. A world's `PythonSystemLoader` needs
-no further setup. A script begins with:
+An import of a Gazebo module, in any version and spelling, returns simkit's module with the same classes and functions.
+If Gazebo itself is installed, its modules are imported instead, except with `shadow`. Systems that a world loads with
+`PythonSystemLoader` need no further setup. A script begins with:
 
     import simkit.plugins.gz_python
 
@@ -21,13 +21,13 @@ _is_installed = False
 
 
 def install(shadow: bool = False) -> dict[str, str]:
-    """Make `gz.…`, `ignition.…` and `sdformat…` importable from simkit for the rest of the program.
+    """Make `gz.…`, `ignition.…` and `sdformat…` importable until the program ends or calls `uninstall`.
 
     Args:
         shadow: import simkit's modules even if real ones are installed.
 
     Returns:
-        Location of each really installed module by name; these modules have priority unless shadowed.
+        File of each installed module of the real Gazebo, by module name. Without `shadow`, these modules are imported.
     """
     global _is_installed
     found = installed()
@@ -38,7 +38,7 @@ def install(shadow: bool = False) -> dict[str, str]:
 
 
 def uninstall() -> None:
-    """Remove the names again; modules that were imported keep working."""
+    """Stop replacing Gazebo's modules; modules that a program has already imported keep working."""
     global _is_installed
     if _is_installed:
         import_hook.leave()

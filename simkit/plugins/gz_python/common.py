@@ -1,4 +1,4 @@
-"""gz-common's Python: only its verbosity, which sets the level of simkit's log."""
+"""Replacement of gz-common's Python module: only the verbosity, which sets the level of simkit's log."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["set_verbosity", "verbosity"]
 
 
 def set_verbosity(level: int) -> None:
-    """Set the verbosity: 0 for critical errors only, 1 errors, 2 warnings, 3 messages, 4 everything."""
+    """Set the verbosity: 0 logs critical errors only, 1 also errors, 2 also warnings, 3 also messages, 4 everything."""
     global _level
     _level = max(0, min(4, int(level)))
     logging.getLogger("simkit").setLevel(_LEVELS[_level])

@@ -1,8 +1,8 @@
 """Import hook that maps Gazebo's module names, in every version and spelling, to modules of simkit.
 
-All versions and both spellings have one implementation: `gz.sim8`, `gz.sim` and `ignition.gazebo6` are
-`simkit.plugins.gz_python.sim`. The names can be imported only between `enter` and `leave`, or after `install`. A really
-installed module has priority unless it is to be shadowed.
+All versions and both spellings have one implementation: `gz.sim8`, `gz.sim` and `ignition.gazebo6` all import
+`simkit.plugins.gz_python.sim`. Gazebo's names can be imported only between `enter` and `leave`, or after `install`. If
+the real Gazebo module is installed, it is imported instead, except with `shadow`.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ _FAMILIES: Final = {
     "msgs": "msgs",
     "sdformat": "sdformat",
 }
-"""simkit's module for each module of Gazebo, without its version."""
+"""Name of simkit's module for each module of Gazebo; the version number is removed from Gazebo's name."""
 
 _PACKAGE: Final = __name__.rpartition(".")[0]
 _EXTRA_MODULES: Final = {f"{_PACKAGE}.sim": "simkit.testing.gz_fixture"}
-"""Module of a higher layer whose names are added to a module: `TestFixture` loads worlds."""
+"""Module whose public names are added to a module of this package. `TestFixture` loads worlds, so it cannot be here."""
 
 _UNSUPPORTED_MODULES: Final = frozenset(
     ("gui", "rendering", "sensors", "physics", "launch", "plugin", "utils", "fuel_tools", "common_av")
@@ -43,7 +43,10 @@ _OURS: Final = "__simkit_shim__"
 
 
 def module_behind(name: str) -> str | None:
-    """Return simkit's module for a name of Gazebo: empty for a bare `gz` or `ignition`; None for other names."""
+    """Return the name of simkit's module for a module name of Gazebo.
+
+    The result is empty for the packages `gz` and `ignition`, which have no content, and None for any unknown name.
+    """
     match = _GAZEBO_NAME.match(name)
     if match is None:
         return None
@@ -65,9 +68,9 @@ class ShimFinder(MetaPathFinder):
     """Import finder for Gazebo's modules in this package.
 
     Attributes:
-        modules: modules of simkit under Gazebo's names, importable at the moment or not.
-        imported_names: names of these modules in `sys.modules`.
-        depth: number of calls of `enter` without their `leave`.
+        modules: modules that were imported, by Gazebo's name; kept after `leave` for the next import.
+        imported_names: Gazebo's names of the modules that are in `sys.modules` now.
+        depth: number of calls of `enter` that no call of `leave` has ended yet.
     """
 
     def __init__(self) -> None:
@@ -86,10 +89,11 @@ class ShimFinder(MetaPathFinder):
 
     @staticmethod
     def _raise_if_unsupported(name: str) -> None:
-        """Raise an error for an unsupported module or name of Gazebo; Python's own error would have no advice."""
+        """Raise an ImportError with advice for a module or name of Gazebo that simkit does not support."""
         parent, _, leaf = name.rpartition(".")
         known = module_behind(parent) if parent else None
-        if known and not leaf.startswith("_"):  # `from gz.sim import leaf`: Python's own message has no advice
+        # for `from gz.sim import leaf`, Python's own message would have no advice
+        if known and not leaf.startswith("_"):
             try:
                 getattr(sys.modules.get(parent) or importlib.import_module(known), leaf)
             except AttributeError as error:
@@ -97,12 +101,12 @@ class ShimFinder(MetaPathFinder):
         root, _, rest = name.partition(".")
         if root in ("gz", "ignition") and rest.rstrip("0123456789") in _UNSUPPORTED_MODULES:
             families = sorted(set(_FAMILIES) - {"gazebo"})
-            message = f"simkit has no {name}; of Gazebo's Python it has {', '.join(families)}"
+            message = f"simkit has no {name}; supported modules of Gazebo: {', '.join(families)}"
             raise ModuleNotFoundError(message, name=name)
 
 
 class _ShimLoader(Loader):
-    """Loader that fills a module under Gazebo's name with the names of simkit's module, once for the whole program."""
+    """Loader that copies the names of simkit's module into a new module with Gazebo's name, once per program."""
 
     def __init__(self, target: str, finder: ShimFinder) -> None:
         self._target, self._finder = target, finder
@@ -139,15 +143,15 @@ _finder: Final = ShimFinder()
 
 
 def is_shim(module: types.ModuleType) -> bool:
-    """Check whether a module is simkit's module under Gazebo's name."""
+    """Check whether a module with Gazebo's name comes from simkit."""
     return _OURS in getattr(module, "__dict__", {})
 
 
 def enter(shadow: bool = False) -> None:
-    """Make Gazebo's modules importable; every call needs a matching `leave`.
+    """Make Gazebo's modules importable from simkit; every call needs a matching `leave`.
 
     Args:
-        shadow: give simkit's modules priority over installed ones.
+        shadow: import simkit's modules even if the real ones are installed.
     """
     _finder.depth += 1
     if _finder.depth == 1:
@@ -158,7 +162,7 @@ def enter(shadow: bool = False) -> None:
 
 
 def leave() -> None:
-    """Remove Gazebo's names after the last matching call; modules that were imported keep working."""
+    """End one `enter`; the last one stops the imports. Modules that a program has already imported keep working."""
     _finder.depth -= 1
     if _finder.depth:
         return
@@ -171,7 +175,7 @@ def leave() -> None:
 
 @contextmanager
 def importable(shadow: bool = False) -> Iterator[None]:
-    """Make Gazebo's modules importable within a `with` block; look again for really installed modules."""
+    """Make Gazebo's modules importable within a `with` block, after a new search for real, installed modules."""
     if not _finder.depth and not shadow:
         _forget_shims_of_installed()
     enter(shadow)
@@ -182,7 +186,7 @@ def importable(shadow: bool = False) -> Iterator[None]:
 
 
 def _forget_shims_of_installed() -> None:
-    """Forget simkit's modules for which real ones have been installed in the meantime."""
+    """Remove simkit's modules for which the real modules have been installed in the meantime."""
     modules = _finder.modules
     for root in {name.partition(".")[0] for name in modules}:
         if _real_location(root):
@@ -191,7 +195,7 @@ def _forget_shims_of_installed() -> None:
 
 
 def installed() -> dict[str, str]:
-    """Return the location of each really installed Gazebo module that would be imported, by name."""
+    """Return the file of each installed module of the real Gazebo, by module name."""
     sims, maths = (f"gz.sim{v}" for v in range(7, 12)), (f"gz.math{v}" for v in range(6, 11))
     older = "ignition.gazebo", "ignition.math", "sdformat", *(f"sdformat{v}" for v in range(12, 18))
     names = "gz.sim", *sims, "gz.math", *maths, *older
@@ -199,7 +203,7 @@ def installed() -> dict[str, str]:
 
 
 def _real_location(name: str) -> str:
-    """Return the location of a real module; empty if there is none, or only simkit's."""
+    """Return the file of a module of the real Gazebo; empty if only simkit has a module of this name, or nobody."""
     module = sys.modules.get(name)
     if module is not None:
         return "" if is_shim(module) else str(getattr(module, "__file__", None) or "a package")

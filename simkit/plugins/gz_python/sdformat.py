@@ -1,7 +1,7 @@
-"""The subset of sdformat's types that systems of gz-sim use: `sdformat14`, `sdformat`, … are this module.
+"""Replacement of sdformat's Python module (`sdformat14`, `sdformat`, …) with the types that systems of gz-sim use.
 
-`Element` gives access to a block of a world file. An element or attribute that is read counts as used, as with the
-parameters of any plugin.
+An `Element` reads a block of a world file. As with the parameters of any plugin, a warning lists the elements and
+attributes that the system never reads.
 """
 
 from __future__ import annotations
@@ -68,11 +68,12 @@ class Param:
 
 
 class Element:
-    """Element of a file, or a newly created one.
+    """Element of a file, or an element that a program creates.
 
-    `get_double("force")` reads a child or an attribute, and returns 0 if neither exists. `get_double("force", 2.0)`
-    returns the value or 2.0, and a flag that is true if the value exists. Without a name these methods read the
-    element's own text. A text that is not a number is an error of the file (SK-PARAM-002).
+    `get_double("force")` returns the number of a child or an attribute, or 0 if the element has no `force`.
+    `get_double("force", 2.0)` returns a pair: the number or 2.0, and a flag that is true if the element has a `force`.
+    Without a name, these methods read the element's own text. A text that is not a number is an error of the file
+    (SK-PARAM-002).
     """
 
     def __init__(self, params: Params | None = None, parent: Element | None = None) -> None:
@@ -88,14 +89,14 @@ class Element:
         self._params.name = name
 
     def get_parent(self) -> Element | None:
-        """Return the parent element; None for the top element, whose model is accessible through the entity."""
+        """Return the parent element; None for the `<plugin>` element: its model is available through the entity."""
         return self._parent
 
     def has_element(self, name: str) -> bool:
         return self._params.has(name)
 
     def find_element(self, name: str) -> Element | None:
-        """Return the first child with a name, or None."""
+        """Return the first child with this name, or None."""
         child = self._params.child(name)
         return Element(child, self) if child is not None else None
 
@@ -105,7 +106,7 @@ class Element:
         return self.find_element(children[0].name) if children else None
 
     def get_next_element(self, name: str = "") -> Element | None:
-        """Return the next sibling (with a name, if one is given), or None."""
+        """Return the next sibling, or the next one with this name, or None."""
         if self._parent is None:
             return None
         siblings = self._parent._params.children
@@ -117,13 +118,13 @@ class Element:
         return None
 
     def add_element(self, name: str) -> Element:
-        """Append a new child."""
+        """Append a new, empty child element."""
         child = Params(name, where=self._params.where, diagnostics=self._params.diagnostics)
         self._params.children.append(child)
         return Element(child, self)
 
     def insert_element(self, element: Element, set_parent: bool = False) -> None:
-        """Append an existing element."""
+        """Append an existing element as a child."""
         self._params.children.append(element._params)
         if set_parent:
             element._parent = self
@@ -139,7 +140,7 @@ class Element:
     get_attribute_set = has_attribute
 
     def get_attribute(self, name: str | int) -> Param | None:
-        """Return an attribute by name or by index."""
+        """Return an attribute by name or by index; None if the element does not have it."""
         if isinstance(name, int):
             name = next(iter(list(self._params.attributes)[name : name + 1]), "")
         if name not in self._params.attributes:
@@ -259,18 +260,18 @@ def _escape_xml(text: str) -> str:
 
 
 def _axis_reader(name: str, default: float) -> Callable[[JointAxis], float]:
-    """Create a method that reads a property of an axis, with a default for a joint without axis."""
+    """Create a method that reads a property of an axis; the default is for a `JointAxis` without data."""
     return lambda self: default if self._axis is None else float(getattr(self._axis, name))
 
 
 class JointAxis:
-    """Degree of freedom of a joint; its limits are infinite without limits in the file."""
+    """Degree of freedom of a joint; a limit that the file does not set is infinite."""
 
     def __init__(self, axis: SceneAxis | None = None) -> None:
         self._axis = axis
 
     def xyz(self) -> Vector3d:
-        """Return the unit axis in the joint frame; z if the file has none."""
+        """Return the unit vector of the axis in the joint frame; the z axis if the file has no axis."""
         return Vector3d(0, 0, 1) if self._axis is None else Vector3d(*self._axis.xyz_joint)
 
     lower, upper = _axis_reader("lower", -1e16), _axis_reader("upper", 1e16)

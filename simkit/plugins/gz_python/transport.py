@@ -1,7 +1,8 @@
-"""gz-transport's Python on the topics and services of the simulation; nothing leaves the process.
+"""Replacement of gz-transport's Python module: it uses the simulation's topics and services, and no network.
 
-Messages are published as the ROS types that the bridge between Gazebo and ROS uses. `sim.subscribe` can read the
-messages of a system, and a recording contains them. Callbacks run between two steps, in order.
+Each message is published as the ROS type that the bridge between Gazebo and ROS (`ros_gz_bridge`) uses. Therefore
+`sim.subscribe` receives the messages of a system, and a recording contains them. Callbacks run between two steps, in
+the order of the messages.
 """
 
 from __future__ import annotations
@@ -28,16 +29,16 @@ __all__ = ["AdvertiseMessageOptions", "AdvertiseServiceOptions", "Node", "Publis
 
 _NO_SIMULATION: Final = "this Node has no simulation yet; use it in a hook, or after the TestFixture is created"
 _SCENE_POSES: Final = ("/pose/info", "/dynamic_pose/info")
-"""Topics of gz's scene broadcaster, whose poses have names without the names of their parents."""
+"""Endings of the topics of gz's scene broadcaster, whose poses have plain names instead of scoped names."""
 
 Handler = Callable[[Message], None]
 
 _early_nodes: list[Node] = []
-"""Nodes with publishers or subscriptions older than the first simulation, as scripts may create them first."""
+"""Nodes that a script created before the first simulation, with publishers or subscriptions to be connected."""
 
 
 def adopt_early_nodes(sim: Simulation) -> None:
-    """Connect the publishers and subscriptions of earlier nodes to a new simulation."""
+    """Connect publishers and subscriptions that were created before this simulation."""
     waiting, _early_nodes[:] = list(_early_nodes), []
     for node in waiting:
         node._connect(sim)
@@ -47,7 +48,8 @@ class _Options:
     """Options of gz-transport.
 
     Attributes:
-        msgs_per_sec: no effect, with a warning (SK-PLUGIN-086): every message is delivered.
+        msgs_per_sec: largest rate of messages [Hz]. A value other than 0 has no effect and causes a warning
+            (SK-PLUGIN-086), because every message is delivered.
     """
 
     def __init__(self, *_: object, **__: object) -> None:
@@ -93,7 +95,7 @@ class Publisher(SharedByCopies):
         """Publish a message.
 
         Raises:
-            MessageError: the message has another class than the advertised one.
+            MessageError: the message is not of the advertised class.
         """
         if not isinstance(message, self._kind):
             got = type(message).__name__
@@ -137,7 +139,7 @@ class _Subscription:
     def _connect(self, sim: Simulation, owner: Plugin | None) -> None:
         _warn_of_rate(sim, owner, self.topic, self._options)
         known, twins = sim.topics().get(self.topic), [twin.ros for twin in twins_of(self._kind)]
-        types = sorted(twins, key=lambda ros: ros != known)  # a type that is already published comes first
+        types = sorted(twins, key=lambda ros: ros != known)  # the type that the topic already has is first
         called = self._on_message if owner is None else _call_as_owner(sim, owner, self.topic, self._on_message)
         with sim.communication.bus.owned_by(owner):
             self.listener = sim.communication.bus.listen(self.topic, types, called)
@@ -148,7 +150,7 @@ class Node(SharedByCopies):
 
     def __init__(self, *_: object) -> None:
         found = simulation_context.current_simulation()
-        # a Node made outside of a hook may be older than its simulation, so the simulation is found at its first use
+        # outside of a hook, the Node may be created before its simulation, so its first use finds the simulation
         is_known = found is not None and found[1] is not None
         self._sim = weakref.ref(found[0]) if is_known and found is not None else None
         self._owner = found[1] if is_known and found is not None else None
@@ -157,7 +159,7 @@ class Node(SharedByCopies):
         self._waiting: list[Publisher | _Subscription] = []
 
     def _find_simulation(self) -> Simulation | None:
-        """Return the simulation of the node; None if there is none yet."""
+        """Return the simulation of the node; None if no simulation exists yet."""
         if self._sim is None:
             found = simulation_context.current_simulation()
             if found is None:
@@ -192,7 +194,7 @@ class Node(SharedByCopies):
 
     def advertise(self, topic: str, kind: type[Message], options: _Options | None = None) -> Publisher:
         """Create a publisher of messages of a class on a topic."""
-        twins_of(kind)  # raises an error now, not when a simulation exists
+        twins_of(kind)  # an unsupported class is an error here, not later when the simulation is created
         publisher = Publisher(_absolute_topic(topic), kind, options)
         self._advertised.append(publisher._topic)
         self._open(publisher)
@@ -200,7 +202,7 @@ class Node(SharedByCopies):
 
     def subscribe(self, kind: Any, topic: Any, callback: Handler, options: _Options | None = None) -> bool:
         """Call `callback(message)` between two steps for each message of a class on a topic."""
-        if isinstance(kind, str):  # older bindings had the topic first
+        if isinstance(kind, str):  # in older versions of gz-transport, the topic is the first argument
             kind, topic = topic, kind
         twins_of(kind)
         subscription = _Subscription(_absolute_topic(topic), kind, callback, options)
@@ -223,11 +225,11 @@ class Node(SharedByCopies):
     ) -> tuple[bool, Message]:
         """Call a service of the simulation.
 
-        Supported are the services of a world that take a WorldControl, an EntityFactory, an Entity or a Pose, and
-        return a Boolean.
+        The supported services are those of a world with a request of type WorldControl, EntityFactory, Entity or Pose
+        and a response of type Boolean.
 
         Returns:
-            True if the service exists and accepted the request, and the response.
+            A flag and the response. The flag is true if the service exists and accepted the request.
         """
         return call_service(self._simulation(), _absolute_topic(service), request, response_kind)
 
@@ -248,7 +250,7 @@ class Node(SharedByCopies):
 
 
 def _call_as_owner(sim: Simulation, owner: Plugin | None, topic: str, callback: Handler) -> Handler:
-    """Wrap a plugin's callback so that the plugin owns its errors and everything that it opens."""
+    """Wrap a plugin's callback: its errors count as the plugin's, and topics that it opens belong to the plugin."""
 
     def run(message: Message) -> None:
         previous = simulation_context.enter_simulation(sim, owner)

@@ -143,7 +143,9 @@ def test_a_module_with_a_syntax_error_is_reported(tmp_path: Path) -> None:
 
 def test_an_unsupported_gazebo_module_is_reported_by_name(tmp_path: Path) -> None:
     write(tmp_path, "picture.py", "from gz.rendering8 import Scene\n\ndef get_system(): ...\n")
-    with pytest.raises(simkit.LoadError, match=r"simkit has no gz\.rendering8; of Gazebo's Python it has common, math"):
+    with pytest.raises(
+        simkit.LoadError, match=r"simkit has no gz\.rendering8; supported modules of Gazebo: common, math"
+    ):
         simkit.load(world("picture"), plugin_paths=[tmp_path])
 
 

@@ -1,7 +1,6 @@
-"""gz-math's types in Python: `gz.math7`, `gz.math`, `ignition.math6`, … are this package.
+"""Replacement of gz-math's Python module: `gz.math7`, `gz.math`, `ignition.math6`, … import this package.
 
-The package has numbers, vectors, poses and masses with the names and tolerances of gz-math. It does not depend on a
-simulation.
+Numbers, vectors, poses and masses have the names and tolerances of gz-math. The package does not need a simulation.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ from simkit.plugins.gz_python.math.vectors import (
     Vector4i,
 )
 
-# single-precision names of types that have double precision only
+# gz-math has these names for single precision; here they are the types of double precision
 Quaternionf, Pose3f, Matrix3f, Matrix4f = Quaterniond, Pose3d, Matrix3d, Matrix4d
 MassMatrix3f, Inertialf = MassMatrix3d, Inertiald
 

@@ -9,7 +9,7 @@ from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE
 
 
 class Angle(Scalar):
-    """Angle; `==` and the order are those of gz-math: a difference up to 1e-3 counts as equal."""
+    """Angle; as in gz-math, `==`, `<` and `>` treat angles as equal if they differ by at most 1e-3 rad."""
 
     ZERO = ClassConstant(0.0)
     PI = ClassConstant(math.pi)

@@ -13,7 +13,7 @@ _LARGEST: Final = sys.float_info.max
 
 
 class AxisAlignedBox:
-    """Axis-aligned box: `()` is empty; else two corners, or six numbers."""
+    """Axis-aligned box [m]. `AxisAlignedBox()` is empty; otherwise the arguments are two corners or six numbers."""
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -63,7 +63,7 @@ class AxisAlignedBox:
         return all(a <= d and c <= b for a, b, c, d in zip(self._min, self._max, other._min, other._max, strict=True))
 
     def merge(self, other: AxisAlignedBox) -> None:
-        """Extend the box to contain another box."""
+        """Extend this box so that it contains another box."""
         self._min.min(other._min)
         self._max.max(other._max)
 

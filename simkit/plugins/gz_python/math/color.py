@@ -13,7 +13,7 @@ _KELVIN: Final = 273.15
 
 
 class Color(Components):
-    """Colour with red, green, blue and alpha, clamped to 0 to 1. `c.r()` reads, `c.r(0.5)` sets."""
+    """Colour with red, green, blue and alpha from 0 to 1. `c.r()` returns the red value; `c.r(0.5)` sets it."""
 
     WHITE = ClassConstant(1, 1, 1)
     BLACK = ClassConstant(0, 0, 0)
@@ -69,7 +69,7 @@ class Color(Components):
 
 
 class Temperature(Scalar):
-    """Temperature; 0 K without an argument."""
+    """Temperature [K]; `Temperature()` is 0 K."""
 
     def __init__(self, kelvin: Temperature | float = 0.0) -> None:
         self._value = float(kelvin)

@@ -16,7 +16,7 @@ from simkit.plugins.gz_python.math.value_base import CppArgument, Value, compone
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
 
 TOLERANCE: Final = 10.0
-"""Tolerance in multiples of the rounding error; gz-math's default."""
+"""Default tolerance of gz-math, as a multiple of the rounding error."""
 
 
 def _moment_setter(attribute: str, index: int) -> Callable[[MassMatrix3d, float], bool]:
@@ -28,7 +28,10 @@ def _moment_setter(attribute: str, index: int) -> Callable[[MassMatrix3d, float]
 
 
 class MassMatrix3d(Value):
-    """Mass [kg] and moments of inertia about its centre [kg·m²]: (mass, (ixx, iyy, izz), (ixy, ixz, iyz))."""
+    """Mass [kg] and moments of inertia about the centre of mass [kg·m²].
+
+    The arguments are the mass, (ixx, iyy, izz) and (ixy, ixz, iyz).
+    """
 
     def __init__(self, *values: CppArgument) -> None:
         self._mass, self._diagonal, self._off_diagonal = 0.0, Vector3d(), Vector3d()
@@ -67,12 +70,12 @@ class MassMatrix3d(Value):
     iyz, set_iyz = component_getter("_off_diagonal", 2), _moment_setter("_off_diagonal", 2)
 
     def moi(self) -> Matrix3d:
-        """Return the moments as a matrix."""
+        """Return the moments as a 3 × 3 matrix [kg·m²]."""
         (xx, yy, zz), (xy, xz, yz) = self._diagonal, self._off_diagonal
         return Matrix3d(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 
     def set_moi(self, moi: Matrix3d) -> bool:
-        """Set the moments from a matrix; off-diagonal moments are the mean of both sides."""
+        """Set the moments from a 3 × 3 matrix; ixy is the mean of its elements (0, 1) and (1, 0), and so on."""
         self._diagonal = Vector3d(moi(0, 0), moi(1, 1), moi(2, 2))
         self._off_diagonal = Vector3d(*(0.5 * (moi(i, j) + moi(j, i)) for i, j in ((0, 1), (0, 2), (1, 2))))
         return self.is_valid()
@@ -84,13 +87,21 @@ class MassMatrix3d(Value):
     # ------------------------------------------------------------------ uniform shapes
 
     def set_from_box(self, *values: CppArgument) -> bool:
-        """Set the moments of a box: ([mass], size [m], [rotation]); without a mass the current one."""
+        """Set the moments of a uniform box.
+
+        Args:
+            values: optional mass [kg] (the current mass by default), size [m], optional rotation.
+        """
         mass, (size, *rest) = self._leading_mass(values)
         x, y, z = (v * v for v in components_of(size, 3))
         return self._set_rotated(mass, (mass / 12 * (y + z), mass / 12 * (z + x), mass / 12 * (x + y)), rest)
 
     def set_from_cylinder_z(self, *values: CppArgument) -> bool:
-        """Set the moments of a cylinder along z: (mass, length [m], radius [m], [rotation]), or without the mass."""
+        """Set the moments of a uniform cylinder along z.
+
+        Args:
+            values: optional mass [kg] (the current mass by default), length [m], radius [m], optional rotation.
+        """
         *numbers, last = values
         rest = [last] if callable(getattr(last, "w", None)) else []
         numbers = numbers if rest else [*numbers, last]
@@ -100,7 +111,11 @@ class MassMatrix3d(Value):
         return self._set_rotated(mass, (across, across, mass / 2 * radius**2), rest)
 
     def set_from_sphere(self, *values: float) -> bool:
-        """Set the moments of a sphere: ([mass], radius [m])."""
+        """Set the moments of a uniform sphere.
+
+        Args:
+            values: optional mass [kg] (the current mass by default), radius [m].
+        """
         mass = float(values[0]) if len(values) == 2 else self._mass
         moment = 0.4 * mass * float(values[-1]) ** 2
         return self._set_rotated(mass, (moment, moment, moment), [])
@@ -118,13 +133,13 @@ class MassMatrix3d(Value):
     # ------------------------------------------------------------------ principal axes
 
     def principal_moments(self, tolerance: float = DEFAULT_TOLERANCE) -> Vector3d:
-        """Return the principal moments in increasing order; those of a diagonal matrix in its own order."""
+        """Return the principal moments in increasing order; for a diagonal matrix, the diagonal in its own order."""
         if max(abs(v) for v in self._off_diagonal) <= abs(tolerance):
             return Vector3d(self._diagonal)
         return Vector3d(*np.linalg.eigvalsh(self.moi().array()).tolist())
 
     def principal_axes_offset(self, tolerance: float = DEFAULT_TOLERANCE) -> Quaterniond:
-        """Return the rotation R with R · diag(principal moments) · Rᵀ = moments."""
+        """Return the rotation R of the principal axes: R · diag(principal moments) · Rᵀ is the moment matrix."""
         if max(abs(v) for v in self._off_diagonal) <= abs(tolerance):
             return Quaterniond()
         _, axes = np.linalg.eigh(self.moi().array())
@@ -135,7 +150,16 @@ class MassMatrix3d(Value):
     def equivalent_box(
         self, size: Vector3d | None = None, rotation: Quaterniond | None = None, tolerance: float = DEFAULT_TOLERANCE
     ) -> bool:
-        """Compute size [m] and rotation of the uniform box with these moments, into the arguments."""
+        """Compute the uniform box that has these moments, and write its data into the arguments.
+
+        Args:
+            size: receives the size of the box [m].
+            rotation: receives the rotation of the box.
+            tolerance: largest off-diagonal moment [kg·m²] of a matrix that counts as diagonal.
+
+        Returns:
+            False if no box has these moments.
+        """
         if not self.is_positive(0):
             return False
         x, y, z = self.principal_moments(tolerance)
@@ -152,16 +176,16 @@ class MassMatrix3d(Value):
 
     @staticmethod
     def epsilon(moments: VectorLike, tolerance: float = TOLERANCE) -> float:
-        """Return the rounding error [kg·m²]: `tolerance` times a double's, of half the moments' sum."""
+        """Return the allowed rounding error [kg·m²]: `tolerance` · machine epsilon · half the sum of the moments."""
         largest = 0.5 * sum(components_of(moments, 3))
         return abs(tolerance) * float(np.finfo(float).eps) * largest
 
     def is_positive(self, tolerance: float = TOLERANCE) -> bool:
-        """Check whether the mass and the matrix are positive definite."""
+        """Check whether the mass is positive and the matrix is positive definite."""
         return self._is_definite(tolerance, strict=True)
 
     def is_near_positive(self, tolerance: float = TOLERANCE) -> bool:
-        """Check whether the mass and the matrix are positive semidefinite."""
+        """Check whether the mass is not negative and the matrix is positive semidefinite."""
         return self._is_definite(tolerance, strict=False)
 
     def _is_definite(self, tolerance: float, strict: bool) -> bool:
@@ -172,7 +196,10 @@ class MassMatrix3d(Value):
         return all(m > least if strict else m >= least for m in minors)
 
     def is_valid(self, tolerance: float = TOLERANCE) -> bool:
-        """Check whether a real body can have these moments: semidefinite, no principal moment above the others' sum."""
+        """Check whether a physical body can have these moments.
+
+        The matrix must be positive semidefinite, and each principal moment at most the sum of the two others.
+        """
         return self.is_near_positive(tolerance) and self.valid_moments(self.principal_moments(), tolerance)
 
     @classmethod
@@ -189,7 +216,7 @@ class MassMatrix3d(Value):
 
 
 class Inertiald(Value):
-    """Mass matrix at a pose: the pose of the centre of mass, with the moments in the axes of that pose."""
+    """Mass matrix and pose: the pose is at the centre of mass, and the moments refer to the axes of the pose."""
 
     def __init__(self, *values: CppArgument) -> None:
         self._matrix, self._pose = MassMatrix3d(), Pose3d()
@@ -213,26 +240,26 @@ class Inertiald(Value):
         return self._matrix.is_valid()
 
     def moi(self) -> Matrix3d:
-        """Return the moments about the centre of mass, in the axes in which the pose is given."""
+        """Return the moments about the centre of mass, in the axes of the frame that contains the pose."""
         turn = Matrix3d(self._pose.rot()).array()
         return Matrix3d.of(turn @ self._matrix.moi().array() @ turn.T)
 
     def set_inertial_rotation(self, rotation: Quaterniond) -> bool:
-        """Rotate the axes of the pose, without a change of `moi`."""
+        """Set the rotation of the pose and adapt the mass matrix, so that `moi` stays the same."""
         moi = self.moi().array()
         self._pose = Pose3d(self._pose.pos(), rotation)
         turn = Matrix3d(rotation).array()
         return self._matrix.set_moi(Matrix3d.of(turn.T @ moi @ turn))
 
     def set_mass_matrix_rotation(self, rotation: Quaterniond, tolerance: float = DEFAULT_TOLERANCE) -> bool:
-        """Rotate the principal axes within the axes of the pose, without a change of `moi`."""
+        """Set the rotation of the principal axes in the pose's axes and adapt the pose; `moi` stays the same."""
         moments, offset = self._matrix.principal_moments(tolerance), self._matrix.principal_axes_offset(tolerance)
         self._pose = Pose3d(self._pose.pos(), self._pose.rot() * offset * rotation.inverse())
         turn = Matrix3d(rotation).array()
         return self._matrix.set_moi(Matrix3d.of(turn @ np.diag(list(moments)) @ turn.T))
 
     def __add__(self, other: Inertiald) -> Inertiald:
-        """Return both bodies as one; the pose has the axes in which both poses are given."""
+        """Return the inertia of both bodies together; the axes of the result are those of the common frame."""
         mass = self._matrix.mass() + other._matrix.mass()
         if not mass > 0.0:
             return Inertiald(self)

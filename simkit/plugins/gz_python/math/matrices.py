@@ -1,4 +1,4 @@
-"""Matrices of gz-math; `==` allows a difference of 1e-6 for each element."""
+"""Matrices of gz-math; `==` allows a difference of 1e-6 in each element."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ M = TypeVar("M", bound="_SquareMatrix")
 
 
 class _SquareMatrix(Value):
-    """Base of matrices; `m(row, column)` reads an element.
+    """Base class of the matrices; `m(row, column)` returns an element.
 
     Attributes:
         SIZE: number of rows and columns.
@@ -60,7 +60,7 @@ class _SquareMatrix(Value):
 
 
 class Matrix3d(_SquareMatrix):
-    """3 × 3 matrix: `Matrix3d()`, nine numbers row by row, or a rotation; `m(row, column)` reads an element."""
+    """3 × 3 matrix from no argument (zeros), nine numbers row by row, or a rotation; `m(row, column)` is an element."""
 
     SIZE = 3
     IDENTITY = ClassConstant(1, 0, 0, 0, 1, 0, 0, 0, 1)
@@ -92,7 +92,7 @@ class Matrix3d(_SquareMatrix):
             self._m[self._index(int(values[0]), int(values[1]))] = values[2]
 
     def set_axes(self, x: VectorLike, y: VectorLike, z: VectorLike) -> None:
-        """Set one axis for each column."""
+        """Set the three columns of the matrix."""
         for column, axis in enumerate((x, y, z)):
             self.set_col(column, axis)
 
@@ -131,7 +131,7 @@ class Matrix3d(_SquareMatrix):
 
 
 class Matrix4d(_SquareMatrix):
-    """4 × 4 matrix, usually a homogeneous transform: no value, 16 numbers, a rotation or a pose."""
+    """4 × 4 matrix, usually a homogeneous transform; from no argument (zeros), 16 numbers, a rotation or a pose."""
 
     SIZE = 4
     IDENTITY = ClassConstant(*np.eye(4).reshape(16).tolist())

@@ -1,4 +1,4 @@
-"""Errors for names of Gazebo's Python that simkit does not have, with a replacement."""
+"""Errors for names of Gazebo's Python modules that simkit does not have; the message suggests a replacement."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ PAGE: Final = "docs/gazebo_python.md lists the supported names"
 
 
 def missing_name_error(owner: str, name: str, offered: Iterable[str]) -> AttributeError:
-    """Make the error for a name that an owner (`gz.sim`, `Link`, …) does not have.
+    """Create the error for a name that a module or class of Gazebo has, but simkit does not have.
 
     Args:
-        owner: module or class, by Gazebo's name.
+        owner: Gazebo's name of the module or class, such as `gz.sim` or `Link`.
         name: missing name.
-        offered: public names of the owner, for a suggestion.
+        offered: public names of the module or class in simkit, for a suggestion.
     """
     if name.startswith("__"):
         return AttributeError(f"{owner!r} has no attribute {name!r}", name=name)
@@ -31,5 +31,5 @@ def missing_name_error(owner: str, name: str, offered: Iterable[str]) -> Attribu
 
 @cache
 def _replacements() -> Mapping[str, Mapping[str, str]]:
-    """Read the replacement of each missing name, by owner."""
+    """Read the replacement of each missing name, by module or class."""
     return tomllib.loads(Path(__file__).with_name("missing_names.toml").read_text(encoding="utf-8"))

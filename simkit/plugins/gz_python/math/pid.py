@@ -25,9 +25,10 @@ def _setter(attribute: str) -> Callable[[PID, float], None]:
 
 
 class PID:
-    """gz-math's controller of an error measured − desired: `cmd = offset − p·e − ∫i·e − d·e'`.
+    """PID controller of gz-math: `cmd = offset − p·e − ∫i·e − d·e'` for the error e = measured − desired.
 
-    The integral part and the output are clamped if the upper bound is not below the lower one.
+    The integral part and the output each have two bounds. A pair of bounds has no effect if the upper bound is below
+    the lower bound.
     """
 
     def __init__(
@@ -57,14 +58,14 @@ class PID:
         _cmdMin: float = 0.0,  # noqa: N803
         _cmdOffset: float = 0.0,  # noqa: N803
     ) -> None:
-        """Set gains and bounds, and reset the controller."""
+        """Set the gains and bounds, and reset the controller."""
         self._p, self._i, self._d = float(_p), float(_i), float(_d)
         self._i_max, self._i_min = float(_imax), float(_imin)
         self._cmd_max, self._cmd_min, self._offset = float(_cmdMax), float(_cmdMin), float(_cmdOffset)
         self.reset()
 
     def reset(self) -> None:
-        """Reset errors and command to 0."""
+        """Set the errors and the command to 0."""
         self._last = self._error = self._integral = self._rate = self._cmd = 0.0
 
     def update(self, error: float, *rate_and_time: CppArgument) -> float:
@@ -72,7 +73,8 @@ class PID:
 
         Args:
             error: measured − desired.
-            rate_and_time: optional rate of the error [1/s], then the time since the last call, a `timedelta` or [s].
+            rate_and_time: optional rate of change of the error [1/s], then the time since the last call (a `timedelta`
+                or a number [s]).
         """
         *rates, elapsed = rate_and_time
         dt = elapsed.total_seconds() if isinstance(elapsed, timedelta) else float(elapsed)
@@ -105,12 +107,12 @@ class PID:
         self._cmd = float(value)
 
     def errors(self) -> tuple[float, float, float]:
-        """Return the error, its integral part and its rate."""
+        """Return the error, the integral part of the command and the rate of the error."""
         return self._error, self._integral, self._rate
 
 
 class RollingMean:
-    """Mean of the last values."""
+    """Mean of the last values, at most as many as the window size."""
 
     def __init__(self, window_size: int = 10) -> None:
         self._values: deque[float] = deque(maxlen=max(1, int(window_size)))
@@ -119,7 +121,7 @@ class RollingMean:
         self._values.append(float(value))
 
     def mean(self) -> float:
-        """Return the mean; NaN without a value."""
+        """Return the mean; NaN if there is no value."""
         return math.fsum(self._values) / len(self._values) if self._values else math.nan
 
     def count(self) -> int:
@@ -129,7 +131,7 @@ class RollingMean:
         self._values.clear()
 
     def set_window_size(self, size: int) -> None:
-        """Set the size and clear the values, as gz-math does."""
+        """Set the window size and remove all values, as gz-math does."""
         if size > 0:
             self._values = deque(maxlen=int(size))
 

@@ -1,4 +1,4 @@
-"""Poses of gz-math: `a * b` composes the poses, like `a @ b` of simkit's own poses."""
+"""Poses of gz-math; `a * b` composes two poses, as `a @ b` does with simkit's own poses."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from simkit.plugins.gz_python.math.vectors import Vector3d
 class Pose3d(Value):
     """Position [m] and rotation.
 
-    `Pose3d()`, `(x, y, z, roll, pitch, yaw)`, `(x, y, z, qw, qx, qy, qz)`, `(position, rotation)` or `(pose)`. `pos()`
-    and `rot()` return the pose's own objects, so a change of them changes the pose.
+    The arguments are `()`, `(x, y, z, roll, pitch, yaw)`, `(x, y, z, qw, qx, qy, qz)`, `(position, rotation)` or
+    `(pose)`. `pos()` and `rot()` return no copies: a change of the returned vector or rotation changes the pose.
     """
 
     ZERO = ClassConstant()
@@ -33,7 +33,7 @@ class Pose3d(Value):
             self.set(*values)
 
     def set(self, *values: CppArgument) -> None:
-        """Set six numbers, or a position and either a rotation or roll, pitch, yaw."""
+        """Set the pose from x, y, z, roll, pitch, yaw, or from a position and a rotation."""
         if len(values) == 6:
             self._p.set(*values[:3])
             self._q.set_from_euler(*values[3:])
@@ -77,14 +77,14 @@ class Pose3d(Value):
         return self._assign(self * other)
 
     def __add__(self, other: Pose3d) -> Pose3d:
-        """Return `b * a`, gz-math's older composition, which gz-math 8 has removed."""
+        """Return `other * self`, as gz-math up to version 7 does; gz-math 8 has no `+` for poses."""
         return Pose3d(self.coord_position_add(other), self.coord_rotation_add(other.rot()))
 
     def __iadd__(self, other: Pose3d) -> Pose3d:
         return self._assign(self + other)
 
     def __sub__(self, other: Pose3d) -> Pose3d:
-        """Return `b⁻¹ * a`: this pose relative to the other pose."""
+        """Return `other⁻¹ * self`: this pose relative to the other pose."""
         return Pose3d(self.coord_position_sub(other), self.coord_rotation_sub(other.rot()))
 
     def __isub__(self, other: Pose3d) -> Pose3d:
@@ -98,7 +98,7 @@ class Pose3d(Value):
         return self
 
     def coord_position_add(self, other: CppArgument) -> Vector3d:
-        """Transform a point to the parent frame of this pose; for a pose, return the position of `other * self`."""
+        """Transform a point from this pose's frame to its parent frame; for a pose, return `(other * self).pos()`."""
         if callable(getattr(other, "pos", None)):
             moved: Vector3d = other.rot().rotate_vector(self._p) + other.pos()
             return moved
@@ -116,7 +116,7 @@ class Pose3d(Value):
         return found.normalized()
 
     def coord_pose_solve(self, other: Pose3d) -> Pose3d:
-        """Return gz-math's solution a of `other = self + a`; exact if both rotations have the same axis."""
+        """Return gz-math's solution a of `other = self + a`, which is exact if both rotations have the same axis."""
         rotation: Quaterniond = self._q.inverse() * other.rot()
         return Pose3d(other.pos() - rotation.rotate_vector(self._p), rotation)
 

@@ -21,7 +21,7 @@ _NEARLY_ONE_AXIS: Final = 1e-3
 
 
 class RotationMatrix(Protocol):
-    """Rotation matrix with callable element access: `Matrix3d`, or a similar type of another library."""
+    """Rotation matrix with the elements `m(row, column)`: a `Matrix3d`, or a similar type of another library."""
 
     def __call__(self, row: int, column: int) -> float: ...
 
@@ -29,8 +29,8 @@ class RotationMatrix(Protocol):
 class Quaterniond(Components):
     """Rotation as a quaternion.
 
-    `Quaterniond()`, `(w, x, y, z)`, `(roll, pitch, yaw)`, `(axis, angle)`, `(rpy vector)`, `(rotation matrix)` or
-    `(quaternion)`.
+    The arguments are `()`, `(w, x, y, z)`, `(roll, pitch, yaw)`, `(axis, angle)`, `(rpy vector)`, `(rotation matrix)`
+    or `(quaternion)`.
     """
 
     IDENTITY = ClassConstant()
@@ -103,7 +103,10 @@ class Quaterniond(Components):
         return found
 
     def euler(self) -> Vector3d:
-        """Return roll, pitch, yaw [rad]; yaw is 0 at a pitch of ±π/2, where only the sum of roll and yaw is defined."""
+        """Return roll, pitch, yaw [rad].
+
+        At a pitch of ±π/2 only the sum or difference of roll and yaw is defined; yaw is then 0.
+        """
         w, x, y, z = self.normalized()._v
         ww, xx, yy, zz = w * w, x * x, y * y, z * z
         sine = -2.0 * (x * z - w * y) / (ww + xx + yy + zz)
@@ -124,7 +127,7 @@ class Quaterniond(Components):
         return float(self.euler().z())
 
     def axis_angle(self) -> tuple[Vector3d, float]:
-        """Return the unit axis and the angle [rad]; x and 0 for the identity."""
+        """Return the unit axis and the angle [rad]; the x axis and 0 for the identity."""
         w, x, y, z = self._v
         square = x * x + y * y + z * z
         if square <= DEFAULT_TOLERANCE**2:
@@ -149,7 +152,7 @@ class Quaterniond(Components):
         self._v = [(m[k][j] - m[j][k]) * s, *vector]
 
     def set_from_2_axes(self, first: VectorLike, second: VectorLike) -> None:
-        """Set the shortest rotation from the direction of the first vector to that of the second."""
+        """Set the smallest rotation that turns the first vector into the direction of the second vector."""
         a, b = Vector3d(first).normalized(), Vector3d(second).normalized()
         cosine = a.dot(b)
         if cosine < -1.0 + DEFAULT_TOLERANCE:
@@ -186,7 +189,7 @@ class Quaterniond(Components):
         return found
 
     def log(self) -> Quaterniond:
-        """Return the logarithm of a unit quaternion: half its rotation vector, w = 0."""
+        """Return the logarithm of a unit quaternion: w = 0, and half the rotation vector as x, y, z."""
         w, x, y, z = self._v
         scale = 1.0
         if abs(w) < 1.0:
@@ -196,7 +199,7 @@ class Quaterniond(Components):
         return Quaterniond(0.0, x * scale, y * scale, z * scale)
 
     def exp(self) -> Quaterniond:
-        """Return the inverse of `log`."""
+        """Return the exponential of a quaternion with w = 0, the inverse of `log`."""
         _, x, y, z = self._v
         angle = math.sqrt(x * x + y * y + z * z)
         sine = math.sin(angle)
@@ -204,7 +207,7 @@ class Quaterniond(Components):
         return Quaterniond(math.cos(angle), x * scale, y * scale, z * scale)
 
     def scale(self, factor: float) -> None:
-        """Multiply the angle by a factor, about the same axis."""
+        """Multiply the rotation angle by a factor; the axis stays the same."""
         axis, angle = self.axis_angle()
         self.set_from_axis_angle(axis, angle * factor)
 
@@ -257,7 +260,7 @@ class Quaterniond(Components):
     def squad(
         t: float, first: Quaterniond, a: Quaterniond, b: Quaterniond, second: Quaterniond, shortest_path: bool = False
     ) -> Quaterniond:
-        """Interpolate along a spline through the two rotations with the control rotations a and b."""
+        """Interpolate between the first and the second rotation along a spline with the control rotations a and b."""
         outer = Quaterniond.slerp(t, first, second, shortest_path)
         return Quaterniond.slerp(2.0 * t * (1.0 - t), outer, Quaterniond.slerp(t, a, b))
 
@@ -297,7 +300,7 @@ class Quaterniond(Components):
         return all(map(math.isfinite, self._v))
 
     def correct(self) -> None:
-        """Replace a rotation with a NaN or infinite component by the identity."""
+        """Set the identity if a component is NaN or infinite."""
         if not self.is_finite():
             self._v = [1.0, 0.0, 0.0, 0.0]
 

@@ -1,4 +1,4 @@
-"""Plain functions of gz-math on numbers."""
+"""Functions of gz-math for numbers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 DEFAULT_TOLERANCE: Final = 1e-6
-"""Largest difference of two numbers that gz-math calls equal."""
+"""Largest difference of two numbers that gz-math treats as equal."""
 
 
 def clamp(value: float, minimum: float, maximum: float) -> float:
@@ -104,12 +104,12 @@ def round_up_power_of_two(value: int) -> int:
 
 
 def round_up_multiple(value: int, multiple: int) -> int:
-    """Round up to a multiple; a negative value is rounded towards zero."""
+    """Round up to a multiple of `multiple`; a negative value is rounded towards zero."""
     return value if multiple == 0 else -(-value // multiple) * multiple
 
 
 def parse_int(text: str) -> int:
-    """Parse an integer; 0 for an invalid text, as in gz-math."""
+    """Parse an integer; return 0 for an invalid text, as gz-math does."""
     try:
         return int(text)
     except ValueError:
@@ -117,7 +117,7 @@ def parse_int(text: str) -> int:
 
 
 def parse_float(text: str) -> float:
-    """Parse a number; NaN for an invalid text."""
+    """Parse a number; return NaN for an invalid text."""
     try:
         return float(text)
     except ValueError:
@@ -125,5 +125,5 @@ def parse_float(text: str) -> float:
 
 
 def format_number(value: float) -> str:
-    """Format a number as a C++ stream does: six digits, and zero without a sign."""
+    """Format a number with six digits, as a C++ stream does; zero has no sign."""
     return f"{value:.6g}" if value else "0"

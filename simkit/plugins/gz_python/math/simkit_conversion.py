@@ -11,7 +11,7 @@ from simkit.pose import Pose, Vector
 
 
 class QuaternionLike(Protocol):
-    """Quaternion with the methods of gz-math's quaternions."""
+    """Quaternion with the methods of gz-math's quaternions, from simkit or from another library."""
 
     def w(self) -> float: ...
 
@@ -23,7 +23,7 @@ class QuaternionLike(Protocol):
 
 
 class PoseLike(Protocol):
-    """Pose with the methods of gz-math's poses, of simkit or of another library."""
+    """Pose with the methods of gz-math's poses, from simkit or from another library."""
 
     def pos(self) -> VectorLike: ...
 
@@ -42,7 +42,7 @@ def gz_pose(pose: Pose) -> Pose3d:
 
 
 def three_numbers(value: VectorLike) -> tuple[float, float, float]:
-    """Return the three components of a vector with gz-math's methods, or of a sequence."""
+    """Return the three components of a vector that has gz-math's methods or is a sequence."""
     x, y, z = components_of(value, 3)
     return x, y, z
 
@@ -53,7 +53,7 @@ def gz_vector(values: Sequence[float] | Vector) -> Vector3d:
 
 
 def cross_product(a: Sequence[float], b: Sequence[float]) -> tuple[float, float, float]:
-    """Return the cross product in plain numbers, several times faster than NumPy for a single pair."""
+    """Return the cross product of two vectors, without NumPy: several times faster for a single pair."""
     ax, ay, az = a
     bx, by, bz = b
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx

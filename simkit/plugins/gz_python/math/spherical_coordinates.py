@@ -18,7 +18,7 @@ MEAN_EARTH_RADIUS: Final = 6371000.0  # [m], for distances between points
 
 
 class Surface(enum.IntEnum):
-    """Planets."""
+    """Surfaces of the supported planets, or a custom ellipsoid."""
 
     EARTH_WGS84 = 1
     MOON_SCS = 2
@@ -44,8 +44,8 @@ _RADIUS: Final = {Surface.EARTH_WGS84: MEAN_EARTH_RADIUS, Surface.MOON_SCS: 1737
 class SphericalCoordinates(Value):
     """Location of the world's origin on a planet; the heading is the counter-clockwise angle from east to the x axis.
 
-    `()`, `(coordinates)`, `(surface)`, `(surface, equatorial, polar)` [m] or `(surface, latitude, longitude, elevation,
-    heading)` with `Angle`s.
+    The arguments are `()`, `(coordinates)`, `(surface)`, `(surface, equatorial semi-axis, polar semi-axis)` [m] or
+    `(surface, latitude, longitude, elevation, heading)` with `Angle` objects and the elevation [m].
     """
 
     SurfaceType: ClassVar = Surface
@@ -71,7 +71,7 @@ class SphericalCoordinates(Value):
 
     @staticmethod
     def convert(value: CppArgument) -> Any:
-        """Convert a surface to its name, and a name to its surface; an unknown name gives the Earth."""
+        """Convert a surface to its name, or a name to its surface; an unknown name becomes the Earth."""
         if isinstance(value, Surface):
             return value.name
         return Surface.__members__.get(value, Surface.EARTH_WGS84)
@@ -82,7 +82,7 @@ class SphericalCoordinates(Value):
         return self._surface
 
     def set_surface(self, surface: Surface, equatorial: float = 0.0, polar: float = 0.0) -> None:
-        """Set one of the planets, or a custom surface with its semi-axes [m]."""
+        """Set the surface to a planet, or to a custom ellipsoid with the equatorial and polar semi-axes [m]."""
         self._surface = Surface(surface)
         if self._surface in _AXES:
             self._equatorial, self._polar = _AXES[self._surface]
@@ -90,7 +90,7 @@ class SphericalCoordinates(Value):
             self._equatorial, self._polar = float(equatorial), float(polar)
 
     def surface_radius(self) -> float:
-        """Return the mean radius [m], for distances."""
+        """Return the mean radius [m], which `distance_between_points` uses."""
         return _RADIUS.get(self._surface, (2.0 * self._equatorial + self._polar) / 3.0)
 
     def surface_axis_equatorial(self) -> float:
@@ -159,15 +159,19 @@ class SphericalCoordinates(Value):
         return self.position_transform(spherical, Coordinates.SPHERICAL, Coordinates.LOCAL)
 
     def global_from_local_velocity(self, velocity: VectorLike) -> Vector3d:
-        """Convert a velocity in the world to east, north and up [m/s]."""
+        """Convert a velocity from the world's axes to east, north and up [m/s]."""
         return self.velocity_transform(velocity, Coordinates.LOCAL, Coordinates.GLOBAL)
 
     def local_from_global_velocity(self, velocity: VectorLike) -> Vector3d:
-        """Convert a velocity east, north and up [m/s] to one in the world."""
+        """Convert a velocity from east, north and up to the world's axes [m/s]."""
         return self.velocity_transform(velocity, Coordinates.GLOBAL, Coordinates.LOCAL)
 
     def position_transform(self, position: VectorLike, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
-        """Transform between spherical (rad, rad, m), the planet's axes, east-north-up and the world's own axes [m]."""
+        """Convert a position from one coordinate system to another.
+
+        The systems are spherical (latitude [rad], longitude [rad], height [m]), the planet's axes, east-north-up and
+        the world's axes [m].
+        """
         place, point = self._place(), np.array(components_of(position, 3))
         level, start, end = self._level(place), Coordinates(from_type), Coordinates(to_type)
         if start is Coordinates.SPHERICAL:
@@ -183,13 +187,13 @@ class SphericalCoordinates(Value):
         return Vector3d(*point.tolist())
 
     def velocity_transform(self, velocity: VectorLike, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
-        """Transform between the planet's axes, east-north-up and the world's axes [m/s].
+        """Convert a velocity [m/s] between the planet's axes, east-north-up and the world's axes.
 
         Raises:
-            ValueError: one of the two systems is spherical, which has no velocities.
+            ValueError: one of the two coordinate systems is spherical, in which a velocity is not defined.
         """
         if Coordinates.SPHERICAL in (from_type, to_type):
-            raise ValueError("a velocity has no spherical coordinates; use ECEF, GLOBAL or LOCAL")
+            raise ValueError("a velocity is not defined in spherical coordinates; use ECEF, GLOBAL or LOCAL")
         place = self._place()
         axes = {Coordinates.ECEF: np.eye(3), Coordinates.GLOBAL: self._level(place), Coordinates.LOCAL: place.axes}
         turned = axes[Coordinates(to_type)].T @ axes[Coordinates(from_type)]
@@ -202,11 +206,11 @@ class SphericalCoordinates(Value):
 
     @staticmethod
     def distance_WGS84(lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:  # noqa: N802 - gz-math's name
-        """Return the distance along a sphere with the Earth's mean radius [m]."""
+        """Return the distance [m] of two points along a sphere with the Earth's mean radius."""
         return _along_sphere(MEAN_EARTH_RADIUS, lat_a, lon_a, lat_b, lon_b)
 
     def distance_between_points(self, lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:
-        """Return the distance along a sphere with this surface's mean radius [m]."""
+        """Return the distance [m] of two points along a sphere with this surface's mean radius."""
         return _along_sphere(self.surface_radius(), lat_a, lon_a, lat_b, lon_b)
 
     def __eq__(self, other: object) -> bool:
@@ -214,7 +218,7 @@ class SphericalCoordinates(Value):
 
 
 def _along_sphere(radius: float, lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:
-    """Return the distance by the haversine formula."""
+    """Return the distance [m] along a sphere by the haversine formula."""
     across = math.sin((float(lat_b) - float(lat_a)) / 2) ** 2
     along = math.sin((float(lon_b) - float(lon_a)) / 2) ** 2 * math.cos(float(lat_a)) * math.cos(float(lat_b))
     return 2.0 * radius * math.atan2(math.sqrt(across + along), math.sqrt(1.0 - across - along))

@@ -1,4 +1,4 @@
-"""Base classes of gz-math's values: copying, comparison, arithmetic, and constants of their classes."""
+"""Base classes of gz-math's types: copying, comparison, arithmetic, and class constants such as `Vector3d.ZERO`."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ C = TypeVar("C", bound="Components")
 S = TypeVar("S", bound="Scalar")
 
 
-# Argument of a function that C++ overloads; its class tells which overload is meant.
+# Argument of a function that is overloaded in C++; the type of the argument decides which overload is called.
 CppArgument = Any
 
 
 class ClassConstant:
-    """Constant of a class that is an instance of that class, such as `Vector3d.ZERO`; created once for each class.
+    """Class constant that is an instance of its own class, such as `Vector3d.ZERO`; created once for each class.
 
     Args:
-        values: arguments of the instance.
+        values: arguments of the class for this instance.
     """
 
     def __init__(self, *values: float) -> None:
@@ -39,7 +39,7 @@ class ClassConstant:
 
 
 def component_getter(attribute: str, index: int) -> Callable[[object], float]:
-    """Create a method that reads one number of an attribute."""
+    """Create a method that returns one number of a vector attribute."""
 
     def read(self: object) -> float:
         return float(getattr(self, attribute)[index])
@@ -48,7 +48,7 @@ def component_getter(attribute: str, index: int) -> Callable[[object], float]:
 
 
 def component_setter(attribute: str, index: int) -> Callable[[object, float], None]:
-    """Create a method that sets one number of an attribute."""
+    """Create a method that sets one number of a vector attribute."""
 
     def write(self: object, value: float) -> None:
         getattr(self, attribute)[index] = float(value)
@@ -57,7 +57,7 @@ def component_setter(attribute: str, index: int) -> Callable[[object, float], No
 
 
 class Value:
-    """Base of mutable values: equality has a tolerance, so there is no hash."""
+    """Base class of mutable values. They have no hash, because two different values may be equal within a tolerance."""
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -72,7 +72,7 @@ class Value:
 
 
 class HasComponents(Protocol):
-    """Vector of another library with gz-math's methods."""
+    """Vector of another library that has gz-math's methods."""
 
     def x(self) -> float: ...
 
@@ -83,12 +83,12 @@ Operand: TypeAlias = "Components | HasComponents | Sequence[float] | npt.NDArray
 
 
 class Components(Value):
-    """Base of values of a few numbers, with arithmetic by component."""
+    """Base class of values with a few numbers; arithmetic applies to each component."""
 
     _v: list[float]
 
     def _numbers_of(self, other: Operand) -> Iterable[float] | None:
-        """Return the numbers of another operand; None if it is not a valid operand."""
+        """Return the numbers of the right operand; None for an invalid operand."""
         raise NotImplementedError
 
     def _with(self: C, other: Operand, operation: Callable[[float, float], float]) -> C:
@@ -115,12 +115,12 @@ class Components(Value):
 
 
 class Scalar(Value):
-    """Base of values of one number."""
+    """Base class of values with one number."""
 
     _value: float
 
     def _number_of(self: S, other: S | float) -> float:
-        """Return the number of another operand."""
+        """Return the number of the right operand."""
         return float(other)
 
     def __call__(self) -> float:

@@ -1,4 +1,4 @@
-"""Vectors of gz-math. Arithmetic is by component; `==` allows a difference of 1e-3, as in gz-math."""
+"""Vectors of gz-math. Arithmetic applies to each component; as in gz-math, `==` allows a difference of 1e-3."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from simkit.plugins.gz_python.math.value_base import ClassConstant, Components, 
 
 V = TypeVar("V", bound="Vector")
 EQUALITY_TOLERANCE: Final = 1e-3
-"""Largest difference of components of vectors, quaternions and angles that `==` calls equal."""
+"""Largest difference of a component for which `==` of vectors, quaternions and angles is true."""
 
 
 VectorLike: TypeAlias = "Vector | HasComponents | Sequence[float] | npt.NDArray[np.float64]"
@@ -26,7 +26,7 @@ def components_of(value: VectorLike, size: int) -> tuple[float, ...]:
     """Return the components of a vector of this module, of an object with `x()`, `y()`, …, or of a sequence.
 
     Raises:
-        TypeError: the value is none of these, or has another size.
+        TypeError: the value has a different type, or does not have `size` components.
     """
     if isinstance(value, Vector):
         found = tuple(value._v)
@@ -40,7 +40,7 @@ def components_of(value: VectorLike, size: int) -> tuple[float, ...]:
 
 
 class Vector(Components):
-    """Base of vectors of two, three and four numbers.
+    """Base class of the vectors with two, three and four numbers.
 
     Attributes:
         SIZE: number of components.
@@ -81,7 +81,7 @@ class Vector(Components):
         self._component(1, (value,))
 
     def set(self, *values: float) -> None:
-        """Set all components; missing ones become 0."""
+        """Set all components; a missing component becomes 0."""
         padded = [*values, *[0] * (self.SIZE - len(values))]
         self._v[:] = [type(self).NUMBER(v) for v in padded]
 
@@ -134,7 +134,7 @@ class Vector(Components):
         return type(self)(*(-a for a in self._v))
 
     def _assign(self: V, other: V) -> V:
-        """Assign components in place: `+=` also changes the vector for other references, as in C++."""
+        """Assign the components in place: as in C++, `a += b` changes the vector itself and creates no new vector."""
         self._v[:] = other._v
         return self
 
@@ -147,7 +147,7 @@ class Vector(Components):
         return sum(a * b for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
     def abs_dot(self, other: VectorLike) -> float:
-        """Return the sum of the absolute products."""
+        """Return the sum of the absolute values of the products of the components."""
         return sum(abs(a * b) for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
     def squared_length(self) -> float:
@@ -157,11 +157,11 @@ class Vector(Components):
         return math.sqrt(self.squared_length())
 
     def distance(self, *other: VectorLike | float) -> float:
-        """Return the distance to another point, given as a vector or by its components."""
+        """Return the distance to another point; the argument is a vector, or its components as several arguments."""
         return (self - type(self)(*other)).length()
 
     def normalize(self: V) -> V:
-        """Scale the length to 1, unless it is below 1e-6; return a copy of the result."""
+        """Scale this vector to length 1, and return a copy; a vector with a length up to 1e-6 stays the same."""
         length = self.length()
         if length > DEFAULT_TOLERANCE:
             self._assign(self / length)
@@ -185,14 +185,14 @@ class Vector(Components):
         return copy
 
     def max(self, *other: VectorLike) -> float | None:
-        """Return the largest component; with a vector, take the larger one of each pair."""
+        """Return the largest component; with an argument, set each component to the larger one of both vectors."""
         if not other:
             return max(self._v)
         self._v[:] = [max(a, b) for a, b in zip(self._v, components_of(other[0], self.SIZE), strict=True)]
         return None
 
     def min(self, *other: VectorLike) -> float | None:
-        """Return the smallest component; with a vector, take the smaller one of each pair."""
+        """Return the smallest component; with an argument, set each component to the smaller one of both vectors."""
         if not other:
             return min(self._v)
         self._v[:] = [min(a, b) for a, b in zip(self._v, components_of(other[0], self.SIZE), strict=True)]
@@ -256,7 +256,10 @@ class Vector3d(Vector):
         return type(self)(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
 
     def perpendicular(self: V) -> V:
-        """Return a perpendicular vector, not normalised: the product with the x axis, or else with the y axis."""
+        """Return a perpendicular vector: the cross product with the x axis, or with the y axis if that is near zero.
+
+        The length of the result is not 1.
+        """
         found = Vector3d.cross(self, (1.0, 0.0, 0.0))
         return found if found.squared_length() >= DEFAULT_TOLERANCE**2 else Vector3d.cross(self, (0.0, 1.0, 0.0))
 

@@ -1,7 +1,7 @@
-"""The subset of gz.msgs that simkit's topics carry: `from gz.msgs10.twist_pb2 import Twist` and the like.
+"""Replacement of gz.msgs with the messages that simkit's topics support: `from gz.msgs10.twist_pb2 import Twist`.
 
-Messages of gz are Python objects, or text in protobuf's text format. The package converts them to the ROS messages of
-simkit's topics, and back. It does not serialise them as protobuf, and nothing leaves the process.
+A message of gz is a Python object, or text in protobuf's text format. The package converts gz messages to the ROS
+messages of simkit's topics, and back. It has no binary protobuf format, because no message leaves the process.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def _file_of(name: str) -> str:
 
 
 _FILES: Final = {_file_of(name): name for name in MESSAGE_CLASSES if name != "Map"}
-"""Message of each module of gz.msgs."""
+"""Name of the message in each module of gz.msgs, such as `Twist` in `twist_pb2`."""
 
 
 def message_class(name: str) -> type[Message]:
@@ -30,7 +30,7 @@ def message_class(name: str) -> type[Message]:
 
 
 def contents_of(module: str) -> dict[str, object]:
-    """Return the contents of a module such as `twist_pb2`.
+    """Return the names and objects of a module such as `twist_pb2`.
 
     Raises:
         ModuleNotFoundError: simkit does not have this module.
@@ -38,7 +38,8 @@ def contents_of(module: str) -> dict[str, object]:
     name = _FILES.get(module)
     if name is None:
         listed = ", ".join(sorted(_FILES))
-        raise ModuleNotFoundError(f"simkit has no gz.msgs.{module}; it has {listed}", name=f"gz.msgs.{module}")
+        message = f"simkit has no gz.msgs.{module}; supported modules of gz.msgs: {listed}"
+        raise ModuleNotFoundError(message, name=f"gz.msgs.{module}")
     return {name: MESSAGE_CLASSES[name], "__all__": [name]}
 
 

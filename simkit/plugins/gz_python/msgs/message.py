@@ -1,4 +1,4 @@
-"""Messages of gz.msgs with the interface of protobuf's Python classes: all fields, also nested ones, exist at once."""
+"""Messages of gz.msgs with the interface of protobuf's Python classes: a new message already has all its fields."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from simkit.diagnostics import did_you_mean
 
 M = TypeVar("M", bound="Message")
 PLAIN_DEFAULTS: Final[Mapping[str, object]] = {"f": 0.0, "i": 0, "s": "", "b": False, "y": b""}
-"""Default value for each letter of a field's kind: number, integer, text, boolean, bytes."""
+"""Default value of a plain field by the letter of its kind: f number, i integer, s text, b boolean, y bytes."""
 
 
-# Value of a field: a number, a text, bytes, a message, or a `Repeated` of such.
+# Value of a field: a number, a text, bytes, a message, or a `Repeated` with values of one of these types.
 FieldValue = Any
 
 
@@ -40,18 +40,19 @@ class Repeated(list[FieldValue]):
 
 
 class Descriptor(NamedTuple):
-    """Names of a message class, with the interface of protobuf."""
+    """Names of a message class, with the interface of protobuf's descriptors."""
 
     name: str
     full_name: str
 
 
 class Message:
-    """Base of all messages.
+    """Base class of all messages.
 
     Attributes:
         DESCRIPTOR: names of the class.
-        FIELDS: kind of each field: a letter for a plain value or the name of a message, with `[]` for a repeated field.
+        FIELDS: kind of each field: a letter of `PLAIN_DEFAULTS` or the name of a message class, with `[]` at the end
+            for a repeated field.
     """
 
     DESCRIPTOR: ClassVar[Descriptor]
@@ -74,7 +75,7 @@ class Message:
     def _kind_of(cls, name: str) -> str:
         kind = cls.FIELDS.get(name)
         if kind is None:
-            hint = did_you_mean(name, cls.FIELDS) or "fields: " + ", ".join(cls.FIELDS)
+            hint = did_you_mean(name, cls.FIELDS) or f"its fields are {', '.join(cls.FIELDS)}"
             raise AttributeError(f"gz.msgs.{cls.__name__} has no field {name!r}; {hint}")
         return kind
 
@@ -119,7 +120,7 @@ class Message:
         self._values.clear()
 
     def HasField(self, name: str) -> bool:  # noqa: N802
-        """Check whether a nested message was accessed, or a plain field set."""
+        """Check whether a plain field was set, or a nested message or repeated field was read or set."""
         type(self)._kind_of(name)
         return name in self._values
 
@@ -169,7 +170,7 @@ def _format_message(message: Message, indent: str) -> str:
 
 
 def _read_classes(text: str) -> Iterator[type[Message]]:
-    """Create a message class for each line; `gz_messages.txt` describes the format of a line."""
+    """Yield a message class for each line of `gz_messages.txt`; the comment in that file describes the format."""
     for line in text.splitlines():
         if not line.startswith("#"):
             name, *words = line.split()

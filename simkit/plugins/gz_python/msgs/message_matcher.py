@@ -1,6 +1,6 @@
-"""Matching of gz messages against a pattern, with the rules of gz's TriggeredPublisher.
+"""Comparison of gz messages with a pattern, by the rules of gz's TriggeredPublisher.
 
-Numbers are compared like in protobuf's `MessageDifferencer` with a margin. Fields that are not set have their defaults.
+Numbers may differ by a tolerance, as in protobuf's `MessageDifferencer`. A field that is not set has its default.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ TOLERANCE: Final = 1e-8
 _SINGLE_PRECISION_MESSAGES: Final = frozenset(
     ("Float", "Float_V", "Color", "LaserScan", "BatteryState", "FluidPressure", "Actuators")
 )
-"""Messages whose numbers have single precision in gz or on the topic."""
+"""Messages whose numbers have single precision in gz or in the ROS type of the topic."""
 
 
 class MessageMatcher:
@@ -28,11 +28,11 @@ class MessageMatcher:
 
     Args:
         kind: message class.
-        text: complete message, or value of the field, in protobuf's text format.
-        field: path of a field with dots; empty for the complete message. The values of a repeated field must be among
-            those of the message, in any order; another field must be equal.
-        tolerance: largest difference of numbers that are not integers.
-        is_positive: false to invert the pattern.
+        text: expected message, or expected value of the field, in protobuf's text format.
+        field: path of a field, such as `linear.x`; empty to compare the complete message. Of a repeated field, the
+            message must contain every expected value, in any order. Any other field must be equal.
+        tolerance: largest difference of two numbers; integers must be equal.
+        is_positive: false to invert the result.
 
     Raises:
         MessageError: the text does not describe the message or field, or the field does not exist.
@@ -55,7 +55,7 @@ class MessageMatcher:
             self._expected = int(getattr(MESSAGE_CLASSES[self._owner], self._expected, -1))
 
     def meets(self, message: Message) -> bool:
-        """Check whether a message fulfils the pattern."""
+        """Check whether a message matches the pattern."""
         return self._is_same(message) == self._is_positive
 
     def _is_same(self, message: Message) -> bool:
@@ -72,7 +72,7 @@ class MessageMatcher:
 
 
 def _find_field(kind: type[Message], path: Sequence[str]) -> tuple[str, str]:
-    """Return the class that has the last field of a path, and the kind of the field."""
+    """Return the name of the message class that has the last field of a path, and the kind of that field."""
     owner, found = kind.__name__, ""
     for depth, name in enumerate(path):
         fields = MESSAGE_CLASSES[owner].FIELDS
@@ -82,7 +82,7 @@ def _find_field(kind: type[Message], path: Sequence[str]) -> tuple[str, str]:
         found = fields[name]
         if depth < len(path) - 1:
             if found.endswith("[]"):
-                raise MessageError(f"{name!r} of gz.msgs.{owner} is repeated; no path can go through it")
+                raise MessageError(f"{name!r} of gz.msgs.{owner} is repeated; only the last field of a path may be")
             if found in PLAIN_DEFAULTS:
                 raise MessageError(f"{name!r} of gz.msgs.{owner} is a plain value and has no field {path[depth + 1]!r}")
             owner = found
@@ -90,7 +90,7 @@ def _find_field(kind: type[Message], path: Sequence[str]) -> tuple[str, str]:
 
 
 def _values_match(expected: object, found: FieldValue, tolerance: float, single: bool, is_partial: bool) -> bool:
-    """Check whether a value equals the expected one; with `is_partial`, unset expected fields are ignored."""
+    """Check whether a value equals the expected value; `is_partial` compares only the fields set in `expected`."""
     if isinstance(expected, Message):
         single = type(expected).__name__ in _SINGLE_PRECISION_MESSAGES
         names = [name for name, _ in expected.ListFields()] if is_partial else list(expected.FIELDS)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 RosFields: TypeAlias = dict[str, FieldValue]
-"""Fields of a ROS message, for `simkit.msgs.make`."""
+"""Fields of a ROS message by name, as `simkit.msgs.make` expects them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +31,8 @@ class RosTwin:
         ros: name of the ROS type.
         to_ros: function from a gz message to the fields for `simkit.msgs.make`.
         from_ros: function that fills a gz message from a ROS message.
-        is_wrapped: true if the ROS type contains the message and further fields, so that it is not used inside other
-            messages.
+        is_wrapped: true if the ROS type contains the message next to further fields, such as a header. The type is then
+            not used for a gz message inside another message.
     """
 
     ros: str
@@ -45,7 +45,7 @@ class RosTwin:
 
 
 def _twin_by_fields(name: str, ros: str, fields: list[str]) -> RosTwin:
-    """Create the ROS type of a line of the table."""
+    """Create the conversion to a ROS type from the fields in a line of the conversion table."""
     pairs = []
     for field in fields:
         gz_name, _, ros_name = field.replace("<", "=").partition("=")
@@ -77,7 +77,7 @@ def _twin_by_fields(name: str, ros: str, fields: list[str]) -> RosTwin:
 
 @cache
 def _twin_of_field(kind: str) -> RosTwin:
-    """Return the ROS type of a message inside other messages."""
+    """Return the ROS type for a gz message that is a field of another message."""
     return next(twin for twin in _all_twins()[kind] if not twin.is_wrapped)
 
 
@@ -105,7 +105,7 @@ def _value_from_ros(gz: Message, gz_name: str, kind: str, value: FieldValue) -> 
 
 
 def _header_entry(header: Message, key: str) -> str:
-    """Return an entry beside the stamp, such as the name of the frame."""
+    """Return the text of a header entry, such as `frame_id`; empty if the header does not have it."""
     return next((str(entry.value[0]) for entry in header.data if entry.key == key and entry.value), "")
 
 
@@ -120,7 +120,7 @@ def _header_from(gz: Message, ros: Header) -> None:
 
 
 def _quaternion_to(gz: Message) -> RosFields:
-    """Convert a quaternion; zeros, the default of a new message, mean no rotation."""
+    """Convert a quaternion; four zeros, the default of a new gz message, become the identity."""
     values = {axis: getattr(gz, axis) for axis in "xyzw"}
     return values if any(values.values()) else {**values, "w": 1.0}
 
@@ -145,7 +145,7 @@ def _scan_from(gz: Message, ros: LaserScan) -> None:
 
 
 _AXIS: Final = {"position": "position", "velocity": "velocity", "force": "effort"}
-"""Field of a JointState for each field of a joint's axis in gz."""
+"""Field of a ROS JointState for each field of the axis in a gz joint."""
 
 
 def _joints_to(gz: Message) -> RosFields:
@@ -233,31 +233,31 @@ def _all_twins() -> dict[str, tuple[RosTwin, ...]]:
 
 
 def twins_of(kind: type[Message]) -> tuple[RosTwin, ...]:
-    """Return the ROS types of a message class.
+    """Return the ROS types to which a gz message class can be converted.
 
     Raises:
-        MessageError: the class has none.
+        MessageError: no ROS type corresponds to the class.
     """
     found = _all_twins().get(kind.__name__)
     if found is None:
         listed = ", ".join(sorted(_all_twins()))
-        raise MessageError(f"gz.msgs.{kind.__name__} has no ROS type for topics; messages with one: {listed}")
+        raise MessageError(f"gz.msgs.{kind.__name__} is not supported on topics; supported messages: {listed}")
     return found
 
 
 def fields_of(message: Message) -> RosFields:
-    """Return the fields of the ROS message that represents a message inside other messages."""
+    """Return the fields of the ROS message for a gz message that is a field of another message."""
     return _twin_of_field(type(message).__name__).to_ros(message)
 
 
 def to_ros(message: Message, ros: str) -> object:
-    """Convert a gz message to a ROS type."""
+    """Convert a gz message to a ROS message of the type `ros`."""
     twin = next(twin for twin in twins_of(type(message)) if twin.ros == ros)
     return msgs.make(ros, **twin.to_ros(message))
 
 
 def from_ros(kind: type[Message], message: object) -> Message:
-    """Convert a ROS message to a gz message; its type must be a ROS type of the message class."""
+    """Convert a ROS message to a gz message; the ROS type must be one of `twins_of(kind)`."""
     name, gz = msgs.type_name(message), MESSAGE_CLASSES[kind.__name__]()
     twin = next(twin for twin in twins_of(kind) if twin.ros == name)
     twin.from_ros(gz, message)
@@ -265,14 +265,15 @@ def from_ros(kind: type[Message], message: object) -> Message:
 
 
 SERVICE_REQUEST_TYPES: Final = ("WorldControl", "EntityFactory", "Entity", "Pose", "Boolean", "Empty")
-"""Message classes that are supported as requests."""
+"""Message classes that a service request may have."""
 
 
 def call_service(sim: Simulation, service: str, request: Message, response_kind: type[Message]) -> tuple[bool, Message]:
-    """Call a service.
+    """Call a service of the simulation with a gz message.
 
     Returns:
-        True if the service exists and accepted the request, and the response; a Boolean response holds the success.
+        A flag and the response. The flag is true if the service exists and accepted the request. A Boolean response is
+        true if the service succeeded.
     """
     response = response_kind()
     if service not in sim.communication.services.names():
@@ -288,10 +289,10 @@ def call_service(sim: Simulation, service: str, request: Message, response_kind:
 
 
 def _request_fields(request: Message) -> RosFields:
-    """Return the fields of the ROS service with the same function.
+    """Return the fields of the corresponding ROS request.
 
     Raises:
-        InputError: simkit has no such service.
+        InputError: no service of simkit accepts this class of messages.
     """
     kind = type(request).__name__
     if kind == "WorldControl":

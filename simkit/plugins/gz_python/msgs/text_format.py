@@ -1,4 +1,4 @@
-"""Protobuf's text format for messages of gz: `linear: {x: 0.2}, header { stamp { sec: 3 } }`."""
+"""Parser of gz messages in protobuf's text format: `linear: {x: 0.2}, header { stamp { sec: 3 } }`."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ _DEEPEST: Final = 50
 
 
 def parse_message(kind: type[Message], text: str) -> Message:
-    """Parse a message; an empty text gives the defaults.
+    """Parse a message; an empty text is a message with all defaults.
 
     Raises:
-        MessageError: the text is invalid, or names a field that the message does not have.
+        MessageError: the text is invalid, or contains a field that the message class does not have.
     """
     reader = _TextReader(text)
     message = MESSAGE_CLASSES[kind.__name__]()
@@ -42,15 +42,14 @@ def parse_message(kind: type[Message], text: str) -> Message:
 
 
 def parse_value(kind: str, text: str) -> object:
-    """Parse the value of one field; the result for a repeated field is a list, of `[…]` or of a single value.
+    """Parse the value of one field; for a repeated field, the text is `[…]` or one value, and the result is a list.
 
     Args:
-        kind: kind as in `Message.FIELDS`: a letter of `PLAIN_DEFAULTS` or a message's name, with `[]` for a repeated
-            field.
-        text: text as after `name:`.
+        kind: kind of the field as in `Message.FIELDS`.
+        text: text that follows `name:` in a message.
 
     Raises:
-        MessageError: the text is not such a value.
+        MessageError: the text is not a value of this kind.
     """
     reader = _TextReader(text)
     values = reader.read_values(kind.removesuffix("[]"), is_repeated=kind.endswith("[]"))
@@ -66,7 +65,7 @@ class _TextReader:
         self._next_token: str | None = None
 
     def _peek(self) -> str:
-        """Return the next token without consuming it; empty at the end."""
+        """Return the next token without consuming it; empty at the end of the text."""
         if self._next_token is None:
             between = _BETWEEN.match(self._text, self._position)
             start = between.end() if between else self._position
@@ -93,7 +92,7 @@ class _TextReader:
             raise MessageError(f"found {_shorten(self._peek())} after the value; expected one value")
 
     def read_fields(self, message: Message, end: str) -> None:
-        """Read fields up to the token `end`."""
+        """Read the fields up to the token `end` into the message."""
         self._depth += 1
         if self._depth > _DEEPEST:
             raise MessageError(f"the text has more than {_DEEPEST} nested levels")
@@ -110,7 +109,7 @@ class _TextReader:
         self._depth -= 1
 
     def read_values(self, kind: str, *, is_repeated: bool) -> list[object]:
-        """Read one value, or the values of a list."""
+        """Read one value, or all values of a list `[…]`."""
         if not (is_repeated and self._skip("[")):
             return [self._read_value(kind)]
         values: list[object] = []
@@ -159,7 +158,7 @@ def _set_field(message: Message, name: str, value: object, *, is_repeated: bool)
 
 
 class _EnumWord(str):
-    """Name of a value of an enumeration."""
+    """Name of an enumeration value, such as `REVOLUTE`."""
 
 
 def _number_of_word(kind: type[Message], word: str) -> int:

@@ -1,8 +1,8 @@
-"""gz-sim's Python interface to a simulation of simkit: `gz.sim8`, `gz.sim`, `ignition.gazebo6`, … are this package.
+"""Replacement of gz-sim's Python module: `gz.sim8`, `gz.sim`, `ignition.gazebo6`, … import this package.
 
-A user's system calls it with entities and components. The calls read the simulation, or give commands that take effect
-before the next step, with the rules of gz-sim's physics system. The package never steps the simulation. `TestFixture`
-and `Server`, which do, are in `simkit.testing.gz_fixture`.
+A user's system reads and sets components of entities. The package reads the simulation, or stores commands that take
+effect before the next step by the rules of gz-sim's physics system. It never steps the simulation: `TestFixture` and
+`Server`, which step it, are in `simkit.testing.gz_fixture`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ __all__ += ["UpdateInfo", "components"]
 
 
 _IN_FIXTURE: Final = ("Server", "ServerConfig", "TestFixture")
-"""Names of `gz.sim` that come from `simkit.testing.gz_fixture`."""
+"""Names of `gz.sim` that are defined in `simkit.testing.gz_fixture`."""
 
 
 def __getattr__(name: str) -> NoReturn:

@@ -1,4 +1,4 @@
-"""Components of gz-sim: the ones that simkit supports by name, and any number of custom ones."""
+"""Components of gz-sim: a fixed set that simkit supports, and custom components that a system registers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from simkit.plugins.not_deep_copied import SharedByCopies
 
 
 class ComponentState(IntEnum):
-    """Kinds of changes of a component; they have no effect in simkit."""
+    """Kinds of changes of a component. They exist for gz-sim's interface and have no effect in simkit."""
 
     NoChange = 0
     PeriodicChange = 1
@@ -31,11 +31,11 @@ class ComponentState(IntEnum):
 
 
 class ComponentProxy(SharedByCopies):
-    """Kind of component.
+    """Kind of component, such as `components.Pose`.
 
     Attributes:
-        name: name in gz-sim.
-        type_id: unique number, the same in every run.
+        name: name in gz-sim, such as `Pose`.
+        type_id: number that only this kind has, the same in every run.
     """
 
     __slots__ = ("name", "type_id")
@@ -62,7 +62,7 @@ def _hash64(text: str) -> int:
 
 
 def register_custom_component(name: str) -> ComponentProxy:
-    """Create a custom kind of component; its data may be anything that can be copied."""
+    """Create a custom kind of component; the data of its components may have any type that can be copied."""
     return ComponentProxy(name)
 
 
@@ -71,7 +71,7 @@ _Reader = Callable[[EntityView, EntityRecord], object]
 
 
 def _kind_reader(kinds: str, read: _Reader) -> _Reader:
-    """Create a reader for entities of some kinds, given with spaces between them."""
+    """Create a reader that returns None for entities of other kinds; `kinds` is separated by spaces."""
     return lambda ecm, record: read(ecm, record) if record.kind in kinds.split() else None
 
 
@@ -79,7 +79,7 @@ _HANDLES: Final = {"model": _Model, "link": _Link, "joint": _Joint, "sensor": _S
 
 
 def _handle_reader(kind: str, method: Callable[[Any, EntityView], object]) -> _Reader:
-    """Create a reader that calls a method of the handle."""
+    """Create a reader that calls a method of the entity's handle, such as `Link.world_linear_velocity`."""
     return _kind_reader(kind, lambda ecm, record: method(_HANDLES[kind](record.entity), ecm))
 
 
@@ -154,7 +154,7 @@ _ENABLING_COMPONENTS: Final = {
     "JointVelocity": "velocity",
     "JointTransmittedWrench": "wrench",
 }
-"""Reading that the creation of a component enables."""
+"""Reading that is enabled when a system creates the component."""
 
 
 def _numbers(data: Iterable[float]) -> tuple[float, ...]:
@@ -170,7 +170,7 @@ _COMMANDS: Final[dict[str, tuple[tuple[str, ...], str, Callable[[Any], Any]]]] =
     "LinearVelocityCmd": (("model", "link"), "linear", three_numbers),
     "AngularVelocityCmd": (("model", "link"), "angular", three_numbers),
 }
-"""Kinds of entities, attribute of the commands, and conversion of the data, by component."""
+"""For each command component: kinds of its entities, attribute of `PhysicsCommands`, and conversion of its data."""
 
 COMPONENT_NAMES: Final = (*_READERS, *_TAG_READERS, *_COMMANDS)
 """Supported components of gz-sim."""
@@ -183,7 +183,7 @@ def _check_component(kind: ComponentProxy) -> ComponentProxy:
 
 
 def read_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> object:
-    """Return the data of a component, a tag itself for a tag, or None if the entity does not have it."""
+    """Return the data of a component, or None if the entity does not have the component; for a tag, the tag itself."""
     proxy = _check_component(kind)
     custom = ecm.custom.get(proxy.name, {})
     if entity in custom:
@@ -200,11 +200,11 @@ def read_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> object
 
 
 def write_component(ecm: EntityView, entity: int, kind: ComponentProxy, *data: Any) -> None:
-    """Set a component, or give a command if the component is a command.
+    """Set a component of an entity; a component such as `JointForceCmd` becomes a command for the next step.
 
     Raises:
         KeyError: the entity does not exist.
-        TypeError: a tag with data, another component without data, or data of a wrong type.
+        TypeError: data for a tag, no data for any other component, or data of a wrong type.
         NotImplementedError: the component is read-only.
     """
     proxy = _check_component(kind)
@@ -221,11 +221,11 @@ def write_component(ecm: EntityView, entity: int, kind: ComponentProxy, *data: A
     elif proxy.name in _COMMANDS:
         kinds, attribute, convert = _COMMANDS[proxy.name]
         if record.kind not in kinds:
-            raise TypeError(f"{proxy.name} is for a {' or a '.join(kinds)}, entity {entity} is a {record.kind}")
+            raise TypeError(f"{proxy.name} is for a {' or a '.join(kinds)}, but entity {entity} is a {record.kind}")
         if not data or data[0] is None:
             raise TypeError(f"{proxy.name} needs data")
         if proxy.name == "WorldPoseCmd":
-            _Model(entity).set_world_pose_cmd(ecm, data[0])  # warns of nested models
+            _Model(entity).set_world_pose_cmd(ecm, data[0])  # with a warning for a nested model
         else:
             getattr(ecm.commands, attribute)[entity] = convert(data[0])
     elif proxy.name in _ENABLING_COMPONENTS:
@@ -242,10 +242,10 @@ def _read_only_error(proxy: ComponentProxy, record: EntityRecord) -> NotImplemen
 
 
 def mark_changed(ecm: EntityView, entity: int, kind: ComponentProxy) -> None:
-    """Mark data as changed in place; nothing else is needed for custom data.
+    """Check that the data of a component may be changed in place; custom data then needs no further work.
 
     Raises:
-        NotImplementedError: the component is read-only, so the change has no effect.
+        NotImplementedError: the component is read-only, so a change in place has no effect.
     """
     proxy, record = _check_component(kind), ecm.record(entity)
     if record is not None and record.kind and proxy.name in _READERS and entity not in ecm.custom.get(proxy.name, {}):
@@ -253,7 +253,7 @@ def mark_changed(ecm: EntityView, entity: int, kind: ComponentProxy) -> None:
 
 
 def remove_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> bool:
-    """Remove a component that was set before; return true if it existed."""
+    """Remove a component that a system has set; return false if no system has set the component."""
     proxy = _check_component(kind)
     if proxy.name in _COMMANDS and getattr(ecm.commands, _COMMANDS[proxy.name][1]).pop(entity, None) is not None:
         return True
@@ -266,23 +266,23 @@ def remove_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> bool
 
 
 class ComponentCursor:
-    """Current entity of an iteration over entities with some components.
+    """Current entity of an iteration over the entities that have certain components.
 
     Attributes:
-        entity: number of the entity.
-        components: data of the components, in the requested order.
+        entity: number of the current entity.
+        components: data of its components, in the requested order.
     """
 
     entity = 0
     components: list[object]
 
     def __iter__(self) -> Iterator[object]:
-        """Iterate for `for entity, (pose, name) in ecm.each([Pose, Name])`."""
+        """Support the loop `for entity, (pose, name) in ecm.each([Pose, Name])`."""
         return iter((self.entity, tuple(self.components)))
 
 
 def each_entity(ecm: EntityView, kinds: list[ComponentProxy]) -> Iterator[ComponentCursor]:
-    """Yield every entity that has all the components, by number; always the same cursor."""
+    """Yield each entity that has all the components, in the order of their numbers; every item is the same cursor."""
     proxies, cursor = [_check_component(kind) for kind in kinds], ComponentCursor()
     for record in list(ecm.sync()):
         found = [read_component(ecm, record.entity, proxy) for proxy in proxies]

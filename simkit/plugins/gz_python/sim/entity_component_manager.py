@@ -1,4 +1,4 @@
-"""Entity component manager: the interface of gz-sim's systems to a simulation."""
+"""Entity component manager: the object through which systems of gz-sim access a simulation."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 class EntityComponentManager(EntityView):
-    """Entities by number and their components, with the interface of gz-sim's Python.
+    """Entities and their components, with the interface of gz-sim's Python class of this name.
 
-    For a simulation it is a view: supported components of gz-sim are read from the simulation, and commands go to it.
-    Without a simulation it holds only custom entities and data.
+    The manager of a simulation reads components from the simulation and sends commands to it. A manager without a
+    simulation only stores custom entities and custom data.
     """
 
     def create_entity(self) -> int:
@@ -33,15 +33,15 @@ class EntityComponentManager(EntityView):
         return len(self.sync().records)
 
     def parent_entity(self, entity: int) -> int:
-        """Return the parent; 0 for the world and for entities without a parent."""
+        """Return the number of the parent entity; 0 for the world and for entities without a parent."""
         record = self.record(entity)
         return record.parent if record is not None else 0
 
     def set_parent_entity(self, child: int, parent: int) -> bool:
-        """Set the parent of a custom entity.
+        """Set the parent of a custom entity; return false if one of the two entities does not exist.
 
         Raises:
-            NotImplementedError: the child comes from the world file.
+            NotImplementedError: the child is described in the world file.
         """
         record = self.record(child)
         if record is None or (parent and self.record(parent) is None):
@@ -57,7 +57,7 @@ class EntityComponentManager(EntityView):
         """Return the data of a component; None if the entity does not have it."""
         return components.read_component(self, entity, kind)
 
-    component_data = component  # its name in later versions
+    component_data = component  # later versions of gz-sim use this name
 
     def create_component(self, entity: int, kind: components.ComponentProxy, *data: object) -> None:
         """Set a component of an entity, or replace its data."""
@@ -66,7 +66,7 @@ class EntityComponentManager(EntityView):
     def set_component_data(
         self, entity: int, kind: components.ComponentProxy, data: object, compare: bool = True
     ) -> bool:
-        """Replace the data of a component; return false if it is unchanged and `compare` is set."""
+        """Set the data of a component; return false, with `compare`, if the component already has this data."""
         if compare and self.component(entity, kind) == data:
             return False
         self.create_component(entity, kind, data)
@@ -76,23 +76,23 @@ class EntityComponentManager(EntityView):
         return self.component(entity, kind) is not None
 
     def remove_component(self, entity: int, kind: components.ComponentProxy) -> bool:
-        """Remove a component that was set before; return true if it existed."""
+        """Remove a component that a system has set; return false if no system has set the component."""
         return components.remove_component(self, entity, kind)
 
     def set_changed(self, entity: int, kind: components.ComponentProxy, state: object = None) -> None:
-        """Mark the data of a component as changed in place.
+        """Tell the manager that the data of a component was changed in place.
 
         Raises:
-            NotImplementedError: the component is read-only, and keeps its value.
+            NotImplementedError: the component is read-only, so a change in place has no effect.
         """
         components.mark_changed(self, entity, kind)
 
     def each(self, kinds: Iterable[components.ComponentProxy]) -> Iterator[components.ComponentCursor]:
-        """Yield entities with all the components, as one cursor with `.entity` and `.components`."""
+        """Yield a cursor with `.entity` and `.components` for each entity that has all the components."""
         return components.each_entity(self, list(kinds))
 
     def each_data(self, *kinds: components.ComponentProxy) -> list[tuple[object, ...]]:
-        """Return the same as a list, as in later versions: (entity, data, data, …)."""
+        """Return (entity, data, data, …) for each entity with all the components, as later versions of gz-sim do."""
         return [(item.entity, *item.components) for item in self.each(kinds)]
 
     def __getattr__(self, name: str) -> NoReturn:
@@ -103,7 +103,7 @@ _managers: weakref.WeakKeyDictionary[Simulation, EntityComponentManager] = weakr
 
 
 def manager_of(sim: Simulation) -> EntityComponentManager:
-    """Return the manager of a simulation; every simulation has one."""
+    """Return the manager of a simulation; the first call creates it."""
     found = _managers.get(sim)
     if found is None:
         found = _managers[sim] = EntityComponentManager(sim)

@@ -1,4 +1,4 @@
-"""Base of the handles of gz-sim: the number of an entity, with readings through a manager."""
+"""Base class of gz-sim's handles: a handle stores the number of an entity and reads its data through a manager."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ class EntityHandle:
         return self._entity
 
     def reset_entity(self, new_entity: int) -> None:
-        """Change the entity of the handle."""
+        """Set the number of the entity to which the handle refers."""
         self._entity = int(new_entity)
 
     def valid(self, ecm: EntityView) -> bool:
-        """Check whether the entity exists and has this kind."""
+        """Check whether the entity exists and is of the kind `KIND`."""
         return self._record(ecm) is not None
 
     def name(self, ecm: EntityView) -> str | None:
-        """Return the plain name of the entity; None if it does not exist."""
+        """Return the plain name of the entity; None if the entity does not exist."""
         record = ecm.record(self._entity)
         return record.name if record is not None else None
 
@@ -47,7 +47,7 @@ class EntityHandle:
         return ecm.handle(self._entity, self.KIND)
 
     def _scene(self, ecm: EntityView) -> SceneObject:
-        """Return the scene object of the entity; None if it does not exist."""
+        """Return the scene object of the entity; None if the entity does not exist."""
         record = self._record(ecm)
         return record.scene if record is not None else None
 
@@ -56,7 +56,7 @@ class EntityHandle:
         return record.parent if record is not None else None
 
     def _enable(self, ecm: EntityView, reading: str, enable: bool) -> None:
-        """Enable or disable a reading, if the entity exists."""
+        """Enable or disable a reading such as "velocity", if the entity exists."""
         if self.valid(ecm):
             ecm.enable(self._entity, reading, enable)
 
@@ -88,7 +88,7 @@ CountChildren = Callable[[EntityHandle, EntityView], int]
 
 
 def child_methods(kind: str) -> tuple[ListChildren, FindChild, CountChildren]:
-    """Create the methods for children of a kind: their list, the child with a name (0 for none), their number."""
+    """Create three methods for the children of a kind: list, child by name (0 if there is none), and number."""
 
     def children(self: EntityHandle, ecm: EntityView) -> list[int]:
         return ecm.sync().below(self._entity, kind)

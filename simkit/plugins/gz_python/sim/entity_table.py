@@ -1,7 +1,8 @@
-"""Entities: integers for everything in a simulation, the same from the load to the end of the run.
+"""Table of entities: each world, model, link, … has a number, which stays the same until the end of the run.
 
-The world is 1, as in gz-sim, its wind 2 and its default level 3. The next numbers follow gz-sim's order of creation:
-models with their links (visuals, collisions, lights, sensors), nested models, joints (sensors); actors; lights.
+As in gz-sim, the world is 1, its wind 2 and its default level 3. The next numbers follow gz-sim's order of creation:
+first the models, then the actors, then the lights of the world. Within a model the order is: the model, its links (each
+with its visuals, collisions, lights and sensors), its nested models, its joints (each with its sensors).
 """
 
 from __future__ import annotations
@@ -13,31 +14,31 @@ from typing import Any, Final
 from simkit.scene import SceneLink, SceneModel, SceneWorld
 
 K_NULL_ENTITY: Final = 0
-"""Number for no entity; the name is gz-sim's."""
+"""Number that means "no entity"; the constant has gz-sim's name."""
 
 WORLD_ENTITY: Final = 1
 FIRST_ENTITY: Final = 4
-"""Number of the first entity after the world's own."""
+"""Number of the first entity after world, wind and level."""
 
 
-# simkit's handle of a model, link, joint, light, sensor, ...: of the class that is simulated under a kind.
+# simkit's handle for the kind of the entity: a Model, Link, Joint, Light, Sensor, ...
 Handle = Any
-# The scene's dataclass of the kind: a SceneModel, SceneLink, SceneJoint, ...
+# The scene's object for the kind of the entity: a SceneModel, SceneLink, SceneJoint, ...
 SceneObject = Any
 
 
 @dataclass(slots=True)
 class EntityRecord:
-    """Record of one entity.
+    """Data of one entity.
 
     Attributes:
-        entity: number.
+        entity: number of the entity.
         kind: world, model, link, joint, visual, collision, light, sensor or actor; empty for a custom entity.
         name: plain name.
-        scene: object of the scene.
-        parent: parent entity; 0 for the world.
-        children: children in the order of their creation.
-        handle: simkit's handle, after the first access.
+        scene: scene object of the entity; None for a custom entity.
+        parent: number of the parent entity; 0 for the world.
+        children: numbers of the children, in the order of their creation.
+        handle: simkit's handle of the entity; None before the first access.
     """
 
     entity: int
@@ -50,11 +51,11 @@ class EntityRecord:
 
 
 Key = tuple[str, int]
-"""Kind and identity of a scene object; the owner of the key keeps the scene object alive."""
+"""Kind and `id()` of a scene object. `numbers` also stores the object, so that no other object gets the same `id()`."""
 
 
 class EntityTable:
-    """Numbers for the entities of a structure; an entity keeps its number as long as it exists."""
+    """Table of a simulation's entities by number; an entity keeps its number as long as it exists."""
 
     def __init__(self) -> None:
         self.records: dict[int, EntityRecord] = {}
@@ -69,7 +70,7 @@ class EntityTable:
         return record
 
     def rebuild(self, world: SceneWorld, models: list[SceneModel]) -> None:
-        """Update the entities to the current structure; custom entities stay."""
+        """Fill the table with the entities of the current world; custom entities stay."""
         own = [record for record in self.records.values() if not record.kind]
         self.records = {WORLD_ENTITY: EntityRecord(WORLD_ENTITY, "world", world.name, world, 0)}
         for entity, kind in ((2, "wind"), (3, "level")):
@@ -112,18 +113,18 @@ class EntityTable:
                 self._add(kind, scene, entity)
 
     def below(self, entity: int, kind: str) -> list[int]:
-        """Return the children of a kind, in order."""
+        """Return the children of a kind, in the order of their creation."""
         record = self.records.get(entity)
         if record is None:
             return []
         return [child for child in record.children if self.records[child].kind == kind]
 
     def named(self, entity: int, kind: str, name: str) -> int:
-        """Return the child with a kind and a name; 0 if there is none."""
+        """Return the child with this kind and plain name; 0 if there is none."""
         return next((child for child in self.below(entity, kind) if self.records[child].name == name), 0)
 
     def link(self, scoped: str) -> EntityRecord | None:
-        """Return the link with a scoped name; None if there is none."""
+        """Return the record of the link with this scoped name; None if there is none."""
         return next((record for record in self if record.kind == "link" and record.scene.scoped == scoped), None)
 
     def __iter__(self) -> Iterator[EntityRecord]:

@@ -1,4 +1,4 @@
-"""View of a simulation as entities by number: their records, simkit's handles, readings and commands."""
+"""Base class of the entity component manager: entities by number, with simkit's handles, readings and commands."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
 
 
 class EntityView(SharedByCopies):
-    """Entities of a simulation by number; without a simulation only custom entities and data.
+    """Entities of a simulation by number; without a simulation, only custom entities and custom data.
 
     Args:
-        sim: simulation to view, or None.
+        sim: simulation that contains the entities, or None.
 
     Attributes:
         table: entities by number.
         commands: commands for the next step.
-        checks: enabled readings: the tick of the activation by (entity, reading).
-        values: values set for actors, by entity and name.
-        custom: data of custom components, by component and entity.
-        hub: state that the systems of the simulation share; None before its creation.
-        warned: warnings that were reported, so that each is reported once.
-        published: function that returns the scoped names of the joints whose state a gz plugin publishes.
+        checks: enabled readings: the tick at which a reading was enabled, by (entity, reading).
+        values: values that a system has set for an actor, by (entity, name of the value).
+        custom: data of custom components, by name of the component and by entity.
+        hub: `SystemHub` of the simulation; None until the first system needs it.
+        warned: cause and scoped name of the warnings that were reported, so that no warning is reported twice.
+        published: function that returns the scoped names of the joints whose states a gz plugin publishes.
     """
 
     def __init__(self, sim: Simulation | None = None) -> None:
@@ -49,10 +49,10 @@ class EntityView(SharedByCopies):
 
     @property
     def simulation(self) -> Simulation:
-        """Simulation of the view.
+        """Simulation that contains the entities.
 
         Raises:
-            RuntimeError: the view has no simulation.
+            RuntimeError: the manager has no simulation.
         """
         sim = self._sim() if self._sim is not None else None
         if sim is None:
@@ -61,11 +61,11 @@ class EntityView(SharedByCopies):
 
     @property
     def is_live(self) -> bool:
-        """True if the view has a simulation."""
+        """True if the manager has a simulation."""
         return self._sim is not None
 
     def sync(self) -> EntityTable:
-        """Update the table of entities and return it."""
+        """Update the table of entities if the world has changed, and return the table."""
         if self._sim is not None:
             sim = self.simulation
             if sim.engine.structure is not self._structure:
@@ -74,12 +74,12 @@ class EntityView(SharedByCopies):
         return self.table
 
     def record(self, entity: int, kind: str = "") -> EntityRecord | None:
-        """Return an entity that exists and has a kind, else None."""
+        """Return the record of an entity; None if the entity does not exist or is of another kind than `kind`."""
         found = self.sync().records.get(entity)
         return found if found is not None and (not kind or found.kind == kind) else None
 
     def handle(self, entity: int, kind: str) -> Handle:
-        """Return the simkit handle of a model, link, joint, light or sensor; None if it is not simulated."""
+        """Return simkit's handle of an entity (model, link, joint, light or sensor); None if it is not simulated."""
         record = self.record(entity, kind)
         if record is None:
             return None
@@ -87,28 +87,26 @@ class EntityView(SharedByCopies):
             record.handle = self.simulation.contents.handles.tables[kind].get(record.scene.scoped)
         return record.handle
 
-    # ------------------------------------------------------------------ readings to be enabled
+    # ------------------------------------------------------------------ readings, which a system must enable
 
     def enable(self, entity: int, reading: str, enable: bool) -> None:
-        """Enable or disable a reading; as in gz-sim it is 0 until the next step."""
+        """Enable or disable a reading. As in gz-sim, an enabled reading has no value before the next step."""
         if not enable:
             self.checks.pop((entity, reading), None)
         else:
             self.checks.setdefault((entity, reading), self.simulation.tick)
 
     def is_enabled(self, entity: int, reading: str) -> bool | None:
-        """Return None for a disabled reading, False until the next step, and then True."""
+        """Return None for a disabled reading, False before the first step after `enable`, and True later."""
         since = self.checks.get((entity, reading))
         if since is None and reading in ("position", "velocity") and entity in self._published_joints():
             since = 0
         return None if since is None else self.simulation.tick != since
 
     def _published_joints(self) -> frozenset[int]:
-        """Return the joints of JointStatePublishers: as in gz-sim their position and velocity are enabled."""
+        """Return the joints of JointStatePublisher plugins; as in gz-sim, their position and velocity are enabled."""
         sim = self.simulation
-        if (
-            sim.tick == 0 or sim.engine.structure is not self._published[0]
-        ):  # plugins may still be added during the load
+        if sim.tick == 0 or sim.engine.structure is not self._published[0]:  # at tick 0, the load may still add plugins
             names = self.published(sim)
             own = (r.entity for r in self.sync() if r.kind == "joint" and r.scene.scoped in names)
             self._published = (sim.engine.structure, frozenset(own))

@@ -1,4 +1,4 @@
-"""Joints with the interface of gz-sim's Python."""
+"""Handle of a joint with the interface of gz-sim's Python class `Joint`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,11 @@ _POSITION, _VELOCITY, _WRENCH = "position", "velocity", "wrench"
 
 
 class Joint(PartOfModel):
-    """Joint of a model. Position, velocity and wrench are None until enabled, and empty until the next step."""
+    """Joint of a model.
+
+    A system must enable the readings position, velocity and wrench. A disabled reading is None; an enabled reading is
+    an empty list before the next step.
+    """
 
     KIND = "joint"
 
@@ -41,7 +45,7 @@ class Joint(PartOfModel):
         return str(getattr(record.scene, which)).removeprefix(scope)
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the pose in the frame of the child link."""
+        """Return the pose of the joint in the frame of the child link."""
         scene = self._scene(ecm)
         if scene is None:
             return None
@@ -51,7 +55,7 @@ class Joint(PartOfModel):
         return gz_pose(child.scene.pose_world.inverse() @ scene.pose_world)
 
     def thread_pitch(self, ecm: EntityView) -> float | None:
-        """Return the pitch of a screw [m per turn]."""
+        """Return the pitch of a screw joint [m per turn]."""
         scene = self._scene(ecm)
         return float(scene.thread_pitch) if scene is not None else None
 
@@ -90,7 +94,10 @@ class Joint(PartOfModel):
         return values
 
     def transmitted_wrench(self, ecm: EntityView) -> list[Message] | None:
-        """Return one `gz.msgs` Wrench: force [N] and torque [N·m] of the parent on the child, in the joint frame."""
+        """Return a list of one `gz.msgs` Wrench, with force [N] and torque [N·m] in the joint frame.
+
+        The parent link exerts them on the child link.
+        """
         is_read, joint = self._reading(ecm, _WRENCH), self._handle(ecm)
         if is_read is None or joint is None:
             return None
@@ -104,41 +111,41 @@ class Joint(PartOfModel):
     # ------------------------------------------------------------------ commands
 
     def set_velocity(self, ecm: EntityView, velocities: Sequence[float]) -> None:
-        """Command velocities [rad/s or m/s] for the end of the next step, within the effort limits.
+        """Command the velocity of each axis [rad/s or m/s] at the end of the next step, within the effort limits.
 
-        As in gz-sim, the joint is then held at rest in every step without a new command. The command has no effect on a
-        joint that has ever received a force.
+        As in gz-sim, later steps without a new command hold the joint at rest. The command has no effect on a joint
+        that has ever received a force.
         """
         if self.valid(ecm):
             ecm.commands.velocity[self._entity] = self._numbers(velocities)
 
     def set_force(self, ecm: EntityView, forces: Sequence[float]) -> None:
-        """Command efforts [N·m or N] for the next step, within the limits."""
+        """Command the effort of each axis [N·m or N] for the next step, within the effort limits."""
         if self.valid(ecm):
             ecm.commands.force[self._entity] = self._numbers(forces)
 
     def reset_position(self, ecm: EntityView, positions: Sequence[float]) -> None:
-        """Set the position [rad or m] once, before the next step."""
+        """Set the position of each axis [rad or m] once, before the next step."""
         if self.valid(ecm):
             ecm.commands.position_reset[self._entity] = self._numbers(positions)
 
     def reset_velocity(self, ecm: EntityView, velocities: Sequence[float]) -> None:
-        """Set the velocity [rad/s or m/s] once, before the next step."""
+        """Set the velocity of each axis [rad/s or m/s] once, before the next step."""
         if self.valid(ecm):
             ecm.commands.velocity_reset[self._entity] = self._numbers(velocities)
 
     def set_position_limits(self, ecm: EntityView, limits: Sequence[HasComponents]) -> None:
-        """Set (lower, upper) [rad or m] for each axis, as `Vector2d`."""
+        """Set the position limits of each axis as `Vector2d` (lower, upper) [rad or m]."""
         self._limit(ecm, "position", limits)
 
-    set_position_imits = set_position_limits  # the spelling of gz-sim 8
+    set_position_imits = set_position_limits  # gz-sim 8 has this spelling
 
     def set_velocity_limits(self, ecm: EntityView, limits: Sequence[HasComponents]) -> None:
-        """Set the velocity limits to the larger magnitude of each pair [rad/s or m/s]."""
+        """Set the velocity limit of each axis to the larger absolute value of its pair [rad/s or m/s]."""
         self._limit(ecm, "velocity", limits)
 
     def set_effort_limits(self, ecm: EntityView, limits: Sequence[HasComponents]) -> None:
-        """Set the effort limits to the larger magnitude of each pair [N·m or N]."""
+        """Set the effort limit of each axis to the larger absolute value of its pair [N·m or N]."""
         self._limit(ecm, "effort", limits)
 
     def _limit(self, ecm: EntityView, what: str, limits: Sequence[HasComponents]) -> None:
@@ -148,8 +155,8 @@ class Joint(PartOfModel):
 
     @staticmethod
     def _numbers(values: Sequence[float]) -> tuple[float, ...]:
-        """Convert values to finite numbers; raise ValueError for NaN or infinite ones."""
-        found = tuple(float(np.asarray(v).item()) for v in values)  # also accepts an array of one number
+        """Convert values to numbers; raise ValueError for a NaN or infinite number."""
+        found = tuple(float(np.asarray(v).item()) for v in values)  # an array of one number is also a valid value
         if not np.isfinite(found).all():
             raise ValueError(f"expected finite numbers for a joint, got {list(found)}")
         return found

@@ -1,4 +1,4 @@
-"""Links with the interface of gz-sim's Python: poses and velocities in world axes, and bounding boxes."""
+"""Handle of a link with the interface of gz-sim's Python class `Link`: poses, velocities and bounding boxes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ _CORNERS: Final = tuple(product((-1.0, 1.0), repeat=3))
 
 
 def link_box(sim: Simulation, scoped: str) -> AxisAlignedBox:
-    """Return the box of a link's collisions in its frame, without planes and height maps; empty without collisions."""
+    """Return the bounding box of a link's collisions in the link frame; empty without collisions.
+
+    Planes and height maps have no bounding box here.
+    """
     import mujoco
 
     unbounded = int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD)
@@ -38,7 +41,7 @@ def link_box(sim: Simulation, scoped: str) -> AxisAlignedBox:
 
 
 def box_at_pose(box: AxisAlignedBox, pose: Pose) -> AxisAlignedBox:
-    """Return the box along the outer axes that contains a box at a pose; it is never smaller than the content."""
+    """Return the axis-aligned box that contains a box at a pose; the content of the box may be smaller."""
     low, high = np.array(list(box.min())), np.array(list(box.max()))
     return _box_around(pose, (low + high) / 2, (high - low) / 2) if (low <= high).all() else AxisAlignedBox()
 
@@ -53,7 +56,11 @@ _VELOCITY, _ACCELERATION, _BOX = "velocity", "acceleration", "box"
 
 
 class Link(PartOfModel):
-    """Link of a model. Velocities and accelerations are None until they are enabled, and 0 until the next step."""
+    """Link of a model; vectors are in world axes.
+
+    A system must enable velocities and accelerations. A disabled reading is None; an enabled reading is 0 before the
+    next step.
+    """
 
     KIND = "link"
     collisions, collision_by_name, collision_count = child_methods("collision")
@@ -62,7 +69,7 @@ class Link(PartOfModel):
     # ------------------------------------------------------------------ description
 
     def is_canonical(self, ecm: EntityView) -> bool:
-        """Check whether the motion of the link is that of its model."""
+        """Check whether this is the canonical link of its model, whose motion is the model's motion."""
         record = self._record(ecm)
         if record is None:
             return False
@@ -76,17 +83,17 @@ class Link(PartOfModel):
     # ------------------------------------------------------------------ pose and motion
 
     def world_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the pose of the link frame; None only if the link does not exist."""
+        """Return the pose of the link frame in the world; None only if the link does not exist."""
         link = self._handle(ecm)
         return gz_pose(link.pose) if link is not None else None
 
     def world_inertial_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the pose of the centre of mass, with the axes of its inertia."""
+        """Return the pose of the centre of mass in the world, with the axes of the moments of inertia."""
         inertial = self.world_inertial(ecm)
         return inertial.pose() if inertial is not None else None
 
     def world_inertial(self, ecm: EntityView) -> Inertiald | None:
-        """Return mass and moments at the centre of mass in the world; the moments are in the link's axes."""
+        """Return mass, moments (in the link's axes) and the world pose of the centre of mass."""
         link = self._handle(ecm)
         if link is None:
             return None
@@ -95,7 +102,7 @@ class Link(PartOfModel):
         return Inertiald(matrix, gz_pose(link.pose) * Pose3d(*own.com, 0, 0, 0))
 
     def world_inertia_matrix(self, ecm: EntityView) -> Matrix3d | None:
-        """Return the moments about the centre of mass, in world axes."""
+        """Return the moments of inertia about the centre of mass [kg·m²], in world axes."""
         inertial = self.world_inertial(ecm)
         return inertial.moi() if inertial is not None else None
 
@@ -106,7 +113,7 @@ class Link(PartOfModel):
         self._enable(ecm, _ACCELERATION, enable)
 
     def world_linear_velocity(self, ecm: EntityView, offset: VectorLike | None = None) -> Vector3d | None:
-        """Return the velocity [m/s] of the origin, or of the point at `offset` [m] in the link frame."""
+        """Return the velocity [m/s] of the link's origin, or of the point at `offset` [m] in the link frame."""
 
         def at_offset(link: RuntimeLink) -> Vector:
             if offset is None:
@@ -121,7 +128,7 @@ class Link(PartOfModel):
         return self._motion(ecm, _VELOCITY, lambda link: link.angular_velocity)
 
     def world_linear_acceleration(self, ecm: EntityView) -> Vector3d | None:
-        """Return the acceleration [m/s²] of the origin; in free fall it is gravity."""
+        """Return the acceleration [m/s²] of the link's origin; in free fall, the result is gravity."""
         return self._motion(ecm, _ACCELERATION, lambda link: link.linear_acceleration)
 
     def world_angular_acceleration(self, ecm: EntityView) -> Vector3d | None:
@@ -129,14 +136,14 @@ class Link(PartOfModel):
         return self._motion(ecm, _ACCELERATION, lambda link: _angular_acceleration(ecm, link))
 
     def _motion(self, ecm: EntityView, what: str, read: Callable[[RuntimeLink], Vector]) -> Vector3d | None:
-        """Return a vector of the link's motion; None while the reading is disabled, 0 until the next step."""
+        """Return a velocity or acceleration; None while disabled, 0 before the first step after `enable`."""
         is_read, link = self._reading(ecm, what), self._handle(ecm)
         if is_read is None or link is None:
             return None
         return gz_vector(read(link)) if is_read else Vector3d()
 
     def world_kinetic_energy(self, ecm: EntityView) -> float | None:
-        """Return the kinetic energy [J]; None until velocities are enabled."""
+        """Return the kinetic energy [J]; None while velocities are disabled."""
         is_read = self._reading(ecm, _VELOCITY)
         inertial = self.world_inertial(ecm)
         if is_read is None or inertial is None:
@@ -153,36 +160,42 @@ class Link(PartOfModel):
         self._enable(ecm, _BOX, enable)
 
     def axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
-        """Return the box of the collisions in the link's axes; None until enabled, empty without collisions."""
+        """Return the bounding box of the collisions in the link frame [m]; None while bounding boxes are disabled."""
         return None if self._reading(ecm, _BOX) is None else self.compute_axis_aligned_box(ecm)
 
     def world_axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
-        """Return the box along the world's axes around the link's box; None until it is enabled."""
+        """Return the box in world axes [m] that contains `axis_aligned_box`; None while bounding boxes are disabled."""
         box = self.axis_aligned_box(ecm)
         return box_at_pose(box, self._handle(ecm).pose) if box is not None else None
 
     def compute_axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
-        """Return the box of the collisions in the link's axes, also if the reading is disabled."""
+        """Return the bounding box of the collisions in the link frame [m], also while bounding boxes are disabled."""
         link = self._handle(ecm)
         return link_box(ecm.simulation, link.scoped) if link is not None else None
 
     # ------------------------------------------------------------------ commands
 
     def set_linear_velocity(self, ecm: EntityView, velocity: VectorLike) -> None:
-        """Set the velocity [m/s] in the link's axes for the start of the next step, for the link's whole free body.
+        """Set the velocity [m/s], in the link's axes, of the link's whole free body at the start of the next step.
 
-        As in gz-sim it is then 0 at the start of every later step without a new command.
+        As in gz-sim, the velocity is set to 0 at the start of every later step without a new command.
         """
         if self.valid(ecm):
             ecm.commands.linear[self._entity] = three_numbers(velocity)
 
     def set_angular_velocity(self, ecm: EntityView, velocity: VectorLike) -> None:
-        """Set the angular velocity [rad/s] in the link's axes in the same way."""
+        """Set the angular velocity [rad/s], in the link's axes, by the same rules as `set_linear_velocity`."""
         if self.valid(ecm):
             ecm.commands.angular[self._entity] = three_numbers(velocity)
 
     def add_world_force(self, ecm: EntityView, force: VectorLike, position: VectorLike | None = None) -> None:
-        """Add a force [N] in world axes for the next step, at the centre of mass or at an offset [m] in link axes."""
+        """Add a force [N], in world axes, for the next step.
+
+        Args:
+            ecm: manager of the simulation.
+            force: force [N], in world axes.
+            position: point of application relative to the centre of mass [m], in link axes; zero by default.
+        """
         link = self._handle(ecm)
         if link is None:
             return
@@ -193,7 +206,7 @@ class Link(PartOfModel):
         ecm.commands.add_wrench(self._entity, components, torque)
 
     def add_link_force(self, ecm: EntityView, force: VectorLike, position: VectorLike | None = None) -> None:
-        """Add a force [N] in link axes for the next step, at the centre of mass or at an offset [m] in link axes."""
+        """Add a force [N], in link axes, for the next step; `position` is the same as in `add_world_force`."""
         link = self._handle(ecm)
         if link is not None:
             self.add_world_force(ecm, link.pose.rotate(three_numbers(force)).tolist(), position)
@@ -201,7 +214,14 @@ class Link(PartOfModel):
     def add_world_wrench(
         self, ecm: EntityView, force: VectorLike, torque: VectorLike, offset: VectorLike | None = None
     ) -> None:
-        """Add force [N] and torque [N·m] in world axes for the next step, at the link's origin or an offset from it."""
+        """Add a force and a torque, in world axes, for the next step.
+
+        Args:
+            ecm: manager of the simulation.
+            force: force [N], in world axes.
+            torque: torque [N·m], in world axes.
+            offset: point of application relative to the link's origin [m], in link axes; zero by default.
+        """
         link = self._handle(ecm)
         if link is None:
             return

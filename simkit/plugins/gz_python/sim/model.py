@@ -1,4 +1,4 @@
-"""Models with the interface of gz-sim's Python."""
+"""Handle of a model with the interface of gz-sim's Python class `Model`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from simkit.plugins.gz_python.sim.entity_view import EntityView
 
 
 class Model(EntityHandle):
-    """Model of the world, or nested model."""
+    """Model of the world, or model nested in another model."""
 
     KIND = "model"
     joints, joint_by_name, joint_count = child_methods("joint")
@@ -32,12 +32,15 @@ class Model(EntityHandle):
         return bool(links) and all(link.enable_wind for link in links)
 
     def source_file_path(self, ecm: EntityView) -> str:
-        """Return the path of the model's file; empty if the model came as a text."""
+        """Return the path of the model's file; empty if the model was loaded from a text."""
         scene = self._scene(ecm)
         return (scene.where.file or "") if scene is not None else ""
 
     def canonical_link(self, ecm: EntityView) -> int:
-        """Return the link whose motion is the model's, also in a nested model; 0 if there is none."""
+        """Return the canonical link, which may be in a nested model; 0 if there is none.
+
+        Its motion is the model's motion.
+        """
         scene = self._scene(ecm)
         link = ecm.sync().link(scene.canonical_link) if scene is not None else None
         return link.entity if link is not None else K_NULL_ENTITY
@@ -45,7 +48,7 @@ class Model(EntityHandle):
     def set_world_pose_cmd(self, ecm: EntityView, pose: PoseLike) -> None:
         """Set the pose of the model in the world before the next step.
 
-        A nested model does not move, as in gz-sim, and a warning reports that.
+        As in gz-sim, the command has no effect on a nested model; a warning reports that.
         """
         record = self._record(ecm)
         if record is None:
@@ -62,7 +65,7 @@ class Model(EntityHandle):
 
 
 class PartOfModel(EntityHandle):
-    """Base of links and joints, which belong to a model and have sensors."""
+    """Base class of `Link` and `Joint`, which belong to a model and may have sensors."""
 
     sensors, sensor_by_name, sensor_count = child_methods("sensor")
 

@@ -1,8 +1,8 @@
-"""Commands of systems to the physics, applied before each step with the rules of gz-sim's physics system.
+"""Commands of gz systems to the physics, applied before each step by the rules of gz-sim's physics system.
 
-Commands to joints and velocities of links remain as zeros: gz-sim clears their values after each step, but does not
-remove the commands. A joint with one velocity command is therefore held at rest from the next step on. A joint with one
-force command ignores velocity commands from then on.
+After each step, gz-sim sets velocity and force commands to zero, but does not remove them; simkit does the same. After
+one velocity command, a joint is therefore held at rest in all later steps. After one force command, a joint ignores all
+velocity commands.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
 Numbers = tuple[float, ...]
 FindHandle = Callable[[int, str], Handle]
-"""Function that returns simkit's handle of an entity of a kind; None if there is none."""
+"""Function that returns simkit's handle of an entity; None if the entity is removed or is not of the given kind."""
 
 
 class PhysicsCommands:
-    """Commands for the next step, by entity.
+    """Commands for the next step, by number of the entity.
 
     Attributes:
-        force, velocity: commands to joints [N·m, N; rad/s, m/s]; zeros after a step.
-        position_reset, velocity_reset: new states of joints, applied once.
-        wrench: force [N] and torque [N·m] on links in world axes, at the link's origin.
+        force, velocity: commanded efforts [N·m or N] and velocities [rad/s or m/s] of joints; set to zero after a step.
+        position_reset, velocity_reset: positions [rad or m] and velocities [rad/s or m/s] of joints to be set once.
+        wrench: force [N] and torque [N·m] on links, in world axes, at the link's origin.
         pose: poses of models in the world.
-        linear, angular: velocities of models [m/s, rad/s] and links in their own axes; zeros after a step.
-        limits: (lower, upper) for each axis of a joint, by entity and quantity.
+        linear, angular: velocities [m/s, rad/s] of models and links, in their own axes; set to zero after a step.
+        limits: (lower, upper) for each axis of a joint, by entity and quantity ("position", "velocity" or "effort").
     """
 
     def __init__(self) -> None:
@@ -54,7 +54,7 @@ class PhysicsCommands:
         return other
 
     def add_wrench(self, entity: int, force: Sequence[float], torque: Sequence[float]) -> None:
-        """Add force and torque on a link for the next step."""
+        """Add a force and a torque to the wrench on a link for the next step."""
         previous = self.wrench.get(entity)
         if previous is None:
             self.wrench[entity] = (tuple(force), tuple(torque))
@@ -65,11 +65,11 @@ class PhysicsCommands:
 
     @property
     def is_empty(self) -> bool:
-        """True without any command."""
+        """True if there are no commands."""
         return not any(vars(self).values())
 
     def carry_out(self, sim: Simulation, handle: FindHandle) -> None:
-        """Carry out all commands; those for an entity that was removed are dropped."""
+        """Apply all commands; commands for a removed entity are ignored."""
         for (entity, quantity), bounds in self.limits.items():
             if joint := handle(entity, "joint"):
                 _set_limit(joint, quantity, bounds)
@@ -93,7 +93,7 @@ class PhysicsCommands:
                 if root is not None:
                     _set_link_velocity(sim, *root, part, velocity)
         for entity, effort in self.force.items():
-            # a zero remains from an earlier command, and must not replace the command of another plugin
+            # zeros remain after an earlier command, and must not replace the command of another plugin
             if any(effort) and (joint := handle(entity, "joint")):
                 joint.set_effort(_first_numbers(effort, joint.dof, 0.0))
         driven = [e for e in self.velocity if e not in self.force and e not in self.velocity_reset]
@@ -103,7 +103,7 @@ class PhysicsCommands:
         self._clear_after_step()
 
     def _clear_after_step(self) -> None:
-        """Set lasting commands to zero and remove the others."""
+        """Set force and velocity commands to zero, and remove all other commands."""
         for one_time in (self.position_reset, self.velocity_reset, self.wrench, self.pose, self.limits):
             one_time.clear()
         for lasting in (self.force, self.velocity, self.linear, self.angular):
@@ -112,7 +112,7 @@ class PhysicsCommands:
 
 
 def _first_numbers(values: Numbers, count: int, default: float | Vector) -> float | Numbers:
-    """Return one value for each degree of freedom; missing values have the default."""
+    """Return the first `count` values; a missing value becomes the default."""
     if len(values) >= count:
         return float(values[0]) if count == 1 else values[:count]
     rest = np.broadcast_to(np.atleast_1d(np.asarray(default, dtype=float)), (count,))
@@ -120,7 +120,7 @@ def _first_numbers(values: Numbers, count: int, default: float | Vector) -> floa
 
 
 def _set_limit(joint: Joint, quantity: str, bounds: tuple[Numbers, ...]) -> None:
-    """Set the limits of a joint from its first axis; simkit's handle has the same limits for all axes."""
+    """Set the limits of a joint to those of its first axis, because simkit has the same limits for all axes."""
     if not bounds:
         return
     lower, upper = bounds[0]
@@ -133,9 +133,9 @@ def _set_limit(joint: Joint, quantity: str, bounds: tuple[Numbers, ...]) -> None
 
 
 def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Link, Pose] | None:
-    """Return the free link that moves with a model or link, and the frame of the commanded velocity.
+    """Return the root link of the free body that contains a model or link, and the frame of its velocity command.
 
-    None if the model or link is not part of a free body.
+    Returns None if the model or link is not part of a free body.
     """
     link, model = handle(entity, "link"), handle(entity, "model")
     if link is not None:
@@ -156,7 +156,7 @@ def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Link, 
 
 
 def _set_link_velocity(sim: Simulation, link: Link, frame: Pose, part: str, velocity: Numbers) -> None:
-    """Set the linear or angular velocity of a free link, and keep the other velocity."""
+    """Set the "linear" or "angular" velocity of a free link; the other velocity stays the same."""
     from simkit.runtime.engine.physics_step import VELOCITY
 
     binding, data = sim.engine.names.link(link.scoped), sim.mj_data
@@ -164,7 +164,7 @@ def _set_link_velocity(sim: Simulation, link: Link, frame: Pose, part: str, velo
     quaternion = data.qpos[start + 3 : start + 7]
     linear = target = frame.rotate(velocity)
     if part == "angular":
-        linear = link.linear_velocity  # of the link's origin, which need not be the origin of the engine's body
+        linear = link.linear_velocity  # at the link's origin, which may differ from the origin of the engine's body
         data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(quaternion), target)
     spin = quat_rotate(quaternion, data.qvel[dof + 3 : dof + 6])
     arm = data.qpos[start : start + 3] - link.pose.position
@@ -173,10 +173,11 @@ def _set_link_velocity(sim: Simulation, link: Link, frame: Pose, part: str, velo
 
 
 def _apply_joint_velocities(sim: Simulation, commands: list[tuple[Joint, Numbers]]) -> None:
-    """Apply efforts, within their limits, that bring joints to velocities in one step, without contacts.
+    """Apply the efforts, within the limits, that bring joints to their commanded velocities v in one step.
 
-    With the acceleration a without these efforts, the effective inertia I and the damping D, which the engine
-    integrates implicitly: τ = (I + step·D) (v − q') / step − I a.
+    The effort is τ = (I + step·D) (v − q') / step − I a. I is the effective inertia, q' the current velocity, and a the
+    acceleration without these efforts. D is the damping, which the engine integrates implicitly. New contacts during
+    the step are not considered.
     """
     import mujoco
 

@@ -1,4 +1,4 @@
-"""Sensors, lights and actors with the interface of gz-sim's Python."""
+"""Handles of sensors, lights and actors with the interface of gz-sim's Python classes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Sensor(EntityHandle):
         return self._parent(ecm)
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the pose in the frame of the parent link or joint."""
+        """Return the pose of the sensor in the frame of the parent link or joint."""
         record = self._record(ecm)
         if record is None:
             return None
@@ -34,30 +34,30 @@ class Sensor(EntityHandle):
         return gz_pose(owner.scene.pose_world.inverse() @ record.scene.pose_world)
 
     def topic(self, ecm: EntityView) -> str | None:
-        """Return the topic of the readings; None if the sensor is not simulated."""
+        """Return the topic on which the readings are published; None if the sensor is not simulated."""
         sensor = self._handle(ecm)
         return str(sensor.topic) if sensor is not None else None
 
 
 class Actor(EntityHandle):
-    """Actor that its script moves. Values that are set here are stored and returned, without any effect."""
+    """Actor, which only its script moves. The methods `set_…` store a value for later calls, but move nothing."""
 
     KIND = "actor"
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the origin of the trajectory, in the world."""
+        """Return the world pose of the trajectory's origin."""
         scene = self._scene(ecm)
         return gz_pose(scene.pose_world) if scene is not None else None
 
     def trajectory_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the stored pose, relative to `pose`; None without one."""
+        """Return the pose from `set_trajectory_pose`, relative to `pose`; None if it was never set."""
         return self._stored(ecm, "trajectory_pose", Pose3d)
 
     def set_trajectory_pose(self, ecm: EntityView, pose: PoseLike) -> None:
         self._store(ecm, "trajectory_pose", gz_pose(simkit_pose(pose)))
 
     def world_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the pose in the world."""
+        """Return the current pose of the actor in the world."""
         model = ecm.simulation.models.get(self.name(ecm) or "")
         return gz_pose(model.pose) if model is not None else None
 
@@ -71,7 +71,7 @@ class Actor(EntityHandle):
         return self._stored(ecm, "animation_time", timedelta)
 
     def set_animation_time(self, ecm: EntityView, time: timedelta | float) -> None:
-        """Store a duration, or an integer of milliseconds as in gz-sim 8."""
+        """Store the time in the animation: a `timedelta`, or a number [ms] as in gz-sim 8."""
         self._store(ecm, "animation_time", time if isinstance(time, timedelta) else timedelta(milliseconds=time))
 
     def bone_transforms(self, ecm: EntityView) -> dict[str, Pose3d] | None:
@@ -93,21 +93,21 @@ class Actor(EntityHandle):
 
 
 class Light(EntityHandle):
-    """Light of the world or on a link."""
+    """Light of the world or of a link."""
 
     KIND = "light"
 
     def parent(self, ecm: EntityView) -> int | None:
-        """Return the world or a link."""
+        """Return the number of the parent, which is the world or a link."""
         return self._parent(ecm)
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
-        """Return the pose in the world, or in the frame of the link that carries the light."""
+        """Return the pose of the light in the frame of its parent: the world or a link."""
         light = self._handle(ecm)
         return gz_pose(light.state.pose) if light is not None else None
 
     def set_pose(self, ecm: EntityView, pose: PoseLike) -> None:
-        """Set the pose in the world, or in the frame of the link that carries the light, at once."""
+        """Set the pose of the light, immediately, in the frame of its parent: the world or a link."""
         light = self._handle(ecm)
         if light is not None:
             carrier = ecm.simulation.link(light.scene.link).pose if light.scene.link else None
@@ -115,7 +115,7 @@ class Light(EntityHandle):
             light.set_pose(carrier @ own if carrier is not None else own)
 
     def type(self, ecm: EntityView) -> str | None:
-        """Return point, directional or spot."""
+        """Return the type of the light: point, directional or spot."""
         return self._read(ecm, "type", str)
 
     def diffuse_color(self, ecm: EntityView) -> Color | None:
@@ -131,11 +131,11 @@ class Light(EntityHandle):
         return self._read(ecm, "intensity", float)
 
     def direction(self, ecm: EntityView) -> Vector3d | None:
-        """Return the unit direction in the light's own frame."""
+        """Return the direction of the light in its own frame, as a unit vector."""
         return self._read(ecm, "direction", gz_vector)
 
     def attenuation_range(self, ecm: EntityView) -> float | None:
-        """Return the range [m]."""
+        """Return the distance [m] beyond which the light has no effect."""
         return self._part(ecm, "attenuation", 0)
 
     def attenuation_constant(self, ecm: EntityView) -> float | None:
@@ -173,7 +173,7 @@ class Light(EntityHandle):
         self._change(ecm, intensity=float(value))
 
     def set_direction(self, ecm: EntityView, direction: VectorLike) -> None:
-        """Set the direction in the light's own frame; the length is ignored, and so is a zero vector."""
+        """Set the direction of the light in its own frame; the vector may have any length except zero."""
         vector = Vector3d(direction)
         light = self._handle(ecm)
         if light is not None and vector.length() > 0.0:
@@ -182,7 +182,7 @@ class Light(EntityHandle):
             self._change(ecm, direction=(x, y, z), direction_world=tuple(turned))
 
     def set_attenuation_range(self, ecm: EntityView, range: float) -> None:
-        """Set the range [m]."""
+        """Set the distance [m] beyond which the light has no effect."""
         self._change_part(ecm, "attenuation", 0, range)
 
     def set_attenuation_constant(self, ecm: EntityView, value: float) -> None:
@@ -193,7 +193,7 @@ class Light(EntityHandle):
         self._change_part(ecm, "attenuation", 2, value)
 
     def set_attenuation_quadratic(self, ecm: EntityView, color: float) -> None:
-        """Set the quadratic attenuation [1/m²]; gz-sim also names this parameter `color`."""
+        """Set the quadratic attenuation [1/m²]; as in gz-sim, the parameter has the misleading name `color`."""
         self._change_part(ecm, "attenuation", 3, color)
 
     def set_spot_inner_angle(self, ecm: EntityView, angle: Angle) -> None:
@@ -208,7 +208,7 @@ class Light(EntityHandle):
     # ------------------------------------------------------------------ helpers
 
     def _read(self, ecm: EntityView, name: str, convert: Callable[[Any], T]) -> T | None:
-        """Return a current property, or the file's one if the light is not simulated."""
+        """Return the current value of a property; the value in the file if the light is not simulated."""
         scene, light = self._scene(ecm), self._handle(ecm)
         return convert(getattr(light.scene if light is not None else scene, name)) if scene is not None else None
 

@@ -1,4 +1,4 @@
-"""Systems of gz in a simulation: the time for their hooks, and the work that is done once for all of them."""
+"""Shared state of the gz systems in a simulation: the time for their hooks, and the application of their commands."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class UpdateInfo:
     """Time of an update.
 
     Attributes:
-        iterations: number of steps, including the step of this update.
+        iterations: number of steps since the start, including the current step.
         paused: true if the physics is paused.
     """
 
@@ -28,7 +28,7 @@ class UpdateInfo:
 
     @property
     def sim_time(self) -> timedelta:
-        """Simulated time at the end of the step, to the microsecond."""
+        """Simulated time at the end of the step, rounded to microseconds."""
         return timedelta(microseconds=self._time_ns / 1000)
 
     @sim_time.setter
@@ -37,7 +37,7 @@ class UpdateInfo:
 
     @property
     def real_time(self) -> timedelta:
-        """Simulated time as well: a dependence on the machine's clock would make runs differ."""
+        """Simulated time, the same as `sim_time`: the time of the machine's clock would make two runs differ."""
         return self.sim_time
 
     @real_time.setter
@@ -46,7 +46,7 @@ class UpdateInfo:
 
     @property
     def dt(self) -> timedelta:
-        """Length of the step; 0 while paused."""
+        """Duration of the step; 0 while the physics is paused."""
         return timedelta(microseconds=self._dt_ns / 1000)
 
     @dt.setter
@@ -66,20 +66,20 @@ def _nanoseconds(value: timedelta) -> int:
 
 
 class EventManager:
-    """Argument of `configure`; gz's binding has no methods on it either."""
+    """Argument of the hook `configure`; as in gz's Python, the class has no methods."""
 
 
 class SystemPlugin(Protocol):
-    """Plugin that represents a system of gz."""
+    """Plugin that calls the hooks of a gz system."""
 
     is_gz_system: bool
 
     def call(self, hook: str, info: UpdateInfo) -> None:
-        """Call a hook of the system, if it has the hook."""
+        """Call a hook of the system, if the system has this hook."""
 
 
 def systems_of(sim: Simulation) -> list[SystemPlugin]:
-    """Return the plugins that represent systems of gz, in order, without disabled ones."""
+    """Return the plugins that call the hooks of gz systems, in the order of their steps, without disabled plugins."""
     plugins: list[Any] = sim.engine.structure.all_plugins()
     return [p for p in plugins if getattr(p, "is_gz_system", False) and not sim.engine.faults.is_disabled(p)]
 
@@ -88,9 +88,9 @@ class SystemHub(SharedByCopies):
     """State that the systems of one simulation share.
 
     Attributes:
-        ecm: entities of the simulation.
-        first: first system, which stores the state of all.
-        last: last system, which applies the commands.
+        ecm: entity component manager of the simulation.
+        first: first system; its plugin stores the shared state in snapshots.
+        last: last system; its plugin applies the commands of all systems.
     """
 
     def __init__(self, sim: Simulation) -> None:
@@ -102,7 +102,7 @@ class SystemHub(SharedByCopies):
         self._info = UpdateInfo(0, sim.engine.clock.time_ns(1), 0, False)
 
     def look(self) -> None:
-        """Update `first` and `last` to the current systems."""
+        """Update `first` and `last` after a system was added, removed or disabled."""
         structure, fault_count = self._sim.engine.structure, len(self._sim.engine.faults.get_state())
         if structure is not self._structure or fault_count != self._fault_count:
             systems = systems_of(self._sim)
@@ -110,7 +110,7 @@ class SystemHub(SharedByCopies):
             self._structure, self._fault_count = structure, fault_count
 
     def info(self, ahead: int) -> UpdateInfo:
-        """Return the time for hooks, one object a step: the next step (`ahead` 1), or the finished one (0)."""
+        """Return the time for the hooks of a step: the next step with `ahead` = 1, the finished step with 0."""
         tick = self._sim.tick + ahead
         info = self._info
         if info.iterations != tick:
@@ -120,13 +120,13 @@ class SystemHub(SharedByCopies):
         return info
 
     def carry_out(self) -> None:
-        """Apply the commands of all systems."""
+        """Apply the commands of all systems to the simulation."""
         if not self.ecm.commands.is_empty:
             self.ecm.commands.carry_out(self._sim, self.ecm.handle)
 
 
 def hub_of(sim: Simulation) -> SystemHub:
-    """Return the hub of a simulation; every simulation has one."""
+    """Return the hub of a simulation; the first call creates it."""
     ecm = manager_of(sim)
     if not isinstance(ecm.hub, SystemHub):
         ecm.hub = SystemHub(sim)
@@ -134,7 +134,7 @@ def hub_of(sim: Simulation) -> SystemHub:
 
 
 def update_paused(sim: Simulation) -> None:
-    """Run one iteration with paused physics."""
+    """Call the update hooks of all systems once while the physics is paused."""
     info = UpdateInfo(sim.time_ns, 0, sim.tick, True)
     for hook in ("pre_update", "update", "post_update"):
         for system in systems_of(sim):

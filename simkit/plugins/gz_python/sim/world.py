@@ -1,4 +1,4 @@
-"""The world with the interface of gz-sim's Python."""
+"""Handle of the world with the interface of gz-sim's Python class `World`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from simkit.scene import SphericalCoordinates as Place
 
 
 class World(EntityHandle):
-    """World of the simulation."""
+    """World of the simulation, with its lights, actors and models."""
 
     KIND = "world"
     lights, light_by_name, light_count = child_methods("light")
@@ -40,11 +40,14 @@ class World(EntityHandle):
         return Atmosphere(air.temperature, air.temperature_gradient, air.pressure)
 
     def spherical_coordinates(self, ecm: EntityView) -> SphericalCoordinates | None:
-        """Return the location of the origin on its planet; None where the file has none."""
+        """Return the planet and location of the world's origin; None if the file has no `<spherical_coordinates>`."""
         return _coordinates(ecm.simulation.control.origin.place) if self.valid(ecm) else None
 
     def set_spherical_coordinates(self, ecm: EntityView, coordinates: SphericalCoordinates) -> None:
-        """Move the origin to another location at once; position and field sensors use it from now on."""
+        """Move the world's origin to another location on the planet, immediately.
+
+        From then on, NavSat sensors and magnetometers use the new location.
+        """
         if not self.valid(ecm):
             return
         site = ecm.simulation.control.origin
@@ -74,13 +77,17 @@ def _coordinates(place: Place | None) -> SphericalCoordinates | None:
 
 
 def world_entity(*values: Any) -> int:
-    """Return the world's entity, for a manager or for an entity and a manager; 0 without a simulation."""
+    """Return the world's entity; 0 without a simulation.
+
+    Args:
+        values: the manager, or an entity (which has no effect) and the manager.
+    """
     ecm = values[-1]
     return WORLD_ENTITY if ecm.record(WORLD_ENTITY, "world") is not None else K_NULL_ENTITY
 
 
 def world_pose(entity: int, ecm: EntityView) -> Pose3d:
-    """Return the pose of any entity in the world; the identity for entities without a pose."""
+    """Return the pose of an entity in the world; the identity for an entity without a pose."""
     record = ecm.record(entity)
     if record is None or not record.kind or record.kind == "world":
         return Pose3d()
