@@ -1,4 +1,4 @@
-"""Gazebo systems listed in a file whose work simkit always does itself."""
+"""Gazebo systems that a file may list although simkit always has their function."""
 
 from __future__ import annotations
 
@@ -26,13 +26,14 @@ _SYSTEMS = {
     "dvl": "DopplerVelocityLogSystem",
 }
 _OF_SENSORS = ("Ray", "GpuRay", "Camera", "DepthCamera", "MultiCamera", "Contact", "ImuSensor", "Sonar")
-"""Plugins of Gazebo Classic that subscribe to their sensor and do nothing, or print: base classes for other plugins."""
+"""Plugins of Gazebo Classic that are base classes for other plugins: they only receive or print sensor readings."""
 
 
 class BuiltInSystem(Plugin):
-    """Reports that a listed system is not needed, because simkit always does its work.
+    """Reports that a system in the file is not needed, because simkit always has its function.
 
-    A sensor of a kind that simkit does not support is reported at the sensor itself.
+    For a sensor system, this is also reported if simkit does not support the kind of sensor; a separate warning names
+    the unsupported sensor.
     """
 
     parent_kind = "any"
@@ -56,4 +57,4 @@ class BuiltInSystem(Plugin):
         params.diagnostics.note("SK-PLUGIN-005", message + (f"; not used: {unused}" if unused else ""), self.where)
 
     def load(self, parent: object, params: Params) -> None:
-        """Do nothing: simkit does the work of this system."""
+        """Do nothing: simkit itself has the function of this system."""

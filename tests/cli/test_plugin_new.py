@@ -164,7 +164,7 @@ def test_no_file_is_replaced_without_force(folder: Path) -> None:
     ("arguments", "said"),
     [
         (["wheel_brake", "--on", "modle"], "did you mean 'model'?"),
-        (["libgazebo_ros_diff_drive.so"], "comes with simkit"),
+        (["libgazebo_ros_diff_drive.so"], "simkit already has a plugin"),
         (["..."], "expected names such as wheel_brake"),
         ([], "SK-PLUGIN-072"),
         (["x", "--from", "y.sdf"], "SK-PLUGIN-072"),

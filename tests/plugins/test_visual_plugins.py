@@ -84,7 +84,7 @@ def test_a_spawned_model_brings_its_visual_plugin(folder: Path) -> None:
 def test_a_visual_plugin_on_another_entity_is_ignored_with_a_warning(folder: Path) -> None:
     found = simkit.check(world(model_with_visual("", on_model=PLUGIN)), plugin_paths=[folder])
     (warning,) = [d for d in found if d.code == "SK-PLUGIN-007"]
-    assert "belongs on a visual, but is on a model" in warning.message
+    assert "it is for a visual, but is attached to a model" in warning.message
 
 
 def test_unread_elements_of_a_visual_plugin_are_reported(folder: Path) -> None:

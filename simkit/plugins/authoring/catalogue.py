@@ -1,4 +1,4 @@
-"""Catalogue of all plugins: their names, and the parameters, topics and services of each."""
+"""Catalogue of all plugins, with the names, parameters, topics and services of each plugin."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ class Entry:
 
     Attributes:
         cls: plugin class.
-        names: spellings that a file may use, except versions, folders and suffixes of libraries.
-        parents: kinds of parents: "world", "model", "visual", "sensor" or "any".
-        origin: origin of the class: "simkit", an entry point, or a file.
+        names: names that a file may use for the plugin; versions and folders of libraries are left out.
+        parents: kinds of entities that the plugin can be attached to: "world", "model", "visual", "sensor" or "any".
+        origin: "simkit", the entry point or the file that the class comes from.
     """
 
     cls: type[Plugin]
@@ -50,7 +50,7 @@ class Entry:
 
     @property
     def source(self) -> str:
-        """File and line of the class; empty without a source."""
+        """File and line of the class; empty if Python cannot find the source."""
         try:
             file, (_, line) = inspect.getsourcefile(self.code), inspect.getsourcelines(self.code)
         except (OSError, TypeError):
@@ -59,12 +59,12 @@ class Entry:
 
     @property
     def code(self) -> Any:
-        """Object that the author wrote: the class, or the object that the class wraps."""
-        return getattr(self.cls, "stands_for", None) or self.cls
+        """Object that the author wrote: the plugin class itself, or the gz system that the class wraps."""
+        return getattr(self.cls, "wrapped_system", None) or self.cls
 
 
 def spellings(name: str) -> tuple[str, ...]:
-    """Return the spellings of a plugin's name: gz's also with Ignition's prefix, a library with `lib` and suffix."""
+    """Return the names that a file may use for a plugin: also with Ignition's prefix, and with `lib` and `.so`."""
     plain = normalise(name)
     if "::" in plain:
         return tuple(dict.fromkeys((plain, plain.replace("gz::sim::", "ignition::gazebo::", 1))))
@@ -75,18 +75,23 @@ def spellings(name: str) -> tuple[str, ...]:
 
 
 def entry_of(cls: type[Plugin], more: Iterable[str] = ()) -> Entry:
-    """Return the catalogue entry of a class; its source is not read."""
+    """Return the catalogue entry of a class without a scan of its source.
+
+    Args:
+        cls: plugin class.
+        more: further names of the plugin.
+    """
     kinds = (cls.parent_kind,) if isinstance(cls.parent_kind, str) else cls.parent_kind
     names = dict.fromkeys(s for name in (*more, *cls.filenames, *cls.names) for s in spellings(name))
     return Entry(cls, tuple(names), tuple(kinds), _origin(cls))
 
 
 def known_plugins(plugin_paths: Sequence[Path] = (), problems: Diagnostics | None = None) -> list[Entry]:
-    """Return every plugin that a file could name, sorted by first name.
+    """Return every plugin that a file can use, sorted by the first name of each.
 
     Args:
         plugin_paths: folders whose modules the user allows; these modules are imported.
-        problems: collector of modules that cannot be imported.
+        problems: receives the errors of modules that cannot be imported.
     """
     classes: dict[type[Plugin], list[str]] = {cls: [] for cls in plugin_kinds().values()}
     for point in entry_points(group=ENTRY_POINT_GROUP):
@@ -103,10 +108,14 @@ def known_plugins(plugin_paths: Sequence[Path] = (), problems: Diagnostics | Non
 
 
 def find_entry(name: str, plugin_paths: Sequence[Path] = ()) -> Entry:
-    """Return the plugin of a name in any spelling, of a class name, of `module:Class` or of a file.
+    """Return the catalogue entry of a plugin.
+
+    Args:
+        name: name of the plugin in any spelling, name of its class, `module:Class` or a Python file.
+        plugin_paths: folders whose modules the user allows; these modules are imported.
 
     Raises:
-        InputError: SK-PLUGIN-070 no plugin has the name; the message suggests the closest name.
+        InputError: SK-PLUGIN-070 no plugin has this name; the message suggests the closest name.
     """
     by_class = {cls.__name__: cls for cls in plugin_kinds().values()}
     diagnostics = Diagnostics()
@@ -123,7 +132,7 @@ def find_entry(name: str, plugin_paths: Sequence[Path] = ()) -> Entry:
 
 
 def _find_class(filename: str, name: str, plugin_paths: Sequence[Path], problems: Diagnostics) -> type[Plugin] | None:
-    """Return the class of a name; errors in a file of that name go to `problems`."""
+    """Return the plugin class for a library, file or class name; errors in the plugin's file go to `problems`."""
     diagnostics = Diagnostics()
     found = find_plugin(ScenePlugin(name, filename, "anything", Params("plugin")), plugin_paths, diagnostics)
     problems.extend(d for d in diagnostics if d.severity == "error")
@@ -135,24 +144,30 @@ def _origin(cls: type[Plugin]) -> str:
     if package == "simkit":
         return "simkit"
     if package == "simkit_user_plugins":
-        return str(inspect.getsourcefile(getattr(cls, "stands_for", cls)))
+        return str(inspect.getsourcefile(getattr(cls, "wrapped_system", cls)))
     return f"entry point, module {cls.__module__}"
 
 
 @functools.cache
 def facts_of(cls: type[Plugin]) -> Facts:
-    """Return the parameters, topics and services of a plugin from declared options and its source, which is not run.
+    """Return the parameters, topics and services of a plugin, from its declared options and from its source.
+
+    The plugin does not run; only its module has been imported.
 
     Args:
-        cls: plugin class; its module is imported.
+        cls: plugin class.
     """
-    of_gz = getattr(cls, "stands_for", None)
-    if of_gz is not None:
-        return scan(of_gz, "model") if inspect.isclass(of_gz) else scan_function(getattr(of_gz, "configure", None))
+    gz_system = getattr(cls, "wrapped_system", None)
+    if gz_system is not None:
+        return (
+            scan(gz_system, "model")
+            if inspect.isclass(gz_system)
+            else scan_function(getattr(gz_system, "configure", None))
+        )
     kinds = getattr(cls, "parent_kind", "any")
     found = scan(cls, kinds if isinstance(kinds, str) and kinds != "any" else "model")
     declared = [p for options in option_types_of(cls) for p in _declared(options)]
-    # parameters read from a block that was passed to a helper appear without the block
+    # if a helper function reads a block, the scan finds the parameters without the name of the block
     known = {name for p in declared for name in (p.name, p.path[-1])}
     both = merged([*declared, *(p for p in found.parameters if p.name not in known)])
     common = {p.path[0] for p in common_facts().parameters}
@@ -173,7 +188,7 @@ def _services(endpoints: Iterable[Endpoint]) -> tuple[Service, ...]:
 
 
 def _declared(options: type[Options], above: tuple[str, ...] = ()) -> Iterator[Parameter]:
-    """Yield the parameters of a class of options."""
+    """Yield the parameters of a class of options, including those in nested blocks."""
     fields = options.fields()
     for option in fields.values():
         inside, path = option.options is not None, (*above, option.element)
@@ -197,7 +212,7 @@ def _declared(options: type[Options], above: tuple[str, ...] = ()) -> Iterator[P
 
 
 def _default(option: Option, fields: Mapping[str, Option]) -> object:
-    """Return the default to show; for a field with `instead`, that of the field it refers to."""
+    """Return the default to show; a field with `instead` has the default of the field that `instead` names."""
     while option.instead:
         option = fields[option.instead]
     return option.default

@@ -1,7 +1,7 @@
-"""Page `docs/catalogue.md`: every plugin name of Gazebo and its support in simkit, generated from the classes.
+"""Generator of the page `docs/catalogue.md`: every plugin of Gazebo, and whether simkit supports it.
 
-`python -m simkit.plugins.authoring.catalogue_page > docs/catalogue.md` writes the page; a test compares it with the
-classes.
+`python -m simkit.plugins.authoring.catalogue_page > docs/catalogue.md` writes the page from the plugin classes. A test
+fails if the page differs from the classes.
 """
 
 from __future__ import annotations
@@ -16,14 +16,15 @@ from simkit.plugins.plugin_names import normalise
 
 _INTRODUCTION = """# Plugins of Gazebo: supported and unsupported
 
-Generated from the classes of the plugins; do not edit. A file may use any spelling of a plugin's name: `lib….so`,
-`ignition-gazebo…`, with a version number, with a folder in front. `simkit plugin info NAME` lists its parameters.
+This page is generated from the plugin classes; do not edit it. A file may use any spelling of a plugin's name:
+`lib….so`, `ignition-gazebo…`, a version number, a folder before the name. `simkit plugin info NAME` lists the
+parameters of a plugin.
 
-An unsupported plugin in a file is a warning (`SK-PLUGIN-002`) with the reason below, and the world runs without it. An
-unknown name is a warning too (`SK-PLUGIN-001`), with the closest known name. A missing plugin can be
-[written in Python](writing_a_plugin.md).
+If a file uses an unsupported plugin, simkit reports a warning (`SK-PLUGIN-002`) with the reason below, and the world
+runs without the plugin. For an unknown name, the warning (`SK-PLUGIN-001`) suggests the closest known name. You can
+write a missing plugin [in Python](writing_a_plugin.md).
 """
-_OTHERS = "it has no use in simkit, or has not been requested yet"
+_OTHERS = "not useful in simkit, or not requested yet"
 
 
 def page() -> str:

@@ -1,6 +1,7 @@
-"""Descriptions of new plugins: one by its name, or one for each library of a world that has no plugin.
+"""Descriptions of new plugins, from which `plugin_skeleton` writes the source.
 
-The types of their elements are inferred from the text: numbers, vectors, poses, booleans, texts.
+A description comes from a name, or from a world with a library for which no plugin exists. The type of an element is
+inferred from its text: number, vector, pose, boolean or text.
 """
 
 from __future__ import annotations
@@ -28,17 +29,17 @@ _BAD = "SK-PLUGIN-073"
 
 @dataclass(frozen=True)
 class NewPlugin:
-    """Plugin to be generated.
+    """Description of a plugin to be generated.
 
     Attributes:
-        module: file without suffix, folders separated by dots.
-        class_name: name of the class.
+        module: path of the new file without suffix, with dots between the folders.
+        class_name: name of the new class.
         filename: library name in the world.
-        gz_names: class names in gz worlds.
+        gz_names: gz class names in the world.
         parent: kind of entity that the plugin is attached to.
         elements: parameters of the plugin.
-        plugins: uses of the plugin, in document order.
-        sensor: type of the sensor that the plugin is attached to.
+        plugins: occurrences of the plugin in the world, in document order.
+        sensor: type of the sensor that a sensor plugin is attached to.
     """
 
     module: str
@@ -52,18 +53,22 @@ class NewPlugin:
 
 
 def plugin_named(name: str, parent: str) -> NewPlugin:
-    """Describe a plugin by its name: `wheel_brake`, `WheelBrake` or `libwheel_brake.so`.
+    """Describe a new plugin without parameters.
+
+    Args:
+        name: name such as `wheel_brake`, `WheelBrake` or `libwheel_brake.so`.
+        parent: kind of entity that the plugin is attached to.
 
     Raises:
-        InputError: SK-PLUGIN-073 the name is not usable in Python, simkit has a plugin of that name, or the kind of
-            parent is unknown.
+        InputError: SK-PLUGIN-073 the name cannot become a Python name, simkit already has a plugin with this name, or
+            the kind of parent is unknown.
     """
     if parent not in PARENTS:
         hint = did_you_mean(parent, PARENTS)
         text = f"{_BAD} --on: found {parent!r}; expected {', '.join(PARENTS)}"
         raise InputError(text + (f"; {hint}" if hint else ""), _BAD)
     if normalise(name) in plugin_kinds():
-        raise InputError(f"{_BAD} {name!r} comes with simkit: simkit plugin info {name}", _BAD)
+        raise InputError(f"{_BAD} simkit already has a plugin {name!r}; see: simkit plugin info {name}", _BAD)
     module, class_name = _python_names(name)
     filename = name if name.endswith(".so") else f"lib{module}.so"
     kind: ParentKind = next(kind for kind in PARENTS if kind == parent)
@@ -72,11 +77,11 @@ def plugin_named(name: str, parent: str) -> NewPlugin:
 
 
 def plugins_missing_in(scene: Scene, plugin_paths: Sequence[Path] = ()) -> list[NewPlugin]:
-    """Describe a plugin for each library without a plugin, with the parameters in the file.
+    """Describe a new plugin for each library for which no plugin exists, with the parameters from the file.
 
     Args:
-        scene: scene of the file.
-        plugin_paths: folders of modules that already implement libraries.
+        scene: content of the file.
+        plugin_paths: folders with plugins that the user already has.
     """
     found: dict[str, list[tuple[ScenePlugin, ParentKind, str]]] = {}
     for plugin, parent, sensor in _plugins_of_scene(scene):
@@ -111,7 +116,7 @@ def _new_plugin_of_uses(uses: Sequence[tuple[ScenePlugin, ParentKind, str]], use
 
 
 def _common_elements(blocks: Sequence[Params]) -> frozenset[str]:
-    """Return the elements that every plugin's names are read from: `<ros>`, `<robotNamespace>`."""
+    """Return the elements that every plugin accepts for its ROS names: `<ros>` and `<robotNamespace>`."""
     names_read: set[str] = set()
     for block in blocks:
         copy = block.copied()
@@ -129,7 +134,7 @@ def _is_unmapped(plugin: ScenePlugin, plugin_paths: Sequence[Path]) -> bool:
 
 
 def _plugins_of_scene(scene: Scene) -> Iterator[tuple[ScenePlugin, ParentKind, str]]:
-    """Yield every plugin with the kind of its parent and, for a sensor, the sensor's type."""
+    """Yield every plugin, the kind of its parent, and the type of the parent if the parent is a sensor."""
     models = [scene.model] if scene.model else []
     for world in scene.worlds:
         for plugin in world.plugins:
@@ -155,10 +160,10 @@ def _plugins_of_model(model: SceneModel) -> Iterator[tuple[ScenePlugin, ParentKi
 
 
 def _python_names(name: str) -> tuple[str, str]:
-    """Return module and class name for a library: `libMyThing.so` is my_thing and MyThing.
+    """Return the names of the module and the class for a library: my_thing and MyThing for `libMyThing.so`.
 
     Raises:
-        InputError: SK-PLUGIN-073 the name is not usable in Python.
+        InputError: SK-PLUGIN-073 the name cannot become a Python name.
     """
     stem = normalise(name).rsplit("::", 1)[-1].removeprefix("gz-sim-")
     words = re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", re.sub(r"[^A-Za-z0-9]+", " ", stem))
@@ -170,7 +175,7 @@ def _python_names(name: str) -> tuple[str, str]:
         module, class_name = f"{module}_plugin", f"{class_name}Plugin"
     if not module.isidentifier():
         allowed = "expected names such as wheel_brake, WheelBrake or libwheel_brake.so"
-        raise InputError(f"{_BAD} {name!r} is not usable as a Python name; {allowed}", _BAD)
+        raise InputError(f"{_BAD} {name!r} cannot become a Python name; {allowed}", _BAD)
     return module, class_name
 
 
@@ -181,15 +186,15 @@ _POSES = ("pose", "offset", "origin", "transform")
 
 @dataclass(frozen=True)
 class Element:
-    """Parameter of a new plugin, inferred from all elements of its name.
+    """Parameter of a new plugin, inferred from all elements with this name.
 
     Attributes:
-        name: name of the element; an attribute has `@` in front.
+        name: name of the element; the name of an attribute begins with `@`.
         kind: "boolean", "number", "vector", "pose", "text" or "block".
-        values: texts found, in document order, those of the first plugin first.
+        values: texts of the elements, in document order.
         size: number of values in a vector.
-        repeated: whether a plugin has several such elements.
-        children: contents of a block.
+        repeated: whether one plugin contains several elements with this name.
+        children: parameters in a block.
     """
 
     name: str
@@ -206,10 +211,10 @@ class Element:
 
 
 def elements_of(blocks: Sequence[Params], leave_out: frozenset[str] = frozenset()) -> tuple[Element, ...]:
-    """Return the elements of several plugins of one library, in the order of their first occurrence.
+    """Return the parameters of a new plugin, in the order of their first occurrence.
 
     Args:
-        blocks: parameters of the plugins.
+        blocks: `<plugin>` elements that use the library.
         leave_out: names of elements to skip.
     """
     names = dict.fromkeys(c.name for block in blocks for c in block.children)

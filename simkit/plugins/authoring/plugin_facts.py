@@ -1,4 +1,4 @@
-"""Facts about a plugin class from its code: parameters with units, topics, services and actions."""
+"""Description of a plugin class, found in its source: parameters with units, topics, services and actions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-_NARROWER = ("", "block", "text")  # from vague to specific; any other kind is more specific
+_NARROWER = ("", "block", "text")  # in the order of rank; all other kinds are more specific than these
 
 
 @dataclass(frozen=True)
@@ -14,19 +14,19 @@ class Parameter:
     """Element (or attribute, `@name`) that a plugin reads.
 
     Attributes:
-        path: names of the elements, from the plugin down.
+        path: names of the elements from the outermost to this one, below `<plugin>`.
         kind: "number", "integer", "boolean", "text", "vector", "pose", "choice", "block", or empty for an element
             without a value.
-        default: value if the file has none; a text may have placeholders such as `{model}`.
-        instead: elements that are read if this element is missing.
+        default: value if the file does not have the element; a text may contain placeholders such as `{model}`.
+        instead: names of the elements that are read if this element is missing.
         required: whether the file must have the element.
         minimum, maximum: bounds of a number.
         choices: allowed words.
         size: number of values in a vector.
         repeated: whether the element may occur several times.
         live: whether the parameter may change while the simulation runs.
-        says: description by the author.
-        unit: SI unit; empty if unknown or without unit.
+        says: description from the plugin's source.
+        unit: SI unit; empty if the unit is unknown or the parameter has none.
     """
 
     path: tuple[str, ...]
@@ -54,10 +54,10 @@ class Topic:
     """Topic of a plugin.
 
     Attributes:
-        name: name in the code; `~` is the plugin's own name, placeholders are in braces.
-        types: ROS types; the first is the type that is listed.
-        published: whether the plugin publishes the topic; otherwise it subscribes.
-        latched: whether a later subscriber gets the last message.
+        name: name in the source; `~` is the plugin's own name, and a placeholder is in braces.
+        types: ROS types; the list of topics shows the first of them.
+        published: true if the plugin publishes the topic, false if it subscribes to the topic.
+        latched: whether a new subscriber receives the last message.
         elements: parameters that change the name.
     """
 
@@ -70,7 +70,7 @@ class Topic:
 
 @dataclass(frozen=True)
 class Service:
-    """Service or action of a plugin; see `Topic`."""
+    """Service or action of a plugin; `name` and `elements` have the same meaning as in `Topic`."""
 
     name: str
     type: str
@@ -88,10 +88,10 @@ class Facts:
 
 
 def merged(read: Iterable[Parameter]) -> tuple[Parameter, ...]:
-    """Merge parameters to one entry per element, in the order of reading; the most specific type wins."""
+    """Merge all parameters with the same path, in the order of reading; the most specific kind is used."""
     found: dict[tuple[str, ...], Parameter] = {}
     for parameter in read:
-        if not parameter.path or "*" in parameter.path:  # the plugin reads all elements, whatever their names
+        if not parameter.path or "*" in parameter.path:  # the plugin reads all elements, with any name
             continue
         before = found.get(parameter.path)
         found[parameter.path] = parameter if before is None else _both(before, parameter)
@@ -112,7 +112,7 @@ def _both(earlier: Parameter, later: Parameter) -> Parameter:
         first,
         default=first.default if first.default is not None or not same_kind else second.default,
         instead=tuple(dict.fromkeys((*first.instead, *(second.instead if same_kind else ())))),
-        # a second read with required=True, after the element was found missing, makes it required
+        # a plugin may read an optional element first, and read it again with required=True in some cases
         required=first.required or second.required,
         repeated=first.repeated or second.repeated,
         live=first.live or second.live,
@@ -122,7 +122,7 @@ def _both(earlier: Parameter, later: Parameter) -> Parameter:
 
 
 def merged_topics(found: Iterable[Topic]) -> tuple[Topic, ...]:
-    """Merge topics to one entry each, with all the parameters that may change its name."""
+    """Merge all entries of the same topic to one entry with all parameters that may change the topic's name."""
     table: dict[tuple[str, tuple[str, ...], bool], Topic] = {}
     for topic in found:
         key = (topic.name, topic.types, topic.published)
@@ -140,7 +140,8 @@ _SAID = re.compile(r"\[\s*([^\]\d'\"\[][^\]'\"\[]{0,15}?)\s*\]")
 _KNOWN = "m cm mm s ms Hz kg N N·m rad deg m/s rad/s m/s² rad/s² m/s^2 rad/s^2 K Pa V A W J T % m² 1/s °C lx"
 _UNITS = frozenset(_KNOWN.split())
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
-# Each row is a unit and the names that imply it; an element must contain all words of a name. The first match wins.
+# Each row is a unit and the names that imply the unit. A name matches if the element's name contains all its words. The
+# first row with a match is used.
 _RULES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("", ("error", "gain", "covariance", "count", "samples", "number", "factor", "ratio", "scale")),
     ("rad/s³", ("angular jerk",)),
@@ -166,13 +167,13 @@ _RULES: tuple[tuple[str, tuple[str, ...]], ...] = (
 
 
 def unit_of(name: str, kind: str, says: str = "", line: str = "") -> str:
-    """Return the unit of a parameter.
+    """Return the unit of a parameter from its description, from a comment or from its name.
 
     Args:
-        name: name of the element, `wheelSeparation` or `wheel_separation`.
-        kind: type of the parameter; only numbers have a unit.
-        says: description by the author, `distance of the wheels [m]`.
-        line: source line that reads the parameter; its comment may state the unit.
+        name: name of the element, such as `wheelSeparation` or `wheel_separation`.
+        kind: kind of the parameter; only a number, vector or pose has a unit.
+        says: description from the plugin's source, such as `distance of the wheels [m]`.
+        line: source line that reads the parameter; a comment in this line may contain the unit.
     """
     if kind == "pose":
         return "m, rad"

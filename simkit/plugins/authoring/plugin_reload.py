@@ -1,4 +1,4 @@
-"""Reloading of plugins whose file has changed, between two steps of a running simulation."""
+"""Reloading of a plugin after a change of its file, between two steps of a running simulation."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _BROKEN, _REFUSED = "SK-PLUGIN-071", "SK-PLUGIN-076"
 
 @dataclass
 class _WatchedFile:
-    """Watched file with its stamp and contents at the last check."""
+    """Watched file, with its modification time, size and content at the last check."""
 
     path: Path
     stamp: tuple[int, int]
@@ -38,14 +38,15 @@ class _WatchedFile:
 
 
 class PluginReloader:
-    """Checker for changed plugin files; it replaces their plugins with the new code between steps.
+    """Watcher of plugin files: after a change of a file, it replaces the file's plugins with the new code.
 
-    Each check is a `stat` of each file and needs no thread. A run whose files do not change is not affected.
+    Each call of `poll` calls `stat` once for each file; there is no thread. Without a change, the run is the same as
+    without the watcher.
 
     Args:
-        sim: simulation.
-        plugin_paths: folders whose modules may be plugins; other modules imported from there are watched as well.
-        say: function called with a text of one or several lines for each event.
+        sim: simulation with the plugins.
+        plugin_paths: folders of plugins; other modules that are imported from these folders are watched as well.
+        say: function called for each event, with a text of one or several lines.
     """
 
     def __init__(self, sim: Simulation, plugin_paths: Sequence[Path], say: Callable[[str], None]) -> None:
@@ -70,7 +71,7 @@ class PluginReloader:
     # ------------------------------------------------------------------ files
 
     def _modules(self) -> dict[Path, list[str]]:
-        """Return the names of the modules written by the user, by file."""
+        """Return the names of the modules that the user wrote, by file."""
         found: dict[Path, list[str]] = {}
         of_plugins = self._of_plugins()
         for name, module in list(sys.modules.items()):
@@ -115,7 +116,7 @@ class PluginReloader:
         return any(done)
 
     def _import(self, name: str, path: Path) -> bool:
-        """Run a file again as the same module; report the reason if that fails."""
+        """Execute a changed file as a new module with the same name; report the reason if the file has an error."""
         old = sys.modules[name]
         new = ModuleType(name)
         vars(new).update({k: v for k, v in vars(old).items() if k in _MODULE_ATTRIBUTES})
@@ -123,7 +124,7 @@ class PluginReloader:
         try:
             code = compile(path.read_bytes(), str(path), "exec")
             sys.modules[name] = new
-            with importable():  # a system of gz may import gz
+            with importable():  # the module may import gz, because it may contain a gz system
                 exec(code, vars(new))
         except SyntaxError as error:
             self._say(
@@ -138,7 +139,7 @@ class PluginReloader:
         return False
 
     def _exchange(self, old: AttachedPlugin, before: dict[str, ModuleType]) -> bool:
-        """Replace a plugin with an instance of the new code."""
+        """Replace a plugin with an instance of its new class; return false after a report if this is not possible."""
         from simkit.runtime.plugin_replacement import replace_plugin
 
         sim = self._sim
@@ -171,7 +172,7 @@ class PluginReloader:
         return True
 
     def _new_instance(self, old: AttachedPlugin, found: Diagnostics) -> Plugin | None:
-        """Return an instance of the new class, with its parameters from the file."""
+        """Return an instance of the new class with the old parameters; None if the class no longer exists."""
         new: Plugin | None
         if old.source is None:
             cls: type[Plugin] | None = getattr(sys.modules[type(old).__module__], type(old).__name__, None)
@@ -197,7 +198,7 @@ _MODULE_ATTRIBUTES = {"__name__", "__file__", "__spec__", "__loader__", "__packa
 
 
 def modules_of(plugin: object) -> set[str]:
-    """Return the names of the modules with a plugin's code: that of its class, and those of the gz system behind it."""
+    """Return the names of the modules that contain a plugin's code: its class and the gz system that it wraps."""
     system = getattr(plugin, "system", None)
     behind = [system] if system is not None else []
     behind.append(getattr(plugin, "_module", None))
@@ -210,7 +211,7 @@ def modules_of(plugin: object) -> set[str]:
 
 
 def _file_stamp(path: Path) -> tuple[int, int] | None:
-    """Return modification time and size of a file; None while the file is missing."""
+    """Return the modification time [ns] and size [bytes] of a file; None while the file is missing."""
     try:
         status = path.stat()
     except OSError:
@@ -219,7 +220,10 @@ def _file_stamp(path: Path) -> tuple[int, int] | None:
 
 
 def _has_changed(file: _WatchedFile) -> bool:
-    """Check whether the contents of a file have changed; a file that is missing during a replacement has not."""
+    """Check whether the content of a file has changed since the last check.
+
+    A missing file counts as unchanged, because an editor may delete the file for a moment while it saves.
+    """
     stamp = _file_stamp(file.path)
     if stamp is None or stamp == file.stamp:
         return False
@@ -235,20 +239,20 @@ def _has_changed(file: _WatchedFile) -> bool:
 
 
 def _user_file_line(error: BaseException | None, path: Path) -> str:
-    """Return file:line of the innermost frame in a user's file."""
+    """Return `file:line` of the innermost frame of an error in this file."""
     frames = traceback.extract_tb(error.__traceback__) if error is not None else []
     own = [frame for frame in frames if Path(frame.filename).resolve() == path.resolve()] or frames
     return f"{own[-1].filename}:{own[-1].lineno}" if own else str(path)
 
 
 def with_diagnostics(params: Params, diagnostics: Diagnostics) -> Params:
-    """Return an unread copy of parameters whose problems go to another collector."""
+    """Return a copy of parameters, all of them unread, which reports problems to `diagnostics`."""
     children = [with_diagnostics(child, diagnostics) for child in params.children]
     return Params(params.name, params.value, params.attributes, children, params.where, diagnostics)
 
 
 def scene_of(sim: Simulation, scoped: str) -> SceneEntity:
-    """Return the scene entity of a plugin: the world, a model, a visual or a sensor."""
+    """Return the scene object with this scoped name: a model, a visual or a sensor; the world if there is none."""
     for top in sim.engine.structure.models.values():
         if scoped != top.scoped and not scoped.startswith(f"{top.scoped}::"):
             continue

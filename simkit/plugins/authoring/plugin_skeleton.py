@@ -1,4 +1,4 @@
-"""Source files of a new plugin with typed parameters, and of its test."""
+"""Generator of the source files of a new plugin with typed parameters, and of a test of the plugin."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _PARENTS = {"world": "Simulation", "model": "Model", "visual": "Visual", "sensor
 _TYPES = {"number": "float", "boolean": "bool", "text": "str", "pose": "Pose", "block": "dict[str, Any]"}
 _RATES = {"update_rate", "updateRate", "updateRateHZ", "update_frequency", "rate"}
 _WIDEST = 118
-DEEPEST = 3  # nesting depth up to which blocks are read in `load`
+DEEPEST = 3  # deeper blocks are not read in `load`
 _NAMES_OF_PLUGIN = """
 sim name scoped params where ros log source period parent_kind filenames names before_step after_step reset load
 prepare close advertise listen offer act declare random get_state set_state before_step_rate after_step_rate
 lets_sleep drives reads_parameter_files has_hook
 """
 _OWN = frozenset(_NAMES_OF_PLUGIN.split())
-"""Attributes that every plugin has already."""
+"""Names of attributes that the base class of plugins already has."""
 
 
 def plugin_text(plugin: NewPlugin) -> str:
@@ -61,7 +61,7 @@ def _fill_template(name: str, **values: object) -> str:
 
 
 def _uses(plugin: NewPlugin) -> str:
-    """Return sentences that list the uses of the plugin, with file names without folders."""
+    """Return a sentence for each file that uses the plugin, with the lines of the uses."""
     lines_by_file: dict[str, list[str]] = {}
     for use in plugin.plugins:
         if use.where.file and use.where.line:
@@ -74,7 +74,7 @@ _CALLED_BY_FILE = re.compile(r"\.py$|^[\w.]+:\w+$|^$")
 
 
 def _read_statements(elements: Sequence[Element], owner: str, indent: str) -> list[str]:
-    """Return one statement for each parameter."""
+    """Return the statements that read the parameters, one statement for each."""
     names = attribute_names(elements)
     lines: list[str] = []
     for element in elements:
@@ -89,7 +89,7 @@ def _read_statements(elements: Sequence[Element], owner: str, indent: str) -> li
 
 
 def break_expression(head: str, expression: str, indent: str, tail: str = "") -> list[str]:
-    """Split a long expression into lines, with each part within its outermost brackets on its own line."""
+    """Split a long expression into lines: each item within its outermost brackets is on its own line."""
     line = f"{head}{expression}{tail}"
     parts = _within_brackets(expression) if len(line) > _WIDEST else None
     if parts is None:
@@ -105,7 +105,10 @@ def break_expression(head: str, expression: str, indent: str, tail: str = "") ->
 
 
 def _within_brackets(expression: str) -> tuple[str, list[str], str] | None:
-    """Split an expression into the text up to its first bracket, the parts within, and the closing bracket."""
+    """Split an expression into the text up to its first bracket, the items within, and the closing bracket.
+
+    Return None if the expression does not end with the matching bracket.
+    """
     first = re.search(r"[\[({]", expression)
     if first is None or expression[-1] not in "])}":
         return None
@@ -124,7 +127,7 @@ def _within_brackets(expression: str) -> tuple[str, list[str], str] | None:
             parts.append(expression[begin:i].strip())
             begin = i + 1
         if depth < 0:
-            return None  # several brackets in a row: f(x)[0]
+            return None  # the last bracket does not match the first bracket, as in f(x)[0]
     parts.append(expression[begin:-1].strip())
     return expression[: first.end()], [part for part in parts if part], expression[-1]
 
@@ -135,7 +138,7 @@ def _type(element: Element) -> str:
 
 
 def _read(element: Element, owner: str) -> str:
-    """Return the expression that reads an element of the block called `owner`."""
+    """Return the expression that reads an element, or all elements of a repeated name, from the variable `owner`."""
     name = quote_text(element.name)
     if element.kind == "block":
         if element.repeated:
@@ -160,7 +163,7 @@ def _as_dict(element: Element, block: str) -> str:
 
 
 def _read_one(element: Element, owner: str) -> str:
-    """Return the expression that reads a single element, with the first value found as its default."""
+    """Return the expression that reads a single element; its default is the first value in the file."""
     name, value = quote_text(element.name), element.values[0]
     if element.kind == "boolean":
         return f"{owner}.boolean({name}, {value.lower() in ('true', '1')})"
@@ -175,13 +178,13 @@ def _read_one(element: Element, owner: str) -> str:
 
 
 def number_text(text: str) -> str:
-    """Return a number of a file in Python syntax."""
+    """Return a number from a file in Python syntax."""
     number = float(text)
     return f'float("{number}")' if number in (float("inf"), float("-inf")) else repr(number)
 
 
 def attribute_names(elements: Sequence[Element]) -> dict[str, str]:
-    """Return the attribute for each element: a Python name that differs from the plugin's existing attributes."""
+    """Return the attribute name for each element: a Python name that the base class of plugins does not use."""
     found: dict[str, str] = {}
     for element in elements:
         name = re.sub(r"\W+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", element.name)).lower().strip("_") or "value"
@@ -196,7 +199,7 @@ def attribute_names(elements: Sequence[Element]) -> dict[str, str]:
 
 
 def quote_text(text: str) -> str:
-    """Return a text as a Python literal, with double quotes if that needs no escapes."""
+    """Return a text as a Python literal, in double quotes if the text contains none."""
     shown = repr(text)
     return f'"{text}"' if shown == f"'{text}'" and '"' not in text else shown
 
@@ -220,7 +223,10 @@ def test_text(plugin: NewPlugin) -> str:
 
 
 def _expected(element: Element, attribute: str, owner: Params | None) -> list[str]:
-    """Return the conditions that a test asserts on an attribute: values in `owner`, else the defaults of the code."""
+    """Return the conditions that the test asserts on an attribute.
+
+    The expected values are those in `owner`, or the defaults of the generated code if `owner` does not have them.
+    """
     if element.name.startswith("@"):
         text = owner.attributes.get(element.name[1:]) if owner else None
         return [f"{attribute} == {quote_text(element.values[0] if text is None else text)}"]
@@ -255,7 +261,7 @@ def _equal(element: Element, attribute: str, text: str) -> str:
 
 
 def _world(plugin: NewPlugin) -> str:
-    """Return a small world with the plugin attached as in the file."""
+    """Return the SDF text of a small world with the plugin attached to the same kind of entity as in the file."""
     if plugin.plugins:
         element = _xml(plugin.plugins[0].params, plugin.plugins[0].name, plugin.filename)
     else:
@@ -265,7 +271,7 @@ def _world(plugin: NewPlugin) -> str:
 
 
 def _xml(params: Params, name: str, filename: str) -> str:
-    """Return a plugin's element as XML."""
+    """Return the `<plugin>` element as XML."""
 
     def element_xml(node: Params, indent: str) -> str:
         attributes = "".join(f" {key}={quote_attribute(value)}" for key, value in node.attributes.items())
@@ -286,13 +292,14 @@ _FILE_EXISTS = "SK-PLUGIN-074"
 
 
 def write_plugins(plugins: Sequence[NewPlugin], folder: Path, *, overwrite: bool = False) -> list[Path]:
-    """Write each plugin and its test; no file if one exists already.
+    """Write the source file and the test file of each plugin.
 
     Returns:
         Written files, in the order of writing.
 
     Raises:
-        InputError: SK-PLUGIN-074 a file exists already or cannot be written.
+        InputError: SK-PLUGIN-074 a file cannot be written, or exists already and `overwrite` is false. If a file exists
+            already, no file is written.
     """
     files: dict[Path, str] = {}
     for plugin in plugins:

@@ -1,7 +1,7 @@
-"""Scanner for parameters, topics and services that appear as literals in the source of a plugin class.
+"""Scanner of a plugin's source for parameters, topics and services whose names are literals.
 
-The source is parsed and does not run. The scan covers methods of the class and its bases, and the functions of their
-modules that these methods call. A name that only a run knows appears as a placeholder `{hole}`.
+The source is parsed, not executed. The scan reads the methods of the class and its base classes, and the functions of
+the same modules that these methods call. A part of a name that is known only in a run becomes a placeholder `{…}`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _READERS: Final = {
     "has": "",
     "each": "",
     "attribute": "text",
-    # how systems of gz read
+    # methods of sdformat's Element, with which gz systems read their parameters
     "find_element": "",
     "get_element": "",
     "has_element": "",
@@ -52,7 +52,7 @@ _DEEPEST: Final = 12
 
 @dataclass
 class _Function:
-    """Syntax tree of a function, with its module, its lines and the assignments to its local names."""
+    """Syntax tree of a function, with its module, its source lines and the values assigned to its local names."""
 
     node: ast.FunctionDef
     module: ModuleType
@@ -61,7 +61,7 @@ class _Function:
 
     @property
     def blocks(self) -> frozenset[str]:
-        """Names of the variables that hold the plugin's parameters, including the argument of `load` or `configure`."""
+        """Names of the variables with the plugin's parameters, including the arguments of `load` and `configure`."""
         arguments = [argument.arg for argument in self.node.args.args]
         is_hook = self.node.name in ("load", "prepare", "configure")
         return frozenset(
@@ -74,21 +74,21 @@ def scan(cls: type, parent: str) -> Facts:
 
     Args:
         cls: class to scan.
-        parent: kind of entity that its plugins are attached to, for the names of topics.
+        parent: kind of entity that the plugin is attached to, as placeholder in the names of topics.
     """
     return _Scan(parent).run([c for c in reversed(cls.__mro__) if c not in Plugin.__mro__])
 
 
 def scan_function(function: object) -> Facts:
-    """Return the parameters, topics and services in the source of a function."""
+    """Return the parameters, topics and services in the source of a function, such as a gz system's `configure`."""
     return _Scan("model").run([function]) if isinstance(function, FunctionType) else Facts()
 
 
 class _Scan:
-    """Scan of one class.
+    """Scan of one class or function.
 
     Args:
-        parent: kind of entity that the name `parent` refers to.
+        parent: kind of the entity whose handle is the variable `parent`.
     """
 
     def __init__(self, parent: str) -> None:
@@ -195,7 +195,7 @@ class _Scan:
         )
 
     def _path(self, node: ast.expr, depth: int = 0) -> tuple[str, ...] | None:
-        """Return the path of the elements above a block: empty for the plugin's own block; None for other objects."""
+        """Return the path of a block: empty for the `<plugin>` element, None if the expression is not a block."""
         if (
             isinstance(node, ast.Call)
             and isinstance(node.func, ast.Attribute)
@@ -211,7 +211,7 @@ class _Scan:
         return () if name in self._function.blocks else None
 
     def _instead(self, args: list[ast.expr]) -> tuple[str, ...]:
-        """Return the element whose value is the default of another element."""
+        """Return the names of the elements that an element's default value is read from."""
         for arg in args:
             node = self._assigned(arg) or arg
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _READERS:
@@ -222,7 +222,7 @@ class _Scan:
     # ------------------------------------------------------------------ topics
 
     def _topic(self, node: ast.expr, depth: int = 0) -> tuple[str, tuple[str, ...]]:
-        """Return a topic's name, and the elements that change it."""
+        """Return the name of a topic, and the elements that change the name."""
         if depth > _DEEPEST:
             return "{topic}", ()
         if isinstance(node, ast.BoolOp):
@@ -259,7 +259,7 @@ class _Scan:
         return None
 
     def _value(self, node: ast.expr, depth: int = 0) -> Any:
-        """Return the value of an expression; a text has placeholders for values that only a run knows."""
+        """Return the value of an expression; a text has placeholders for values that are known only in a run."""
         if isinstance(node, ast.JoinedStr):
             parts = [part.value if isinstance(part, ast.FormattedValue) else part for part in node.values]
             return "".join(_shown(self._value(part, depth + 1)) for part in parts)
@@ -307,7 +307,10 @@ def _parsed(function: FunctionType) -> _Function | None:
 
 
 def _named_functions(function: _Function) -> Iterator[FunctionType]:
-    """Yield the functions, and the methods of classes, of its own module that a function calls by name."""
+    """Yield the functions that a function calls by name, and the methods of the classes that it calls.
+
+    Only functions and classes of the function's own module are considered.
+    """
     for node in ast.walk(function.node):
         if isinstance(node, ast.Call):
             target = _constant(node.func, function.module)
@@ -322,7 +325,7 @@ def _named_functions(function: _Function) -> Iterator[FunctionType]:
 
 
 def _assignments(node: ast.FunctionDef) -> Iterator[tuple[str, ast.expr]]:
-    """Yield each local name and attribute with its assigned values."""
+    """Yield each value that is assigned to a local name or attribute, with the name."""
     for inner in ast.walk(node):
         match inner:
             case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Tuple(elts=values)):
@@ -339,7 +342,7 @@ def _assignments(node: ast.FunctionDef) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _constant(node: ast.expr, module: ModuleType) -> Any:
-    """Return the value of an expression of literals and of names of the module; None for any other expression."""
+    """Return the value of an expression that consists of literals and names of the module; None for any other."""
     match node:
         case ast.Constant(value=value):
             return value

@@ -1,6 +1,6 @@
-"""Discovery of plugins: find the class of a plugin and attach its instance to an entity.
+"""Discovery of plugins: find the class of a plugin, create an instance and attach the instance to an entity.
 
-A plugin is a `ScenePlugin` from a file or an object created in Python. The result is an instance attached to a world, a
-model, a visual or a sensor, or else a diagnostic with the reason. Only installed or explicitly allowed code of a user
-is executed.
+A plugin is described by a `ScenePlugin` from a file, or is an object created in Python. The instance is attached to a
+world, a model, a visual or a sensor. If that is not possible, a diagnostic states the reason. Code of a user runs only
+if it is installed or explicitly allowed.
 """

@@ -1,4 +1,4 @@
-"""Lookup of plugin classes by their names in a file, among the plugins of simkit and of users."""
+"""Search for the class of a plugin by its name in a file, among the plugins of simkit and of users."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from simkit.scene import ScenePlugin
 
 @functools.cache
 def plugin_kinds() -> Kinds[Plugin]:
-    """Return every known plugin class by each of its normalised names; computed once, read-only."""
+    """Return all known plugin classes by their normalised names; read-only."""
 
     def names(cls: type[Plugin]) -> list[str]:
         return [normalise(name) for name in (*cls.filenames, *cls.names)]
@@ -41,9 +41,9 @@ def find_plugin(
     Args:
         plugin: plugin as read from the file.
         plugin_paths: folders whose modules the user allows (`--plugin-path`).
-        diagnostics: collector of problems; that of the file by default.
-        parent: kind of entity that the plugin is attached to; a class for another kind is ignored. "any": a plugin with
-            an empty scope is attached to the world; the entity of other plugins is unknown.
+        diagnostics: collector of problems; the file's own collector by default.
+        parent: kind of entity that the plugin is attached to; a class for another kind is ignored. With "any", a plugin
+            with an empty scope is attached to the world, and the entity of any other plugin is unknown.
     """
     found = diagnostics if diagnostics is not None else plugin.params.diagnostics
     kinds = plugin_kinds()
@@ -61,12 +61,12 @@ def find_plugin(
 
 
 def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostics: Diagnostics) -> bool:
-    """Check whether the class supports this kind of parent; a warning names the right kind."""
+    """Check whether the class can be attached to this kind of parent; if not, report a warning with the right kind."""
     kinds = (cls.parent_kind,) if isinstance(cls.parent_kind, str) else cls.parent_kind
     if parent == "any" or "any" in kinds or parent in kinds:
         return True
     places = " or a ".join(kinds)
-    message = f"plugin {plugin.filename!r} belongs on a {places}, but is on a {parent}; it is ignored"
+    message = f"plugin {plugin.filename!r} is ignored: it is for a {places}, but is attached to a {parent}"
     hint = f"move the <plugin> into the {' or '.join(f'<{kind}>' for kind in kinds)}"
     diagnostics.warning("SK-PLUGIN-007", message, plugin.where, hint)
     return False
@@ -95,5 +95,5 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
 
 
 def _core(name: str) -> str:
-    """Return the part of a normalised name that distinguishes it within its family, for similarity."""
+    """Return a normalised name without prefix and suffix that many names share, to compare two names."""
     return re.sub(r"^(gazebo_ros_|gz-sim-|gz::sim::systems::)|-system$", "", name) or name

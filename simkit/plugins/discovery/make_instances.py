@@ -1,6 +1,6 @@
-"""Instances of the sensors and plugins of a scene, and of the plugins that every world has.
+"""Creation of the sensors and plugins of a scene, and of the plugins that every world has.
 
-Unknown kinds are reported. For a file with errors, the module also finds further problems.
+Unknown kinds are reported. If a file has errors, `find_more_problems` searches for further problems.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _PluginSite:
-    """Plugin of a file with the kind and scene of its parent, the model's scoped name, and a handle getter."""
+    """Plugin of a file and its parent: kind, scene object, scoped name of the model, and function for the handle."""
 
     plugin: ScenePlugin
     kind: ParentKind
@@ -42,15 +42,15 @@ class _PluginSite:
 
 
 _DocumentPosition = tuple[tuple[bool, int], ...]
-"""Position in a document that includes others: in the world, in the model, in the nested model."""
+"""Position in a document, as a sequence of positions: in the world, in the model, in the nested model."""
 
 
 def _model_positions(model: SceneModel) -> dict[str, tuple[_DocumentPosition, str | None]]:
-    """Return document position and file of a model and of its nested models, by scoped name."""
+    """Return the document position and the file of a model and of its nested models, by scoped name."""
     found: dict[str, tuple[_DocumentPosition, str | None]] = {}
 
     def enter(model: SceneModel, outer: _DocumentPosition, file: str | None) -> None:
-        # plugins that an <include> adds are in the outer file and come after those of the model's own file
+        # an <include> may contain plugins: they are in the outer file, and follow the plugins of the model's own file
         position = (*outer, (bool(outer) and model.where.file == file, model.where.serial))
         found[model.scoped] = position, model.where.file
         for nested in model.models:
@@ -72,16 +72,21 @@ class InstanceMaker:
     """Factory of the sensors and plugins of one world.
 
     Args:
-        builder: spec that sensors and plugins extend.
+        builder: builder of the MuJoCo spec, to which sensors and plugins add elements.
         diagnostics: collector of the problems.
-        plugin_paths: folders whose Python the user allows.
+        plugin_paths: folders whose modules the user allows.
     """
 
     def __init__(self, builder: SpecBuilder, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> None:
         self._builder, self._diagnostics, self._plugin_paths = builder, diagnostics, plugin_paths
 
     def all_parts(self, world: SceneWorld, plugins: Iterable[object] = ()) -> dict[str, SensorsAndPlugins]:
-        """Return the sensors and plugins of every model and of the world (under ""), and those created in Python."""
+        """Return the sensors and plugins by name of the model; those of the world have the name "".
+
+        Args:
+            world: world with the models.
+            plugins: further plugins, created in Python.
+        """
         parts = {model.name: self.model_parts(model) for model in world.models}
         parts[""] = self.world_parts(world)
         for attachment in attach_plugins(plugins, world, self._diagnostics):
@@ -122,7 +127,7 @@ class InstanceMaker:
         return parts
 
     def world_parts(self, world: SceneWorld) -> SensorsAndPlugins:
-        """Return the plugins of a world in the file, and those that every world has."""
+        """Return the plugins of the world: those in the file, and those that every world has."""
         from simkit.runtime import SensorsAndPlugins
 
         parts = SensorsAndPlugins()
@@ -180,11 +185,11 @@ class InstanceMaker:
         instance.plugin_paths = tuple(self._plugin_paths)
         faults = diagnostics.error_count
         self._prepare_plugin(instance, scene)
-        if diagnostics.error_count == faults:  # loading a plugin with errors would repeat them
+        if diagnostics.error_count == faults:  # `load` would report the same errors again
             parts.plugins.append((instance, site.parent))
 
     def _prepare_plugin(self, instance: Plugin, scene: SceneEntity) -> None:
-        """Call the plugin's `prepare`, and record the servos and motors that it adds."""
+        """Call the plugin's `prepare`, and store in the plugin which servos and motors `prepare` adds."""
         from simkit.runtime.engine.plugin_faults import call_plugin
 
         if instance._failed is not None or not instance.has_hook("prepare"):
@@ -216,7 +221,7 @@ def _make_plugin(cls: type[Plugin], plugin: ScenePlugin) -> Plugin:
 
 
 def report_unread(parts: Iterable[SensorsAndPlugins]) -> None:
-    """Warn about each parameter that its sensor or loaded plugin did not read."""
+    """Warn about each parameter that the sensor or the loaded plugin has not read."""
     for part in parts:
         for sensor in part.sensors:
             sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
@@ -226,7 +231,7 @@ def report_unread(parts: Iterable[SensorsAndPlugins]) -> None:
 
 
 def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple[Plugin, ...]]:
-    """Return the plugins that every world has: those that run before the file's plugins, and those that run after."""
+    """Return the plugins that every world has: first those that run before the file's plugins, then those after."""
     from simkit.plugins.actors import ActorMover
     from simkit.plugins.world.world_services import WorldServices
 
@@ -237,7 +242,7 @@ def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple
 def add_actor_models(
     world: SceneWorld, find_file: Callable[[str, Path | None], Path | None], diagnostics: Diagnostics
 ) -> SceneWorld:
-    """Return the world with a model for every actor; problems with an actor are reported."""
+    """Return the world with one more model for each actor; problems with an actor are reported."""
     if not world.actors:
         return world
     from simkit.plugins.actors.actor_model import with_actors
@@ -261,7 +266,15 @@ def make_all_parts(
     plugin_paths: Sequence[Path],
     plugins: Sequence[object],
 ) -> dict[str, SensorsAndPlugins]:
-    """Return the sensors and plugins of every model and of the world (under ""), including those created in Python."""
+    """Return the sensors and plugins by name of the model; those of the world have the name "".
+
+    Args:
+        world: world with the models.
+        builder: builder of the MuJoCo spec.
+        diagnostics: collector of the problems.
+        plugin_paths: folders whose modules the user allows.
+        plugins: further plugins, created in Python.
+    """
     try:
         parts = InstanceMaker(builder, diagnostics, plugin_paths).all_parts(world, plugins)
     except Exception:
@@ -276,10 +289,11 @@ def make_all_parts(
 def find_more_problems(
     world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path], find_file: FileFinder
 ) -> None:
-    """Find further problems of a file with errors by building the world without its faulty parts.
+    """Find further problems of a file with errors: build the world without the faulty entities.
 
-    One pass therefore reports everything: meshes, inertias, and problems found in `prepare` and `load`. A consequence
-    of an error already reported is dropped, such as a missing joint that was skipped because of its own error.
+    The user therefore sees all problems at once: also those of meshes and inertias, and those found in `prepare` and
+    `load`. A consequence of a reported error is not reported, such as a missing joint that was skipped because of its
+    own error.
     """
     from simkit.compiler import SpecBuilder
 
@@ -299,7 +313,7 @@ def find_more_problems(
 def _load_sound_parts(
     world: SceneWorld, builder: SpecBuilder, parts: dict[str, SensorsAndPlugins], diagnostics: Diagnostics
 ) -> None:
-    """Compile and load the valid parts of a world with errors to collect their diagnostics; no step runs."""
+    """Compile and load the valid entities of a world with errors, to collect their diagnostics; no step runs."""
     from simkit.runtime import Simulation, WorldStructure
 
     before = tuple(diagnostics)
@@ -313,4 +327,4 @@ def _load_sound_parts(
 
 
 def _unused_callback(*_: object, **__: object) -> Any:
-    """Replace callbacks that only a stepped simulation calls."""
+    """Stand in for callbacks that are called only in a step; here no step runs."""

@@ -1,6 +1,6 @@
-"""Plugins created in Python, `simkit.load(world, plugins=[…])`, and the entities that they are attached to.
+"""Plugins created in Python for `simkit.load(world, plugins=[…])`, and the entities that they are attached to.
 
-A class, an object or a module with the hooks of gz-sim is a plugin as well, without the base class `Plugin`.
+A class, an object or a module with the hooks of gz-sim is also accepted as a plugin; it needs no base class.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SceneEntity = SceneWorld | SceneModel | SceneSensor | SceneVisual
 """Entity of a scene that a plugin may be attached to."""
 
 ParentGetter = Callable[["Simulation"], object]
-"""Function from the simulation to the handle of a plugin's parent."""
+"""Function that returns the handle of a plugin's parent in a simulation."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ class Attachment:
         plugin: plugin instance.
         top: name of the top-level model that contains the entity; empty for the world.
         scoped: scoped name of the entity; empty for the world.
-        scene: resolved entity.
-        parent: function from the simulation to the entity's handle.
+        scene: scene object of the entity.
+        parent: function that returns the entity's handle in a simulation.
     """
 
     plugin: Plugin
@@ -45,16 +45,19 @@ class Attachment:
     parent: ParentGetter
 
 
-def attach_plugins(made: Iterable[object], world: SceneWorld, diagnostics: Diagnostics) -> list[Attachment]:
-    """Attach each plugin to the named entity, `("robot", MyPlugin())`, else the world, else the only candidate.
+def attach_plugins(plugins: Iterable[object], world: SceneWorld, diagnostics: Diagnostics) -> list[Attachment]:
+    """Attach each plugin to an entity.
+
+    A pair such as `("robot", MyPlugin())` names the entity. Without a name, a world plugin is attached to the world.
+    Any other plugin is attached to the only possible entity; several possible entities are an error.
 
     Args:
-        made: plugins, or pairs of a scoped name and a plugin.
+        plugins: plugins, or pairs of a scoped name and a plugin.
         world: world with its entities.
         diagnostics: collector of errors; a plugin with an error is skipped.
     """
     found = []
-    for item in made:
+    for item in plugins:
         name, candidate = item if isinstance(item, tuple) and len(item) == 2 else ("", item)
         plugin = as_plugin(candidate, diagnostics)
         attachment = None if plugin is None else _attach_plugin(plugin, str(name), world, diagnostics)
@@ -91,7 +94,7 @@ def _attach_plugin(plugin: Plugin, name: str, world: SceneWorld, diagnostics: Di
 
 
 def _candidates_of_kind(kind: str, plugin: Plugin, world: SceneWorld) -> Mapping[str, Attachment]:
-    """Return every entity of a kind that a plugin might be attached to, by scoped name."""
+    """Return an attachment of the plugin to each entity of a kind, by scoped name."""
     found: dict[str, Attachment] = {}
     entities: Iterable[SceneEntity]
     for top in world.models:
@@ -105,26 +108,29 @@ def _candidates_of_kind(kind: str, plugin: Plugin, world: SceneWorld) -> Mapping
 
 
 def handle_getter(kind: str, scoped: str) -> ParentGetter:
-    """Return a function from the simulation to the handle of a model, a visual or a sensor."""
+    """Return the function that finds the handle of a model, a visual or a sensor in a simulation."""
     return lambda sim: getattr(sim, kind)(scoped)
 
 
-def as_plugin(made: object, diagnostics: Diagnostics, where: Where = NOWHERE) -> Plugin | None:
-    """Return a plugin for an object of a user; None after an error that lists the allowed objects."""
-    if isinstance(made, Plugin):
-        return made
-    if inspect.isclass(made) and issubclass(made, Plugin) and not inspect.isabstract(made):
-        return made()
-    if not has_hooks(made):
-        diagnostics.error("SK-PLUGIN-022", f"found {made!r}; expected {describe_allowed_plugins()}", where)
+def as_plugin(candidate: object, diagnostics: Diagnostics, where: Where = NOWHERE) -> Plugin | None:
+    """Return the plugin for a user's object; None if it cannot be a plugin, after an error with the allowed objects."""
+    if isinstance(candidate, Plugin):
+        return candidate
+    if inspect.isclass(candidate) and issubclass(candidate, Plugin) and not inspect.isabstract(candidate):
+        return candidate()
+    if not has_hooks(candidate):
+        diagnostics.error("SK-PLUGIN-022", f"found {candidate!r}; expected {describe_allowed_plugins()}", where)
         return None
-    plugin = GzSystem(system_of(made))
-    plugin.name = _plugin_name(made)
+    plugin = GzSystem(system_of(candidate))
+    plugin.name = _plugin_name(candidate)
     return plugin
 
 
 def as_class(found: object) -> type[Plugin] | None:
-    """Return the plugin class for a class, or for a module with gz's hooks; None if it is not a plugin."""
+    """Return the plugin class for a class or module; None if it cannot be a plugin.
+
+    A class derived from `Plugin` is returned itself. A class or module with gz's hooks is wrapped in a new class.
+    """
     if inspect.isclass(found) and issubclass(found, Plugin):
         return None if inspect.isabstract(found) else found
     if not (isinstance(found, ModuleType) or inspect.isclass(found)) or not has_hooks(found):
@@ -133,31 +139,31 @@ def as_class(found: object) -> type[Plugin] | None:
     def find_system(_self: GzSystem) -> object:
         return system_of(found)
 
-    names = {"find_system": find_system, "stands_for": found, "__doc__": found.__doc__}
+    names = {"find_system": find_system, "wrapped_system": found, "__doc__": found.__doc__}
     return type(_plugin_name(found), (GzSystem,), {**names, "__module__": getattr(found, "__module__", found.__name__)})
 
 
-def has_hooks(made: object) -> bool:
+def has_hooks(candidate: object) -> bool:
     """Check whether a class, an object or a module has a hook of gz, or the function `get_system`."""
-    if isinstance(made, Plugin) or (inspect.isclass(made) and issubclass(made, Plugin)):
+    if isinstance(candidate, Plugin) or (inspect.isclass(candidate) and issubclass(candidate, Plugin)):
         return False
-    return any(callable(getattr(made, name, None)) for name in (*HOOKS, "get_system"))
+    return any(callable(getattr(candidate, name, None)) for name in (*HOOKS, "get_system"))
 
 
-def system_of(made: Any) -> object:
-    """Return the object whose hooks are called: result of `get_system`, instance of the class, or `made` itself."""
-    if inspect.isclass(made):
-        return made()
-    has_own = any(callable(getattr(made, name, None)) for name in HOOKS)
-    return made if has_own else made.get_system()
+def system_of(candidate: Any) -> object:
+    """Return the object with gz's hooks: a new instance of a class, the object itself, or what `get_system` returns."""
+    if inspect.isclass(candidate):
+        return candidate()
+    has_own = any(callable(getattr(candidate, name, None)) for name in HOOKS)
+    return candidate if has_own else candidate.get_system()
 
 
 def describe_allowed_plugins() -> str:
-    """Return a description of the objects that may be plugins."""
+    """Return a description, for messages, of the objects that can be plugins."""
     return f"a class derived from simkit's Plugin with a load method, or one with hooks of gz ({', '.join(HOOKS)})"
 
 
-def _plugin_name(made: object) -> str:
-    if isinstance(made, ModuleType):
-        return made.__name__.rpartition("/")[2].removesuffix(".py").rpartition(".")[2]
-    return str(made.__name__ if inspect.isclass(made) else type(made).__name__)
+def _plugin_name(candidate: object) -> str:
+    if isinstance(candidate, ModuleType):
+        return candidate.__name__.rpartition("/")[2].removesuffix(".py").rpartition(".")[2]
+    return str(candidate.__name__ if inspect.isclass(candidate) else type(candidate).__name__)

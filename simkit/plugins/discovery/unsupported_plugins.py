@@ -1,4 +1,7 @@
-"""Plugins of Gazebo, and the reasons why simkit does not support some of them: `unsupported_plugins.toml`."""
+"""Names of Gazebo's plugins, and the reasons why simkit does not support some of them.
+
+The data is in `unsupported_plugins.toml`.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ GAZEBO_PLUGINS: frozenset[str] = frozenset(
     + _TABLE["control"].split()
     + _TABLE["classic"].split()
 )
-"""Normalised library names (`simkit.plugins.normalise`)."""
+"""Library names of Gazebo's plugins, normalised by `simkit.plugins.plugin_names.normalise`."""
 
 
 def _reasons_by_name() -> dict[str, str]:
@@ -30,4 +33,4 @@ def _reasons_by_name() -> dict[str, str]:
 
 
 UNSUPPORTED_REASONS: Final = MappingProxyType(_reasons_by_name())
-"""Reasons by normalised name (`simkit.plugins.normalise`) of library or gz class."""
+"""Reason by library name or gz class name; the names are normalised by `simkit.plugins.plugin_names.normalise`."""

@@ -1,4 +1,4 @@
-"""Lookup of plugins written by users: only in entry points and in folders that the user allows."""
+"""Search for plugins written by users, only in entry points and in folders that the user allows."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _CLASS = re.compile(r"^(?P<module>[A-Za-z_][\w.]*):(?P<name>[A-Za-z_]\w*)$")
 
 
 def find_user_plugin(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
-    """Return the class for `module:Class`, `file.py` or a library alias, if it is installed or allowed."""
+    """Return the class for `module:Class`, `file.py` or a library name, if its module is installed or allowed."""
     if _CLASS.match(plugin.filename):
         return _find_by_class_name(plugin, paths, diagnostics)
     if plugin.filename.endswith(".py"):
@@ -72,7 +72,10 @@ def _find_by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagn
 
 
 def _find_by_alias(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
-    """Search the names of entry points, then the plugin classes of modules directly in the allowed folders."""
+    """Search the names of entry points, then the plugin classes of the modules in the allowed folders.
+
+    Subfolders are not searched.
+    """
     names = set(aliases(plugin))
     for point in entry_points_of(ENTRY_POINT_GROUP):
         if normalise(point.name) in names:
@@ -99,7 +102,7 @@ def _load_entry_point(point: EntryPoint, plugin: ScenePlugin, diagnostics: Diagn
 
 
 def _string_literals(file: Path) -> set[str]:
-    """Return every text literal of a Python file as a normalised plugin name; the file is parsed, not run."""
+    """Return all text literals of a Python file as normalised plugin names; the file is parsed, not executed."""
     try:
         tree = ast.parse(read_input(file, TEXT_LIMIT), str(file))
     except (OSError, SyntaxError, ValueError):
@@ -113,7 +116,7 @@ def _is_inside(file: Path, folder: Path) -> bool:
 
 
 def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagnostics) -> object | None:
-    """Import `file` under a unique module name, so that it hides no other module."""
+    """Import a file under a module name made from its path, so that it never replaces another module."""
     key = f"simkit_user_plugins.{file.resolve()}"
     if key in sys.modules:
         return sys.modules[key]
@@ -132,7 +135,7 @@ def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagno
 
 
 def _classes_of(module: object) -> list[type]:
-    """Return the plugin classes of a module; classes with gz's hooks only if none derives from `Plugin`."""
+    """Return the plugin classes that a module defines; those with gz's hooks only if none is derived from `Plugin`."""
     own = [c for _, c in inspect.getmembers(module, inspect.isclass) if c.__module__ == getattr(module, "__name__", "")]
     derived = [c for c in own if issubclass(c, Plugin) and not inspect.isabstract(c)]
     if derived or callable(getattr(module, "get_system", None)):

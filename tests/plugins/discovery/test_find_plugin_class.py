@@ -104,7 +104,7 @@ def test_a_plugin_on_the_wrong_kind_of_parent_is_ignored_with_the_right_kind() -
     assert find_plugin(plugin, parent="world") is None
     (found,) = plugin.params.diagnostics
     assert (found.code, found.severity) == ("SK-PLUGIN-007", "warning")
-    assert "belongs on a model" in found.message
+    assert "is ignored: it is for a model, but is attached to a" in found.message
     assert find_plugin(named("gz-sim-diff-drive-system"), parent="model") is not None
 
 
