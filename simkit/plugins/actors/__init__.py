@@ -1,7 +1,7 @@
-"""Actors: people and animals moved by a script or a plugin, visible to sensors and without contact.
+"""Actors: people and animals that a script or a plugin moves. Sensors see them, but they have no contacts.
 
-`with_actors` converts each `SceneActor` to a static model of links, which `ActorMover` moves along the script. Actors
-exert no forces and receive none.
+`with_actors` converts each `SceneActor` to a static model, and `ActorMover` moves the links of this model along the
+script. Actors exert no forces and receive none.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Models of actors: links without collisions that cameras and lidars see."""
+"""Models of actors: links without collisions, which cameras and lidars see."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ from simkit.scene import Material, SceneActor, SceneLink, SceneModel, SceneVisua
 
 @dataclass(frozen=True, slots=True)
 class WalkingPerson:
-    """Built-in person, who walks while the track moves and stands while it does not."""
+    """Built-in person, who walks while the trajectory moves and stands while the trajectory pauses."""
 
     scale: float
     drop: float
 
-    def lie(self, track: Track, rests: bool) -> tuple[Floats, Floats]:
+    def link_poses(self, track: Track, rests: bool) -> tuple[Floats, Floats]:
         speed = np.zeros_like(track.speed) if rests else track.speed
         places, turns = person.figure_poses(person.walking_angles(track.distance / self.scale, speed))
         return places * self.scale - (0.0, 0.0, self.drop), turns
 
 
 def with_actors(world: SceneWorld, find_file: FindFile, diagnostics: Diagnostics) -> SceneWorld:
-    """Return the world with a model for every actor; problems with an actor are reported."""
+    """Return the world with one more model for each actor; problems with an actor are reported."""
     if not world.actors:
         return world
     model_names = {model.name for model in world.models}
@@ -53,7 +53,7 @@ def with_actors(world: SceneWorld, find_file: FindFile, diagnostics: Diagnostics
 
 
 def actor_model(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> SceneModel:
-    """Return an actor's model at its start pose; `moved_by` is its `AnimatedActor`."""
+    """Return an actor's model at its start pose; the model's `moved_by` is an `AnimatedActor`."""
     if is_led_by_plugin(actor):  # as in gz, the script does not move an actor that a plugin moves
         actor = replace(actor, trajectories=())
     skinned = skinned_actor_model(actor, find_file, diagnostics)
@@ -94,7 +94,7 @@ def _person(actor: SceneActor, script: Script) -> SceneModel:
 
 
 def _is_sitting(actor: SceneActor) -> bool:
-    """Check whether the name of the actor's first animation is one of sitting."""
+    """Check whether the actor sits: the name of its first animation contains "sit"."""
     types = [way.type for way in actor.trajectories[:1]] or [a.name for a in actor.animations[:1]]
     return any("sit" in name.lower() for name in types)
 

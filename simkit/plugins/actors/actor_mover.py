@@ -1,4 +1,4 @@
-"""World plugin that moves every actor along its script."""
+"""World plugin that moves the actors along their scripts."""
 
 from __future__ import annotations
 
@@ -26,9 +26,8 @@ _Moving = tuple[AnimatedActor, slice | npt.NDArray[np.intp]]
 class ActorMover(WorldPlugin):
     """Moves actors along their scripts 50 times per simulated second, and whenever a sensor takes a sample.
 
-    Every world with actors has this plugin. The pose of an actor depends on time alone, so no error accumulates over
-    resets and restores. The service `/<actor>/play` (std_srvs/srv/SetBool) restarts the script of an actor, or stops
-    it.
+    Every world with actors has this plugin. The pose of an actor depends only on the time, so it is the same after a
+    reset or a restore. The service `/<actor>/play` (std_srvs/srv/SetBool) restarts or stops the script of an actor.
     """
 
     scenery_rate = 50.0
@@ -51,7 +50,7 @@ class ActorMover(WorldPlugin):
         self.move_scenery()
 
     def move_scenery(self) -> None:
-        """Set the pose of every moving actor at the current simulation time."""
+        """Set the pose of every moving actor to its pose at the current simulation time."""
         sim = self.sim
         data, moving = sim.mj_data, self._moving()
         positions, quaternions, now = data.mocap_pos, data.mocap_quat, float(sim.time)
@@ -62,7 +61,7 @@ class ActorMover(WorldPlugin):
             sim.engine.physics.changed(STALE)
 
     def _moving(self) -> tuple[_Moving, ...]:
-        """Return the actors that move, with the indices of their mocap bodies in the engine."""
+        """Return the actors that move, with the indices of their links among the engine's mocap bodies."""
         structure = self.sim.engine.structure
         if self._known[0] is not structure:
             found = []
@@ -77,7 +76,7 @@ class ActorMover(WorldPlugin):
         return self._known[1]
 
     def _time_of(self, name: str, now: float) -> float:
-        """Return the elapsed time of a script [s]; 0 before its start."""
+        """Return the time since the start of a script [s]; 0 before its start."""
         if name in self._stopped:
             return self._stopped[name]
         return now - self._began[name] if name in self._began else 0.0
@@ -88,4 +87,4 @@ class ActorMover(WorldPlugin):
             self._began[name] = float(self.sim.time)
         else:
             self._stopped[name] = self._time_of(name, float(self.sim.time))
-        return {"success": True, "message": f"{name} {'goes' if request.data else 'stops'}"}
+        return {"success": True, "message": f"{name} {'starts' if request.data else 'stops'}"}

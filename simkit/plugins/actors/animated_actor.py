@@ -1,4 +1,4 @@
-"""Actors that move along their scripts: the poses of their links over time, and the models that represent them."""
+"""Poses of an actor's links over time, and the model that represents the actor."""
 
 from __future__ import annotations
 
@@ -19,18 +19,21 @@ FindFile = Callable[[str, Path | None], Path | None]
 ROOT_LINK: Final = "link"
 _LEADERS: Final = frozenset(("gz-sim-follow-actor-system", "gz::sim::systems::FollowActor"))
 AT_THE_HIPS: Final = (0.5, 1.5)
-"""Heights above the ground [m] of a trajectory that is that of the hips, as with Gazebo's own skins."""
+"""Range of heights above the ground [m] in which a trajectory is that of the hips, as with Gazebo's own skins."""
 
 
 class Rig(Protocol):
-    """Poses of an actor's links relative to its origin."""
+    """Skeleton of an actor: computes the poses of its links relative to the actor's origin."""
 
-    def lie(self, track: Track, rests: bool) -> tuple[Floats, Floats]:
-        """Return positions (rows, n, 3) [m] and quaternions (rows, n, 4) of the links in the actor's frame.
+    def link_poses(self, track: Track, rests: bool) -> tuple[Floats, Floats]:
+        """Return the poses of the n links in the actor's frame, one row for each time of a track.
 
         Args:
-            track: poses and speed of the actor.
-            rests: whether the actor stands, before its start or after its end.
+            track: trajectory of the actor, with its poses and speed.
+            rests: whether the actor stands before the start or after the end of its script.
+
+        Returns:
+            Positions [m], shape (rows, n, 3), and quaternions, shape (rows, n, 4).
         """
         ...
 
@@ -41,11 +44,11 @@ class AnimatedActor(SharedByCopies):
     Args:
         name: name of the actor.
         script: trajectories of the actor.
-        rig: poses of the links relative to the origin; None if the actor is rigid.
+        rig: skeleton of the actor; None if the actor is rigid.
         is_led: whether a plugin moves the actor.
 
     Attributes:
-        moves: whether the script ever moves the actor or one of its links.
+        moves: whether the script moves the actor or one of its links at any time.
     """
 
     def __init__(self, name: str, script: Script, rig: Rig | None, is_led: bool = False) -> None:
@@ -55,7 +58,10 @@ class AnimatedActor(SharedByCopies):
         self._resting = [table[[0, -1]] for table in (link_poses_in_world(t, rig, True) for t in script.tracks)]
 
     def poses(self, time: float) -> Floats:
-        """Return the world poses of the links: the origin, then the parts; position and quaternion, shape (n, 7)."""
+        """Return the world poses of the links at a time [s] since the start of the script.
+
+        The shape is (n, 7): position [m] and quaternion of the actor's origin, then of each other link.
+        """
         number, inside, rests = self.script.at(time)
         if rests:
             return np.asarray(self._resting[number][0 if inside <= 0.0 else 1])
@@ -67,11 +73,11 @@ class AnimatedActor(SharedByCopies):
 
 
 def link_poses_in_world(track: Track, rig: Rig | None, rests: bool) -> Floats:
-    """Return the poses of all links in the world, shape (rows, n, 7)."""
+    """Return the world poses of all links for each row of a track: position [m] and quaternion, shape (rows, n, 7)."""
     origin = track.poses[:, None, :]
     if rig is None:
         return origin
-    places, turns = rig.lie(track, rests)
+    places, turns = rig.link_poses(track, rests)
     turn = origin[..., 3:]
     w, v = turn[..., :1], turn[..., 1:]
     across = np.cross(v, places)
@@ -90,7 +96,7 @@ def is_led_by_plugin(actor: SceneActor) -> bool:
 
 
 def scripted_model(actor: SceneActor, pose: Pose, links: Sequence[SceneLink], cast: AnimatedActor) -> SceneModel:
-    """Return a static model that only its script moves."""
+    """Return the static model of an actor; only the actor's script or plugin sets the poses of its links."""
     return SceneModel(
         name=actor.name,
         scoped=actor.name,

@@ -1,6 +1,7 @@
-"""Built-in person, drawn if the skin of an actor cannot be used: shapes, walking, standing and sitting.
+"""Built-in person, drawn if the skin of an actor cannot be used: shapes, and poses for walking, standing and sitting.
 
-All dimensions are for a height of 1.75 m and are scaled for other heights; x forward, z up, feet on z = 0.
+All dimensions are for a person of 1.75 m and are scaled for other heights. The x axis points forward and the z axis up;
+the feet are at z = 0.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ SOLE: Final = 0.50
 SHOULDER: Final = (0.0, 0.205, 1.42)
 ELBOW: Final = 0.29
 
-_BRISK = 0.6  # [m/s] above which legs and arms swing fully
+_BRISK = 0.6  # [m/s], above this speed legs and arms swing with full amplitude
 
 LIMBS: Final = (
     "thigh_left", "thigh_right", "shin_left", "shin_right",
@@ -64,7 +65,7 @@ _HAIRS: Final = ((0.15, 0.11, 0.09), (0.35, 0.22, 0.13), (0.62, 0.50, 0.30), (0.
 
 
 def appearance_of(name: str, look_in_file: PersonLook | None = None) -> Appearance:
-    """Return height and colours derived from the name, the same in every run; values of the file override them."""
+    """Return the height and colours of a person: those in the file, or values computed from the name."""
     number = zlib.crc32(name.encode())
     colours = {}
     for look, choice in (("shirt", _SHIRTS), ("trousers", _TROUSERS), ("skin", _SKINS), ("hair", _HAIRS)):
@@ -119,7 +120,7 @@ FIGURE: Final = _figure()
 
 
 def scale_shape(shape: Geometry, scale: float) -> Geometry:
-    """Return a shape of the figure in another size."""
+    """Return a shape of the person, scaled by a factor."""
     if isinstance(shape, Ellipsoid):
         x, y, z = shape.radii
         return Ellipsoid((x * scale, y * scale, z * scale))
@@ -130,23 +131,25 @@ def scale_shape(shape: Geometry, scale: float) -> Geometry:
 
 
 def walking_angles(distance: Floats, speed: Floats) -> Floats:
-    """Return the angles of the limbs during a walk; the stride follows the distance, so that feet do not slide.
+    """Return the angles of the limbs of a walking person.
+
+    The angles depend on the distance walked, so that the feet do not slide on the ground.
 
     Args:
         distance: distance walked, scaled to a height of 1.75 m [m], shape (n,).
-        speed: [m/s], shape (n,); below 0.6 m/s the limbs swing less, at rest they hang.
+        speed: walking speed [m/s], shape (n,). The limbs swing less below 0.6 m/s, and hang down at rest.
 
     Returns:
-        Angles in the order of `LIMBS` [rad], forward positive, shape (n, 8). The angle of a shin or forearm is relative
-        to the limb above it.
+        Angles in the order of `LIMBS` [rad], positive if the limb is turned forward, shape (n, 8). The angle of a shin
+        is relative to the thigh, and the angle of a forearm is relative to the upper arm.
     """
     amplitude = np.clip(speed / _BRISK, 0.0, 1.0)
     angles = np.empty((len(distance), 8))
     for side, ahead in ((0, 0.0), (1, 0.5)):
         part = np.mod(distance / STRIDE + 0.25 + ahead, 1.0)
         stands = part < 0.5
-        since = 2.0 * (part - 0.5)  # progress of the half cycle in which the foot is in the air
-        # a foot on the ground does not slide: relative to the hips it moves back at walking speed
+        since = 2.0 * (part - 0.5)  # fraction of the half cycle in which the foot is in the air, 0 to 1
+        # relative to the hips, a foot on the ground moves back at walking speed, so that it does not slide
         foot = STRIDE * np.where(stands, 0.25 - part, -0.25 * np.cos(math.pi * since))
         bend = np.where(stands, 0.0, 0.95 * np.abs(np.sin(math.pi * since)) ** 1.5)
         thigh = np.arcsin(np.clip(foot / (KNEE + SOLE), -1.0, 1.0)) + 0.5 * bend
@@ -159,17 +162,17 @@ def walking_angles(distance: Floats, speed: Floats) -> Floats:
 
 
 SITTING: Final = (1.45, 1.45, -1.45, -1.45, 0.55, 0.55, 1.05, 1.05)
-"""Angles of the limbs of a person sitting at a desk, in the order of `LIMBS` [rad]."""
+"""Angles of the limbs of a person who sits at a desk, in the order of `LIMBS` [rad]."""
 
 
 def figure_poses(angles: Floats) -> tuple[Floats, Floats]:
-    """Return the poses of the parts for a height of 1.75 m, the lower sole on the ground.
+    """Return the poses of the body parts of a person of 1.75 m; the lower foot is on the ground.
 
     Args:
-        angles: angles as from `walking_angles` [rad], shape (n, 8).
+        angles: angles of the limbs as in `walking_angles` [rad], shape (n, 8).
 
     Returns:
-        Positions (n, 9, 3) [m] and quaternions (n, 9, 4) of `PARTS`, in the person's frame.
+        Positions [m], shape (n, 9, 3), and quaternions, shape (n, 9, 4), of `PARTS` in the person's frame.
     """
     count = len(angles)
     places, turns = np.zeros((count, 9, 3)), np.zeros((count, 9, 4))
@@ -192,7 +195,7 @@ def figure_poses(angles: Floats) -> tuple[Floats, Floats]:
 
 
 def resting_poses(sits: bool) -> dict[str, Pose]:
-    """Return the poses of the parts of a standing or sitting person, for a height of 1.75 m."""
+    """Return the poses of the body parts of a standing or sitting person of 1.75 m."""
     angles = np.array([SITTING]) if sits else walking_angles(np.zeros(1), np.zeros(1))
     places, turns = figure_poses(angles)
     return {part: Pose(places[0, i], turns[0, i]) for i, part in enumerate(PARTS)} | {"": IDENTITY}

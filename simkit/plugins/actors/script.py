@@ -1,9 +1,10 @@
-"""Poses of an actor over the time of its script: Gazebo's splines through the waypoints.
+"""Poses of an actor over time, computed from its script with Gazebo's splines through the waypoints.
 
-Positions follow cubic Hermite splines. The tangent at a waypoint is half the distance between its neighbours, times one
-minus the tension. Each segment has its own constant pace, so an actor with a steady speed needs evenly spaced times.
-Orientations follow the spherical spline (squad) through the quaternions. The rules are those of `PoseAnimation` in
-`gz::common` and of `Spline` and `RotationSpline` in `gz::math`, and also of Gazebo Classic.
+Positions follow cubic Hermite splines. The tangent at a waypoint is (1 − tension) · half the vector from the previous
+waypoint to the next one. The spline parameter is linear in time within each segment. The speed at a waypoint is
+therefore continuous only if the times of the waypoints are evenly spaced. Orientations follow the spherical spline
+(squad) through the quaternions. `PoseAnimation` in `gz::common`, `Spline` and `RotationSpline` in `gz::math` and Gazebo
+Classic have the same rules.
 """
 
 from __future__ import annotations
@@ -21,26 +22,26 @@ from simkit.scene import SceneActor, Trajectory
 Floats = npt.NDArray[np.float64]
 
 _GRID: Final = 0.02
-"""Time between two rows of the table of a script [s]; linear interpolation between rows is exact to a millimetre."""
+"""Time between two rows of a track [s]; the error of a linear interpolation between them is below 1 mm."""
 
 _MOST_ROWS: Final = 20_000
 _TINY: Final = 1e-12
 
 
 class Track:
-    """Trajectory sampled on a grid of times.
+    """Trajectory as a table of poses at equally spaced times.
 
     Args:
         way: trajectory; None for an actor that does not move.
-        base: reference pose of the waypoints.
-        length: duration of an actor that does not move [s].
+        base: world pose that the waypoints are relative to.
+        length: duration [s] if the actor does not move.
 
     Attributes:
-        type: name of the animation that plays meanwhile.
+        type: name of the animation that plays during this trajectory.
         length: duration [s].
-        times: times of the rows [s], shape (n,).
+        times: time of each row [s], shape (n,).
         poses: x, y, z [m] and quaternion w, x, y, z in the world, shape (n, 7).
-        speed, distance: speed [m/s] and distance travelled [m]; shape (n,).
+        speed, distance: speed [m/s] and distance travelled since the start [m], shape (n,) each.
     """
 
     def __init__(self, way: Trajectory | None, base: Pose, length: float = 0.0) -> None:
@@ -62,20 +63,20 @@ class Track:
         self.moves = bool(self.distance[-1] > 0.0 or np.ptp(self.poses[:, 3:], axis=0).max() > _TINY)
 
     def row(self, time: float) -> tuple[int, float]:
-        """Return the row before a time [s] since the track's beginning, and the fraction up to the next row, 0 to 1."""
+        """Return the last row before a time [s], and the fraction of the interval to the next row, 0 to 1."""
         row = min(max(time, 0.0), self.length) * self._per_second
         before = min(int(row), len(self.times) - 2)
         return before, row - before
 
 
 class Stride(Track):
-    """Walk on the spot without a trajectory, for the links of a walking actor.
+    """Track of an actor that a plugin moves: the origin stays at zero, and only the links move.
 
     Args:
         kind: name of the animation that plays.
-        distance: distance travelled [m], shape (n,).
+        distance: distance travelled at each row [m], shape (n,).
         speed: walking speed [m/s].
-        seconds: duration of the animation per metre [s/m].
+        seconds: duration of the animation for one metre [s/m].
     """
 
     def __init__(self, kind: str, distance: Floats, speed: float, seconds: float) -> None:
@@ -86,16 +87,16 @@ class Stride(Track):
 
 
 class Script:
-    """Trajectories of an actor, one after another.
+    """Sequence of the trajectories of an actor.
 
     Args:
-        actor: actor with its trajectories. The waypoints are relative to its `<pose>`, as in gz.
-        in_place: duration of the animation of an actor without trajectory [s].
+        actor: actor with its trajectories. As in gz, the waypoints are relative to the actor's `<pose>`.
+        in_place: duration of the animation [s] of an actor without a trajectory.
 
     Attributes:
-        tracks: trajectories of the actor.
-        length: duration of all tracks [s].
-        starts_by_itself: whether the script starts with the simulation.
+        tracks: trajectories of the actor, in the order of playing.
+        length: duration of all tracks together [s].
+        starts_by_itself: whether the script starts at the start of the simulation.
     """
 
     def __init__(self, actor: SceneActor, in_place: float = 0.0) -> None:
@@ -108,11 +109,14 @@ class Script:
 
     @property
     def moves(self) -> bool:
-        """True if the script ever changes the actor's pose."""
+        """True if the script changes the actor's pose at any time."""
         return any(track.moves for track in self.tracks)
 
     def at(self, time: float) -> tuple[int, float, bool]:
-        """Return the track at `time` [s] after the start, the time within it [s], and whether the actor rests."""
+        """Return the state at a time [s] after the start: index of the track, time in the track [s], and a flag.
+
+        The flag is true if the actor rests, before the delayed start or after the end of the script.
+        """
         since, total = max(0.0, time - self._delay), self.length
         is_over = since >= total
         if is_over:
@@ -122,7 +126,7 @@ class Script:
         return number, inside, time < self._delay or (is_over and not self._loop)
 
     def pose(self, time: float) -> Pose:
-        """Return the actor's pose in the world, `time` [s] after the start."""
+        """Return the actor's pose in the world at a time [s] after the start."""
         number, inside, _ = self.at(time)
         track = self.tracks[number]
         row, part = track.row(inside)
@@ -131,7 +135,10 @@ class Script:
 
 
 def _poses(points: Sequence[Pose], times: Floats, grid: Floats, tension: float) -> Floats:
-    """Return the poses at the times of the grid, with quaternions in one hemisphere, which allows interpolation."""
+    """Return the poses at the times of the grid.
+
+    Successive quaternions have the same sign, so that they can be interpolated.
+    """
     places = np.array([p.position for p in points], dtype=np.float64)
     turns = np.array([p.quaternion for p in points], dtype=np.float64)
     stretch = np.clip(np.searchsorted(times, grid, side="right") - 1, 0, len(points) - 2)
@@ -191,7 +198,7 @@ def _times(a: Floats, b: Floats) -> Floats:
 
 
 def _log(q: Floats) -> Floats:
-    """Return the vectors v with q = exp(v), for the shorter rotation; shape (n, 3)."""
+    """Return the logarithms of quaternions, shape (n, 3): q or −q is exp(v), with the smaller angle."""
     q = np.where(q[:, :1] < 0.0, -q, q)
     size = np.linalg.norm(q[:, 1:], axis=1, keepdims=True)
     angle = np.arctan2(size, q[:, :1])

@@ -1,4 +1,4 @@
-"""Skins of actors from mesh files, drawn as rigid pieces that each follow a bone."""
+"""Skins of actors from mesh files; each piece of the mesh is rigid and follows one bone."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from simkit.scene import Animation, Mesh, SceneActor, SceneLink, SceneModel, Sce
 
 @dataclass(frozen=True)
 class Clip:
-    """Animation: poses of the bones in the actor's frame over time.
+    """Animation of a skin: f frames with the poses of n bones in the actor's frame.
 
     Attributes:
-        times: [s], shape (f,); the first is 0.
-        places, turns: positions [m] of shape (f, n, 3) and quaternions of shape (f, n, 4).
-        root: position of the outermost bone [m], shape (f, 3).
-        follows_x: whether the animation follows the distance travelled instead of the clock.
+        times: time of each frame [s], shape (f,); the first time is 0.
+        places, turns: positions [m], shape (f, n, 3), and quaternions, shape (f, n, 4).
+        root: position of the root bone [m], shape (f, 3).
+        follows_x: true if the frame depends on the distance travelled, false if it depends on the time.
     """
 
     times: Floats
@@ -48,12 +48,17 @@ class Clip:
 
 @dataclass(frozen=True)
 class SkinRig:
-    """Bones that follow animations: the animation that a trajectory names, else the first."""
+    """Skeleton of a skin. Its bones follow the animation that the trajectory names, or the first animation.
+
+    Attributes:
+        clips: animations by name.
+        at_the_hips: true if the waypoints are at the height of the hips.
+    """
 
     clips: dict[str, Clip]
     at_the_hips: bool
 
-    def lie(self, track: Track, rests: bool) -> tuple[Floats, Floats]:
+    def link_poses(self, track: Track, rests: bool) -> tuple[Floats, Floats]:
         clip = self.clips.get(track.type) or next(iter(self.clips.values()))
         rows = len(track.times)
         times = np.zeros(rows) if rests else _times(clip, track)
@@ -69,13 +74,13 @@ class SkinRig:
         turns = clip.turns[before] * (1.0 - part) + clip.turns[after] * part
         root = clip.root[before] * (1.0 - part[:, 0]) + clip.root[after] * part[:, 0]
         if track.moves or self.at_the_hips:
-            # gz omits the root's own motion and has waypoints at the height of the hips; Classic omits only its x
+            # waypoints at the hips are gz's convention: it removes all motion of the root bone; Classic removes only x
             places = places - (root if self.at_the_hips else root * (1.0, 0.0, 0.0))[:, None, :]
         return places, turns / np.linalg.norm(turns, axis=-1, keepdims=True)
 
 
 def _times(clip: Clip, track: Track) -> Floats:
-    """Return the time in the animation at each row of a track [s]."""
+    """Return the time in the animation [s] for each row of a track."""
     length = clip.length
     x = clip.root[:, 0]
     by_way = clip.follows_x and track.moves and not isinstance(track, Stride)
@@ -85,7 +90,7 @@ def _times(clip: Clip, track: Track) -> Floats:
 
 
 def skinned_actor_model(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> SceneModel | None:
-    """Return the actor's model with its own skin; None after a warning if no skin can be read."""
+    """Return the actor's model with the skin from its file; None without a skin, or after a warning about the file."""
     if not actor.skin:
         return None
     skin = _read_file(actor, actor.skin, "skin", find_file, diagnostics)
@@ -123,7 +128,7 @@ def _model(actor: SceneActor, skin: Skin, file: Path, carrying: list[int], scrip
 def _clips(
     actor: SceneActor, skin: Skin, carrying: list[int], find_file: FindFile, diagnostics: Diagnostics
 ) -> dict[str, Clip]:
-    """Return the animations by name; the skin's own animation if none of them can be read."""
+    """Return the actor's animations by name; the animation in the skin's file if none of them can be read."""
     found = {}
     for animation in actor.animations:
         moved = _read_file(actor, animation.uri, f"animation {animation.name!r}", find_file, diagnostics)
@@ -140,7 +145,7 @@ def _clips(
 
 
 def _clip(skin: Skin, moved: Skin, carrying: list[int], animation: Animation, scale: float) -> Clip | None:
-    """Return an animation of one file for the skeleton of another; None if the skeletons do not match."""
+    """Return the animation in the file `moved` for the skeleton of `skin`; None if the skeletons do not match."""
     place_of = _same_bones(skin, moved)
     if place_of is None:
         return None
@@ -162,7 +167,11 @@ def _clip(skin: Skin, moved: Skin, carrying: list[int], animation: Animation, sc
 
 
 def _same_bones(skin: Skin, moved: Skin) -> dict[int, int] | None:
-    """Map each bone of a skin to a bone of the other file: by name, else by order if both have the same number."""
+    """Map each bone of `skin` to a bone of `moved`.
+
+    Bones are matched by name if at least half of them have a match, or else by order if both files have the same number
+    of bones. Otherwise the result is None.
+    """
     by_word = {word: i for i, bone in enumerate(moved.bones) for word in bone.words}
     named = {i: by_word[w] for i, bone in enumerate(skin.bones) for w in bone.words if w in by_word}
     if 2 * len(named) >= len(skin.bones):
@@ -173,7 +182,7 @@ def _same_bones(skin: Skin, moved: Skin) -> dict[int, int] | None:
 
 
 def _worlds(skin: Skin, frames: dict[int, Floats], count: int) -> list[Floats]:
-    """Return the transforms of all bones in the skeleton's frame, each of shape (count, 4, 4)."""
+    """Return the transforms of all bones in the skeleton's frame, an array of shape (count, 4, 4) for each bone."""
     found: list[Floats] = []
     for i, bone in enumerate(skin.bones):
         own = np.broadcast_to(frames[i], (count, 4, 4))
@@ -187,7 +196,10 @@ def _size(matrices: Floats) -> float:
 
 
 def _quaternions(matrices: Floats) -> Floats:
-    """Return quaternions w, x, y, z of the rotations nearest to matrices (f, 3, 3), in the same hemisphere."""
+    """Return the quaternions w, x, y, z of the rotations nearest to the matrices, shape (f, 3, 3).
+
+    Successive quaternions have the same sign, so that they can be interpolated.
+    """
     left, _, right = np.linalg.svd(matrices)
     turn = left @ right
     turn *= np.sign(np.linalg.det(turn))[:, None, None]

@@ -1,4 +1,4 @@
-"""Poses of an actor's links over one cycle of its walk, for an actor moved by a plugin."""
+"""Poses of an actor's links over one cycle of its walk, for an actor that a plugin moves."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from simkit.plugins.actors.skin import SkinRig
 from simkit.plugins.not_deep_copied import SharedByCopies
 
 _ROWS: Final = 256
-"""Rows in the table of a cycle; linear interpolation between rows is exact to a millimetre."""
+"""Number of rows of a cycle; the error of a linear interpolation between two rows is below 1 mm."""
 
 
 class Gait(SharedByCopies):
-    """Cycle of an actor's walk; immutable.
+    """Table of the poses of a walking actor over one cycle; immutable.
 
     Args:
         cast: walking actor.
-        animation: name of the animation that plays, for a skin with several.
-        speed: [m/s]
-        seconds: duration of a skin's animation per metre [s/m].
+        animation: name of the animation, for a skin with several animations.
+        speed: walking speed [m/s].
+        seconds: duration of a skin's animation for one metre [s/m].
     """
 
     def __init__(self, cast: AnimatedActor, animation: str, speed: float, seconds: float) -> None:
@@ -34,16 +34,18 @@ class Gait(SharedByCopies):
         # an actor with a skin stops in the middle of a step, as in gz; a built-in person puts the feet together
         self._standing = None if isinstance(cast.rig, SkinRig) else _table(cast, animation, 0.0, 0.0, seconds)[0]
 
-    def poses(self, place: tuple[float, float, float], yaw: float, distance: float, goes: bool) -> Floats:
-        """Return the world poses of the links: the origin, then the parts; position and quaternion, shape (n, 7).
+    def poses(self, place: tuple[float, float, float], yaw: float, distance: float, is_walking: bool) -> Floats:
+        """Return the world poses of the links.
+
+        The shape is (n, 7): position [m] and quaternion of the actor's origin, then of each other link.
 
         Args:
-            place: position of the origin [m].
-            yaw: heading [rad].
+            place: position of the actor's origin in the world [m].
+            yaw: heading of the actor [rad].
             distance: distance walked [m].
-            goes: whether the actor walks; otherwise it stands.
+            is_walking: true if the actor walks, false if it stands.
         """
-        if self._standing is not None and not goes:
+        if self._standing is not None and not is_walking:
             own: Floats = self._standing
         else:
             row = math.fmod(distance, self._cycle) / self._cycle * (_ROWS - 1) if self._cycle > 0.0 else 0.0
@@ -60,7 +62,7 @@ class Gait(SharedByCopies):
 
 
 def _cycle(cast: AnimatedActor, animation: str, seconds: float) -> float:
-    """Return the distance after which the poses of the links repeat [m]; 0 if the links do not move."""
+    """Return the distance [m] after which the poses of the links repeat; 0 if the links do not move."""
     rig = cast.rig
     if isinstance(rig, WalkingPerson):
         return person.STRIDE * rig.scale

@@ -1,4 +1,4 @@
-"""Buoyant force of a layered fluid on the volumes of links, by Archimedes' principle."""
+"""Buoyant force on links in a fluid with horizontal layers, by Archimedes' principle."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 _ZERO: Final = np.zeros(3)
-_SAME: Final = 1e-9  # [m], largest distance at which centre of volume and centre of mass count as equal
-_FEW: Final = 32  # hulls; up to this number plain numbers are several times faster than arrays
+_SAME: Final = 1e-9  # [m], largest distance between centre of volume and centre of mass that counts as zero
+_FEW: Final = 32  # hulls; up to this number of hulls, Python floats are several times faster than arrays
 Three = tuple[float, float, float]
 
 
@@ -33,7 +33,7 @@ class Fluid:
 
     Attributes:
         densities: Density of each layer, lowest first [kg/m³].
-        heights: World height at which each layer except the lowest begins [m], in ascending order.
+        heights: World heights of the boundaries between the layers [m], in ascending order.
     """
 
     densities: tuple[float, ...]
@@ -42,11 +42,11 @@ class Fluid:
 
 @dataclass(frozen=True, slots=True)
 class Immersion:
-    """Position of all hulls relative to the layers at one tick.
+    """Layers in which the hulls are at one tick.
 
     Attributes:
-        low, high: Indices of the lowest and highest layer that each hull may reach into.
-        steady: True for links whose force stays the same in any orientation, as long as they stay in their layer.
+        low, high: Indices of the lowest and highest layer that each hull can reach into, for any orientation.
+        steady: True for each link whose force is the same in any orientation, while the link is in the same layer.
         masses: Mass of the fluid that each steady link displaces [kg]; zero for the other links.
     """
 
@@ -57,7 +57,10 @@ class Immersion:
 
 
 class _Part(NamedTuple):
-    """Hull in plain numbers. The frame of its solid is given in the link's frame; axes are None if they are equal."""
+    """Hull of the link with index `owner`, as Python floats.
+
+    `axes` and `origin` are the frame of the solid in the link's frame; `axes` is None if both frames have equal axes.
+    """
 
     owner: int
     volume: float
@@ -70,12 +73,12 @@ class _Part(NamedTuple):
 
 
 class BuoyantForces(SharedByCopies):
-    """Buoyant forces on the hulls of one compiled model. A deep copy returns the same object.
+    """Buoyant forces on the links of one compiled model. A deep copy returns the same object.
 
     Args:
         sim: Simulation of the links.
-        hulls: Hulls by scoped link name.
-        fluid: Fluid around the hulls.
+        hulls: Hulls of each link, by scoped name of the link.
+        fluid: Fluid around the links.
     """
 
     def __init__(self, sim: Simulation, hulls: Mapping[str, Sequence[Hull]], fluid: Fluid) -> None:
@@ -98,7 +101,7 @@ class BuoyantForces(SharedByCopies):
         self._evens, self._wholes = self._is_even.tolist(), self._whole.tolist()
 
     def _find_even(self, model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
-        """Return the mask of links whose centre of volume is their centre of mass."""
+        """Return for each link whether its centre of volume is at its centre of mass."""
         middle = self._summed(self._volumes[:, None] * self._centres)
         middle /= np.maximum(self._whole[:, None], 1e-300)
         away = middle - model.body_ipos[self.links.bodies]
@@ -107,11 +110,11 @@ class BuoyantForces(SharedByCopies):
 
     @property
     def is_all_steady(self) -> bool:
-        """True if all forces are constant, whatever the poses of the links."""
+        """True if all forces are constant, because they do not depend on the poses of the links."""
         return not self.fluid.heights and bool(self._is_even.all())
 
-    def lie(self, data: mujoco.MjData) -> Immersion:
-        """Determine the layers of all hulls from the poses in `data`."""
+    def find_immersion(self, data: mujoco.MjData) -> Immersion:
+        """Determine the layers of all hulls from the poses of the links in `data`."""
         if not len(self._heights):
             if self._always is None:
                 lowest = [0] * len(self._hulls)
@@ -119,7 +122,7 @@ class BuoyantForces(SharedByCopies):
                 self._always = Immersion(lowest, lowest, tuple(self._evens), tuple(masses.tolist()))
             return self._always
         if self._parts:
-            return self._lie_few(data)
+            return self._find_immersion_few(data)
         axes = self.links.axes(data)[self._owners]
         z = data.xpos[self.links.bodies, 2][self._owners] + (axes[:, 2] * self._centres).sum(axis=1)
         low, high = (np.searchsorted(self._heights, z + s * self._reach, side="right") for s in (-1.0, 1.0))
@@ -131,7 +134,7 @@ class BuoyantForces(SharedByCopies):
         masses = np.where(steady, self._masses(first), 0.0)
         return Immersion(low.tolist(), high.tolist(), tuple(steady.tolist()), tuple(masses.tolist()))
 
-    def _lie_few(self, data: mujoco.MjData) -> Immersion:
+    def _find_immersion_few(self, data: mujoco.MjData) -> Immersion:
         heights, densities = self.fluid.heights, self.fluid.densities
         rows, places = data.xmat[self.links.bodies, 6:].tolist(), data.xpos[self.links.bodies, 2].tolist()
         low, high, steady = [], [], list(self._evens)
@@ -155,33 +158,33 @@ class BuoyantForces(SharedByCopies):
         masses: Vector = self._densities[layers] * self._whole * self._is_even
         return masses
 
-    def push(self, data: mujoco.MjData, lie: Immersion, gravity: Vector) -> None:
-        """Push the links that are not steady, for the next step only.
+    def push(self, data: mujoco.MjData, immersion: Immersion, gravity: Vector) -> None:
+        """Apply the buoyant forces to the links that are not steady, for the next step only.
 
         Args:
             data: Engine data with computed poses.
-            lie: Immersion for these poses.
+            immersion: Immersion at these poses.
             gravity: Gravity in the world frame [m/s²], shape (3,).
         """
         if self._parts:
-            self.links.push_some(data, self._wrenches_few(data, lie, gravity.tolist()))
+            self.links.push_some(data, self._wrenches_few(data, immersion, gravity.tolist()))
         else:
-            self.links.push(data, *self._wrenches(data, lie, gravity))
+            self.links.push(data, *self._wrenches(data, immersion, gravity))
 
-    def _wrenches_few(self, data: mujoco.MjData, lie: Immersion, gravity: list[float]) -> dict[int, list[float]]:
-        """Return force at the centre of mass [N] and torque [N·m] by link index, world frame."""
+    def _wrenches_few(self, data: mujoco.MjData, immersion: Immersion, gravity: list[float]) -> dict[int, list[float]]:
+        """Return the force at the centre of mass [N] and the torque [N·m], in the world frame, by index of the link."""
         bodies = self.links.bodies
         axes, origins, masses = data.xmat[bodies].tolist(), data.xpos[bodies].tolist(), data.xipos[bodies].tolist()
         gx, gy, gz = gravity
         found: dict[int, list[float]] = {}
-        for part, low, high in zip(self._parts, lie.low, lie.high, strict=True):
+        for part, low, high in zip(self._parts, immersion.low, immersion.high, strict=True):
             owner = part.owner
-            if lie.steady[owner]:
+            if immersion.steady[owner]:
                 continue
             if low == high:
                 mass, (x, y, z) = (
                     self.fluid.densities[low] * part.volume,
-                    _moved(axes[owner], origins[owner], part.centre),
+                    _point_in_world(axes[owner], origins[owner], part.centre),
                 )
             else:
                 mass, (x, y, z) = self._cut_few(part, axes[owner], origins[owner], low, high)
@@ -194,11 +197,11 @@ class BuoyantForces(SharedByCopies):
         return found
 
     def _cut_few(self, part: _Part, axes: list[float], origin: list[float], low: int, high: int) -> tuple[float, Three]:
-        """Return mass [kg] and world centre [m] of the fluid that is displaced by a hull in several layers."""
+        """Return the mass [kg] and the world centre [m] of the fluid that a hull in several layers displaces."""
         assert part.solid is not None
         densities, heights = self.fluid.densities, self.fluid.heights
-        start = _moved(axes, origin, part.origin)
-        turned = axes if part.axes is None else _turned(axes, part.axes)
+        start = _point_in_world(axes, origin, part.origin)
+        turned = axes if part.axes is None else _matrix_product(axes, part.axes)
         mass = densities[high] * part.volume
         mx, my, mz = (mass * c for c in part.middle)
         total = 0.0
@@ -209,20 +212,21 @@ class BuoyantForces(SharedByCopies):
             mx, my, mz = mx + more * vx, my + more * vy, mz + more * vz
         mass = max(mass + total, 0.0)
         share = max(mass, 1e-300)
-        return mass, _moved(turned, start, (mx / share, my / share, mz / share))
+        return mass, _point_in_world(turned, start, (mx / share, my / share, mz / share))
 
-    def _wrenches(self, data: mujoco.MjData, lie: Immersion, gravity: Vector) -> tuple[Vector, Vector]:
-        """Compute the wrenches on the links that are not steady; the other rows are zero.
+    def _wrenches(self, data: mujoco.MjData, immersion: Immersion, gravity: Vector) -> tuple[Vector, Vector]:
+        """Compute the wrenches on the links that are not steady.
 
         Returns:
-            Forces at the centres of mass [N] and torques [N·m], world frame, shape (n, 3) each.
+            Forces at the centres of mass [N] and torques [N·m] in the world frame, each of shape (n, 3) for n links.
+            The rows of steady links are zero.
         """
-        rows = np.flatnonzero(~np.array(lie.steady, bool)[self._owners])
+        rows = np.flatnonzero(~np.array(immersion.steady, bool)[self._owners])
         owners = self._owners[rows]
         bodies = self.links.bodies[owners]
         axes = self.links.axes(data)[owners]
         centres = data.xpos[bodies] + (axes * self._centres[rows, None, :]).sum(axis=2)
-        low, high = np.array(lie.low, int)[rows], np.array(lie.high, int)[rows]
+        low, high = np.array(immersion.low, int)[rows], np.array(immersion.high, int)[rows]
         masses = self._densities[low] * self._volumes[rows]
         cut = [(place, layer) for place in np.flatnonzero(low != high) for layer in range(low[place], high[place])]
         if cut:
@@ -240,15 +244,17 @@ class BuoyantForces(SharedByCopies):
         masses: Vector,
         centres: Vector,
     ) -> None:
-        """Correct masses and centres of the displaced fluid of the hulls that reach into several layers.
+        """Correct the displaced mass and its centre for the hulls that reach into several layers.
+
+        The arrays have one row for each hull of a link that is not steady.
 
         Args:
-            cuts: Pairs of a row of the arrays below and a layer that ends within that hull, sorted by row.
-            rows: Index of the hull of each row.
-            axes: World rotation matrix of each row's link.
-            origins: World position of each row's link [m].
-            masses: Displaced masses [kg], changed in place.
-            centres: World centres of the displaced fluid [m], changed in place.
+            cuts: Pairs (row, layer) for each layer whose upper boundary may cut the hull of that row, sorted by row.
+            rows: Index of the hull in each row.
+            axes: World rotation matrix of the link in each row.
+            origins: World position of the link in each row [m].
+            masses: Displaced masses [kg], corrected in place.
+            centres: World positions of the centres of the displaced fluid [m], corrected in place.
         """
         places, layers = cuts.T
         hulls = rows[places]
@@ -270,7 +276,7 @@ class BuoyantForces(SharedByCopies):
         at = np.unique(places)
         top = np.zeros(len(masses), dtype=np.intp)
         np.maximum.at(top, places, layers + 1)
-        last = places.searchsorted(at)  # first cut of each hull, for its frame
+        last = places.searchsorted(at)  # index of the first cut of each hull; all cuts of a hull have the same frame
         whole = self._densities[top[at]] * self._volumes[rows[at]]
         masses[at] = np.maximum(whole + total[at], 0.0)
         first = first[at] + whole[:, None] * self._solid_centres[rows[at]]
@@ -278,7 +284,7 @@ class BuoyantForces(SharedByCopies):
         centres[at] = starts[last] + (turned[last] * middle[:, None, :]).sum(axis=2)
 
     def _summed(self, values: Vector, owners: npt.NDArray[np.intp] | None = None) -> Vector:
-        """Return the sum over the hulls of each link."""
+        """Return for each link the sum of the values of its hulls."""
         found = np.zeros((len(self.links), values.shape[1]))
         np.add.at(found, self._owners if owners is None else owners, values)
         return found
@@ -296,8 +302,8 @@ def _part(owner: int, hull: Hull) -> _Part:
     )
 
 
-def _moved(axes: Sequence[float], origin: Sequence[float], at: Three) -> Three:
-    """Transform a point of a frame into the world."""
+def _point_in_world(axes: Sequence[float], origin: Sequence[float], at: Three) -> Three:
+    """Transform a point from a frame with these axes and this origin into the world."""
     a, b, c, d, e, f, g, h, i = axes
     x, y, z = at
     return (
@@ -307,7 +313,7 @@ def _moved(axes: Sequence[float], origin: Sequence[float], at: Three) -> Three:
     )
 
 
-def _turned(axes: Sequence[float], by: list[list[float]]) -> list[float]:
+def _matrix_product(axes: Sequence[float], by: list[list[float]]) -> list[float]:
     """Return the product of two rotation matrices as nine numbers, row by row."""
     (a, b, c), (d, e, f), (g, h, i) = by
     rows = (axes[0:3], axes[3:6], axes[6:9])

@@ -1,4 +1,4 @@
-"""Volumes of links that displace air or water, derived from their collisions."""
+"""Volumes with which links displace air or water, computed from the collisions of the links."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Hull:
         volume: Volume [m³].
         centre: Centre of the volume in the link's frame [m], shape (3,).
         reach: Upper bound of the distance from the centre to any point of the volume [m].
-        solid: Shape of the volume; None if only the numbers are known.
-        axes, origin: Frame of the solid in the link's frame.
+        solid: Shape of the volume; None if only volume, centre and reach are known.
+        axes, origin: Rotation matrix and position [m] of the solid's frame in the link's frame.
     """
 
     volume: float
@@ -36,10 +36,11 @@ class Hull:
 
 
 class HullFactory(SharedByCopies):
-    """Factory of hulls that converts equal shapes only once. A deep copy returns the same object.
+    """Factory of hulls; it converts equal shapes only once. A deep copy returns the same object.
 
     Args:
-        on_open_mesh: Callback for the scoped name of a collision with an open mesh, whose convex hull is used instead.
+        on_open_mesh: Function called with the scoped name of a collision whose mesh is open. The convex hull of the
+            mesh is used in this case.
     """
 
     def __init__(self, on_open_mesh: Callable[[str], None]) -> None:
@@ -47,7 +48,7 @@ class HullFactory(SharedByCopies):
         self._solids: dict[Geometry, Solid | None] = {}
 
     def hulls(self, link: SceneLink) -> list[Hull]:
-        """Return one hull for each collision of a link that has a volume."""
+        """Return one hull for each collision of a link; collisions without a volume have none."""
         return [hull for collision in link.collisions if (hull := self._hull(collision)) is not None]
 
     def _hull(self, collision: SceneCollision) -> Hull | None:
@@ -78,9 +79,9 @@ class HullFactory(SharedByCopies):
 
 
 def _surface(shape: Geometry, collision: SceneCollision) -> tuple[Vector, npt.NDArray[np.int32]]:
-    """Return vertices and faces of a mesh or outline.
+    """Return the vertices and faces of a mesh or an extruded outline.
 
-    Faults of a mesh file are dropped, because they were reported when the world was compiled.
+    Faults of a mesh file are not reported here, because the compiler has already reported them.
     """
     from simkit.compiler.meshes.mesh_part import join_parts
     from simkit.compiler.meshes.mesh_reader import load_mesh

@@ -17,20 +17,20 @@ if TYPE_CHECKING:
 
 
 class BuoyancyBase(Plugin):
-    """Pushes links by the weight of the fluid that they displace.
+    """Pushes links up by the weight of the fluid that they displace.
 
-    A link is steady if its centre of volume is its centre of mass and it is within one layer. Its force is constant, so
-    it is set once and no step has to compute it.
+    A link is steady if its centre of volume is at its centre of mass and the whole link is within one layer. The force
+    on a steady link is constant, so it is set once instead of being computed at each step.
     """
 
     _fluid: Fluid
 
     @abstractmethod
     def find_hulls(self) -> Mapping[str, Sequence[Hull]]:
-        """Return the hulls of the floating links in the current world, by scoped link name."""
+        """Return the hulls of each floating link in the current world, by scoped name of the link."""
 
     def start(self) -> None:
-        """Set up the forces; call it at the end of `load`."""
+        """Set up the forces; a subclass calls this method at the end of `load`."""
         self.once = OneTimeWarnings(self)
         self._factory = HullFactory(self._report_open_mesh)
         self._found: BuoyantForces | None = None
@@ -42,7 +42,10 @@ class BuoyancyBase(Plugin):
 
     @property
     def before_step_rate(self) -> float | None:
-        """Never while all forces are constant; evaluated again after a spawn, a removal or a change of gravity."""
+        """`NEVER` while all forces are constant, otherwise None (every step).
+
+        The value is computed again after a spawn, a removal or a change of gravity.
+        """
         found = self._found
         is_idle = (
             found is not None
@@ -62,16 +65,16 @@ class BuoyancyBase(Plugin):
         return tuple(self.sim.mj_model.opt.gravity.tolist())
 
     def before_step(self) -> None:
-        """Push the floating links for the next step."""
+        """Apply the buoyant forces for the next step."""
         if self._found is None or not self._found.links.is_current:
             self._bind()
         found = self._found
         if found is None:
             return
         data = moving_data(self.sim)
-        lie = self._set_steady_wrenches(data)
-        if not all(lie.steady):
-            found.push(data, lie, self.sim.mj_model.opt.gravity)
+        immersion = self._set_steady_wrenches(data)
+        if not all(immersion.steady):
+            found.push(data, immersion, self.sim.mj_model.opt.gravity)
         if self.before_step_rate is not None:
             self.sim.engine.reschedule()
 
@@ -79,20 +82,20 @@ class BuoyancyBase(Plugin):
         self._found, self._steady_state = BuoyantForces(self.sim, self.find_hulls(), self._fluid), None
 
     def _set_steady_wrenches(self, data: mujoco.MjData) -> Immersion:
-        """Set the constant forces if they have changed, and return the current immersion."""
+        """Set the forces on the steady links if they have changed, and return the current immersion."""
         found = self._found
         assert found is not None
-        lie, gravity = found.lie(data), self._gravity
-        now = (lie.steady, lie.masses, gravity)
+        immersion, gravity = found.find_immersion(data), self._gravity
+        now = (immersion.steady, immersion.masses, gravity)
         if now != self._steady_state:
             self._steady_state = now
             self._steady_wrenches = {
                 name: (*(-mass * g for g in gravity), 0.0, 0.0, 0.0)
-                for name, is_steady, mass in zip(found.links.names, lie.steady, lie.masses, strict=True)
+                for name, is_steady, mass in zip(found.links.names, immersion.steady, immersion.masses, strict=True)
                 if is_steady and mass
             }
             self.sim.engine.wrenches.set(self, self._steady_wrenches)
-        return lie
+        return immersion
 
     def set_state(self, state: Mapping[str, object]) -> None:
         """Restore a state from `get_state`."""

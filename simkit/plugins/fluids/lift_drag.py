@@ -3,11 +3,12 @@
 The coefficients are linear in the angle of attack α, with a different slope beyond the stall:
 
     c(α) = slope · α                                   for |α| <= stall
-    c(α) = ±slope · stall + slope_stall · (α ∓ stall)  beyond; lift and moment never change sign there
+    c(α) = ±slope · stall + slope_stall · (α ∓ stall)  for |α| > stall
 
-Each coefficient is multiplied by cos²(sweep), the part of the stream that is normal to the leading edge. The angle of a
-control surface adds to lift and moment. Force = c · q · area, where q = ½ρv² is the dynamic pressure of the stream
-normal to the span.
+Beyond the stall, lift and moment are zero where the formula would change their sign. Each coefficient is multiplied by
+cos²(sweep); the sweep is the angle between the stream and the plane normal to the span. The angle of a control surface
+increases the coefficients of lift and moment. The force is c · q · area: v is the speed of the stream normal to the
+span and q = ½ρv² its dynamic pressure.
 """
 
 from __future__ import annotations
@@ -32,14 +33,14 @@ if TYPE_CHECKING:
 
 Triple = tuple[float, float, float]
 SLOWEST: Final = 0.01
-"""Speed of the stream [m/s] below which no force acts."""
+"""Speed of the stream [m/s] up to which no force acts."""
 _ZERO: Final[Triple] = (0.0, 0.0, 0.0)
-_STRAIGHT: Final = 1e-9  # sine of the angle below which a stream counts as parallel to the axis of revolution
+_STRAIGHT: Final = 1e-9  # sine of the largest angle to the axis of revolution at which a stream counts as parallel
 
 
 @dataclass(frozen=True, slots=True)
 class CoefficientLine:
-    """Coefficient over the angle of attack.
+    """Aerodynamic coefficient as a function of the angle of attack, with one slope up to the stall and one beyond it.
 
     Attributes:
         slope: Slope up to the stall [1/rad].
@@ -50,7 +51,7 @@ class CoefficientLine:
     beyond: float
 
     def at(self, alpha: float, stall: float) -> float:
-        """Return the coefficient at an angle of attack [rad], for a given stall angle [rad]."""
+        """Return the coefficient at an angle of attack `alpha` [rad]; `stall` is the angle of the stall [rad]."""
         if alpha > stall:
             return self.slope * stall + self.beyond * (alpha - stall)
         if alpha < -stall:
@@ -58,7 +59,7 @@ class CoefficientLine:
         return self.slope * alpha
 
     def one_sided(self, alpha: float, stall: float) -> float:
-        """Return the same coefficient, limited to zero where it would change sign beyond the stall."""
+        """Return the coefficient as `at` does, but zero where its sign would change beyond the stall."""
         found = self.at(alpha, stall)
         if alpha > stall:
             return max(0.0, found)
@@ -67,19 +68,19 @@ class CoefficientLine:
 
 @dataclass(frozen=True, slots=True)
 class Aerofoil:
-    """Wing; directions and points in the link's frame.
+    """Wing; all directions and points are in the link's frame.
 
     Attributes:
-        lift, drag, moment: Coefficients.
+        lift, drag, moment: Coefficients of lift, drag and pitching moment.
         stall: Angle of attack at the stall [rad].
-        zero: Offset of the angle of attack [rad].
+        zero: Angle of attack [rad] at zero angle between the stream and `forward`.
         density: Density of the air or water [kg/m³].
         area: Reference area [m²].
         centre: Centre of pressure [m].
-        forward, upward: Unit vectors; the stream comes from `forward`, lift acts along `upward`.
-        is_radial: True for a body of revolution around `forward`, whose upward direction follows the stream.
-        is_reversible: True if a stream from behind also acts.
-        lift_by_joint, moment_by_joint: Increase of the coefficients per angle of the control surface [1/rad].
+        forward, upward: Unit vectors; the wing usually moves along `forward`, and lift acts along `upward`.
+        is_radial: True for a body of revolution around `forward`; its upward direction depends on the stream.
+        is_reversible: True if a stream from behind also causes forces.
+        lift_by_joint, moment_by_joint: Increase of the coefficients for each radian of the control surface [1/rad].
     """
 
     lift: CoefficientLine
@@ -98,10 +99,10 @@ class Aerofoil:
     moment_by_joint: float
 
     def load(self, velocity: Triple, angle: float = 0.0) -> tuple[Triple, Triple]:
-        """Return the force at the centre of pressure [N] and the moment [N·m], link frame.
+        """Return the force at the centre of pressure [N] and the moment [N·m], in the link's frame.
 
         Args:
-            velocity: Velocity of the centre of pressure relative to the air [m/s], link frame.
+            velocity: Velocity of the centre of pressure relative to the air [m/s], in the link's frame.
             angle: Angle of the control surface [rad].
         """
         speed = math.sqrt(_dot(velocity, velocity))
@@ -130,11 +131,12 @@ class Aerofoil:
             return self.upward
         aside = _cross(self.forward, velocity)
         if _dot(aside, aside) < (_STRAIGHT * speed) ** 2:
-            return _any_across(self.forward)  # parallel stream: the angle of attack is zero about any axis
+            # for a parallel stream, the angle of attack is zero with any upward direction
+            return _any_across(self.forward)
         return unit(_cross(self.forward, aside))
 
     def _angle_of_attack(self, lift_way: Triple, up: Triple) -> float:
-        """Return the angle of attack within ±90°: a stream from behind counts as one from the front."""
+        """Return the angle of attack, from -90° to 90°: a stream from behind counts as a stream from the front."""
         aside = _cross(up, lift_way)
         angle = math.atan2(math.sqrt(_dot(aside, aside)), _dot(up, lift_way))
         alpha = self.zero + (angle if _dot(lift_way, self.forward) >= 0.0 else -angle)
@@ -167,14 +169,14 @@ class AerofoilOptions(Options):
 
 
 class MomentAerofoilOptions(AerofoilOptions):
-    """Options of a wing that also produces a pitching moment."""
+    """Options of a wing with a pitching moment."""
 
     reversible: bool = boolean()
     cm_delta: float = number(0.0, minimum=-_MOST, maximum=_MOST)
 
 
 def read_aerofoil(options: AerofoilOptions) -> Aerofoil:
-    """Return the aerofoil of a plugin's options, and report invalid directions."""
+    """Return the aerofoil that the options describe; invalid directions are reported as errors."""
     params, with_moment = options.params, options if isinstance(options, MomentAerofoilOptions) else None
     forward = _direction(params, "forward", options.forward, AerofoilOptions.forward)
     upward = _direction(params, "upward", options.upward, AerofoilOptions.upward)
@@ -241,10 +243,12 @@ def _scaled(v: Triple, by: float) -> Triple:
 
 
 class LiftDragBase(ModelPlugin):
-    """Applies lift, drag and moment to one link, from its motion through the air and the angle of a control joint.
+    """Applies lift, drag and moment to one link.
+
+    They depend on the link's velocity relative to the air and on the angle of a joint, which turns a control surface.
 
     Attributes:
-        is_about_mass: True if the centre of pressure is relative to the centre of mass instead of the link's origin.
+        is_about_mass: True if `<cp>` is relative to the centre of mass, false if it is relative to the link's origin.
     """
 
     options = OptionsOf(AerofoilOptions)
@@ -268,7 +272,7 @@ class LiftDragBase(ModelPlugin):
         self._joint = self.sim.joint(self._joint_name) if self._joint_name else None
 
     def before_step(self) -> None:
-        """Push the link for the next step."""
+        """Apply lift, drag and moment to the link for the next step."""
         sim = self.sim
         body = sim.engine.names.links[self._scoped].body
         if body <= 0:
@@ -279,7 +283,7 @@ class LiftDragBase(ModelPlugin):
         force, moment = self._aerofoil.load(_turned_back(axes, velocity), angle)
         if not (any(force) or any(moment)):
             return
-        (fx, fy, fz), (mx, my, mz) = _turned(axes, force), _turned(axes, moment)
+        (fx, fy, fz), (mx, my, mz) = _in_world_axes(axes, force), _in_world_axes(axes, moment)
         x, y, z = arm
         row = data.xfrc_applied[body]
         row += (fx, fy, fz, mx + y * fz - z * fy, my + z * fx - x * fz, mz + x * fy - y * fx)
@@ -287,10 +291,14 @@ class LiftDragBase(ModelPlugin):
         sim.engine.physics.changed_body(CONTROL, body)
 
     def _motion(self, data: mujoco.MjData, body: int) -> tuple[Triple, Triple, list[float]]:
-        """Return the centre of pressure from the centre of mass [m], its air velocity [m/s] and the link's axes."""
+        """Return the state of the centre of pressure.
+
+        Returns:
+            Position relative to the centre of mass [m], velocity relative to the air [m/s], and the link's axes.
+        """
         model = self.sim.mj_model
         axes: list[float] = data.xmat[body].tolist()
-        px, py, pz = _turned(axes, self._centre)
+        px, py, pz = _in_world_axes(axes, self._centre)
         ox, oy, oz = data.xpos[body].tolist()
         gx, gy, gz = data.subtree_com[model.body_rootid[body]].tolist()
         wx, wy, wz, vx, vy, vz = data.cvel[body].tolist()  # cvel refers to the centre of mass of the whole tree
@@ -301,7 +309,7 @@ class LiftDragBase(ModelPlugin):
         return (ox + px - mx, oy + py - my, oz + pz - mz), velocity, axes
 
 
-def _turned(axes: list[float], v: Triple) -> Triple:
+def _in_world_axes(axes: list[float], v: Triple) -> Triple:
     """Rotate a vector from the link's frame into the world; the matrix is row-major."""
     x, y, z = v
     return (

@@ -1,4 +1,4 @@
-"""Read the motion of many links and apply forces to them, with one array operation per step."""
+"""Access to many links at once: read their velocities and apply forces to them with array operations."""
 
 from __future__ import annotations
 
@@ -22,28 +22,31 @@ _YZX, _ZXY = [1, 2, 0], [2, 0, 1]
 
 
 def moving_data(sim: Simulation) -> mujoco.MjData:
-    """Return the engine's data with computed poses and velocities; the next step reuses these results."""
+    """Return the engine's data with computed poses and velocities; the next step does not compute them again."""
     physics = sim.engine.physics
     return physics.data if physics.fresh_velocities() else physics.fresh()
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """Return the cross products of rows, shape (n, 3); for few rows several times faster than NumPy's function."""
+    """Return the cross product of each pair of rows, shape (n, 3).
+
+    For few rows this is several times faster than NumPy's function.
+    """
     found: Vector = a[:, _YZX] * b[:, _ZXY] - a[:, _ZXY] * b[:, _YZX]
     return found
 
 
 class PushedLinks(SharedByCopies):
-    """Movable links of the current compiled model; static links are left out. A deep copy returns the same object.
+    """The movable links among some links of the current compiled model. A deep copy returns the same object.
 
     Args:
         sim: Simulation of the links.
-        names: Scoped names of links.
+        names: Scoped names of links; links of static models are left out.
 
     Attributes:
         names: Scoped names of the movable links.
-        bodies: Their MuJoCo body indices, shape (n,).
-        ids: The same indices as plain integers.
+        bodies: MuJoCo body index of each movable link, shape (n,).
+        ids: The same indices as Python integers.
     """
 
     def __init__(self, sim: Simulation, names: Sequence[str]) -> None:
@@ -61,22 +64,22 @@ class PushedLinks(SharedByCopies):
 
     @property
     def is_current(self) -> bool:
-        """True while the engine uses the compiled model of these indices."""
+        """True while the engine uses the compiled model for which the indices were found."""
         return self._model is self._sim.mj_model
 
     def axes(self, data: mujoco.MjData) -> Vector:
-        """Return the rotation matrices from link to world, shape (n, 3, 3)."""
+        """Return the rotation matrices from link frame to world frame, shape (n, 3, 3)."""
         matrices: Vector = data.xmat[self.bodies].reshape(-1, 3, 3)
         return matrices
 
     def velocities(self, data: mujoco.MjData) -> Vector:
-        """Return the velocities of the link origins [m/s], world frame, shape (n, 3)."""
+        """Return the velocities of the link origins [m/s] in the world frame, shape (n, 3)."""
         motion = data.cvel[self.bodies]  # cvel refers to the centre of mass of the whole tree
         found: Vector = motion[:, 3:] + cross(motion[:, :3], data.xpos[self.bodies] - data.subtree_com[self._roots])
         return found
 
     def velocities_few(self, data: mujoco.MjData, places: list[list[float]]) -> list[Three]:
-        """Return the same velocities as plain numbers.
+        """Return the velocities of the link origins [m/s] in the world frame, as Python floats.
 
         Args:
             data: Engine data from `moving_data`.
@@ -95,8 +98,8 @@ class PushedLinks(SharedByCopies):
 
         Args:
             data: Engine data from `moving_data`.
-            forces: Forces at the centres of mass [N], world frame, shape (n, 3).
-            torques: Torques [N·m], world frame, shape (n, 3).
+            forces: Force at each link's centre of mass [N], world frame, shape (n, 3).
+            torques: Torque on each link [N·m], world frame, shape (n, 3).
         """
         wrenches = np.zeros((len(self.bodies), 6))
         wrenches[:, :3] = forces
@@ -116,7 +119,7 @@ class PushedLinks(SharedByCopies):
 
         Args:
             data: Engine data from `moving_data`.
-            wrenches: Force [N] and torque [N·m] in the world frame, by index of the link.
+            wrenches: Force at the centre of mass [N] and torque [N·m] in the world frame, by index in `names`.
         """
         applied, pushed_bodies = data.xfrc_applied, []
         for place, wrench in wrenches.items():

@@ -1,4 +1,4 @@
-"""Volume and centroid of the part of a solid below a plane: exact, for any slope of the plane."""
+"""Volume and centre of the part of a solid below a plane; the result is exact for any slope of the plane."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Triangles = Vector
 
 
 Part = tuple[float, float, float, float]
-"""Volume [m³], and volume times centre [m⁴]."""
+"""Volume [m³], and the x, y, z components of volume times centre [m⁴]."""
 
 
 class Solid(ABC):
-    """Volume of a shape; lengths are in the frame of the shape.
+    """Solid shape; all coordinates are in the frame of the shape.
 
     Attributes:
         volume: Volume [m³].
@@ -37,7 +37,9 @@ class Solid(ABC):
 
     @abstractmethod
     def cut(self, x: float, y: float, z: float, height: float) -> Part:
-        """Compute the part below a plane in plain numbers, because arrays are many times slower for a few hulls.
+        """Compute the part of the solid below a plane.
+
+        The arguments are Python floats, because arrays are many times slower for a few hulls.
 
         Args:
             x: X component of the plane's unit normal.
@@ -51,7 +53,7 @@ class Solid(ABC):
 
 
 class EllipsoidSolid(Solid):
-    """Ellipsoid around the origin."""
+    """Ellipsoid with its centre at the origin and its axes along x, y, z."""
 
     def __init__(self, radii: tuple[float, float, float]) -> None:
         self._radii = x, y, z = radii
@@ -59,34 +61,34 @@ class EllipsoidSolid(Solid):
         self.centre, self.reach = np.zeros(3), max(radii)
 
     def cut(self, x: float, y: float, z: float, height: float) -> Part:
-        """Compute the part below a plane from a unit ball that is stretched along the axes."""
+        """Compute the part below a plane: transform the ellipsoid to a unit ball, and cut a cap from the ball."""
         rx, ry, rz = self._radii
         sx, sy, sz = rx * x, ry * y, rz * z
         length = math.sqrt(sx * sx + sy * sy + sz * sz)
-        depth = min(max(height / length + 1.0, 0.0), 2.0)  # height of the cap, in a ball of radius 1
+        depth = min(max(height / length + 1.0, 0.0), 2.0)  # height of the cap of the unit ball, 0 to 2
         volume = depth * depth * (3.0 - depth) / 4.0 * self.volume
         out = -0.75 * (2.0 - depth) ** 2 / (3.0 - depth) * volume / length
         return volume, out * rx * sx, out * ry * sy, out * rz * sz
 
 
 class Polyhedron(Solid):
-    """Volume that is enclosed by triangles.
+    """Solid with a surface of triangles.
 
     Attributes:
-        corners: Corners of the triangles.
+        corners: Corners of the triangles, shape (n, 3, 3).
     """
 
     def __init__(self, triangles: Triangles) -> None:
         self.corners = np.ascontiguousarray(triangles, float)
         volume, moment = _enclosed(self.corners)
-        if volume < 0:  # the normals point inwards
+        if volume < 0:  # the normals of the triangles point inwards
             self.corners = np.ascontiguousarray(self.corners[:, ::-1])
         self.volume = abs(volume)
         self.centre = moment / volume if self.volume > 0 else np.zeros(3)
         away = self.corners.reshape(-1, 3) - self.centre
         self.reach = float(np.sqrt((away * away).sum(axis=1).max())) if len(away) else 0.0
         first, second, third = self.corners.transpose(1, 0, 2)
-        self._areas = np.cross(second - first, third - first) / 2  # along the normals, outwards, shape (n, 3)
+        self._areas = np.cross(second - first, third - first) / 2  # outward normal times area, shape (n, 3)
         self._is_small = len(self.corners) <= _FEW
         self._by_corner = np.ascontiguousarray(self.corners.transpose(1, 0, 2)), self.corners.sum(axis=1)
         if self._is_small:
@@ -101,7 +103,8 @@ class Polyhedron(Solid):
     def _cut_few(self, x: float, y: float, z: float, height: float) -> Part:
         points = self._points
         over = [x * px + y * py + z * pz - height for px, py, pz in points]
-        volume = mx = my = mz = lean = 0.0  # lean: twice the integral of d over the part
+        # d, e, f: heights of the three corners above the plane; lean: twice the integral of the height over the part
+        volume = mx = my = mz = lean = 0.0
         for i, j, k, ax, ay, az in self._faces:
             d, e, f = over[i], over[j], over[k]
             flux = x * ax + y * ay + z * az
@@ -119,14 +122,14 @@ class Polyhedron(Solid):
                 lean += twelfth * (total * total + d * d + e * e + f * f)
             if dry == 0:
                 continue
-            # the tip at the corner that is alone on its side: a wet tip is added, a dry tip is subtracted
+            # the plane cuts off a tip with one corner: a tip below the plane is added, a tip above it is subtracted
             is_alone_dry = dry == 1
             if (d > 0) != is_alone_dry:
                 if (e > 0) == is_alone_dry:
                     d, e, f, px, py, pz, qx, qy, qz, rx, ry, rz = e, f, d, qx, qy, qz, rx, ry, rz, px, py, pz
                 else:
                     d, e, f, px, py, pz, qx, qy, qz, rx, ry, rz = f, d, e, rx, ry, rz, px, py, pz, qx, qy, qz
-            u, v = d / (d - e), d / (d - f)  # fractions of the two edges up to the plane
+            u, v = d / (d - e), d / (d - f)  # fractions of the tip's two edges at which the plane cuts them
             flux *= -u * v if is_alone_dry else u * v
             volume += flux * d / 3
             twelfth = flux * d / 12
@@ -140,7 +143,7 @@ class Polyhedron(Solid):
     def _cut_many(self, x: float, y: float, z: float, height: float) -> Part:
         normal = np.array((x, y, z))
         by_corner, sums = self._by_corner
-        over, flux = by_corner @ normal - height, self._areas @ normal  # shapes (3, triangles) and (triangles,)
+        over, flux = by_corner @ normal - height, self._areas @ normal  # for n triangles: shapes (3, n) and (n,)
         is_above = over > 0
         dry, total = is_above.sum(axis=0), over.sum(axis=0)
         shares = np.where(dry <= 1, flux / 12, 0.0)
@@ -165,7 +168,10 @@ class Polyhedron(Solid):
 
 
 def _enclosed(corners: Triangles) -> tuple[float, Vector]:
-    """Return the volume and its first moment, summed over the tetrahedra from the origin to the triangles."""
+    """Return the volume [m³] and volume times centre [m⁴] inside triangles.
+
+    Both are sums over tetrahedra, each with a triangle as base and the origin as tip.
+    """
     a, b, c = corners.transpose(1, 2, 0)
     sixth = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
     sixth /= 6.0
@@ -174,7 +180,7 @@ def _enclosed(corners: Triangles) -> tuple[float, Vector]:
 
 @dataclass(frozen=True, slots=True)
 class RevolvedSegment:
-    """Segment of a solid of revolution about z: radius² = a + b·z + c·z² from `low` to `high`."""
+    """Segment of a solid of revolution about the z axis, with radius² = a + b·z + c·z² from z = `low` to `high`."""
 
     low: float
     high: float
@@ -187,22 +193,22 @@ class RevolvedSegment:
         return self.a + z * (self.b + z * self.c)
 
     def between(self, middle: float, half: float) -> tuple[float, float]:
-        """Return the volume [m³] from middle − half to middle + half, and its integral of z [m⁴]."""
+        """Return the volume [m³] from z = middle − half to middle + half, and the volume integral of z [m⁴]."""
         slope, third = self.b + 2 * self.c * middle, half * half / 3
         volume = 2 * math.pi * half * (self.square(middle) + self.c * third)
         return volume, volume * middle + 2 * math.pi * half * slope * third
 
 
 _TURN = np.arange(3)
-_FEW: Final = 48  # triangles; up to this number a loop is faster than arrays
+_FEW: Final = 48  # triangles; up to this number of triangles, a loop is faster than arrays
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-# substitution z = sin θ, θ from -90° to 90°: the wet area is smooth in θ where a disc begins to get wet
+# with z = sin θ, the area below the plane is a smooth function of θ also where the plane touches the rim of a disc
 _PLACES: Final = np.sin(_NODES * math.pi / 2)
 _SHARES: Final = _WEIGHTS * np.cos(_NODES * math.pi / 2) * math.pi / 2
 
 
 class SolidOfRevolution(Solid):
-    """Solid of revolution about z."""
+    """Solid of revolution about the z axis, made of segments."""
 
     def __init__(self, segments: tuple[RevolvedSegment, ...]) -> None:
         self._segments = segments
@@ -223,7 +229,7 @@ class SolidOfRevolution(Solid):
             for low, high in itertools.pairwise(_bounds(segment, z, aside, height)):
                 middle, half = (low + high) / 2, (high - low) / 2
                 room, edge = height - z * middle, aside * math.sqrt(max(segment.square(middle), 0.0))
-                if room >= edge:  # every disc is completely below the plane
+                if room >= edge:  # all discs of this interval are below the plane
                     whole, upwards = segment.between(middle, half)
                     volume += whole
                     up += upwards
@@ -240,10 +246,15 @@ class SolidOfRevolution(Solid):
 
 
 def _segments(squares: Vector, room: Vector, aside: float) -> tuple[Vector, Vector]:
-    """Integrate the wet part (aside · u <= room) of discs with radius² `squares`.
+    """Compute the part of discs below the plane: the points with aside · u <= room.
+
+    Args:
+        squares: Square of the radius of each disc [m²].
+        room: Distance of the plane from the centre of each disc, along the plane's normal [m].
+        aside: Horizontal component of the plane's unit normal; u is the coordinate in its direction.
 
     Returns:
-        The areas [m²], and the areas times their centroid in u [m³].
+        Areas [m²], and areas times the u coordinate of their centres [m³].
     """
     radii = np.sqrt(squares)
     cut = np.clip(room / np.maximum(aside * radii, 1e-300), -1.0, 1.0)
@@ -254,9 +265,9 @@ def _segments(squares: Vector, room: Vector, aside: float) -> tuple[Vector, Vect
 
 
 def _bounds(segment: RevolvedSegment, up: float, aside: float, height: float) -> list[float]:
-    """Return the ends of a segment, and the z between them where the plane reaches or leaves the rim of the discs.
+    """Return the lower and upper z of a segment, and each z between them at which the plane touches the rim of a disc.
 
-    These are the roots of (height − up·z)² = aside²·radius².
+    These z are the roots of (height − up·z)² = aside²·radius².
     """
     found = []
     if math.isfinite(height):
@@ -272,7 +283,7 @@ def _roots(a: float, b: float, c: float) -> list[float]:
         return [-c / b] if abs(b) > 1e-14 else []
     inside = b * b - 4 * a * c
     if inside < 0:
-        # a plane parallel to the slope has a double root, which rounding can turn into none
+        # for a plane that is tangent to a cone, there is a double root, which rounding errors may hide
         return [-b / (2 * a)] if inside > -1e-12 * b * b else []
     half = -(b + math.copysign(math.sqrt(inside), b)) / 2
     return [half / a, c / half] if half else [0.0]
@@ -283,7 +294,7 @@ def solid_of(shape: Geometry, triangles: Callable[[Geometry], Triangles | None])
 
     Args:
         shape: Geometry of a collision.
-        triangles: Callback that returns the triangles of a mesh or an extruded outline.
+        triangles: Function that returns the triangles of a mesh or an extruded outline; None without a volume.
     """
     match shape:
         case Box(size=(x, y, z)):
@@ -312,7 +323,7 @@ def solid_of(shape: Geometry, triangles: Callable[[Geometry], Triangles | None])
 
 
 def _box(x: float, y: float, z: float) -> Triangles:
-    """Return the twelve triangles of a box with these half sizes."""
+    """Return the twelve triangles of a box from its half sizes."""
     triangles = []
     for axis in range(3):
         u, v = (axis + 1) % 3, (axis + 2) % 3

@@ -1,6 +1,6 @@
 """Wind that pushes links: `gz::sim::systems::WindEffects` and Gazebo Classic's `libWindPlugin.so`.
 
-The strength of the push is a number, or a field of boxes with a sum of polynomials in each.
+The scaling factor of the force is a number, or a function of position: a sum of polynomials in each of several boxes.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ if TYPE_CHECKING:
 WIND: Final = "simkit_msgs/msg/Wind"
 VECTOR: Final = "geometry_msgs/msg/Vector3"
 INFO: Final = "simkit_msgs/srv/WindInfo"
-_FEW: Final = 8  # links; up to this number plain numbers are faster than arrays
+_FEW: Final = 8  # links; up to this number of links, Python floats are faster than arrays
 Four = tuple[float, float, float, float]
 _AXES: Final = ("px", "qy", "rz")
 _ZERO: Final[Four] = (0.0, 0.0, 0.0, 0.0)
 _ONE: Final = ((0.0, 0.0, 0.0, 1.0), _ZERO, _ZERO)
-_FARTHEST: Final = 1e6  # [m], largest coordinate at which a polynomial is checked for negative values
+_FARTHEST: Final = 1e6  # [m], largest coordinate up to which a polynomial is checked for negative values
 _ALLOWED: Final = "a factor of at least 0 everywhere, because wind cannot push against its direction"
 
 
@@ -50,7 +50,7 @@ class Interval:
 
     Attributes:
         low, high: Ends of the interval.
-        has_low, has_high: True if the end belongs to the interval.
+        has_low, has_high: True if the interval includes this end.
     """
 
     low: float = -math.inf
@@ -61,12 +61,12 @@ class Interval:
 
 @dataclass(frozen=True, slots=True)
 class FieldPiece:
-    """Polynomial k · (p(x) + q(y) + r(z)) in a box of space.
+    """Sum of polynomials k · (p(x) + q(y) + r(z)), which is valid in one box of space.
 
     Attributes:
-        where: Intervals of x, y and z.
+        where: Box, as intervals of x, y and z.
         factor: Factor k.
-        terms: Coefficients of p, q and r, highest power (cubic) first.
+        terms: Coefficients of p, q and r, from the cubic term to the constant term.
     """
 
     where: tuple[Interval, Interval, Interval]
@@ -80,7 +80,7 @@ class FieldPiece:
         return found
 
     def holds(self, places: Vector) -> npt.NDArray[np.bool_]:
-        """Return the mask of the points [m], shape (n, 3), that are in the box."""
+        """Return for each point [m] of an array of shape (n, 3) whether the point is in the box."""
         inside = np.ones(len(places), bool)
         for values, interval in zip(places.T, self.where, strict=True):
             inside &= values >= interval.low if interval.has_low else values > interval.low
@@ -99,25 +99,26 @@ class FieldPiece:
 
     @property
     def least(self) -> float:
-        """Smallest value in the box, up to coordinates of `_FARTHEST`."""
+        """Smallest value in the box, for coordinates from −`_FARTHEST` to `_FARTHEST`."""
         extremes = [_extremes(c, span) for c, span in zip(self.terms, self.where, strict=True)]
         return min(self.factor * sum(corner) for corner in itertools.product(*extremes))
 
 
 @dataclass(frozen=True, slots=True)
 class WindField:
-    """Scaling factor of the wind's force [1/s] over space; the first piece that contains a point counts.
+    """Scaling factor of the wind's force [1/s] as a function of position.
 
     Attributes:
-        pieces: Pieces of a field that varies in space; outside all of them the factor is zero.
-        everywhere: Value of a field without pieces.
+        pieces: Pieces of the function. The first piece that contains a point is valid there; outside all pieces, the
+            factor is zero.
+        everywhere: Constant factor, if there are no pieces.
     """
 
     pieces: tuple[FieldPiece, ...] = ()
     everywhere: float = 0.0
 
     def at(self, places: Vector) -> Vector | float:
-        """Return the factors at points [m], shape (n, 3): an array of shape (n,), or one number if constant."""
+        """Return the factor at each point [m] of an array of shape (n, 3): shape (n,), or one number if constant."""
         if not self.pieces:
             return self.everywhere
         found, is_open = np.zeros(len(places)), np.ones(len(places), bool)
@@ -129,7 +130,7 @@ class WindField:
         return found
 
     def one_at(self, place: Sequence[float]) -> float:
-        """Return the factor at one point [m], in plain numbers."""
+        """Return the factor at one point [m]."""
         for piece in self.pieces:
             found = piece.one_at(place)
             if found is not None:
@@ -153,11 +154,11 @@ class WindFieldOptions(FieldPieceOptions):
 
 
 def read_field(params: Params, quirks: bool) -> WindField:
-    """Return the field of a plugin's `<force_approximation_scaling_factor>`, and report invalid values.
+    """Return the field that `<force_approximation_scaling_factor>` describes, and report invalid values.
 
     Args:
         params: Parameters of the plugin.
-        quirks: True to square a plain number, as Gazebo does.
+        quirks: True to square a constant factor, as Gazebo does.
     """
     name = "force_approximation_scaling_factor"
     block = params.child(name)
@@ -187,7 +188,7 @@ def _piece(options: FieldPieceOptions, is_bounded: bool = True) -> FieldPiece:
 
 
 def _number_of(block: Params) -> float:
-    """Return the number that is the text of an element, or 0 after an error."""
+    """Return the text of an element as a number; 0 after an error."""
     try:
         value = float(block.value)
     except ValueError:
@@ -220,7 +221,7 @@ def _bound(block: Params, closed: str, opened: str, default: float) -> tuple[flo
 
 
 def _extremes(terms: Four, span: Interval) -> list[float]:
-    """Return the values of a cubic at the ends of an interval and at its extrema inside."""
+    """Return the values of a cubic polynomial at the ends of an interval and at its extrema within the interval."""
     low, high = max(span.low, -_FARTHEST), min(span.high, _FARTHEST)
     slope = np.polyder(np.poly1d(terms)).coeffs
     turns = [float(r.real) for r in np.roots(slope) if abs(r.imag) < 1e-12] if np.any(slope) else []
@@ -237,7 +238,7 @@ class WindEffectsOptions(GustOptions):
 class WindPluginBase(WorldPlugin):
     """Changes the world's wind over time, with gusts and noise, and pushes the links that have `<enable_wind>`.
 
-    The force on a link of mass m is m · factor · (air velocity − link velocity), at its centre of mass. The topic
+    The force on a link of mass m is m · factor · (air velocity − link velocity), at the centre of mass. The topic
     `/world/<world>/wind` sets the mean wind, and the service `/world/<world>/wind_info` returns it.
     """
 
@@ -271,7 +272,10 @@ class WindPluginBase(WorldPlugin):
 
     @property
     def before_step_rate(self) -> float | None:
-        """Never while the wind pushes no link; evaluated again after a spawn or a removal."""
+        """`NEVER` while the wind pushes no link, otherwise None (every step).
+
+        The value is computed again after a spawn or a removal.
+        """
         is_idle = self._links is not None and self._links.is_current and (not len(self._links) or self._is_calm)
         return NEVER if is_idle or self._is_second else None
 
@@ -280,18 +284,18 @@ class WindPluginBase(WorldPlugin):
         raise AttributeError("before_step_rate of a wind plugin is read-only: it follows the links in the wind")
 
     def _before(self) -> list[AttachedPlugin]:
-        """Return the plugins that come before this one."""
+        """Return the plugins that run before this plugin."""
         return list(itertools.takewhile(lambda plugin: plugin is not self, self.sim.engine.structure.all_plugins()))
 
     @property
     def _is_calm(self) -> bool:
-        """True while the wind is off: links are neither pushed nor braked."""
+        """True while the wind is off; the air then has no effect on links."""
         return not self._target.blows
 
-    # ------------------------------------------------------------------ what it is
+    # ------------------------------------------------------------------ velocity and forces
 
     def velocity(self, tick: int) -> Velocity:
-        """Return the velocity of the air [m/s], world frame, in the step after a tick."""
+        """Return the velocity of the air [m/s] in the world frame, during the step after a tick."""
         if self._last_velocity is None or self._last_velocity[0] != tick:
             self._last_velocity = tick, self._gusts.at(self._target, tick, self._draw)
         return self._last_velocity[1]
@@ -300,7 +304,7 @@ class WindPluginBase(WorldPlugin):
         return self._streams[channel].normal(index)
 
     def before_step(self) -> None:
-        """Push the links for the next step."""
+        """Apply the force of the wind to the links for the next step."""
         if self._links is None or not self._links.is_current:
             self._bind()
             self.sim.engine.reschedule()
@@ -316,7 +320,7 @@ class WindPluginBase(WorldPlugin):
         links.push(data, (strength * air.T).T)
 
     def _push_few(self, links: PushedLinks, data: mujoco.MjData) -> None:
-        """Push few links, computed with plain numbers."""
+        """Apply the force of the wind to a few links, computed with Python floats."""
         x, y, z = self.velocity(self.sim.tick)
         field, everywhere = self._field, None if self._field.pieces else self._field.everywhere
         places = data.xpos[links.bodies].tolist()

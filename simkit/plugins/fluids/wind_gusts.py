@@ -1,4 +1,4 @@
-"""Wind of a world over time, by Gazebo's model: rise time, sine variation and noise."""
+"""Wind of a world as a function of time, by Gazebo's model: rise time, sine variation and noise."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _FULL_TURN = 360.0  # degrees
 
 @dataclass(frozen=True, slots=True)
 class WindNoise:
-    """White noise of a `<noise>` block, in the unit of the quantity to which it is added.
+    """White noise of a `<noise>` block, in the unit of the value to which the noise is added.
 
     Attributes:
         mean, stddev: Mean and standard deviation of the noise.
         bias_mean, bias_stddev: Mean and standard deviation of a constant bias.
-        precision: Step to which the value is rounded; 0 for none.
+        precision: The value is rounded to a multiple of this number; 0 for no rounding.
     """
 
     mean: float = 0.0
@@ -34,7 +34,13 @@ class WindNoise:
     precision: float = 0.0
 
     def on(self, value: float, draw: Callable[[], float], bias: Callable[[], float]) -> float:
-        """Return the value with noise; no random number is drawn for a zero deviation."""
+        """Return the value with noise.
+
+        Args:
+            value: Value without noise.
+            draw: Function that returns a standard normal number; not called for a zero `stddev`.
+            bias: Function that returns the standard normal number of the bias; not called for a zero `bias_stddev`.
+        """
         value += self.mean + self.bias_mean
         if self.bias_stddev > 0:
             value += self.bias_stddev * bias()
@@ -45,13 +51,13 @@ class WindNoise:
 
 @dataclass(frozen=True, slots=True)
 class WindResponse:
-    """Response of strength, heading or vertical speed to its target.
+    """First-order filter, sine and noise of the wind's strength, heading or vertical speed.
 
     Attributes:
-        rise: Time constant [s].
-        swing: Amplitude of a sine: relative for the strength, in degrees for the heading.
+        rise: Time constant of the filter [s].
+        swing: Amplitude of the sine: a fraction of the strength, or an angle [degrees] for the heading.
         period: Period of the sine [s].
-        flutter: Noise.
+        flutter: Noise; None for no noise.
     """
 
     rise: float = 1.0
@@ -60,11 +66,11 @@ class WindResponse:
     flutter: WindNoise | None = None
 
     def follow(self, mean: float, target: float, updates: int, step: float) -> float:
-        """Return the filter's value after some updates.
+        """Return the value of the filter after some updates.
 
         Args:
             mean: Value before the updates.
-            target: Value that the filter approaches; with a time constant below one step it is reached at once.
+            target: Value that the filter approaches; one update reaches it if the time constant is below `step`.
             updates: Number of updates.
             step: Time between updates [s].
         """
@@ -72,20 +78,20 @@ class WindResponse:
         return target + (mean - target) * left**updates
 
     def swings(self, time: float) -> float:
-        """Return the value of the sine at a time [s]."""
+        """Return the value of the sine at a time [s], in the unit of `swing`."""
         return self.swing * math.sin(2 * math.pi * time / self.period) if self.swing else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class WindTarget:
-    """Commanded wind, and the filter values at the time of the command.
+    """Commanded wind, and the values of the filters at the tick of the command.
 
     Attributes:
         velocity: Commanded velocity [m/s], world frame.
-        blows: True while the wind is on; the filters keep their values while it is off.
+        blows: True while the wind is on. While the wind is off, the filters keep their values.
         tick: Tick of the command.
-        strength, rising: Filtered horizontal and vertical speeds at the command [m/s].
-        heading: Filtered heading at the command [degrees]; None before the first update.
+        strength, rising: Filtered horizontal and vertical speeds [m/s] at that tick.
+        heading: Filtered heading [degrees] at that tick; None before the first update.
     """
 
     velocity: Velocity
@@ -98,10 +104,10 @@ class WindTarget:
 
 @dataclass(frozen=True, slots=True)
 class Gusts:
-    """Model of a world's wind over time.
+    """Model of a world's wind as a function of time.
 
     Attributes:
-        strength, heading, rising: Responses of horizontal speed, horizontal direction and vertical speed.
+        strength, heading, rising: Filters of horizontal speed, horizontal direction and vertical speed.
         step: Physics step [s].
     """
 
@@ -111,11 +117,11 @@ class Gusts:
     step: float
 
     def start(self, velocity: Velocity) -> WindTarget:
-        """Return the initial state: no wind yet, with this velocity [m/s] as the target."""
+        """Return the initial state: the wind is zero and approaches this velocity [m/s]."""
         return WindTarget(velocity)
 
     def means(self, target: WindTarget, tick: int) -> tuple[float, float, float]:
-        """Return strength [m/s], heading [degrees] and vertical speed [m/s] of the filters in the step after a tick."""
+        """Return the filtered strength [m/s], heading [degrees] and vertical speed [m/s] in the step after a tick."""
         updates = tick - target.tick + 1 if target.blows else 0
         if updates <= 0:
             return target.strength, target.heading or 0.0, target.rising
@@ -131,13 +137,13 @@ class Gusts:
         )
 
     def changed(self, target: WindTarget, velocity: Velocity, blows: bool, tick: int) -> WindTarget:
-        """Return the state for a new target from a tick on.
+        """Return the state after a command.
 
         Args:
-            target: State before the change.
-            velocity: New target [m/s], world frame.
-            blows: True to switch the wind on.
-            tick: Tick of the change.
+            target: State before the command.
+            velocity: Commanded velocity [m/s], world frame.
+            blows: True to switch the wind on, false to switch it off.
+            tick: Tick of the command.
         """
         strength, heading, rising = self.means(target, tick - 1)
         has_begun = target.heading is not None or (target.blows and tick > target.tick)
@@ -147,9 +153,9 @@ class Gusts:
         """Return the velocity of the air [m/s] in the step after a tick; zero while the wind is off.
 
         Args:
-            target: State since the last command.
-            tick: Any tick from the state's tick on.
-            draw: Callback that returns three standard normal numbers for a channel and an index.
+            target: State after the last command.
+            tick: Tick of the last command or any later tick.
+            draw: Function that returns three standard normal numbers for a channel and an index.
         """
         if not target.blows:
             return 0.0, 0.0, 0.0
@@ -236,7 +242,7 @@ class GustOptions(Options):
 
 
 def read_gusts(options: GustOptions, step: float) -> Gusts:
-    """Return the wind model of the `<horizontal>` and `<vertical>` blocks, and report invalid values."""
+    """Return the wind model that the `<horizontal>` and `<vertical>` blocks describe, and report invalid values."""
     strength, heading, vertical = options.horizontal.magnitude, options.horizontal.direction, options.vertical
     return Gusts(
         strength=WindResponse(
