@@ -1,6 +1,6 @@
-"""play_motion: named motions of a robot that are planned, checked for collisions and played.
+"""Named motions of a robot, as in ROS's play_motion: read from files, planned, checked for collisions and played.
 
-The package reads motion files in the layout of play_motion2 or ROS 1's play_motion, and accepts goals of their actions.
-It sends goals to the robot's trajectory controllers, publishes results and feedback, and answers services. It never
-moves a joint itself: the controllers of `ros2_control` do.
+The package reads motion files of play_motion2 (ROS 2) and play_motion (ROS 1), and accepts goals of the actions of
+both. For each motion, it sends goals to the robot's trajectory controllers, and then publishes feedback and a result.
+Only the controllers of `ros2_control` move joints.
 """

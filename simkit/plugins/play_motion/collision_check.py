@@ -1,13 +1,13 @@
-"""Check whether a robot would collide with itself or its surroundings at other joint positions.
+"""Check whether a robot would collide with itself or with its surroundings at other joint positions.
 
-The check uses a copy of the state, so nothing moves. The rules are:
+The check uses a copy of the state, so the simulation does not change. The rules are:
 
-- Inside the robot, every pair of links counts that a joint of the motion moves relative to each other, even if the
-  model disables self-collision. Neighbours do not count, nor do links whose shapes overlap at nearly all positions of
-  the two joints between them.
-- With the surroundings, the pairs count that the engine would let collide.
-- Existing contacts are allowed up to their present depth, such as a wheel on the floor or a held object in a gripper.
-- A held object moves with the links that hold it.
+- Two links of the robot are checked if a joint of the motion moves one link relative to the other, even if the model
+  disables self-collision. Two links with a common joint are not checked. Two links with two joints between them are not
+  checked if their shapes overlap at most positions of these joints.
+- A link and an object of the surroundings are checked if the engine's collision filters allow the pair.
+- Existing contacts are allowed up to their present depth, such as a wheel on the floor or an object in a gripper.
+- An object in a gripper moves with the links that touch the object.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from simkit.runtime.contact.collision_contacts import collision_table
 if TYPE_CHECKING:
     from simkit.runtime import Joint, Model, Simulation
 
-TOLERANCE: Final = 1e-3  # [m], allowed overlap with the surroundings: rounding and the engine's soft contacts
-SELF_TOLERANCE: Final = 5e-3  # [m], allowed overlap of links, whose collision shapes are larger than the real parts
-_SAMPLED_POSITIONS: Final = 3  # sampled positions of a joint, from one limit to the other
+TOLERANCE: Final = 1e-3  # [m], allowed overlap with the surroundings, because contacts of the engine are soft
+SELF_TOLERANCE: Final = 5e-3  # [m], allowed overlap of two links: collision shapes are larger than the real links
+_SAMPLED_POSITIONS: Final = 3  # number of sampled positions of a joint, from the lower to the upper limit
 _ONE_AXIS: Final = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 
@@ -52,7 +52,13 @@ class LinkCollision:
 
 @dataclass(frozen=True, slots=True)
 class _HeldObject:
-    """Free body in contact with two or more moving links; it keeps its pose in the body that carries all of them."""
+    """Free body in contact with two or more moving links.
+
+    Attributes:
+        qpos: Index of the body's position in `qpos`.
+        carrier: Nearest body that carries all these links.
+        pose: Pose of the free body in the frame of `carrier`; the check keeps it constant.
+    """
 
     qpos: int
     carrier: int
@@ -60,7 +66,7 @@ class _HeldObject:
 
 
 class CollisionCheck:
-    """Collision check of one robot for a set of joints."""
+    """Collision check of one robot for other positions of some of its joints."""
 
     def __init__(self, sim: Simulation, robot: Model, joints: Sequence[Joint], free_joints: Collection[str]) -> None:
         """Copy the present state and find the pairs of geoms to check.
@@ -69,7 +75,7 @@ class CollisionCheck:
             sim: Simulation of the robot.
             robot: Robot that owns the joints.
             joints: Joints that move, each with one degree of freedom.
-            free_joints: Plain names of joints whose links may touch each other and loose objects, such as grippers.
+            free_joints: Plain names of joints whose links may touch each other and free bodies, such as grippers.
         """
         self._sim, self._robot, self._joints = sim, robot, list(joints)
         self._model, self._data = sim.mj_model, mujoco.MjData(sim.mj_model)
@@ -87,10 +93,10 @@ class CollisionCheck:
     # ------------------------------------------------------------------ queries
 
     def deepest_collision(self, positions: Vector) -> LinkCollision | None:
-        """Return the collision with the largest depth at these joint positions, or None.
+        """Return the collision with the largest depth at these joint positions; None without a collision.
 
         Args:
-            positions: Positions in the order of the joints [rad or m].
+            positions: Position of each joint [rad or m], in the order of the joints.
         """
         self._set_positions(positions)
         found = [*self._self_collisions(), *self._outside_collisions()]
@@ -111,7 +117,7 @@ class CollisionCheck:
         return found
 
     def _outside_collisions(self) -> list[LinkCollision]:
-        """Return the collisions of the robot, or of its held objects, with the surroundings."""
+        """Return the collisions of the robot, or of an object in its gripper, with the surroundings."""
         found = []
         for (mine, other), dist in self._contacts():
             if dist < min(self._initial_contacts.get((mine, other), 0.0), 0.0) - TOLERANCE:
@@ -140,7 +146,10 @@ class CollisionCheck:
         mujoco.mj_collision(self._model, data)
 
     def _contacts(self) -> list[tuple[tuple[int, int], float]]:
-        """Return the contacts between moving geoms and the surroundings: (moving geom, other geom), distance [m]."""
+        """Return the contacts between moving geoms and the surroundings.
+
+        Each item is ((moving geom, other geom), distance [m]); the distance is negative for an overlap.
+        """
         data = self._data
         if not data.ncon:
             return []
@@ -159,7 +168,7 @@ class CollisionCheck:
     # ------------------------------------------------------------------ preparation
 
     def _find_parts(self, free_joints: Collection[str]) -> None:
-        """Find the robot's geoms, its moving geoms, and the geoms of the free joints."""
+        """Find the robot's geoms, the geoms that the joints of the motion move, and the geoms of the free joints."""
         model, sim = self._model, self._sim
         moved = {int(model.jnt_bodyid[j]) for b in self._bindings for j in b.joint_ids}
         moved |= {int(model.dof_bodyid[f.dof]) for b in self._bindings for f in b.followers}
@@ -179,7 +188,7 @@ class CollisionCheck:
         prefix = f"{self._robot.scoped}::"
         mine = np.array([name.startswith(prefix) for name in found.names] + [False])
         bodies = model.geom_bodyid
-        # the last entry serves index -1, which means "no geom"
+        # the arrays have one entry more than geoms, because index -1 means "no geom"
         self._is_robot = mine[found.of_geom]
         self._moves = np.append(self._is_robot[:-1] & (self._mover[bodies] > 0), False)
         self._is_free = np.append(is_free[bodies], False)
@@ -196,7 +205,7 @@ class CollisionCheck:
         self._is_loose = np.append(floats[roots] & ~self._is_robot[:-1], False)
 
     def _find_held(self, now: mujoco.MjData) -> list[_HeldObject]:
-        """Find the held objects: free bodies in contact with two or more moving links."""
+        """Find the objects in a gripper: free bodies in contact with two or more moving links."""
         model = self._model
         touched: dict[int, set[int]] = {}
         for a, b in np.array(now.contact.geom).tolist() if now.ncon else ():
@@ -209,7 +218,7 @@ class CollisionCheck:
         for root, links in touched.items():
             start = int(model.body_jntadr[root])
             is_free = model.body_jntnum[root] and model.jnt_type[start] == mujoco.mjtJoint.mjJNT_FREE
-            carrier = self._common(links)
+            carrier = self._common_carrier(links)
             if len(links) < 2 or not is_free or not self._mover[carrier]:
                 continue
             inside = Pose(now.xpos[carrier], now.xquat[carrier]).inverse() @ Pose(now.xpos[root], now.xquat[root])
@@ -218,8 +227,8 @@ class CollisionCheck:
             self._moves |= of_it
         return held
 
-    def _common(self, bodies: Collection[int]) -> int:
-        """Return the nearest body that carries all of these."""
+    def _common_carrier(self, bodies: Collection[int]) -> int:
+        """Return the nearest body in the kinematic tree that carries all these bodies, or is one of them."""
         chains = []
         for body in bodies:
             chain = [body]
@@ -229,7 +238,7 @@ class CollisionCheck:
         return next(body for body in chains[0] if all(body in chain for chain in chains))
 
     def _find_pairs(self) -> None:
-        """Find the pairs of the robot's geoms that move relative to each other, and their present depths."""
+        """Find the pairs of the robot's geoms that move relative to each other, and the allowed depth of each pair."""
         model, data = self._model, self._data
         movers = self._mover[model.geom_bodyid]
         collides = (model.geom_contype | model.geom_conaffinity) != 0
@@ -238,7 +247,9 @@ class CollisionCheck:
         pairs = [
             (a, b)
             for a, b in combinations(mine, 2)
-            if movers[a] != movers[b] and not (self._is_free[a] and self._is_free[b]) and not self._belong(a, b)
+            if movers[a] != movers[b]
+            and not (self._is_free[a] and self._is_free[b])
+            and not self._may_always_touch(a, b)
         ]
         data.qpos[...] = before
         mujoco.mj_kinematics(model, data)
@@ -247,10 +258,11 @@ class CollisionCheck:
         now = [mujoco.mj_geomDistance(model, data, a, b, 0.0, None) for a, b in pairs]
         self._allowed = np.minimum(np.array(now, dtype=float), 0.0) - SELF_TOLERANCE
 
-    def _belong(self, first: int, second: int) -> bool:
-        """Check whether two geoms touch by design.
+    def _may_always_touch(self, first: int, second: int) -> bool:
+        """Check whether two geoms of the robot may always touch.
 
-        That is so if their links share a joint, or if two joints connect them and they overlap at most joint positions.
+        This is the case if one joint connects their links, or if two joints connect them and the geoms overlap at most
+        positions of these joints.
         """
         model = self._model
         a, b = (int(model.body_weldid[model.geom_bodyid[g]]) for g in (first, second))
@@ -258,24 +270,24 @@ class CollisionCheck:
         if a in (b, up_b) or b == up_a:
             return True
         if a == self._above(up_b):
-            return self._mostly_meet(first, second, (b, up_b))
+            return self._mostly_overlap(first, second, (b, up_b))
         if b == self._above(up_a):
-            return self._mostly_meet(first, second, (a, up_a))
-        return up_a == up_b and self._mostly_meet(first, second, (a, b))
+            return self._mostly_overlap(first, second, (a, up_a))
+        return up_a == up_b and self._mostly_overlap(first, second, (a, b))
 
-    def _mostly_meet(self, first: int, second: int, bodies: tuple[int, int]) -> bool:
-        """Check whether two geoms overlap at most sampled positions of the two joints between them."""
+    def _mostly_overlap(self, first: int, second: int, bodies: tuple[int, int]) -> bool:
+        """Check whether two geoms overlap at more than half of the sampled positions of the two joints between them."""
         model, data = self._model, self._data
         joints = [j for body in bodies for j in self._joints_of(body)]
         if len(joints) != 2 or any(model.jnt_type[j] not in _ONE_AXIS for j in joints):
             return False
         ends = [tuple(model.jnt_range[j]) if model.jnt_limited[j] else (-np.pi, np.pi) for j in joints]
-        meet = 0
+        overlap_count = 0
         for places in product(*(np.linspace(low, high, _SAMPLED_POSITIONS) for low, high in ends)):
             data.qpos[model.jnt_qposadr[joints]] = places
             mujoco.mj_kinematics(model, data)
-            meet += mujoco.mj_geomDistance(model, data, first, second, 0.0, None) < -SELF_TOLERANCE
-        return bool(2 * meet > _SAMPLED_POSITIONS**2)
+            overlap_count += mujoco.mj_geomDistance(model, data, first, second, 0.0, None) < -SELF_TOLERANCE
+        return bool(2 * overlap_count > _SAMPLED_POSITIONS**2)
 
     def _joints_of(self, body: int) -> range:
         start = int(self._model.body_jntadr[body])

@@ -1,4 +1,4 @@
-"""Motion of a robot: joints, positions and times, with the check against the joint limits."""
+"""Motion of a robot: joints, positions and times, and the check of a motion against the joint limits."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class Motion(SharedByCopies):
     """Named motion of a robot.
 
     Attributes:
-        key: Key of the motion in goals and services (`unfold_arm`).
+        key: Key of the motion in files, goals and services, such as `unfold_arm`.
         joints: Plain joint names.
         times: Time of each point from the start of the motion [s], increasing; shape (points,).
         positions: Position of each joint at each point [rad or m], shape (points, joints).
-        velocities: Velocity of each joint at each point [rad/s or m/s], shape (points, joints); empty if not given.
-        name, usage, description: Texts for people.
-        where: Place of the motion in its file.
+        velocities: Velocity of each joint at each point [rad/s or m/s], shape (points, joints); may be empty.
+        name, usage, description: Texts for the user.
+        where: File and line of the motion.
     """
 
     key: str
@@ -45,11 +45,11 @@ class Motion(SharedByCopies):
 
     @property
     def duration(self) -> float:
-        """Time of the last point in the file, without the approach [s]."""
+        """Time of the last point [s], without the approach to the first point."""
         return self.times[-1]
 
     def as_message(self) -> dict[str, object]:
-        """Return the fields of a `play_motion2_msgs/msg/Motion`."""
+        """Return the motion as the fields of a `play_motion2_msgs/msg/Motion`."""
         return {
             "key": self.key,
             "name": self.name,
@@ -61,7 +61,7 @@ class Motion(SharedByCopies):
         }
 
     def as_info(self) -> dict[str, object]:
-        """Return the fields of a `play_motion_msgs/msg/MotionInfo`."""
+        """Return the motion as the fields of a `play_motion_msgs/msg/MotionInfo`."""
         duration = msgs.duration(round(self.duration * 1e9))
         return {"name": self.key, "joints": list(self.joints), "duration": duration}
 
@@ -70,7 +70,7 @@ def motion_of_message(message: MotionMessage) -> Motion:
     """Convert a `play_motion2_msgs/msg/Motion` to a motion.
 
     Raises:
-        ValueError: The message is not a valid motion; the text states the reason.
+        ValueError: The message is not a valid motion; the error text states the reason.
     """
     joints, flat, times = list(message.joints), [float(v) for v in message.positions], list(message.times_from_start)
     fault = motion_fault(joints, flat, [float(t) for t in times])
@@ -88,7 +88,7 @@ def motion_of_message(message: MotionMessage) -> Motion:
 
 
 def point_rows(flat: Sequence[float], width: int) -> tuple[tuple[float, ...], ...]:
-    """Split the concatenated positions of all points into one row per point."""
+    """Split the concatenated positions of all points into one row of `width` numbers for each point."""
     return tuple(tuple(flat[k : k + width]) for k in range(0, len(flat), width))
 
 
@@ -131,7 +131,7 @@ _ROUNDING: Final = 1e-6  # [rad or m]
 
 
 def limit_violations(motion: Motion, joints: Mapping[str, Joint]) -> list[str]:
-    """Describe the joint limits that a motion exceeds, once per joint, at the point with the largest excess."""
+    """Describe each joint limit that a motion exceeds, at the point where it exceeds the limit most."""
     found = []
     for column, name in enumerate(motion.joints):
         axis = joints[name].scene.axes[0]
@@ -146,5 +146,5 @@ def limit_violations(motion: Motion, joints: Mapping[str, Joint]) -> list[str]:
 
 
 def speed_limits(motion: Motion, joints: Mapping[str, Joint]) -> Vector:
-    """Return the largest speed of each joint of a motion [rad/s or m/s]; infinite for a joint without a limit."""
+    """Return the speed limit of each joint of a motion [rad/s or m/s]; infinite for a joint without a limit."""
     return np.array([joints[name].scene.axes[0].velocity or np.inf for name in motion.joints], dtype=float)

@@ -1,8 +1,8 @@
 """Motion files: YAML in the layout of play_motion2 (ROS 2) or of play_motion (ROS 1).
 
 Both layouts have a block `motions` below the name of a node. In ROS 2, a motion has `joints`, `positions` (of all
-points, concatenated) and `times_from_start`. In ROS 1, a motion has `joints` and `points`, each with `positions`,
-`time_from_start` and optionally `velocities`. The keys of each motion decide its layout, not the file around it.
+points, concatenated) and `times_from_start`. In ROS 1, a motion has `joints` and `points`; each point has `positions`,
+`time_from_start` and optionally `velocities`. A file may mix both layouts: the keys of a motion decide its layout.
 """
 
 from __future__ import annotations
@@ -35,9 +35,11 @@ class MotionFile:
 
     Attributes:
         motions: Motions by key, in the order of the file.
-        approach_velocity: Speed of the fastest joint on the way to the first point [rad/s or m/s]; None if not given.
-        approach_min_duration: Shortest duration of that way [s]; None if not given.
-        excluded_joints: Joints that may touch objects, such as gripper joints; None if not given.
+        approach_velocity: Speed of the fastest joint during the approach to the first point [rad/s or m/s].
+        approach_min_duration: Shortest duration of the approach [s].
+        excluded_joints: Joints that may touch objects, such as gripper joints.
+
+    The last three are None if the file does not set them.
     """
 
     motions: dict[str, Motion] = field(default_factory=dict)
@@ -46,7 +48,7 @@ class MotionFile:
     excluded_joints: tuple[str, ...] | None = None
 
     def update(self, other: MotionFile) -> None:
-        """Add the contents of a later file, which replaces equal keys and settings."""
+        """Add the contents of another file; its motions and settings replace those with the same key."""
         self.motions.update(other.motions)
         for name in ("approach_velocity", "approach_min_duration", "excluded_joints"):
             if getattr(other, name) is not None:
@@ -54,14 +56,14 @@ class MotionFile:
 
 
 def read_motions(path: Path, diagnostics: Diagnostics) -> MotionFile:
-    """Read a motion file; an invalid motion is left out with a warning.
+    """Read a motion file; an invalid motion is reported as a warning and left out.
 
     Args:
         path: File to read.
-        diagnostics: Receives the warnings and errors.
+        diagnostics: Collector of the warnings and errors.
     """
     stamp: tuple[int, ...] = ()
-    with suppress(OSError):  # reported when the file is read
+    with suppress(OSError):  # `read_parameter_file` reports a missing file
         stat = path.stat()
         stamp = (stat.st_dev, stat.st_ino, stat.st_mtime_ns, stat.st_size)
     file, reports = _read_cached(path, stamp)
@@ -69,14 +71,14 @@ def read_motions(path: Path, diagnostics: Diagnostics) -> MotionFile:
     return replace(file, motions=dict(file.motions))
 
 
-@lru_cache(maxsize=32)  # worlds are loaded again and again, and reading takes 10 ms
+@lru_cache(maxsize=32)  # reading takes 10 ms, and a process may load a world many times
 def _read_cached(path: Path, _stamp: tuple[int, ...]) -> tuple[MotionFile, tuple[Diagnostic, ...]]:
-    """Return the contents and reports of a file; `_stamp` changes with the file and so renews the cache entry."""
+    """Return the contents and the diagnostics of a file. A changed file has another `_stamp`, so it is read again."""
     found, reports = MotionFile(), Diagnostics()
     file = read_parameter_file(path, reports)
     if file is None:
         return found, tuple(reports)
-    # this warning about a file without parameters refers to controllers
+    # the warning about an empty file mentions controllers, so it is replaced by a warning about motions
     reports.drop([d for d in reports if d.code == "SK-CONTROL-003"])
     for block in _motion_blocks(file):
         for name, entry in (block.below or {}).items():
@@ -95,7 +97,7 @@ def _read_cached(path: Path, _stamp: tuple[int, ...]) -> tuple[MotionFile, tuple
 
 
 def _motion_blocks(file: ParameterFile) -> Iterator[Entry]:
-    """Yield every block that may contain motions: all nodes (ROS 2), and all blocks with a key `motions` (ROS 1)."""
+    """Yield every block that may contain motions: each node (ROS 2), and each block with a key `motions` (ROS 1)."""
     for _, entry in file.nodes:
         yield entry
     if file.root is not None:
@@ -120,10 +122,10 @@ def _read_motions(entry: Entry, found: MotionFile, diagnostics: Diagnostics) -> 
 
 
 def _motion(key: str, entry: Entry, diagnostics: Diagnostics) -> Motion:
-    """Read one motion.
+    """Read one motion in either layout.
 
     Raises:
-        ValueError: The entry is not a valid motion.
+        ValueError: The entry is not a valid motion; the error text states the reason.
     """
     below = entry.below
     if below is None:
@@ -167,7 +169,7 @@ def _meta(key: str, below: dict[str, Entry], diagnostics: Diagnostics) -> dict[s
 def _points(
     key: str, entry: Entry, width: int, diagnostics: Diagnostics
 ) -> tuple[list[float], list[float], tuple[tuple[float, ...], ...]]:
-    """Return times, concatenated positions, and velocities of the points of a motion in ROS 1's layout."""
+    """Return the times, the concatenated positions and the velocities of a motion's points in ROS 1's layout."""
     times: list[float] = []
     flat: list[float] = []
     velocities: list[tuple[float, ...]] = []
@@ -194,7 +196,7 @@ def _points(
 
 
 def _read_planner(entry: Entry, found: MotionFile, diagnostics: Diagnostics) -> None:
-    """Read the settings of the approach to the first point; other keys of a planner's block are ignored on purpose."""
+    """Read the settings of the approach to the first point; simkit has no use for the other keys of the block."""
     for name, inner in (entry.below or {}).items():
         try:
             if name in _SPEEDS:

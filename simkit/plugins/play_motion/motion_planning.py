@@ -1,4 +1,4 @@
-"""Planning of a motion: the approach to its first point, its timing, its limits and its collisions."""
+"""Planning of a motion: approach to the first point, timing, and checks of limits and collisions."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _LONGEST_DURATION: Final = 2.0**31 - 1.0  # [s], largest time_from_start that a 
 
 
 class MotionRefused(Exception):
-    """Refusal of a motion.
+    """Error: a motion cannot be played.
 
     Attributes:
         code: Error code of `play_motion_msgs/action/PlayMotion`.
@@ -52,7 +52,7 @@ class TrajectoryController:
     Attributes:
         name: Name of the controller.
         action: Name of its action.
-        joints: All joints that it moves, in its order.
+        joints: All joints of the controller, in its order.
     """
 
     name: str
@@ -61,7 +61,7 @@ class TrajectoryController:
 
 
 def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryController]:
-    """List the active trajectory controllers of a robot in the order in which they were loaded."""
+    """Return the active trajectory controllers of a robot, in the order of loading."""
     found = []
     plugins = (plugin for plugin in sim.engine.structure.all_plugins() if isinstance(plugin, ControlPlugin))
     for plugin in plugins:
@@ -80,20 +80,20 @@ def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryControll
 
 
 def unclaimed_joints(robot: Model, joints: Sequence[str], controllers: Sequence[TrajectoryController]) -> list[str]:
-    """List the joints that no active controller moves, either directly or through the joint that they mimic."""
+    """Return the joints that no active controller moves, directly or through the joint that they mimic."""
     moved = {joint for controller in controllers for joint in controller.joints}
     laws = {joint: mimic_of(robot, joint) for joint in joints if joint not in moved}
     return [joint for joint, law in laws.items() if law is None or leader_name(law) not in moved]
 
 
 def mimic_of(robot: Model, joint: str) -> Mimic | None:
-    """Return the mimic rule of a joint, or None."""
+    """Return the mimic rule of a joint; None if the joint does not mimic another joint."""
     axes = robot.joints[joint].scene.axes if joint in robot.joints else ()
     return axes[0].mimic if axes else None
 
 
 def leader_name(law: Mimic) -> str:
-    """Return the plain name of the mimicked joint."""
+    """Return the plain name of the joint that a mimic rule refers to."""
     return law.joint.rpartition("::")[2]
 
 
@@ -102,9 +102,9 @@ class Approach:
     """Approach to the first point of a motion.
 
     Attributes:
-        speed: Largest average speed of the joint with the longest way [rad/s or m/s].
-        shortest: Shortest duration [s].
-        free_joints: Plain names of joints whose links may touch each other and loose objects, such as grippers.
+        speed: Average speed of the joint with the longest way [rad/s or m/s].
+        shortest: Shortest duration of the approach [s].
+        free_joints: Plain names of joints whose links may touch each other and free bodies, such as grippers.
     """
 
     speed: float = APPROACH_SPEED
@@ -119,17 +119,17 @@ def plan_motion(
     controllers: Sequence[TrajectoryController],
     approach: Approach,
     *,
-    looks_around: bool = True,
+    checks_collisions: bool = True,
 ) -> Course:
-    """Plan the course of a motion's joints from their present positions.
+    """Plan the course of a motion's joints, from their present positions through all points of the motion.
 
     Args:
         sim: Simulation of the robot.
         robot: Robot that plays the motion.
         motion: Motion to plan.
-        controllers: Controllers that may be used.
+        controllers: Active controllers of the robot.
         approach: Approach to the first point.
-        looks_around: True to check for collisions.
+        checks_collisions: True to check for collisions.
 
     Raises:
         MotionRefused: A joint has no controller, a limit is exceeded, or links would collide.
@@ -144,7 +144,7 @@ def plan_motion(
     if not found.duration <= _LONGEST_DURATION:
         text = f"motion {motion.key!r} would take {found.duration:g} s; expected up to {_LONGEST_DURATION:.0f} s"
         raise MotionRefused(OTHER_ERROR, text)
-    if looks_around and not approach.free_joints.issuperset(motion.joints):
+    if checks_collisions and not approach.free_joints.issuperset(motion.joints):
         check_collisions(sim, robot, motion, found, joints, approach.free_joints)
     return found
 
@@ -171,9 +171,9 @@ def find_joints(robot: Model, names: Sequence[str], controllers: Sequence[Trajec
 
 
 def add_leader_joints(robot: Model, motion: Motion) -> Motion:
-    """Add to a motion the joints that its mimic joints follow.
+    """Add to a motion the joints that its mimic joints follow, with the matching positions.
 
-    A mimic joint has no controller of its own: it moves with its leader.
+    No controller moves a mimic joint itself: it follows its leader.
     """
     for name in motion.joints:
         law = mimic_of(robot, name)
@@ -193,7 +193,7 @@ def check_mimic_joints(robot: Model, motion: Motion) -> None:
     """Check that mimic joints and their leaders have matching positions in the motion.
 
     Raises:
-        MotionRefused: A position of a mimic joint differs from its leader's rule.
+        MotionRefused: A mimic joint has a position that does not follow from its leader's position.
     """
     for column, name in enumerate(motion.joints):
         law = mimic_of(robot, name)
@@ -210,14 +210,14 @@ def check_mimic_joints(robot: Model, motion: Motion) -> None:
 def course_from(start: Vector, motion: Motion, limits: Vector, approach: Approach) -> Course:
     """Return the course from the present positions through the points of a motion.
 
-    The way to the first point takes the time that the motion allows, or longer if a joint would be too fast. The times
-    between the following points stay the same.
+    The approach to the first point takes the time of that point in the motion, or longer if the approach would be too
+    fast. The times between the points of the motion get longer only if a joint would exceed its speed limit.
 
     Args:
         start: Present positions of the joints [rad or m].
         motion: Motion to play.
         limits: Largest speed of each joint [rad/s or m/s].
-        approach: Speed and shortest duration of the way to the first point.
+        approach: Speed and shortest duration of the approach to the first point.
     """
     points = np.vstack([start, np.array(motion.positions)])
     times = np.array(motion.times)
@@ -236,7 +236,7 @@ def check_collisions(
     joints: Mapping[str, Joint],
     free_joints: Collection[str],
 ) -> None:
-    """Check positions along a course in a copy of the state.
+    """Check sampled positions along a course for collisions, in a copy of the state.
 
     Raises:
         MotionRefused: Two links would collide.
@@ -253,7 +253,7 @@ def check_collisions(
 
 
 def trajectory_goal(found: Course, motion: Motion, controller: TrajectoryController, robot: Model) -> dict[str, object]:
-    """Return the goal of one controller; its joints that are not in the motion keep their present positions."""
+    """Return the goal for one controller; a joint that is not in the motion keeps its present position."""
     columns = [motion.joints.index(joint) if joint in motion.joints else None for joint in controller.joints]
     here = [float(robot.joints[joint].position) if joint in robot.joints else 0.0 for joint in controller.joints]
 

@@ -1,4 +1,4 @@
-"""World with a robot that plays motions, as `simkit motion` opens it, and the playback of motions in sequence."""
+"""Functions behind `simkit motion`: open a world with a robot, and play motions in sequence."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from simkit.plugins.ros2_control.control_plugin import ControlPlugin
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
-_SLICE: Final = 0.02  # [s], simulated time between two checks for the end of a motion
+_SLICE: Final = 0.02  # [s], simulated time between two checks whether a motion has ended
 _LONGEST: Final = 10_000.0  # [s], largest duration of a motion
 
 
 class MotionError(SimkitError):
-    """Motion that was refused or did not finish."""
+    """Error: a motion was refused or did not finish."""
 
     code = "SK-MOTION-012"
 
@@ -33,7 +33,7 @@ class PlayedMotion:
     Attributes:
         motion: Motion that was played.
         duration: Simulated duration, including the approach [s].
-        furthest: Joint with the largest error from the last point, and that error [rad or m].
+        furthest: Name and error [rad or m] of the joint with the largest distance from the last point of the motion.
     """
 
     motion: Motion
@@ -42,7 +42,7 @@ class PlayedMotion:
 
 
 def empty_world_with(robot: str) -> tuple[str, list[Path]]:
-    """Return the SDF text of a level ground with a robot, and the folders that the robot needs.
+    """Return the SDF text of a world with a ground plane and a robot, and the resource folders of the robot.
 
     Args:
         robot: Name of a model, or path of a robot file.
@@ -55,7 +55,7 @@ def empty_world_with(robot: str) -> tuple[str, list[Path]]:
 
 
 def motion_players(sim: Simulation) -> dict[str, PlayMotion]:
-    """Return the plugins that play motions, by the scoped name of their robot."""
+    """Return the plugins that play motions, by scoped name of the robot."""
     return {p.scoped: p for p in sim.engine.structure.all_plugins() if isinstance(p, PlayMotion)}
 
 
@@ -65,14 +65,14 @@ def controlled_models(sim: Simulation) -> list[str]:
 
 
 def choose_player(players: Mapping[str, PlayMotion], name: str | None) -> PlayMotion:
-    """Return the player of that name, or the only one.
+    """Return the plugin that plays the motions of a robot.
 
     Args:
-        players: Players by scoped name.
-        name: Scoped name, or None for the only player.
+        players: Plugins by scoped name of the robot.
+        name: Scoped name of the robot; None if only one robot plays motions.
 
     Raises:
-        InputError: SK-MOTION-010, there is no such player, or more than one without a name.
+        InputError: SK-MOTION-010, the robot does not play motions, or several robots play motions and `name` is None.
     """
     listed = ", ".join(players) or "none"
     if name is not None and name not in players:
@@ -90,11 +90,11 @@ def choose_player(players: Mapping[str, PlayMotion], name: str | None) -> PlayMo
 def play_motions(
     sim: Simulation, player: PlayMotion, names: Sequence[str], *, skip_planning: bool = False
 ) -> Iterator[PlayedMotion]:
-    """Play motions in sequence, each from the end of the one before.
+    """Play motions in sequence; each motion begins where the previous motion ends.
 
     Args:
         sim: Simulation of the robot.
-        player: Player of the robot.
+        player: Plugin that plays the robot's motions.
         names: Keys of the motions.
         skip_planning: True to skip the collision check.
 

@@ -1,9 +1,10 @@
 """Timing of a motion: a smooth course through its points, within the velocity limits of its joints.
 
-Between two points every joint follows the cubic of their positions and velocities, as joint_trajectory_controller
-interpolates. A motion without velocities gets those of a monotone cubic (Fritsch and Butland, "A method for
-constructing local monotone piecewise cubic interpolants", SIAM J. Sci. Stat. Comput. 5, 1984). These are zero at both
-ends and at reversals of a joint, so that no joint leaves the range between two points.
+Between two points, every joint follows the cubic polynomial that has the positions and velocities of both points, as in
+joint_trajectory_controller. For a motion without velocities, they are computed by a monotone interpolation (Fritsch and
+Butland, "A method for constructing local monotone piecewise cubic interpolants", SIAM J. Sci. Stat. Comput. 5, 1984).
+The velocity of a joint is zero at both ends and where the joint reverses, so that no joint leaves the range between two
+points.
 """
 
 from __future__ import annotations
@@ -18,21 +19,22 @@ from simkit.pose import Vector
 
 SHORTEST_INTERVAL: Final = 1e-3  # [s], shortest time between two points
 LARGEST_STRETCH: Final = 3.0
-"""Largest ratio of peak to average speed between two points of a smooth course. The weights of `smooth_velocities`
-limit the speed at a point to three times the average of either side."""
+"""Largest ratio of peak speed to average speed between two points of a smooth course. With the weights of
+`smooth_velocities`, the speed at a point is at most three times the average speed before and after the point."""
 _ROUNDS: Final = 100
 _EXACT: Final = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """Course of joints through points, beginning at their present positions.
+    """Course of joints through points; the first point is their present position.
 
     Attributes:
         times: Time of each point [s], increasing from 0, shape (points,).
         positions: Joint positions [rad or m], shape (points, joints).
         velocities: Joint velocities [rad/s or m/s], shape (points, joints).
-        stretched: Factor by which the motion without its approach became longer, so that no joint is too fast; else 1.
+        stretched: Ratio of the duration to the duration in the file, both without the approach. The ratio is above 1 if
+            a joint would otherwise exceed its speed limit.
     """
 
     times: Vector
@@ -49,7 +51,7 @@ class Course:
         """Yield times and positions along the course.
 
         Args:
-            step: Largest displacement of each joint between two samples [rad or m].
+            step: Largest distance that each joint moves between two samples [rad or m].
         """
         yield 0.0, self.positions[0]
         for k in range(len(self.times) - 1):
@@ -60,12 +62,12 @@ class Course:
                 yield float(self.times[k] + s * h), self._at(k, float(s), float(h))
 
     def _at(self, k: int, s: float, h: float) -> Vector:
-        """Return the value of the cubic polynomial between points k and k + 1.
+        """Return the joint positions between the points k and k + 1.
 
         Args:
-            k: index of the first point.
-            s: fraction of the interval, 0 to 1.
-            h: length of the interval [s].
+            k: Index of the point before.
+            s: Fraction of the time interval, 0 to 1.
+            h: Duration of the time interval [s].
         """
         p0, p1, v0, v1 = self.positions[k], self.positions[k + 1], self.velocities[k] * h, self.velocities[k + 1] * h
         found: Vector = p0 + s * (v0 + s * ((3 * (p1 - p0) - 2 * v0 - v1) + s * (v0 + v1 - 2 * (p1 - p0))))
@@ -73,14 +75,14 @@ class Course:
 
 
 def time_course(points: Vector, times: Vector, given: Vector | None, limits: Vector, approach: int = 1) -> Course:
-    """Return a course through points, with longer times where a joint would exceed its speed limit.
+    """Return a course through points; an interval gets longer if a joint would exceed its speed limit.
 
     Args:
         points: Present positions, then the points of the motion, shape (points, joints).
         times: Time of each point [s], increasing from 0, shape (points,).
-        given: Velocities of the points of the motion; None for a smooth course.
-        limits: Largest speed of each joint [rad/s or m/s].
-        approach: Index of the first point of the motion; the points before are the approach.
+        given: Velocities at the points of the motion; None to compute them with `smooth_velocities`.
+        limits: Speed limit of each joint [rad/s or m/s].
+        approach: Index of the first point of the motion; the earlier points belong to the approach.
     """
     gaps = np.maximum(np.diff(times), SHORTEST_INTERVAL)
     if given is not None:
@@ -100,7 +102,7 @@ def time_course(points: Vector, times: Vector, given: Vector | None, limits: Vec
 
 
 def _course_with_velocities(points: Vector, gaps: Vector, given: Vector, limits: Vector, approach: int) -> Course:
-    """Return the course through points with these velocities, slowed down as a whole if any joint is too fast."""
+    """Return the course through points with these velocities; if any joint is too fast, the whole motion is slower."""
     velocities = np.zeros_like(points)
     velocities[approach:] = given
     inside = (
@@ -119,7 +121,7 @@ def _course_with_velocities(points: Vector, gaps: Vector, given: Vector, limits:
 
 
 def smooth_velocities(points: Vector, gaps: Vector) -> Vector:
-    """Return velocities at the points, shape (points, joints), for a course that overshoots no point."""
+    """Return velocities at the points, shape (points, joints), with which no joint overshoots a point."""
     velocities = np.zeros_like(points)
     if len(points) < 3:
         return velocities
@@ -147,5 +149,12 @@ def _peak_speeds(points: Vector, velocities: Vector, gaps: Vector) -> Vector:
 
 
 def approach_time(start: Vector, first: Vector, speed: float, shortest: float) -> float:
-    """Return the duration of the approach [s], at this average speed of the joint with the longest way."""
+    """Return the duration of the approach to the first point [s].
+
+    Args:
+        start: Present position of each joint [rad or m].
+        first: Position of each joint at the first point [rad or m].
+        speed: Average speed of the joint with the longest way [rad/s or m/s].
+        shortest: Shortest duration [s].
+    """
     return max(float(np.max(np.abs(first - start))) / speed, shortest, SHORTEST_INTERVAL)

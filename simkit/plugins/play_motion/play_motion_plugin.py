@@ -1,4 +1,4 @@
-"""play_motion plugin: a robot plays motions by name."""
+"""Plugin with which a robot plays named motions, as PAL's play_motion does."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ class _RunningMotion:
     Attributes:
         goal: Goal of the client.
         key: Key of the motion.
-        controllers: Names of all controllers that take part.
-        until_ns: Time after which the motion has failed [ns].
-        parts: Goals of the controllers that have not finished yet, by controller name.
+        controllers: Names of the controllers that move the joints of the motion.
+        until_ns: Simulated time after which the motion counts as failed [ns].
+        parts: Goals of the controllers that have not finished yet, by name of the controller.
     """
 
     goal: GoalHandle
@@ -70,9 +70,9 @@ class _RunningMotion:
 class PlayMotion(ModelPlugin):
     """Plays motions through the robot's trajectory controllers, as PAL's play_motion2 (and ROS 1's play_motion) does.
 
-    The way to the first point keeps to `approach_velocity` and to the joints' own limits. The motion then follows its
-    file, smoothly through all points. A motion is refused if it exceeds the limits of a joint. Unless the goal sets
-    `skip_planning`, a motion is also refused if links would collide with each other or with the surroundings.
+    The approach to the first point respects `approach_velocity` and the limits of the joints. The robot then moves
+    smoothly through all points of the motion. A motion is refused if it exceeds the limits of a joint. A motion is also
+    refused if links would collide with each other or with the surroundings, except if the goal sets `skip_planning`.
 
     Attributes:
         robot: Robot that plays the motions.
@@ -114,12 +114,12 @@ class PlayMotion(ModelPlugin):
         self._free_joints = tuple(excluded) if excluded else contents.excluded_joints
 
     def _find(self, uri: str, builder: SpecBuilder) -> Path | None:
-        """Find a motion file by its URI or next to the robot's file.
+        """Find a motion file by its URI, next to the robot's file, or as a plain path.
 
-        The path itself is tried last, because the Python API passes plain paths.
+        The Python API passes plain paths.
         """
         found = find_plugin_file(self, uri, builder, ("motions", "config", "../motions"))
-        with suppress(OSError, ValueError):  # not a valid file name
+        with suppress(OSError, ValueError):  # the URI is not a valid file name
             return Path(uri) if found is None and Path(uri).is_file() else found
         return found
 
@@ -158,7 +158,7 @@ class PlayMotion(ModelPlugin):
         offer_services(self)
 
     def _check(self, motion: Motion, reports: Diagnostics) -> None:
-        """Report why a motion of a file cannot be played, or takes longer than its file states."""
+        """Report a motion that cannot be played or that takes longer than its file states, with the reason."""
         joints = self.robot.joints
         missing = next((n for n in motion.joints if n not in joints or len(joints[n].scene.axes) != 1), None)
         if missing is not None:
@@ -236,7 +236,7 @@ class PlayMotion(ModelPlugin):
             self._check_idle(goal, names)
             find_joints(self.robot, motion.joints, controllers)
             is_accepted, checked = True, not goal.request.skip_planning
-            found = plan_motion(self.sim, self.robot, motion, controllers, self._approach, looks_around=checked)
+            found = plan_motion(self.sim, self.robot, motion, controllers, self._approach, checks_collisions=checked)
         except MotionRefused as refused:
             self._refuse(goal, refused, rejects=not is_accepted)
             return
@@ -249,9 +249,9 @@ class PlayMotion(ModelPlugin):
             run.parts[controller.name] = send(controller.action, request, self._on_feedback, self._on_controller_done)
 
     def _check_idle(self, goal: GoalHandle, names: Sequence[str]) -> None:
-        """Check that no running motion excludes a goal.
+        """Check that no running motion prevents a new motion.
 
-        ROS 2 plays one motion at a time. ROS 1 plays several if they share no controller.
+        A ROS 2 goal needs that no motion runs. A ROS 1 goal may run beside motions that use other controllers.
 
         Raises:
             MotionRefused: Another motion is being played.
@@ -266,7 +266,7 @@ class PlayMotion(ModelPlugin):
                 )
 
     def _refuse(self, goal: GoalHandle, refused: MotionRefused, *, rejects: bool) -> None:
-        """End a goal that is not played; ROS 1 gets an error code, ROS 2 a text."""
+        """Reject or abort the goal of a refused motion; ROS 1 clients receive an error code, ROS 2 clients a text."""
         self.log.info("%s", refused)
         if rejects and not _is_ros_1(goal):
             goal.reject(str(refused))
@@ -303,7 +303,7 @@ class PlayMotion(ModelPlugin):
         self._fail(run, _TRAJECTORY_RESULTS.get(code, OTHER_ERROR), text)
 
     def _on_feedback(self, feedback: object) -> None:
-        """Forward the feedback of the first controller that has not finished, and end motions that take too long."""
+        """Forward the feedback of the first unfinished controller, and abort motions that take too long."""
         now = self.sim.time_ns
         for run in tuple(self._runs):
             first = next(iter(run.parts.values()), None)
@@ -322,7 +322,7 @@ class PlayMotion(ModelPlugin):
         run.goal.abort(_result_fields(run.goal, code, text), text)
 
     def _cancel_controllers(self, run: _RunningMotion) -> None:
-        """Cancel the goals of the controllers; their joints then hold their positions."""
+        """Cancel the goals of the controllers; the joints then hold their positions."""
         self._runs.remove(run)
         for part in run.parts.values():
             if not part.is_done:
@@ -334,7 +334,7 @@ def _is_ros_1(goal: GoalHandle) -> bool:
 
 
 def _result_fields(goal: GoalHandle, code: int, text: str) -> dict[str, object]:
-    """Return the fields of the result message of the goal's action."""
+    """Return the fields of the result message, for the action of ROS 1 or ROS 2."""
     if _is_ros_1(goal):
         return {"error_code": code, "error_string": text}
     return {"success": code == SUCCEEDED, "error": text}

@@ -1,4 +1,4 @@
-"""Services about the motions of a robot: those of play_motion2, and of ROS 1's play_motion."""
+"""Services to list, describe, add and remove the motions of a robot, as in play_motion2 and play_motion."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class MotionPlayer(Protocol):
         sim: Simulation of the robot.
         robot: Robot that plays the motions.
         known: Motions by key.
-        log: Logger for the reason why a motion is not added.
+        log: Logger for the reasons why motions cannot be added.
     """
 
     sim: Simulation
@@ -46,7 +46,7 @@ class MotionPlayer(Protocol):
 
 
 def offer_services(player: MotionPlayer) -> None:
-    """Offer the services of a robot that plays motions."""
+    """Open the services about the motions of a robot."""
     answers = _ServiceHandlers(player)
     package = "play_motion2_msgs/srv"
     player.offer("play_motion2/list_motions", f"{package}/ListMotions", answers.keys)
@@ -60,7 +60,7 @@ def offer_services(player: MotionPlayer) -> None:
 
 
 class _ServiceHandlers:
-    """Handlers of the services; each response uses the motions that are known at the time of the request."""
+    """Handlers of the services. A response contains the motions that are known at the time of the request."""
 
     def __init__(self, player: MotionPlayer) -> None:
         self._player = player
@@ -70,11 +70,11 @@ class _ServiceHandlers:
         return {"motion_keys": list(self._player.known)}
 
     def infos(self, _: object) -> dict[str, object]:
-        """Return name, joints and duration of all motions, for ROS 1."""
+        """Return the name, joints and duration of each motion, for ROS 1."""
         return {"motions": [motion.as_info() for motion in self._player.known.values()]}
 
     def motion(self, request: GetMotionInfo_Request) -> dict[str, object]:
-        """Return a motion, or an empty response if it does not exist."""
+        """Return a motion; the response is empty if the motion does not exist."""
         motion = self._player.known.get(request.motion_key)
         return {"motion": motion.as_message()} if motion is not None else {}
 
@@ -86,7 +86,7 @@ class _ServiceHandlers:
         return {"is_ready": not limit_violations(motion, self._player.robot.joints)}
 
     def are_joints_ready(self, request: IsJointListReady_Request) -> dict[str, object]:
-        """Check whether controllers move these joints and no motion is being played."""
+        """Check whether active controllers move these joints and no motion is being played."""
         return {"is_ready": self._are_ready(request.joints)}
 
     def _are_ready(self, joints: Sequence[str]) -> bool:
@@ -98,7 +98,7 @@ class _ServiceHandlers:
         return player.is_idle
 
     def add(self, request: AddMotion_Request) -> dict[str, object]:
-        """Add a motion; an existing one is replaced on request only."""
+        """Add a motion; an existing motion is replaced only if the request says so."""
         known = self._player.known
         try:
             motion = motion_of_message(request.motion)
