@@ -1,4 +1,4 @@
-"""Warnings that a running plugin reports only once, however often their cause occurs."""
+"""Warnings of a running plugin: each is reported only once, even if its cause occurs many times."""
 
 from __future__ import annotations
 
@@ -7,22 +7,31 @@ from typing import TYPE_CHECKING
 from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
+    from simkit.diagnostics import Where
     from simkit.plugins.base import Plugin
 
 
 class OneTimeWarnings(SharedByCopies):
-    """Warnings of a plugin, each reported once, even after resets; a handle without state that a reset clears."""
+    """Reporter of a plugin's warnings. A reset of the simulation does not make it report a warning again.
 
-    def __init__(self, plugin: Plugin) -> None:
-        self._plugin = plugin
+    Args:
+        plugin: plugin that reports the warnings.
+        label: beginning of the messages, such as `controller 'arm'`; empty for the plugin's own name.
+        where: location of the warnings; None for the plugin's own location.
+    """
+
+    def __init__(self, plugin: Plugin, label: str = "", where: Where | None = None) -> None:
+        self._plugin, self._label, self._where = plugin, label, where
         self._reported: set[str] = set()
 
     def warn(self, code: str, cause: str, message: str, hint: str = "") -> None:
-        """Report a warning at the plugin's line, once for each `cause`."""
+        """Report a warning, once for each `cause`."""
         if cause not in self._reported:
             self._reported.add(cause)
             plugin = self._plugin
-            plugin.sim.engine.reports.warning(code, f"plugin {plugin.name!r}: {message}", plugin.where, hint)
+            label = self._label or f"plugin {plugin.name!r}"
+            where = plugin.where if self._where is None else self._where
+            plugin.sim.engine.reports.warning(code, f"{label}: {message}", where, hint)
 
     def left_out(self, cause: str, message: str, hint: str = "") -> None:
         """Warn that a command is ignored."""

@@ -12,6 +12,7 @@ from simkit.msgs.message_types import Message
 from simkit.params import Params
 from simkit.plugins.live_parameters import declare_at
 from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros2_control.hardware_interfaces import InterfaceSelection
 from simkit.runtime.communication.parameter_server import Parameter
 
@@ -147,6 +148,10 @@ class Controller(SharedByCopies, abc.ABC):
         """Simulation that the plugin belongs to."""
         return self.plugin.sim
 
+    def one_time_warnings(self) -> OneTimeWarnings:
+        """Create a reporter of warnings with the controller's name and its line in the parameter file."""
+        return OneTimeWarnings(self.plugin, f"controller {self.name!r}", self.params.where)
+
     def topic(self, name: str) -> str:
         """Return a name in the controller's node: `~/state` becomes `<controller>/state`."""
         return f"{self.name}/{name[2:]}" if name.startswith("~/") else name
@@ -263,24 +268,3 @@ class Controller(SharedByCopies, abc.ABC):
 _OWN_ATTRIBUTES = frozenset(
     ("name", "plugin", "params", "hardware", "states", "commands", "log", "endpoints", "_uncopied")
 )
-
-
-class OneTimeWarnings(SharedByCopies):
-    """Warnings of a controller that are reported once each.
-
-    It is a handle and has no state of the simulation, so a reset does not repeat a warning.
-    """
-
-    def __init__(self, controller: Controller) -> None:
-        self._controller = controller
-        self._reported: set[str] = set()
-
-    def warn(self, code: str, key: str, message: str, hint: str = "") -> None:
-        """Report a warning at the controller's place in the YAML file, once for each `key`."""
-        if key in self._reported:
-            return
-        self._reported.add(key)
-        controller = self._controller
-        controller.sim.engine.reports.warning(
-            code, f"controller {controller.name!r}: {message}", controller.params.where, hint
-        )

@@ -10,7 +10,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.msgs.message_types import Message
-from simkit.plugins.ros2_control.controller import Controller, OneTimeWarnings
+from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.trajectory import SECOND
 
@@ -48,7 +48,7 @@ class GripperActionController(Controller):
         self._stall_velocity = params.number("stall_velocity_threshold", 0.001, minimum=0.0)
         self._stall_timeout = params.number("stall_timeout", 1.0, minimum=0.0)
         self._extra_interfaces: tuple[str, ...] = ()
-        self._warnings = OneTimeWarnings(self)
+        self._warnings = self.one_time_warnings()
         self._pids: JointPids | None = None
         if self.interface == "effort":
             self._pids = JointPids(params.block("gains"), (self._joint,))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.plugins.ros2_control.controller import Controller, OneTimeWarnings
+from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.hardware_interfaces import POSITION
 from simkit.plugins.ros2_control.joint_group import TRAJECTORY, JointGroup, TrajectoryMessages
 from simkit.plugins.ros2_control.joint_pids import JointPids
@@ -64,7 +64,7 @@ class JointTrajectoryController(Controller):
     def configure(self) -> None:
         params = self.params
         self._group = JointGroup(params, self.hardware, self.default_commands, self.default_states)
-        self._warnings = OneTimeWarnings(self)
+        self._warnings = self.one_time_warnings()
         self._has_continuous_joints = bool(self._group.turning.any())
         joints = self._group.joints
         self._rules = TrajectoryRules(
