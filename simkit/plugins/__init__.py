@@ -1,10 +1,10 @@
 """Plugins: Python classes attached to a world, a model, a visual or a sensor and called while the simulation runs.
 
-A file describes a plugin as a `ScenePlugin` with parameters. `discovery` finds its class by name and creates the
-instance. Each kind of plugin has its own file. `gz` and `classic` hold the plugins of Gazebo's two generations; `world`
-holds what every world has. `ros2_control`, `play_motion` and `gz_python` are whole subsystems. `drives`, `joints`,
-`fluids` and `actors` hold code that several kinds share; the files next to them hold code that all kinds share. A
-plugin never changes the MuJoCo spec itself: `prepare` requests actuators and sites from the builder before the compile.
+A file describes a plugin as a `ScenePlugin` with parameters; `discovery` finds the class by its name and creates the
+instance. `gz` and `classic` contain the plugins of Gazebo and Gazebo Classic, and `world` contains the plugins that
+every world has. `ros2_control`, `play_motion` and `gz_python` are larger subsystems. `drives`, `joints`, `fluids` and
+`actors` contain code that several plugins share; the modules in this folder contain code for all plugins. A plugin does
+not change the MuJoCo spec directly: in `prepare`, it requests actuators and sites from the builder.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Base classes of plugins: Python attached to a world, a model, a visual or a sensor and called while it runs.
+"""Base classes of plugins: Python classes attached to a world, a model, a visual or a sensor.
 
-Write a class with a `load` method; everything else is optional:
+A plugin is a class with a `load` method; all other methods are optional:
 
     class Hello(WorldPlugin):
         filenames = ("libhello.so",)
@@ -44,33 +44,33 @@ Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
 ParentKind = Literal["world", "model", "visual", "sensor", "any"]
 
 NEVER: Final = 1e-9
-"""Rate of a hook that is paused [Hz]: once in thirty years."""
+"""Rate of a paused hook [Hz]: once in thirty years."""
 
 
 class Plugin(abc.ABC):
-    """Base of all plugins; derive from `WorldPlugin`, `ModelPlugin`, `VisualPlugin` or `SensorPlugin`.
+    """Base class of all plugins; derive from `WorldPlugin`, `ModelPlugin`, `VisualPlugin` or `SensorPlugin`.
 
-    A hook that a class does not override costs nothing. Hooks run on the grid of simulated time: with a rate of r Hz at
-    the first step at or after k/r, k = 1, 2, …; with None or 0 at every step.
+    A hook that a class does not override takes no time. A hook with a rate of r Hz runs at the first step at or after
+    the simulated times k/r, for k = 1, 2, …; with a rate of None or 0 it runs at every step.
 
     Attributes:
         filenames: library names in files that select this class (`libgazebo_ros_diff_drive.so`).
         names: gz class names that select this class (`gz::sim::systems::DiffDrive`).
-        parent_kind: kind of entity that the plugin attaches to, or several kinds; the base classes set it.
-        lets_sleep: whether its model may sleep at rest, because sleeping changes nothing that the plugin reads or does.
-        option_types: further classes of options, besides that of `options`; see `simkit.plugins.options`.
+        parent_kind: kind, or kinds, of entities that the plugin can be attached to; the base classes set it.
+        lets_sleep: true if the model may sleep at rest without an effect on what the plugin reads or does.
+        option_types: classes of options in addition to the class of `options`; see `simkit.plugins.options`.
         endpoints: topics, services and actions whose names are not literals in `load`.
-        before_step_rate, after_step_rate: [Hz]; set in the class, or on the instance in `load`.
-        on_error: "stop" ends the run when the plugin raises; "disable" continues without the plugin.
+        before_step_rate, after_step_rate: rates of these hooks [Hz]; set in the class, or on the instance in `load`.
+        on_error: "stop" ends the run after an exception in the plugin; "disable" continues without the plugin.
             `<simkit:on_error>` in the file overrides this attribute, and the argument of `simkit.load` overrides both.
             None is "stop".
         sim: simulation.
         name: name of the plugin in the file.
         scoped: scoped name of the entity that the plugin is attached to (empty for the world).
         params: parameters of the plugin.
-        where: file and line.
-        ros: topic names after `<namespace>` and `<remapping>`.
-        log: logger below `simkit`.
+        where: file and line of the plugin.
+        ros: names as in a ROS node, with `<namespace>` and `<remapping>`.
+        log: logger of the plugin, a child of the logger `simkit`.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()
@@ -79,17 +79,17 @@ class Plugin(abc.ABC):
     lets_sleep: ClassVar[bool] = False
     option_types: ClassVar[tuple[type[Options], ...]] = ()
     endpoints: ClassVar[tuple[Endpoint, ...]] = ()
-    drives: ClassVar[bool] = False  # whether it moves joints; a static model ignores such a plugin
-    reads_parameter_files: ClassVar[bool] = False  # whether it reads the files in `params_files`
+    drives: ClassVar[bool] = False  # true if the plugin moves joints; it is then ignored in a static model
+    reads_parameter_files: ClassVar[bool] = False  # true if the plugin reads the run's parameter files
 
     before_step_rate: float | None = None
     after_step_rate: float | None = None
     on_error: PluginErrorPolicy | None = None
 
-    _failed: tuple[str, Exception] | None = None  # hook and exception from before the simulation existed
-    _actuators: tuple[ActuatorRef, ...] = ()  # servos and motors that its `prepare` added
-    _order: tuple[object, ...] = ()  # sort key among all plugins
-    plugin_paths: tuple[Path, ...] = ()  # folders whose Python the user allows
+    _failed: tuple[str, Exception] | None = None  # hook that failed before the simulation existed, and its exception
+    _actuators: tuple[ActuatorRef, ...] = ()  # servos and motors that `prepare` added
+    _order: tuple[object, ...] = ()  # sort key for the order of all plugins
+    plugin_paths: tuple[Path, ...] = ()  # folders whose Python modules the user allows
     _source: ScenePlugin | None = None
     sim: Simulation
     name: str = ""
@@ -114,22 +114,22 @@ class Plugin(abc.ABC):
         """Check names and add actuators and sites through `builder`, before the model is compiled.
 
         Args:
-            scene: resolved entity: `SceneWorld`, `SceneModel`, `SceneVisual` or `SceneSensor`.
-            params: parameters of the plugin; errors recorded here stop the load.
-            builder: access to the MuJoCo spec.
+            scene: scene object of the parent: `SceneWorld`, `SceneModel`, `SceneVisual` or `SceneSensor`.
+            params: parameters of the plugin; an error that is reported through them stops the load.
+            builder: builder of the MuJoCo spec.
         """
 
     @abc.abstractmethod
     def load(self, parent: Any, params: Params) -> None:
-        """Read parameters, open topics and find links and joints; called once, after everything is built.
+        """Read parameters, open topics and find links and joints; called once, when the simulation is complete.
 
         Args:
             parent: `Simulation`, `Model`, `Visual` or `Sensor` that the plugin is attached to.
-            params: parameters of the plugin, read by type and default.
+            params: parameters of the plugin; each read names the type and a default.
         """
 
     def reset(self) -> None:
-        """Return to t = 0; the plugin's attributes already have their values from after `load`."""
+        """React to a reset to t = 0; the plugin's attributes already have the values that they had after `load`."""
 
     def before_step(self) -> None:
         """Write commands before a physics step."""
@@ -143,12 +143,12 @@ class Plugin(abc.ABC):
     # ------------------------------------------------------------------ methods that a plugin's author calls
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
-        """Open a publisher on `topic` (expanded and remapped as in ROS), of a type such as `nav_msgs/msg/Odometry`."""
+        """Open a publisher; `topic` is expanded and remapped as in ROS, `type_name` is like `nav_msgs/msg/Odometry`."""
         with self.sim.communication.bus.owned_by(self):
             return self.sim.communication.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
 
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], object]) -> Listener:
-        """Call `callback(message)` between two steps for each message on `topic`; the first of `types` is listed."""
+        """Call `callback(message)` between two steps for each message on `topic`; it may have any of the `types`."""
         name = self.ros.topic(topic)
         guarded = self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
         with self.sim.communication.bus.owned_by(self):
@@ -158,14 +158,14 @@ class Plugin(abc.ABC):
     def subscribe(
         self, topic: str, callback: Callable[[Any], None] | None = None, keep: int | None = None
     ) -> Subscription:
-        """Receive messages on `topic` (expanded and remapped as in ROS) at the moment of publication.
+        """Receive each message on a topic at the moment of its publication.
 
-        Use it for readings. Use `listen` for commands: its callbacks run between two steps.
+        Use this method for sensor readings. Use `listen` for commands: its callbacks run between two steps.
 
         Args:
-            topic: name of the topic.
+            topic: name of the topic, expanded and remapped as in ROS.
             callback: function called with each message.
-            keep: number of newest messages in `.messages`.
+            keep: number of the newest messages to store in `.messages`.
         """
         name = self.ros.topic(topic)
         guarded = callback and self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
@@ -173,12 +173,12 @@ class Plugin(abc.ABC):
             return self.sim.subscribe(name, guarded, keep)
 
     def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Service:
-        """Open a service (its name expanded and remapped as in ROS), of a type such as `std_srvs/srv/Trigger`.
+        """Open a service.
 
         Args:
-            service: name of the service.
-            type_name: type of the service.
-            handler: function from the request to the response: a message, a dict of its fields, or None for all zeros.
+            service: name of the service, expanded and remapped as in ROS.
+            type_name: type of the service, such as `std_srvs/srv/Trigger`.
+            handler: function from the request to the response: a message, a dict of fields, or None for all zeros.
         """
         with self.sim.communication.bus.owned_by(self):
             return self.sim.offer(self.ros.topic(service), type_name, handler)
@@ -195,10 +195,11 @@ class Plugin(abc.ABC):
         Args:
             action: name of the action, expanded and remapped as in ROS.
             type_name: type of the action.
-            on_goal: function called with each goal between two steps. It may `reject` the goal. An accepted goal stays
-                active until a hook calls `succeed`, `abort` or `canceled` on it; `publish_feedback` reports its
-                progress.
-            on_cancel: function called with a goal that a client cancels; False keeps the goal. None keeps every goal.
+            on_goal: function called between two steps with each new goal; it may call the goal's `reject`. An accepted
+                goal is active until a hook calls the goal's `succeed`, `abort` or `canceled`. A hook may report
+                progress with `publish_feedback`.
+            on_cancel: function called with a goal that a client cancels; it returns False to continue the goal. Without
+                a function, every goal continues.
         """
         with self.sim.communication.bus.owned_by(self):
             return self.sim.communication.actions.act(self.ros.topic(action), type_name, on_goal, on_cancel)
@@ -215,28 +216,27 @@ class Plugin(abc.ABC):
         element: str | None = None,
         on_change: Callable[[T], None] | None = None,
     ) -> Parameter[T]:
-        """Declare a live parameter, which may change while the simulation runs; to be called in `load`.
+        """Declare a live parameter, which may change while the simulation runs; call this method in `load`.
 
         Args:
             name: name of the parameter, such as `p_gain`.
-            default: value if the file has none. Its type is the parameter's: bool, int, float, str, or a tuple of
-                numbers.
+            default: value if the file has none. Values have its type: bool, int, float, str or tuple of numbers.
             minimum: lower bound of the number, or of each number of a tuple.
             maximum: upper bound of the number, or of each number of a tuple.
-            choices: allowed values, if they are a list.
+            choices: allowed values; empty for no restriction.
             description: meaning of the parameter, with its unit.
-            element: element of the file that holds the first value; `name` by default.
+            element: element of the file with the first value; `name` by default.
             on_change: function called with a new value, between two steps.
 
         Returns:
-            The parameter; its `value` is always current.
+            The parameter; its attribute `value` is always the current value.
         """
         from simkit.plugins.live_parameters import declare_at
         from simkit.runtime.communication.parameter_server import Parameter
 
         own = f"{self.ros.namespace}/{self.name}"
         otherwise = "/" + "/".join(filter(None, (*self.scoped.split("::"), self.name)))
-        # several plugins of a model may share class and name; then their attribute `node` distinguishes them
+        # several plugins of a model may have the same class and name; their attribute `node` distinguishes them
         otherwise = getattr(self, "node", otherwise)
         node = self.sim.communication.live_parameters.node_of(self, otherwise if "::" in self.name else own, otherwise)
         if on_change is not None:
@@ -257,7 +257,7 @@ class Plugin(abc.ABC):
     def random(self, channel: str, width: int = 1) -> RandomStream:
         """Return a random stream of this plugin.
 
-        `.normal(index)` returns `width` numbers, which depend only on the seed, the plugin, `channel` and `index`.
+        The stream's `normal(index)` returns `width` numbers. They depend only on seed, plugin, `channel` and `index`.
         """
         owner = f"{self.scoped}::{self.name}" if self.scoped else self.name
         return self.sim.engine.streams.stream(owner, channel, width)
@@ -271,14 +271,14 @@ class Plugin(abc.ABC):
 
     @property
     def source(self) -> ScenePlugin | None:
-        """Plugin as described by the file; None for a plugin created in Python."""
+        """Description of the plugin in the file; None for a plugin created in Python."""
         return self._source
 
     @source.setter
     def source(self, plugin: ScenePlugin | None) -> None:
-        """Set the instance's name, location and parameters; done before `prepare`."""
+        """Set the name, location and parameters from the file; done before `prepare`."""
         if plugin is not None and not hasattr(plugin, "params"):
-            raise AttributeError("`source` holds the plugin's description in the file; rename your own attribute")
+            raise AttributeError("`source` is the plugin's description in the file; rename your own attribute")
         self._source = plugin
         if plugin is None:
             self.hand_over(Diagnostics())
@@ -321,10 +321,10 @@ class Plugin(abc.ABC):
         return getattr(cls, hook) is not getattr(Plugin, hook)
 
     def get_state(self) -> dict[str, Any]:
-        """Return a copy of every attribute that the plugin set itself; handles and publishers are not copied.
+        """Return a copy of every attribute that the plugin has set; handles and publishers are not copied.
 
-        An attribute that cannot be copied is skipped and reported once (SK-PLUGIN-006). Override this method and
-        `set_state` to keep such an attribute.
+        An attribute that cannot be copied is left out and reported once (SK-PLUGIN-006). Override this method and
+        `set_state` to store such an attribute.
         """
         own = {k: v for k, v in vars(self).items() if k not in _OWNED}
         memo: dict[int, object] = {id(self): self}
@@ -334,7 +334,7 @@ class Plugin(abc.ABC):
             return self._state_by_attribute(own)
 
     def set_state(self, state: Mapping[str, Any]) -> None:
-        """Restore a state from `get_state`; delete newer attributes and keep those that cannot be copied."""
+        """Restore a state from `get_state`; later attributes are deleted, except those that cannot be copied."""
         uncopied = vars(self).get("_uncopied", set())
         for key in [k for k in vars(self) if k not in _OWNED and k not in state and k not in uncopied]:
             delattr(self, key)
@@ -346,7 +346,7 @@ class Plugin(abc.ABC):
         for key, value in own.items():
             try:
                 state[key] = copy.deepcopy(value, memo)
-            except Exception as error:  # noqa: BLE001 - as above
+            except Exception as error:  # noqa: BLE001 - a foreign object may raise anything when copied
                 uncopied.add(key)
                 if key not in vars(self).get("_uncopied", set()):
                     uncopyable = f"plugin {self.name!r}: attribute {key!r} cannot be copied"
@@ -358,7 +358,7 @@ class Plugin(abc.ABC):
         return state
 
     def _remember_loaded(self) -> None:
-        """Report attributes that cannot be copied right after `load` instead of at the first snapshot."""
+        """Report attributes that cannot be copied; called after `load`, not only at the first snapshot."""
         self.get_state()
 
     def __deepcopy__(self, memo: dict[int, object]) -> Plugin:
@@ -372,25 +372,25 @@ _OWNED = frozenset(
 
 
 class WorldPlugin(Plugin):
-    """Plugin of the world; `load` gets the `Simulation`, `prepare` the `SceneWorld`."""
+    """Plugin of the world: `prepare` receives a `SceneWorld`, `load` the `Simulation`."""
 
     parent_kind = "world"
 
 
 class ModelPlugin(Plugin):
-    """Plugin of a model; `load` gets the `Model`, `prepare` the `SceneModel`."""
+    """Plugin of a model: `prepare` receives a `SceneModel`, `load` the `Model`."""
 
     parent_kind = "model"
 
 
 class VisualPlugin(Plugin):
-    """Plugin of a visual; `load` gets the `Visual`, `prepare` the `SceneVisual`."""
+    """Plugin of a visual: `prepare` receives a `SceneVisual`, `load` the `Visual`."""
 
     parent_kind = "visual"
 
 
 class SensorPlugin(Plugin):
-    """Plugin of a sensor; `load` gets the `Sensor`, `prepare` the `SceneSensor`."""
+    """Plugin of a sensor: `prepare` receives a `SceneSensor`, `load` the `Sensor`."""
 
     parent_kind = "sensor"
 

@@ -1,4 +1,4 @@
-"""Battery model of both Gazebo generations: open-circuit voltage, inner resistance, smoothed current, state topic."""
+"""Battery model of Gazebo and Gazebo Classic: open-circuit voltage, inner resistance, smoothed current, state topic."""
 
 from __future__ import annotations
 
@@ -24,15 +24,16 @@ class Cell:
     """State and constants of a battery.
 
     Attributes:
-        constant, linear: e0 and e1 of the open-circuit voltage e0 + e1 (1 - q/c) [V].
-        capacity: c [A·h].
-        resistance: r [Ω].
+        constant, linear: parameters e0 and e1 [V] of the open-circuit voltage e0 + e1 (1 − q/c).
+        capacity: capacity c [A·h].
+        resistance: inner resistance [Ω].
         tau: time constant of the smoothed current [s].
         voltage: voltage at the terminals [V].
-        charge: q [A·h].
+        charge: charge q [A·h].
         current: smoothed current out of the battery [A].
         soc: state of charge, from 0 to 1.
-        recent: last 100 currents [A], if the state of charge is Gazebo's old sum of them; None otherwise.
+        recent: last 100 currents [A], if the state of charge is computed from their sum as in older versions of Gazebo;
+            None otherwise.
     """
 
     constant: float
@@ -50,20 +51,20 @@ class Cell:
         self.soc = self.charge / self.capacity
 
     def remember(self) -> None:
-        """Compute the state of charge as gz does without `<fix_issue_225>`: from the last 100 currents, each step."""
+        """Compute the state of charge from the sum of the last 100 currents, as gz does without `<fix_issue_225>`."""
         self.recent = deque(maxlen=_WINDOW)
 
     def step(self, step: float, power: float, charger: float | None) -> None:
-        """Advance the cell by a step of gz's arithmetic (LinearBatteryPlugin.cc, OnUpdateVoltage).
+        """Compute the state after a time step with gz's equations (LinearBatteryPlugin.cc, OnUpdateVoltage).
 
         Args:
-            step: length of the step [s].
+            step: duration of the step [s].
             power: power drawn from the battery [W].
-            charger: current of an active charger [A]; None without one.
+            charger: current of an active charger [A]; None without an active charger.
         """
         if charger is None and (abs(self.voltage) < 1e-3 or self.soc < 0.0):
             return
-        # gz divides by the voltage, which may be 0
+        # gz divides by the voltage without this check, although the voltage may be 0
         drawn = power / self.voltage if abs(self.voltage) >= 1e-3 else 0.0
         if charger is not None and self.soc < FULL:
             drawn -= charger
@@ -80,11 +81,11 @@ class Cell:
 
 STATE: Final = "sensor_msgs/msg/BatteryState"
 _RATE: Final = 50.0  # [Hz]
-_CHARGING, _DISCHARGING, _NOT_CHARGING, _IS_FULL = 1, 2, 3, 4  # of BatteryState
+_CHARGING, _DISCHARGING, _NOT_CHARGING, _IS_FULL = 1, 2, 3, 4  # constants of sensor_msgs/msg/BatteryState
 
 
 class BatteryConsumer(ModelPlugin):
-    """Base of plugins that draw power from a battery of their model.
+    """Base class of plugins that draw power from a battery of their model.
 
     Attributes:
         battery: name of the battery.
@@ -99,15 +100,15 @@ class BatteryConsumer(ModelPlugin):
 
 
 class Battery(ModelPlugin):
-    """Base of batteries.
+    """Base class of the battery plugins.
 
     Attributes:
         battery: name of the battery.
         cell: state and constants of the battery.
-        is_drained: whether a consumer draws from the battery.
-        charger: current of the active charger [A]; None without one.
-        sign: -1 if the published current is positive into the battery.
-        percent: published percentage of a full battery.
+        is_drained: whether a consumer draws power from the battery.
+        charger: current of the active charger [A]; None without an active charger.
+        sign: 1 if a published current out of the battery is positive, -1 if a current into the battery is positive.
+        percent: published `percentage` of a full battery, 1 or 100.
     """
 
     endpoints: ClassVar[tuple[Endpoint, ...]] = (publishes("/model/{model}/battery/{battery_name}/state", STATE),)
@@ -120,11 +121,11 @@ class Battery(ModelPlugin):
 
     @property
     def node(self) -> str:
-        """Name of the ROS node of the battery's parameters."""
+        """Name of the ROS node that has the battery's live parameters."""
         return valid_topic(f"/model/{self.scoped}/battery/{self.battery}".replace("::", "/"))
 
     def open_state(self, model: str) -> str:
-        """Open the topic of the battery's state and return the common prefix of the battery's topics."""
+        """Open the topic of the battery's state, and return the common prefix of all topics of the battery."""
         base = f"/model/{model}/battery/{self.battery}"
         for other in self.sim.engine.structure.all_plugins():
             if other is self:
@@ -138,7 +139,7 @@ class Battery(ModelPlugin):
         return base
 
     def demand(self) -> float:
-        """Return the power that all consumers draw [W]."""
+        """Return the power that all consumers together draw [W]."""
         return sum(consumer.power for consumer in self._consumers())
 
     def _consumers(self) -> list[BatteryConsumer]:
@@ -149,7 +150,7 @@ class Battery(ModelPlugin):
         return [p for p in consumers if p.battery == self.battery and p.scoped == self.scoped]
 
     def after_step(self) -> None:
-        """Drain and charge the battery for a step."""
+        """Compute the battery's state after the step."""
         if self.is_drained or self.charger is not None:
             self.cell.step(self.period, self.demand() if self.is_drained else 0.0, self.charger)
 

@@ -1,4 +1,4 @@
-"""Lookup of joints, links, lights and files that a plugin's parameters name; an error lists the existing names."""
+"""Search for joints, links, lights and files that a plugin's parameters name; an error lists the existing names."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
-    """Return a joint of the model by name, or None after an error; the name is plain or scoped from world or model."""
+    """Return a joint of the model; None after an error. The name is plain, or scoped from the world or the model."""
     joints = scene.all_joints()
     found = _find_by_suffix(scene.scoped, name, {j.scoped: j for j in joints})
     if found is None:
@@ -30,7 +30,7 @@ def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | Non
 
 
 def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
-    """Return a link of the model by name, or None after an error; the name is plain or scoped from world or model."""
+    """Return a link of the model; None after an error. The name is plain, or scoped from the world or the model."""
     links = scene.all_links()
     found = _find_by_suffix(scene.scoped, name, {link.scoped: link for link in links})
     if found is None:
@@ -39,7 +39,7 @@ def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
 
 
 def find_named_link(scene: SceneModel, element: str, params: Params) -> str:
-    """Return the scoped name of the link that an element names; empty after an error or without the element."""
+    """Return the scoped name of the link that a required element names; empty after an error."""
     params.text(element, required=True)
     named = params.child(element)
     link = None if named is None else find_link(scene, named.value, named)
@@ -47,7 +47,7 @@ def find_named_link(scene: SceneModel, element: str, params: Params) -> str:
 
 
 def read_required_name(params: Params, element: str) -> str:
-    """Return the text of a required element; empty after an error, also for an empty element."""
+    """Return the text of a required element; empty after an error. An empty element is an error, too."""
     name = params.text(element, required=True)
     named = params.child(element)
     if named is not None and not name:
@@ -56,7 +56,7 @@ def read_required_name(params: Params, element: str) -> str:
 
 
 def read_topic(params: Params, element: str, default: str) -> str:
-    """Return the topic that an element names, as gz-transport forms it; the default for an empty element."""
+    """Return the topic that an element names, in gz-transport's spelling; the default without a name."""
     written = params.text(element, "")
     topic = valid_topic(written or default)
     named = params.child(element)
@@ -67,12 +67,12 @@ def read_topic(params: Params, element: str, default: str) -> str:
 
 
 def find_light(sim: Simulation, name: str, params: Params) -> Light | None:
-    """Return a light of the world by its scoped name, or None after an error that lists the lights."""
+    """Return a light of the world by its scoped name; None after an error that lists the lights."""
     lights = sim.contents.lights
     if name in lights:
         return lights[name]
     listed = ", ".join(repr(n) for n in sorted(lights)) or "none"
-    params.error("SK-PLUGIN-003", f"there is no light {name!r}; lights are: {listed}", did_you_mean(name, lights))
+    params.error("SK-PLUGIN-003", f"there is no light {name!r}; the lights are: {listed}", did_you_mean(name, lights))
     return None
 
 
@@ -91,7 +91,7 @@ def _report_unknown(what: str, name: str, scene: SceneModel, names: Iterable[str
 
 
 def find_axis_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
-    """Return a joint with one degree of freedom, or None after an error."""
+    """Return a joint with one degree of freedom by its name; None after an error."""
     joint = find_joint(scene, name, params)
     if joint is not None and len(joint.axes) != 1:
         message = f"joint {name!r} is {joint.type}; the plugin needs a joint with one axis"
@@ -101,13 +101,15 @@ def find_axis_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint 
 
 
 def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Sequence[str] = ()) -> Path | None:
-    """Return the file behind a URI, else a file of that name next to the file that describes the plugin.
+    """Return the file that a URI refers to; None if there is no such file.
+
+    If the URI cannot be resolved, a file with the same name is searched next to the file that describes the plugin.
 
     Args:
-        plugin: plugin that names the file.
-        uri: URI as in the file.
-        builder: file finder.
-        places: further folders to search, relative to the folder of the plugin's file.
+        plugin: plugin that needs the file.
+        uri: URI of the file, as in the plugin's parameters.
+        builder: builder that resolves the URI.
+        places: further folders to search, relative to the folder of the file that describes the plugin.
     """
     folder = Path(plugin.where.file).resolve().parent if plugin.where.file else None
     try:
@@ -121,12 +123,12 @@ def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Seq
         found = next((file for place in (".", *places) if (file := folder / place / name).is_file()), None)
         builder.files_read += [found] if found is not None else []
         return found
-    except (OSError, ValueError):  # the operating system rejects the name
+    except (OSError, ValueError):  # the URI is not a valid file name
         return None
 
 
 def read_frame(sensor: Sensor, params: Params) -> str:
-    """Return `<frame_name>` (`<frameName>` in ROS 1), else the plain name of the sensor's link."""
+    """Return `<frame_name>` (`<frameName>` in ROS 1), or the plain name of the sensor's link if it is missing."""
     name = params.text("frame_name", "") or params.text("frameName", "")
     return name or link_name(sensor)
 

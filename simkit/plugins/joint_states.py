@@ -34,9 +34,10 @@ def joint_readings(joints: Sequence[Joint]) -> list[JointReading]:
 
 
 def joint_state_message(time_ns: int, joints: list[JointReading]) -> msgs.JointState:
-    """Return a `sensor_msgs/msg/JointState` of `joint_readings`, in their order, with applied efforts [N·m or N].
+    """Return a `sensor_msgs/msg/JointState` with the values from `joint_readings`, in the same order.
 
-    A joint with several degrees of freedom becomes `name[0]`, `name[1]`, …; a fixed joint becomes one zero.
+    A joint with several degrees of freedom becomes several joints `name[0]`, `name[1]`, …. A fixed joint has the
+    position, velocity and effort 0.
     """
     names: list[str] = []
     columns: tuple[list[float], list[float], list[float]] = ([], [], [])
@@ -52,7 +53,7 @@ def joint_state_message(time_ns: int, joints: list[JointReading]) -> msgs.JointS
 
 
 class _JointStates(ModelPlugin):
-    """Base of plugins that publish the states of joints after a step; a subclass chooses joints and topic."""
+    """Base class of plugins that publish joint states after a step; a subclass chooses the joints and the topic."""
 
     _joints: list[str]
     _topic: str

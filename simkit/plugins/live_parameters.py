@@ -1,4 +1,4 @@
-"""Live parameters of plugins: they may change while the simulation runs, and their first value comes from the file."""
+"""Live parameters of plugins: the file contains the first value, and the value may change while the simulation runs."""
 
 from __future__ import annotations
 
@@ -20,12 +20,14 @@ class ParameterOwner(Protocol):
 
 
 def declare_at(plugin: ParameterOwner, parameter: Parameter[T], params: Params, element: str) -> Parameter[T]:
-    """Read the first value from an element in `params`, add the parameter to its node, and open the node's services.
+    """Read the first value of a live parameter from the file, and make the parameter available to clients.
+
+    The first parameter of a ROS node also opens the parameter services of the node.
 
     Args:
-        plugin: owner of the parameter.
-        parameter: parameter with its default as its value.
-        params: block that contains the element.
+        plugin: plugin that declares the parameter.
+        parameter: parameter; its `value` is the default.
+        params: block of the file that may contain the element.
         element: name of the element.
     """
     communication = plugin.sim.communication

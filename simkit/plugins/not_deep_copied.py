@@ -1,4 +1,4 @@
-"""Objects that a deep copy, such as that of a snapshot, shares instead of copying."""
+"""Objects that a deep copy shares instead of copying, for example in a snapshot."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ T = TypeVar("T")
 
 
 class SharedByCopies:
-    """Base of handles of a simulation and of immutable values: a deep copy keeps the object itself."""
+    """Base class of handles and immutable values: a deep copy contains the same object, not a copy."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Options of a plugin: a class whose fields name the elements to read, with default, unit and bounds.
+"""Options of a plugin, declared as a class: each field names an element of the file, with default, unit and bounds.
 
     class BeltOptions(Options):
         speed: float = number(0.5, "m/s", minimum=0.0)
@@ -10,8 +10,8 @@
         def load(self, parent, params):
             self._speed = self.options.speed
 
-A field is read from the file at its first use, and only once. An element whose field is never used counts as unread and
-is reported. `simkit plugin info` lists the fields; the report of an unread element suggests their names.
+The first use of a field reads the element; later uses return the same value. If a field is never used, its element is
+reported as not read. `simkit plugin info` lists the fields. The report of an unknown element suggests a similar field.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Options(SharedByCopies):
     """Options in one block of a file.
 
     Args:
-        params: block that the options are read from.
+        params: block of the file that contains the options.
 
     Attributes:
         is_given: whether the file has the block.
@@ -46,11 +46,14 @@ class Options(SharedByCopies):
 
     @classmethod
     def fields(cls) -> dict[str, Option]:
-        """Return the options by field name, those of base classes first."""
+        """Return the options by name of the field; the options of base classes come first."""
         return {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items() if isinstance(v, Option)}
 
     def read_all(self) -> Self:
-        """Read every option except live parameters, those of base classes last, to report all errors together."""
+        """Read all options except live parameters, so that all errors are reported together.
+
+        The options of base classes are read last.
+        """
         for kind in type(self).__mro__:
             for name, value in vars(kind).items():
                 if isinstance(value, Option) and not value.is_live:
@@ -59,7 +62,7 @@ class Options(SharedByCopies):
 
     @classmethod
     def element_names(cls) -> Iterator[str]:
-        """Yield the names of all elements that the options read, including those within blocks."""
+        """Yield the names of all elements that the options read, including elements within blocks."""
         for option in cls.fields().values():
             yield option.element
             if option.options is not None:
@@ -68,12 +71,12 @@ class Options(SharedByCopies):
 
 @dataclass(eq=False)
 class Option:
-    """Element that a plugin reads; a field of a class of options.
+    """Field of a class of options; it reads one element of the file.
 
     Attributes:
-        kind: type of the value; empty if the element is known and has no effect.
-        element: name in the file, `@name` for an attribute; the name of the field by default.
-        default: value if the file has none; for a computed default, the text that is shown.
+        kind: type of the value; empty if the element has no effect.
+        element: name of the element in the file, or `@name` for an attribute; by default the name of the field.
+        default: value if the file does not have the element; for a computed default, a text for `simkit plugin info`.
         unit: SI unit; empty for a value without unit.
         minimum, maximum: bounds of a number.
         finite: whether a number must be finite.
@@ -81,10 +84,10 @@ class Option:
         size: number of values in a vector.
         required: whether the file must have the element.
         repeated: whether the element may occur several times.
-        instead: field whose value is the default.
+        instead: name of the field whose value is the default.
         options: class of the options in a block.
-        is_live: whether it is a live parameter, which `Plugin.declare` reads.
-        description: meaning of the option, if its name does not say it.
+        is_live: whether the option is a live parameter, which `Plugin.declare` reads.
+        description: meaning of the option, if its name is not clear enough.
     """
 
     kind: OptionKind
@@ -110,7 +113,7 @@ class Option:
         if options is None:
             return self
         default = getattr(options, self.instead) if self.instead else self.default
-        # this attribute of the instance hides the descriptor of the class, so the file is read once
+        # the instance's attribute now replaces the class's descriptor, so the element is read only once
         found = vars(options)[self.name] = self._read(options.params, default)
         return found
 
@@ -158,7 +161,7 @@ class HasParams(Protocol):
 
 
 class OptionsOf(Generic[OptionsKind_co]):
-    """Options of a plugin, read from its parameters; an attribute of its class.
+    """Class attribute of a plugin; on an instance, it returns the options read from the instance's parameters.
 
     Args:
         kind: class of the options.
@@ -185,14 +188,14 @@ class OptionsOf(Generic[OptionsKind_co]):
 
 
 def option_types_of(cls: type[object]) -> list[type[Options]]:
-    """Return the classes of options that a plugin class declares, those of its bases first."""
+    """Return the classes of options that a plugin class declares; the classes of its base classes come first."""
     attributes = {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items()}
     declared = (v.kind for v in attributes.values() if isinstance(v, OptionsOf))
     return list(dict.fromkeys((*declared, *getattr(cls, "option_types", ()))))
 
 
 def _declare(kind: type[Value], option: Option) -> Value:  # noqa: ARG001 - for type checkers
-    """Return the option, typed as `kind`: a type checker sees the value that the field will have."""
+    """Return the option; a type checker sees it as a value of the type `kind`, as the field has on an instance."""
     declared: Any = option
     value: Value = declared
     return value
@@ -231,7 +234,7 @@ def number(
 def numbers(
     unit: str = "", *, element: str = "", minimum: float | None = None, maximum: float | None = None
 ) -> tuple[float, ...]:
-    """Declare a repeated element with a number each."""
+    """Declare a repeated element; each occurrence contains a number."""
     option = Option("number", element, None, unit, minimum=minimum, maximum=maximum, repeated=True)
     return _declare(tuple[float, ...], option)
 
@@ -259,19 +262,19 @@ def text(default: str | None = "", *, element: str = "", required: bool = False,
 
 
 def texts(*, element: str = "", required: bool = False) -> tuple[str, ...]:
-    """Declare a repeated element with a text each."""
+    """Declare a repeated element; each occurrence contains a text."""
     return _declare(tuple[str, ...], Option("text", element, required=required, repeated=True))
 
 
 def choice(allowed: Sequence[str], default: str | None = None, *, element: str = "", required: bool = False) -> str:
-    """Declare a choice between a few words."""
+    """Declare an element whose text is one of the allowed words."""
     return _declare(str, Option("choice", element, default, choices=tuple(allowed), required=required))
 
 
 def vector(
     default: Sequence[float] | None, unit: str = "", *, element: str = "", size: int = 0, required: bool = False
 ) -> tuple[float, ...]:
-    """Declare several numbers."""
+    """Declare an element with several numbers."""
     count = size or len(default or ())
     start = None if default is None else tuple(float(value) for value in default)
     return _declare(tuple[float, ...], Option("vector", element, start, unit, size=count, required=required))
@@ -285,7 +288,7 @@ def vector3(
     required: bool = False,
     instead: str = "",
 ) -> tuple[float, float, float]:
-    """Declare three numbers."""
+    """Declare an element with three numbers."""
     x, y, z = map(float, default)
     option = Option("vector", element, (x, y, z), unit, size=3, required=required, instead=instead)
     return _declare(tuple[float, float, float], option)
@@ -297,15 +300,15 @@ def pose(default: Pose = IDENTITY, *, element: str = "") -> Pose:
 
 
 def block(options: type[OptionsKind], *, element: str = "") -> OptionsKind:
-    """Declare an element that contains options; an absent element has their defaults."""
+    """Declare an element that contains options; if the element is missing, its options have their defaults."""
     return _declare(options, Option("block", element, options=options))
 
 
 def blocks(options: type[OptionsKind], *, element: str = "") -> tuple[OptionsKind, ...]:
-    """Declare a repeated element that contains options."""
+    """Declare a repeated element; each occurrence contains options."""
     return _declare(tuple[OptionsKind, ...], Option("block", element, options=options, repeated=True))
 
 
 def without_effect(*, element: str = "") -> bool:
-    """Declare an element that is known and changes nothing; its value is true if the file has the element."""
+    """Declare an element without an effect; the value of the field is true if the file has the element."""
     return _declare(bool, Option("", element))

@@ -1,4 +1,4 @@
-"""Normalised names of plugins: files name the same plugin in many ways."""
+"""Normalisation of plugin names, because files spell the name of a plugin in many ways."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Final
 from simkit.scene import ScenePlugin
 
 ENTRY_POINT_GROUP: Final = "simkit.plugins"
-"""Entry point group in which installed packages offer plugins."""
+"""Group of entry points with which installed Python packages provide plugins."""
 
 
 def normalise(name: str) -> str:
-    """Return the common spelling of a plugin's name: `libignition-gazebo6-imu-system.so` is `gz-sim-imu-system`.
+    """Return the normalised spelling of a plugin's name: `gz-sim-imu-system` for `libignition-gazebo6-imu-system.so`.
 
-    Folder, `lib` and the library's suffix are removed; Ignition's names and version numbers become gz-sim's.
+    The folder, `lib`, the suffix of the library and version numbers are removed. Ignition's names become gz-sim names.
     """
     stem = name.strip().replace("\\", "/").rsplit("/", 1)[-1]
     stem = re.sub(r"\.(so|dylib|dll)(\.\d+)*$", "", stem)
@@ -24,9 +24,9 @@ def normalise(name: str) -> str:
 
 
 def aliases(plugin: ScenePlugin) -> list[str]:
-    """Return the normalised names under which a plugin of a file may be known: its library, then its gz class.
+    """Return the normalised names of a plugin in a file: the name of its library, then the name of its gz class.
 
-    A name without `::` is only a label chosen by the author of the file.
+    A `name` without `::` is not a gz class, but a label that the author of the file has chosen.
     """
     names = [plugin.filename, plugin.name if "::" in plugin.name else ""]
     return [normalise(name) for name in names if name]

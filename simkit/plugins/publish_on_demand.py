@@ -1,4 +1,4 @@
-"""Callbacks after steps that run only while the plugin's topics have subscribers."""
+"""Callbacks after a step that run only while a topic of the plugin has subscribers."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ _NS = 1_000_000_000
 def publish_while_subscribed(
     plugin: Plugin, publisher: Publisher, rate: float, method: str, also: Callable[[], bool] = lambda: False
 ) -> None:
-    """Call a method of a plugin after steps, as `after_step` would be, while its publisher has subscribers.
+    """Call a method of a plugin after steps, like `after_step`, but only while its publisher has subscribers.
 
     Args:
-        plugin: owner of the method; its exceptions are handled as in a hook.
+        plugin: plugin with the method; exceptions in the method are handled as in a hook.
         publisher: publisher that the method uses.
-        rate: [Hz] on the grid of simulated time; 0 is every step.
-        method: name of the method, which takes no arguments.
-        also: further condition for calling the method; call `sim.communication.on_demand.look()` when it changes.
+        rate: rate of the calls in simulated time [Hz]; 0 for every step.
+        method: name of the method, which has no arguments.
+        also: function that returns true if the method must be called even without subscribers. After a change of the
+            result, call `sim.communication.on_demand.look()`.
     """
     sim = plugin.sim
     sim.communication.bus.on_readers_change(publisher.topic, sim.communication.on_demand.look)
@@ -47,14 +48,17 @@ def set_after_step_rate(plugin: Plugin, rate: float | None) -> None:
 
 
 def count_instants(plugin: Plugin, rate: float) -> int:
-    """Count the instants of a rate [Hz] (0: every step) since t = 0, independently of subscribers."""
+    """Return how many times a task with this rate [Hz] (0 for every step) is due from t = 0 until now.
+
+    The result does not depend on subscribers.
+    """
     if rate <= 0:
         return int(plugin.sim.tick)
     return math.floor(plugin.sim.time_ns * rate / _NS + 1e-6)
 
 
 class Watcher(Protocol):
-    """Plugin that compares each step with the previous one.
+    """Plugin that compares the state after each step with the state after the previous step.
 
     Attributes:
         sim: simulation of the plugin.
@@ -65,14 +69,14 @@ class Watcher(Protocol):
     _was_heard: bool
 
     def begin(self) -> None:
-        """Store the present state as that of the previous step."""
+        """Store the present state for the comparison after the next step."""
 
 
 def watch_while_subscribed(plugin: Watcher, publishers: Sequence[Publisher], method: str) -> None:
     """Call a method of a plugin after every step while one of its publishers has subscribers.
 
-    `plugin.begin()` is called first at the start of a subscription. An event in the very next step is therefore
-    published, and a later subscriber gets the same events.
+    When the first subscriber connects, `plugin.begin()` is called. An event in the next step is therefore published,
+    and the events do not depend on the time of the subscription.
     """
     sim = plugin.sim
 

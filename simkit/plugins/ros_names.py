@@ -14,7 +14,7 @@ _RULE = re.compile(r"^(?P<from>[^=]+?):=(?P<to>.+)$")
 
 
 def is_ros_1(params: Params, names: Iterable[str]) -> bool:
-    """Check whether a plugin's parameters use ROS 1 spelling: one of `names` occurs, and no `<ros>` block."""
+    """Check whether a plugin's parameters are those of ROS 1: one of `names` occurs, and there is no `<ros>` block."""
     return not params.has("ros") and any(params.has(name) for name in names)
 
 
@@ -22,10 +22,10 @@ class RosNames(SharedByCopies):
     """Names of a ROS node.
 
     Args:
-        node: name of the node; `~/x` is `<namespace>/<node>/x`.
-        namespace: `tb3`, `/tb3` or empty.
-        remappings: source name -> target name; both are expanded before the comparison.
-        params: parameters at whose line invalid names are reported.
+        node: name of the node; `~/x` becomes `<namespace>/<node>/x`.
+        namespace: namespace such as `tb3` or `/tb3`; may be empty.
+        remappings: target name by source name; all names are expanded before they are compared.
+        params: parameters of the plugin; invalid names are reported at their line.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Parameters of a ROS node as written in YAML: values, lists of names or numbers, and blocks."""
+"""Parameters of a ROS node from a YAML file: values, lists of names or numbers, and blocks."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _FORM_NAMES: Mapping[Form, str] = {"value": "a value", "nothing": "nothing", "li
 
 
 class ParameterBlock(Params):
-    """Element of a parameter file that knows the form of each name: value, list or block.
+    """Block of a parameter file that checks the form of each parameter: value, list or block.
 
-    A name in an unexpected form is an error at its line, and the default is used. In XML an element can be both text
-    and block; in YAML `gains: 5` is a mistake that would stay unnoticed.
+    An unexpected form is an error at the line of the parameter, and the default is used. `Params` alone does not check
+    this, because an XML element can contain both a text and a block. In YAML, `gains: 5` for a block is a mistake.
 
     Attributes:
-        forms: form and location of each name.
-        is_block: whether the element itself is a block.
+        forms: form and location of each parameter, by name.
+        is_block: whether this element is a block, not a value.
     """
 
     __slots__ = ("forms", "is_block")
@@ -101,7 +101,7 @@ class ParameterBlock(Params):
         return False
 
     def _has_form(self, name: str, allowed: str, expected: tuple[Form, ...]) -> bool:
-        """Check whether a name has one of the expected forms, or is absent; report any other form."""
+        """Check whether a parameter is missing or has one of the expected forms; any other form is an error."""
         form, where = self.forms.get(name, (expected[0], self.where))
         if form in expected:
             return True
@@ -113,7 +113,7 @@ class ParameterBlock(Params):
 
 
 def read_numbers(params: Params, name: str, default: Sequence[float], minimum: float | None = None) -> list[float]:
-    """Return the numbers of a list; a length different from the default's is an error, and the default is used."""
+    """Return the numbers of a list; if its length differs from the default's, report an error and use the default."""
     items = params.each(name)
     if not any(child.value for item in items for child in item.children):
         return list(default)
@@ -126,7 +126,7 @@ def read_numbers(params: Params, name: str, default: Sequence[float], minimum: f
 
 
 def read_names(params: Params, name: str, *, required: bool = False, code: str = "SK-PARAM-002") -> list[str]:
-    """Return the texts of a list without duplicates; a duplicate is an error, as are two claims of one interface.
+    """Return the texts of a list; a duplicate is an error and is left out.
 
     Args:
         params: block that contains the list.

@@ -1,8 +1,8 @@
-"""Parameter files of ROS: convert YAML to a block of typed parameters for each node, every value with its line.
+"""Parameter files of ROS: convert YAML to typed parameters of each node, and store the line of every value.
 
-In ROS 2's layout, `ros__parameters` follows the name of a node, which may be a pattern (`/**`, `/robot/*`). In ROS 1's
-layout, the parameters themselves follow the names of namespaces. The word `ros__parameters` distinguishes the two
-layouts.
+In ROS 2's layout, a block has the name of a node, or a pattern such as `/**` or `/robot/*`, and contains the block
+`ros__parameters`. In ROS 1's layout, blocks have the names of namespaces and contain the parameters directly. A file
+without the word `ros__parameters` is read in ROS 1's layout.
 """
 
 from __future__ import annotations
@@ -22,20 +22,21 @@ from simkit.params import Params
 from simkit.plugins.ros_parameter_block import Form, ParameterBlock
 
 PARAMETERS: Final = "ros__parameters"
-_MOST_NODES: Final = 100_000  # limit per file: repeated anchors can expand a short file enormously
+_MOST_NODES: Final = 100_000  # limit for one file, because repeated YAML anchors can make a short file very large
 _DEEPEST: Final = 100
 _MERGE: Final = "tag:yaml.org,2002:merge"
 
 
 @dataclass(slots=True)
 class Entry:
-    """Key of a parameter file: a value, a list of values, or a block.
+    """Value, list or block of a parameter file.
 
     Attributes:
-        text: normalised text of a value (`true`, `inf`).
+        where: file and line.
+        text: text of a value, in a normalised spelling such as `true` or `inf`.
         items: entries of a list; None for a value or block.
         below: entries of a block; None for a value or list.
-        is_text: whether the value is a YAML string and not a number.
+        is_text: whether the value is a string in YAML.
     """
 
     where: Where
@@ -45,20 +46,20 @@ class Entry:
     is_text: bool = False
 
     def params(self, name: str, diagnostics: Diagnostics) -> list[Params]:
-        """Return the entry as elements of that name: a single one, or one for each item of a list."""
+        """Return the entry as elements with the given name: one element for each item of a list, otherwise one."""
         if self.items is not None:
             return [params for item in self.items for params in item.item(name, diagnostics)]
         return [self.block(name, diagnostics)]
 
     def item(self, name: str, diagnostics: Diagnostics) -> list[Params]:
-        """Return the entry as an item of the list of that name; a nested list is an error."""
+        """Return the entry as an item of the list with the given name; an item that is itself a list is an error."""
         if self.items is None:
             return [self.block(name, diagnostics)]
         diagnostics.error("SK-CONTROL-002", f"found a list in the list {name!r}; expected values", self.where)
         return []
 
     def block(self, name: str, diagnostics: Diagnostics) -> ParameterBlock:
-        """Return the entry as a single element of that name."""
+        """Return the entry, a value or block, as an element with the given name."""
         below = self.below or {}
         children = [params for key, entry in below.items() for params in entry.params(key, diagnostics)]
         forms = {key: (entry.form, entry.where) for key, entry in below.items()}
@@ -67,7 +68,7 @@ class Entry:
 
     @property
     def form(self) -> Form:
-        """Form of the entry in the file."""
+        """Form of the entry: list, block, value, or nothing after the colon."""
         if self.items is not None:
             return "list"
         if self.below is not None:
@@ -75,7 +76,7 @@ class Entry:
         return "value" if self.text or self.is_text else "nothing"
 
     def merged(self, over: Entry) -> Entry:
-        """Return this entry merged with `over`, whose values take precedence."""
+        """Return this entry merged with `over`; if both have a value, the value of `over` is used."""
         if self.below is None or over.below is None:
             return over
         below = dict(self.below)
@@ -95,8 +96,8 @@ class ParameterFile:
 
     Attributes:
         path: path of the file.
-        nodes: ROS 2: (pattern of the node's full name, its parameters), in the order of the file.
-        root: ROS 1: all parameters; None for ROS 2.
+        nodes: in ROS 2's layout, pairs of a pattern for the full name of a node and the parameters, in file order.
+        root: in ROS 1's layout, all parameters; None in ROS 2's layout.
     """
 
     path: Path
@@ -111,10 +112,10 @@ class ParameterFiles:
         self.files = list(files)
 
     def __deepcopy__(self, memo: dict[int, object]) -> ParameterFiles:
-        return self  # immutable
+        return self  # the object never changes
 
     def of_node(self, name: str) -> Entry | None:
-        """Return the parameters of the node with that full name (`/robot/arm_controller`); None if no file has any."""
+        """Return the parameters of a node by its full name, such as `/robot/arm_controller`; None if there are none."""
         found: Entry | None = None
         for entry in self._of_node(name):
             found = entry if found is None else found.merged(entry)
@@ -133,12 +134,12 @@ class ParameterFiles:
                     yield inner
 
     def node_names(self) -> list[str]:
-        """Return the last parts of the node names in the files, as suggestions for a misspelt name."""
+        """Return the plain names of all nodes in the files, as suggestions for a misspelt name."""
         return [pattern.rpartition("/")[2] for file in self.files for pattern, _ in file.nodes]
 
 
 def node_matches(pattern: str, name: str) -> bool:
-    """Check whether a node's full name matches a key of a parameter file: `*` is one part, `**` is any number."""
+    """Check whether a node's full name matches a pattern: `*` is one part of the name, `**` any number of parts."""
     return _node_pattern(pattern).fullmatch(name.strip("/")) is not None
 
 
@@ -149,13 +150,13 @@ def _node_pattern(pattern: str) -> re.Pattern[str]:
 
 
 def read_parameter_file(path: Path, diagnostics: Diagnostics) -> ParameterFile | None:
-    """Read a parameter file; return None after an error that names the faulty line."""
+    """Read a parameter file; return None after an error, which is reported at the faulty line."""
     root = _parse_file(path, diagnostics)
     if root is None:
         return None
     if root.below is None:
         if root.text or root.items:
-            message = f"{path.name} is not a parameter file: its top level needs names of nodes"
+            message = f"{path.name} is not a parameter file: the keys at its top level must be names of nodes"
             diagnostics.error("SK-CONTROL-002", message, root.where)
             return None
         diagnostics.warning("SK-CONTROL-003", f"{path.name} is empty: no controller is loaded", root.where)
@@ -178,7 +179,7 @@ def _all_keys(entry: Entry) -> Iterator[str]:
 
 
 def _nodes(entry: Entry, path: str, diagnostics: Diagnostics) -> Iterator[tuple[str, Entry]]:
-    """Yield every node of a file in ROS 2's layout, with the pattern of its full name."""
+    """Yield the pattern of the full name and the parameters of each node in a file with ROS 2's layout."""
     for key, below in (entry.below or {}).items():
         if key == PARAMETERS:
             if below.below is not None:
@@ -192,7 +193,7 @@ def _nodes(entry: Entry, path: str, diagnostics: Diagnostics) -> Iterator[tuple[
 
 
 def _expand_dotted_keys(entry: Entry) -> Entry:
-    """Return a block with its dotted keys expanded to blocks: `a.b: 1` is `a: {b: 1}`."""
+    """Return a block without dotted keys: `a.b: 1` becomes `a: {b: 1}`."""
     if entry.below is None:
         return entry
     whole = Entry(entry.where, below={})
@@ -225,7 +226,7 @@ def _parse_file(path: Path, diagnostics: Diagnostics) -> Entry | None:
         mark = getattr(error, "problem_mark", None)
         line = mark.line + 1 if mark is not None else None
         what = getattr(error, "problem", None) or str(error) or "it is nested too deeply"
-        if isinstance(error, yaml.reader.ReaderError):  # this error has the character's position but no line
+        if isinstance(error, yaml.reader.ReaderError):  # a ReaderError has no line number
             line = text.count("\n", 0, error.position) + 1
             what = f"the character {chr(error.character)!r} is not allowed"
         context = f" {error.context}" if getattr(error, "context", None) else ""  # type: ignore[union-attr]
@@ -235,10 +236,10 @@ def _parse_file(path: Path, diagnostics: Diagnostics) -> Entry | None:
 
 
 def _compose_yaml(text: str) -> yaml.Node | None:
-    """Return the tree of a document; libyaml, if available, needs a tenth of the time."""
+    """Return the syntax tree of a YAML document; libyaml is used if it is available, because it is ten times faster."""
     loader: type[yaml.SafeLoader] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     depth = 0
-    for event in yaml.parse(text, Loader=loader):  # libyaml's own composer has no recursion limit
+    for event in yaml.parse(text, Loader=loader):  # libyaml's composer accepts any nesting depth
         depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
         if depth > _DEEPEST:
             raise _FileTooLarge("it is nested too deeply")
@@ -289,7 +290,10 @@ class _EntryReader:
         return {**merged, **below}
 
     def _merged(self, entry: Entry, key: yaml.Node) -> dict[str, Entry]:
-        """Return the entries that `<<` merges: those of a block, or of several, the first of which takes precedence."""
+        """Return the entries that the key `<<` merges, from one block or a list of blocks.
+
+        If several blocks have the same key, the first block is used.
+        """
         found: dict[str, Entry] = {}
         for item in [entry] if entry.items is None else entry.items:
             if item.below is None:

@@ -1,4 +1,4 @@
-"""Parameter files of a run (`--params-file`), for robots whose controllers are configured by a ROS launch file."""
+"""Parameter files of a run (`--params-file`), for robots whose ROS launch file configures the controllers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel, SceneWorld
 
 ParameterFileArgument = str | os.PathLike[str] | tuple[str, str | os.PathLike[str]]
-"""File, text `MODEL=FILE`, or a pair of model and file."""
+"""Path of a file, text `MODEL=FILE`, or a pair of model name and path."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class RunParameterFile:
     file: ParameterFile
 
     def is_for(self, model: SceneModel) -> bool:
-        """Check whether plugins of `model` read the file: its name is that of the model or of an outer model."""
+        """Check whether plugins of a model read the file: for all models, for this model or for an outer model."""
         scoped = f"{model.scoped}::"
         return not self.model or self.model == model.name or scoped.startswith(f"{self.model}::")
 
@@ -42,11 +42,11 @@ def read_run_parameter_files(
     find: Callable[[str], Path | None],
     diagnostics: Diagnostics,
 ) -> tuple[RunParameterFile, ...]:
-    """Read parameter files; a missing or invalid file is an error and is skipped.
+    """Read the parameter files of a run; a missing or invalid file is an error and is left out.
 
     Args:
         named: value of `params_files` or `--params-file`.
-        find: function from a `package://` URI or a path to a file, or None.
+        find: function that finds the file of a `package://` URI or a path; None if there is no such file.
         diagnostics: collector of the problems.
     """
     if isinstance(named, (str, os.PathLike)):
@@ -71,7 +71,7 @@ def read_run_parameter_files(
 
 
 def _model_and_file(named: ParameterFileArgument) -> tuple[str, str]:
-    """Return the model, empty for all models, and the file."""
+    """Return the name of the model and the path of the file; an empty name means all models."""
     if isinstance(named, tuple):
         return str(named[0]), os.fspath(named[1])
     text = os.fspath(named)
@@ -87,7 +87,7 @@ def _find_file(text: str, find: Callable[[str], Path | None]) -> Path | None:
     try:
         found = find(text) if text else None
         return found if found is not None and found.is_file() else None
-    except (OSError, ValueError):  # the operating system rejects the name
+    except (OSError, ValueError):  # the text is not a valid file name
         return None
 
 
@@ -99,7 +99,7 @@ def _exists(path: Path) -> bool:
 
 
 def _closest_file_name(text: str) -> str:
-    """Suggest the file in the same folder with the most similar name."""
+    """Return a suggestion: the YAML file with the most similar name in the same folder, or an empty text."""
     try:
         folder = Path(text).parent
         return did_you_mean(Path(text).name, [p.name for p in folder.iterdir() if p.suffix in (".yaml", ".yml")])

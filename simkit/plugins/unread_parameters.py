@@ -1,4 +1,4 @@
-"""Warnings about elements and attributes that a plugin did not read."""
+"""Warnings about elements and attributes of a file that a plugin has not read."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from simkit.plugins.options import option_types_of
 _READERS = frozenset(
     ("all", "attribute", "block", "boolean", "child", "choice", "declare", "each", "has", "integer", "number")  # noqa: RUF005
     + ("pose", "text", "vector", "vector3")
-    + ("find_element", "has_element")  # and `get_…`: how systems of gz read
+    + ("find_element", "has_element")  # methods of gz systems; their methods `get_…` are recognised by the prefix
 )
 
 
 def names_read(cls: type[object]) -> frozenset[str]:
-    """Return names of elements and attributes that the modules of a class and its bases read.
+    """Return the names of the elements and attributes that the modules of a class and its base classes can read.
 
-    The source is parsed and does not run.
+    The source is parsed, not executed.
     """
     own = (c for c in cls.__mro__ if c.__module__ != "simkit.plugins.base")
     modules = dict.fromkeys(c.__module__ for c in own if c is not object)
@@ -54,16 +54,16 @@ def _names_in_tree(tree: ast.Module) -> Iterator[str]:
 
 
 def report_unread(params: Params, owner: str, reader: object) -> None:
-    """Warn about each element and attribute that was not read.
+    """Warn about each element and attribute that has not been read.
 
     Args:
         params: parameters of the plugin.
-        owner: owner of the parameters, for messages.
-        reader: plugin, system or module whose source contains the names that it can read.
+        owner: description of the plugin for messages, such as `plugin 'arm'`.
+        reader: plugin, gz system or module; names in its source are suggested for misspelt names.
     """
     for element, suggestion in params.unread():
         text = f"{owner}: <{element.name}> is not used"
-        if suggestion.endswith(" is"):  # the element is a duplicate
+        if suggestion.endswith(" is"):  # the element is a duplicate; only the first one is read
             hint = suggestion
         elif element.name in _known_names(reader):
             hint = f"the plugin reads <{element.name}> only with other options, or later"
