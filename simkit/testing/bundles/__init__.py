@@ -1,4 +1,4 @@
-"""Bundles: a run in one file that can be repeated bit for bit on another machine.
+"""Bundles: one file holds a run, and another machine can repeat this run bit for bit.
 
 A bundle is written from a running simulation. It holds the world, the inputs and the last seconds of messages. A replay
 reads a bundle, repeats the run and compares the result. A bundle may come from an untrusted source. Therefore the whole

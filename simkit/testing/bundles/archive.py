@@ -24,10 +24,10 @@ from simkit.testing.bundles.manifest import BAG, BROKEN, COMMANDS, PAGE, Manifes
 
 MAX_FILES: Final = 20_000
 MAX_BYTES: Final = 2 << 30
-_MAX_PAGE_BYTES: Final = 64 << 20  # bundle.json
-_MAX_INDEX_BYTES: Final = 16 << 20  # the archive's own table
-_MAX_LINE_BYTES: Final = 256 << 20  # one entry of the journal
-# An archive may unpack to 64 MiB in any case, and beyond that to at most 200 times its size on disk.
+_MAX_PAGE_BYTES: Final = 64 << 20  # limit for bundle.json
+_MAX_INDEX_BYTES: Final = 16 << 20  # limit for the list of files at the end of the ZIP archive
+_MAX_LINE_BYTES: Final = 256 << 20  # limit for one entry of the journal
+# A small archive may unpack to 64 MiB. A larger one may unpack to at most 200 times its size on disk.
 _ALWAYS_ALLOWED_BYTES, _MAX_RATIO = 64 << 20, 200
 FOLDERS: Final = ("world", "spawn", "models", "params", "code")
 _BAD_NAME, _TOO_LARGE = "SK-BUNDLE-003", "SK-BUNDLE-004"
@@ -165,8 +165,8 @@ class Bundle:
     def _check_manifest(self) -> None:
         manifest, there = self.manifest, {info.filename for info in self._zip.infolist()} - {PAGE}
         if there != manifest.files.keys():
-            unmatched = sorted(there ^ manifest.files.keys())[0]
-            raise self._broken(f"{unmatched!r:.80} is in only one of the archive and {PAGE}, not in both")
+            missing = sorted(there ^ manifest.files.keys())[0]
+            raise self._broken(f"{missing!r:.80} is missing in the archive or in {PAGE}")
         named: dict[str, Iterable[str]] = {
             "world": [manifest.world],
             "spawn": {model.file for model in manifest.spawn},
@@ -264,7 +264,7 @@ def _kind_fault(info: zipfile.ZipInfo) -> str:
 
 
 def _check_index(path: Path) -> None:
-    """Check the size of the archive's own table before the table is read.
+    """Check the size of the ZIP archive's list of files before the list is read.
 
     Raises:
         InputError: SK-BUNDLE-001 or SK-BUNDLE-004.
@@ -274,7 +274,7 @@ def _check_index(path: Path) -> None:
             size = file.seek(0, os.SEEK_END)
             file.seek(max(0, size - (1 << 16) - _END.size))
             tail = file.read()
-    except (OSError, ValueError) as error:  # a ValueError comes from a name that no file can have
+    except (OSError, ValueError) as error:  # a ValueError means that the path contains a null character
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{BROKEN} cannot read {path}: {reason}", BROKEN) from None
     at = tail.rfind(b"PK\5\6")

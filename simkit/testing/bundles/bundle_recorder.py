@@ -34,7 +34,7 @@ _TIME: Final = struct.Struct("<q")
 
 
 class WindowMessage(NamedTuple):
-    """Serialised message of the last seconds."""
+    """Serialised message from the last seconds of a run."""
 
     time_ns: int
     topic: str
@@ -52,10 +52,10 @@ class MessageWindow:
         sim: Simulation.
         seconds: Length of the window [s] of simulated time; infinite for the whole run.
         topics: Shell patterns of image topics and internal topics to include.
-        most: Maximum size [bytes]; beyond it, the oldest messages are dropped.
+        most: Maximum size [bytes]; the oldest messages are dropped when the window is larger.
 
     Attributes:
-        first: Number of steps from which on the window is complete.
+        first: Number of steps after which no message is missing in the window.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class MessageWindow:
     ) -> None:
         self._sim, self._patterns, self._most = sim, tuple(topics), most
         self._length = sim.engine.clock.ticks(seconds) if math.isfinite(seconds) else 1 << 62
-        self._kept: deque[tuple[int, int, str, Any]] = deque()  # steps, tick, topic, message or type and CDR
+        self._kept: deque[tuple[int, int, str, Any]] = deque()  # steps, tick, topic, then the message or (type, CDR)
         self._packed = 0  # bytes
         self._cut = 0
         self._taps = TopicTaps(sim, self._receiver_of)
@@ -79,10 +79,10 @@ class MessageWindow:
         self._taps.close()
 
     def messages(self, first: int | None = None) -> Iterator[WindowMessage]:
-        """Iterate over the received messages in order; skip lazy messages that can no longer be made.
+        """Iterate over the received messages in order; skip lazy messages that can no longer be created.
 
         Args:
-            first: Number of steps to begin at; the property `first` if None.
+            first: Number of steps at which the iteration begins; None for the property `first`.
         """
         since = self.first if first is None else first
         clock = self._sim.engine.clock
@@ -133,7 +133,7 @@ class MessageWindow:
 
 
 class StateHashes:
-    """Hashes of the state after every simulated second, with the number of steps."""
+    """Hash of the physics state after every simulated second, with the number of steps."""
 
     def __init__(self, sim: Simulation) -> None:
         self.found: list[tuple[int, str]] = []
@@ -171,7 +171,7 @@ def write_bag(path: Path, messages: Iterator[WindowMessage], latched: frozenset[
     Args:
         path: File to write.
         messages: Messages in order.
-        latched: Topics whose last message late subscribers receive.
+        latched: Topics whose last message is sent to subscribers that join later.
     """
     bag = McapBag(path)
     try:
@@ -191,7 +191,7 @@ class BundleRecorder:
     """Recorder of a run's inputs and last seconds; a context manager around the run.
 
     Args:
-        sim: Simulation right after `simkit.load`, before its first step.
+        sim: Simulation that was just loaded by `simkit.load` and has made no step.
         seconds: Length of the message window [s] of simulated time.
         topics: Shell patterns of image topics to include.
         write_failed: Function that writes a bundle when an exception leaves the `with` block; None for no bundle.
@@ -199,8 +199,8 @@ class BundleRecorder:
     Attributes:
         sim: Simulation.
         journal: Recorded inputs.
-        window: Messages of the last seconds.
-        marks: State hashes.
+        window: Messages of the last seconds of the run.
+        marks: State hash of every simulated second.
         written: Path of the bundle that was written after a failure; None before.
 
     Raises:
@@ -231,7 +231,7 @@ class BundleRecorder:
         self._listen()
 
     def end(self, failure: Failure | None = None) -> RunEnd:
-        """Return the present state of the run."""
+        """Return the number of steps, the times and the state hash at this moment."""
         sim = self.sim
         return RunEnd(sim.engine.steps, sim.tick, sim.time_ns, state_hash(sim), failure)
 
@@ -262,7 +262,7 @@ class BundleRecorder:
         if self._write_failed is not None and isinstance(error, Exception):
             try:
                 self.written = self._write_failed(self, error)
-            except (SimkitError, OSError) as problem:  # the run's own exception must reach the caller
+            except (SimkitError, OSError) as problem:  # the caller must get the exception of the run, not this one
                 error.add_note(f"no bundle was written: {problem}")
             else:
                 error.add_note(f"a bundle that repeats this failure: simkit replay {self.written}")

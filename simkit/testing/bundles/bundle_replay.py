@@ -38,8 +38,8 @@ class ReplayResult:
         time: Simulated time at the end [s].
         failure: Failure of the replay; None if it did not fail.
         differences: Descriptions of the differences from the bundle, earliest first; empty if there are none.
-        machine: Properties of the machine that differ: name -> value in the bundle and value here.
-        refused: Journal entries that were rejected.
+        machine: Properties of the machine that differ: name -> (value in the bundle, value on this machine).
+        refused: Descriptions of journal entries that the simulation rejected.
         messages: Number of messages of the last seconds that were compared bit for bit.
     """
 
@@ -114,7 +114,7 @@ class _Replay:
             met = failure_from_error(error)
             return ReplayResult(manifest, "", 0.0, met, tuple(self._failures(met)), machine, (), 0)
         with opened as sim:
-            self._read_models_here(sim)
+            self._read_models_from_bundle(sim)
             window, marks = MessageWindow(sim, manifest.seconds, manifest.topics, most=1 << 62), StateHashes(sim)
             player = JournalPlayer(sim, self._bundle.commands())
             recorder = None if record is None else Recorder(sim, record)
@@ -131,8 +131,8 @@ class _Replay:
                 manifest, state_hash(sim), sim.time, failure, (*found, *streams), machine, refused, count
             )
 
-    def _read_models_here(self, sim: Simulation) -> None:
-        """Restrict models that are spawned during the replay to those in the bundle."""
+    def _read_models_from_bundle(self, sim: Simulation) -> None:
+        """Read every spawned model from the bundle; raise an error if the bundle does not contain the model."""
         read, models = sim.contents.models_reader, self._manifest.models
 
         def read_packed(source: Any, *args: Any, **named: Any) -> Any:
@@ -148,7 +148,7 @@ class _Replay:
     def _run_to_end(
         self, sim: Simulation, player: JournalPlayer, on_slice: Callable[[Simulation], None] | None
     ) -> SimkitError | None:
-        """Run to the recorded end and return the error that stopped the replay; None if none did."""
+        """Run to the recorded end. Return the error that stopped the replay, or None without an error."""
         end = self._manifest.end
         slice_ = max(1, sim.engine.clock.ticks(_SLICE))
         try:
@@ -199,7 +199,7 @@ class _Replay:
         where = f"equal up to {same * step:g} s" if same else "no equal state is known"
         where += f", differs at {first * step:g} s" if first is not None else ", differs at the end"
         if sim.engine.steps != end.steps:
-            where += f"; the replay made {sim.engine.steps} steps, the run {end.steps}"
+            where += f"; the replay made {sim.engine.steps} steps, the run made {end.steps} steps"
         return [f"state {state_hash(sim)[:16]}…, in the bundle {end.state[:16]}… ({where})"]
 
     def _streams(self, window: MessageWindow) -> tuple[list[str], int]:
@@ -219,7 +219,7 @@ class _Replay:
 
 
 def _without_code_positions(failure: Failure) -> tuple[str, str, str]:
-    """Return kind, code and text of a failure without the positions in source files."""
+    """Return the kind, code and text of a failure; remove file names and line numbers from the text."""
     return failure.kind, failure.code, _CODE_POSITION.sub("()", failure.text)
 
 

@@ -96,7 +96,7 @@ def model_hash(model: mujoco.MjModel, originals: Mapping[str, object]) -> str:
 
     Args:
         model: Compiled model.
-        originals: Arrays as compiled, for those that were changed after compilation.
+        originals: Compiled values of the arrays that were changed after compilation: name -> array.
     """
     digest = hashlib.sha256()
     for name in sorted(dir(model)):
@@ -147,15 +147,15 @@ class WorldStager:
             found.params.append((given.model, self._copied(Path(given.file.path), f"params/{len(found.params)}")))
         for source in dict.fromkeys(source for source in keeper.journal.sources if "<" not in source):
             try:
-                found.models[source] = self._vendored(source, f"models/{len(found.models)}")
+                found.models[source] = self._copy_with_references(source, f"models/{len(found.models)}")
             except SimkitError as error:  # the run may have requested a model that does not exist
                 found.missing.append(f"the spawned model {source!r:.100} could not be packed: {error!s:.200}")
         if spec.plugins:
             plugins = (one[1] if isinstance(one, tuple) else one for one in spec.plugins)
             kinds = ", ".join(sorted({type(plugin).__name__ for plugin in plugins}))
-            found.missing.append(f"plugins made in Python are not in the bundle: {kinds}")
+            found.missing.append(f"plugins created in Python are not in the bundle: {kinds}")
         if spec.change_world is not None:
-            problem = "changes made to the world in Python (change_world) are not in the bundle"
+            problem = "changes to the world by a Python function (change_world) are not in the bundle"
             found.missing.append(problem)
         self._compare(found, keeper)
         return found
@@ -171,16 +171,18 @@ class WorldStager:
 
     def _main_files(self) -> StagedWorld:
         """Copy the world and the models that are spawned during loading."""
-        found = StagedWorld(self._vendored(self._spec.world, "world", base=self._spec.options.get("base", "auto")))
+        found = StagedWorld(
+            self._copy_with_references(self._spec.world, "world", base=self._spec.options.get("base", "auto"))
+        )
         for number, one in enumerate(self._spec.spawn):
             spawn = parse_spawn(one, Diagnostics()) if isinstance(one, str) else one
             if spawn is not None:
-                file = self._vendored(spawn.source, f"spawn/{number}")
+                file = self._copy_with_references(spawn.source, f"spawn/{number}")
                 found.spawn.append(PackedModel(file, spawn.place, spawn.name))
         return found
 
-    def _vendored(self, source: Any, target: str, base: str = "auto") -> str:
-        """Copy a file and all files that it refers to; return its name in the stage folder."""
+    def _copy_with_references(self, source: Any, target: str, base: str = "auto") -> str:
+        """Copy a file and all files to which the file refers; return its path in the stage folder."""
         spec, paths = self._spec, self._paths
         with tempfile.TemporaryDirectory() as folder:
             if isinstance(source, str) and "<" in source:
@@ -188,7 +190,7 @@ class WorldStager:
                 file.write_text(source, encoding="utf-8")
                 source, paths = file, [*paths, spec.folder]
             elif "://" in str(source):
-                source = self._found(str(source))
+                source = self._resolve_uri(str(source))
             elif not Path(source).is_absolute() and (spec.folder / source).exists():
                 source = spec.folder / source
             (self._stage / target).parent.mkdir(parents=True, exist_ok=True)
@@ -205,7 +207,7 @@ class WorldStager:
                 raise InputError(f"{UNPACKED} {what} cannot be packed: {error}", UNPACKED) from None
         return f"{target}/{main.as_posix()}"
 
-    def _found(self, uri: str) -> Path:
+    def _resolve_uri(self, uri: str) -> Path:
         """Resolve a URI to a file or folder."""
         path, _ = Resolver(self._paths, package_paths=self._spec.options.get("package_paths", {})).search(uri, None)
         if path is None:
@@ -219,7 +221,7 @@ class WorldStager:
         return f"{target}/{path.name}"
 
     def _compare(self, found: StagedWorld, keeper: BundleRecorder) -> None:
-        """Compare the packed world with the one that was run, because files may have been edited since."""
+        """Compare the packed world with the world of the run, because files may have been edited during the run."""
         spec = self._spec
         try:
             with load_packed_world(packed_run_spec(self._stage, found.file, found.spawn, found.params, spec)) as sim:
@@ -232,7 +234,7 @@ class WorldStager:
 
 
 def loaded_model_hash(keeper: BundleRecorder) -> str:
-    """Return the hash of the model as it was loaded, without later changes."""
+    """Return the hash of the loaded model, without the changes that were made after loading."""
     sim = keeper.sim
     loaded = sim._loaded.structure.compiled.model
     return model_hash(loaded, sim.engine.originals if loaded is sim.mj_model else {})

@@ -1,4 +1,4 @@
-"""Writer of bundles: the world with its files, plugin code, recorded inputs and the last seconds in one archive."""
+"""Writer of bundles: the world with its files, plugin code, recorded inputs and the last messages in one archive."""
 
 from __future__ import annotations
 
@@ -58,7 +58,8 @@ def keep(
 
     Args:
         sim: Simulation.
-        folder: Folder for a bundle that is written when an exception leaves the block `with keep(…)`.
+        folder: Folder in which a bundle is written if the block `with keep(…)` ends with an exception; None for no
+            bundle.
         seconds: Length of the message window [s] of simulated time.
         topics: Shell patterns of image topics to include.
 
@@ -80,10 +81,10 @@ def write_bundle(
     overwrite: bool = False,
     with_code: bool = True,
 ) -> Path:
-    """Write the run up to now into one file; the file is complete or does not exist.
+    """Write the run up to now into one file; an interrupted call leaves no incomplete file.
 
     Args:
-        kept: Recorder that `keep` returned, or its simulation, between two steps.
+        kept: Recorder that `keep` returned, or its simulation. The simulation must be between two steps.
         path: File to write.
         failure: Failure of the run; None if it did not fail.
         name: Name of the run; the name of the world if empty.
@@ -116,16 +117,16 @@ def _files_of_run(
 def write_failed(
     keeper: BundleRecorder, folder: Path, failure: BaseException | Failure, *, with_code: bool = True
 ) -> Path:
-    """Write a bundle of a run that failed, named after the world, the error and the content.
+    """Write a bundle of a run that failed. The file name consists of the world, the error and a hash of the content.
 
     Raises:
         InputError: See `write_bundle`.
     """
-    return _write_under_own_name(folder, _files_of_run(keeper, failure, "", with_code))
+    return _write_with_generated_name(folder, _files_of_run(keeper, failure, "", with_code))
 
 
-def _write_under_own_name(folder: Path, staged: StagedFiles) -> Path:
-    """Write a bundle whose file name is made from the run's name, the failure and a hash."""
+def _write_with_generated_name(folder: Path, staged: StagedFiles) -> Path:
+    """Write a bundle whose file name consists of the run's name, the failure and a hash."""
     with _write_hidden_file(folder.absolute(), staged) as (file, manifest):
         failure = manifest.end.failure or Failure("run", "", "")
         digest = hashlib.sha256(manifest.text().encode()).hexdigest()[:8]
@@ -183,7 +184,7 @@ def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
     Args:
         spec: Specification of the run.
         folder: Folder for the bundle.
-        failure: Failure of loading.
+        failure: Failure that occurred during loading.
 
     Returns:
         Path of the bundle.
@@ -200,7 +201,7 @@ def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
         fields = _world_fields(spec, world)
         return Manifest(name=name, **fields, missing=tuple(world.missing), end=end, files=_file_table(stage))
 
-    return _write_under_own_name(folder, staged)
+    return _write_with_generated_name(folder, staged)
 
 
 def _world_fields(spec: RunSpec, world: StagedWorld) -> JsonObject:
@@ -228,11 +229,11 @@ def _write_error(stage: Path, failure: Failure) -> None:
 
 
 def _encodable_messages(messages: Iterator[WindowMessage], gaps: list[str]) -> Iterator[WindowMessage]:
-    """Iterate over messages up to the first one that fails, so that a failure here does not prevent the bundle."""
+    """Iterate over messages up to the first that cannot be serialised, so that the bundle is written in any case."""
     try:
         yield from messages
     except Exception as error:  # noqa: BLE001 - the state after a failed run may raise any exception
-        gaps.append(f"some messages of the last seconds could not be made: {error!r:.200}")
+        gaps.append(f"some messages of the last seconds could not be created: {error!r:.200}")
 
 
 def _file_table(stage: Path) -> dict[str, JsonObject]:
@@ -246,12 +247,13 @@ def _file_table(stage: Path) -> dict[str, JsonObject]:
             found[name] = {"size": path.stat().st_size, "sha256": hashlib.file_digest(file, "sha256").hexdigest()}
     total = sum(one["size"] for one in found.values())
     if total > MAX_BYTES:
-        raise InputError(f"{UNPACKED} the run needs {total >> 20} MiB; a bundle holds {MAX_BYTES >> 20} MiB", UNPACKED)
+        problem = f"the files of the run have {total >> 20} MiB; the limit is {MAX_BYTES >> 20} MiB"
+        raise InputError(f"{UNPACKED} {problem}", UNPACKED)
     return found
 
 
 def _write_zip(stage: Path, manifest: Manifest, target: Path) -> None:
-    """Write an archive whose bytes depend only on the content: no times, no owners, sorted names."""
+    """Write an archive with sorted names, without times and owners, so that its bytes depend only on the content."""
     with target.open("wb") as raw:
         with zipfile.ZipFile(raw, "w") as archive:
             for name in (PAGE, *sorted(manifest.files)):

@@ -28,7 +28,7 @@ Numbers = npt.NDArray[np.float64]
 
 
 class DirectChanges:
-    """Comparison of a simulation's physics with its last known state.
+    """Comparison of a simulation's physics with a state that was stored earlier.
 
     Args:
         sim: Simulation.
@@ -40,18 +40,18 @@ class DirectChanges:
         self._state = np.empty(0)
         self._fields: dict[str, Array] = {}
         self._edition = -1
-        self.see()
+        self.store_state()
 
-    def see(self) -> None:
-        """Store the present state as the known state."""
+    def store_state(self) -> None:
+        """Store the present state for the next comparison."""
         sim = self._sim
         self._state, self._model = state_vector(sim), sim.mj_model
         if self._edition != sim.engine.physics.edition:
             self._fields = _changeable_fields(sim)
             self._edition = sim.engine.physics.edition
 
-    def found(self) -> dict[str, object] | None:
-        """Return the changes since the known state; None without changes or if the model was recompiled."""
+    def changes(self) -> dict[str, object] | None:
+        """Return the changes since the stored state; None if nothing changed or the model was recompiled."""
         sim = self._sim
         if sim.mj_model is not self._model:
             return None

@@ -1,4 +1,4 @@
-"""Player that repeats the entries of a journal with the same calls, between the same two steps."""
+"""Player that repeats the entries of a journal with the same calls, between the same two steps of the simulation."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ class JournalPlayer:
 
     Attributes:
         count: Number of entries played.
-        refused: Descriptions of rejected entries. The original run rejected them too, or the worlds differ.
+        refused: Descriptions of entries that the simulation rejected. Either the original run rejected them too, or the
+            worlds differ.
     """
 
     def __init__(self, sim: Simulation, entries: Iterable[Entry]) -> None:
@@ -62,7 +63,7 @@ class JournalPlayer:
         """Play all entries that are due at the present step.
 
         Raises:
-            PluginError, SimulationDiverged: A played entry raised the error, as in the run.
+            PluginError, SimulationDiverged: An entry raised this error; it did so in the original run too.
         """
         while self._between and self._between[0]["steps"] <= self._sim.engine.steps:
             self._play(self._between.popleft())
@@ -104,13 +105,16 @@ class JournalPlayer:
         self._sim.communication.bus.close(self._publishers.pop(entry.get("number")))
 
     def _hear(self, entry: Entry) -> None:
-        """Add a tap for a callback of the run, if that callback did anything."""
-        callback = self._counting(entry.get("number"))
+        """Subscribe to a topic of the run, if the callback of that subscription made inputs to the simulation."""
+        callback = self._callback_for_entries(entry.get("number"))
         if callback is not None:
             self._sim.communication.bus.tap(_text_field(entry, "topic"), callback)
 
-    def _counting(self, number: object) -> Callable[[object], None] | None:
-        """Return a callback that plays at its n-th call the entries of the run's n-th call; None without entries."""
+    def _callback_for_entries(self, number: object) -> Callable[[object], None] | None:
+        """Return a callback whose n-th call plays the entries that the run's callback wrote in its n-th call.
+
+        The result is None if the run's callback wrote no entries.
+        """
         pending = self._within.get(_integer_field(number)) if number is not None else None
         if not pending:
             return None
@@ -131,7 +135,7 @@ class JournalPlayer:
         self._sim.call(_text_field(entry, "service"), decode_message(entry.get("request")))
 
     def _send_goal(self, entry: Entry) -> None:
-        feedback, done = (self._counting(entry.get(name)) for name in ("on_feedback", "on_done"))
+        feedback, done = (self._callback_for_entries(entry.get(name)) for name in ("on_feedback", "on_done"))
         handle = self._sim.send_goal(_text_field(entry, "action"), decode_message(entry.get("goal")), feedback, done)
         if handle.id in self._cancelled:
             self._goals[handle.id] = handle

@@ -25,7 +25,7 @@ class NotEncodable(Exception):
 
 
 def encode_message(message: Message) -> JsonObject:
-    """Encode a message with its type. CDR would round numbers that the message holds in full precision."""
+    """Encode a message with its type as JSON, because CDR would round numbers to the precision of the ROS type."""
     return {"type": msgs.type_name(message), "fields": encode_value(message)}
 
 

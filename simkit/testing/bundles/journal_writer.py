@@ -1,4 +1,4 @@
-"""Journal of all inputs to a simulation from outside, each with the steps between which it arrived."""
+"""Journal of all external inputs to a simulation, each with the number of steps made before it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.service_server import Service
 
 _MAX_BYTES_IN_MEMORY: Final = 16 << 20  # beyond this size [bytes], the journal continues in a temporary file
-_WRITTEN_AS_GIVEN: Final = ("add_weld", "cancel", "make_movable", "remove", "reseed", "reset", "reset_models")
+_CALLS_STORED_UNCHANGED: Final = ("add_weld", "cancel", "make_movable", "remove", "reseed", "reset", "reset_models")
 """Calls whose arguments are stored unchanged in the entry."""
 MAX_JOURNAL_BYTES: Final = 1 << 30
 """Maximum size of a journal [bytes]."""
@@ -34,7 +34,7 @@ AnswerCallback = Callable[[object], None]
 class JournalWriter:
     """Journal of a run from its first step on; see `simkit.runtime.communication.journal.Journal`.
 
-    "Outside" means code that is neither a plugin nor the engine: the caller and the caller's callbacks.
+    External inputs come from the caller and its callbacks, not from plugins or the engine.
 
     Args:
         sim: Simulation at t = 0, before any input.
@@ -52,13 +52,13 @@ class JournalWriter:
         finalize(self, self._file.close)
         self._inside = 0
         self._callback_position: list[int] | None = None
-        self._heard: dict[int, list[int]] = {}
+        self._callback_counts: dict[int, list[int]] = {}
         self._numbers: WeakKeyDictionary[object, int] = WeakKeyDictionary()
-        self._called: WeakKeyDictionary[object, int] = WeakKeyDictionary()
+        self._callback_numbers: WeakKeyDictionary[object, int] = WeakKeyDictionary()
         self._publishers: dict[int, tuple[object, int]] = {}
         self._snapshots: dict[int, tuple[ref[object], int]] = {}
         self._snapshot_count = 0
-        self._by_hand = DirectChanges(sim)
+        self._direct_changes = DirectChanges(sim)
         self._entries: dict[str, Callable[..., JsonObject | None]] = {
             name.removeprefix("_of_"): getattr(self, name) for name in dir(self) if name.startswith("_of_")
         }
@@ -69,39 +69,39 @@ class JournalWriter:
 
     def write_to(self, path: Path) -> None:
         """Copy all entries to a file."""
-        self._look()
+        self._record_direct_changes()
         self._file.seek(0)
         with path.open("wb") as file:
             while piece := self._file.read(1 << 20):
                 file.write(piece)
         self._file.seek(0, 2)
 
-    # ------------------------------------------------------------------ calls from outside
+    # ------------------------------------------------------------------ external calls
 
     @property
     def _is_outside(self) -> bool:
         return not self._inside and (self._callback_position is not None or not self._sim.engine.is_stepping)
 
     @contextmanager
-    def passing(self, door: str, words: Mapping[str, object]) -> Iterator[AnswerCallback | None]:
-        """Record a call from outside; calls that result from it inside the simulation are not recorded."""
+    def passing(self, operation: str, arguments: Mapping[str, object]) -> Iterator[AnswerCallback | None]:
+        """Record an external call; further calls that the simulation makes because of this call are not recorded."""
         if not self._is_outside:
             yield None
             return
-        self._look()
-        on_answer = self._record_call(door, words)
+        self._record_direct_changes()
+        on_answer = self._record_call(operation, arguments)
         self._inside += 1
         try:
             yield on_answer
         finally:
             self._inside -= 1
-            self._by_hand.see()
+            self._direct_changes.store_state()
 
     @contextmanager
     def called_back(self, subscription: object) -> Iterator[None]:
-        """Treat a callback as outside the simulation, unless it belongs to a plugin."""
+        """Treat inputs from a callback as external, except if the callback belongs to a plugin."""
         number = self._numbers.get(subscription)
-        if number is None:  # a plugin's
+        if number is None:  # the callback belongs to a plugin
             yield
             return
         with self._outside_at(number):
@@ -110,36 +110,36 @@ class JournalWriter:
     @contextmanager
     def _outside_at(self, number: int) -> Iterator[None]:
         before = self._inside, self._callback_position
-        self._inside, self._callback_position = 0, self._heard[number]
-        self._by_hand.see()
+        self._inside, self._callback_position = 0, self._callback_counts[number]
+        self._direct_changes.store_state()
         try:
             yield
         finally:
-            self._look()
+            self._record_direct_changes()
             self._inside, self._callback_position = before
 
     def outside(self, callback: Callable[[object], object] | None) -> Callable[[object], object] | None:
-        """Wrap a callback of an outside caller to count its calls, so that its inputs can be placed in the journal."""
+        """Wrap an external callback and count its calls, because an entry states in which call it was made."""
         if callback is None or not self._is_outside:
             return callback
         count = self._new_callback_counter()
 
         @functools.wraps(callback)
-        def called(value: object) -> object:
+        def counted_callback(value: object) -> object:
             count[1] += 1
             with self._outside_at(count[0]):
                 return callback(value)
 
-        self._called[called] = count[0]
-        return called
+        self._callback_numbers[counted_callback] = count[0]
+        return counted_callback
 
     def _new_callback_counter(self) -> list[int]:
-        number = len(self._heard) + 1
-        found = self._heard[number] = [number, 0]
+        number = len(self._callback_counts) + 1
+        found = self._callback_counts[number] = [number, 0]
         return found
 
     def hears(self, topic: str, subscription: object) -> None:
-        """Count the messages of a new outside subscriber, so that its inputs can be placed in the journal."""
+        """Count the messages of a new external subscriber, because an entry states at which message it was made."""
         if not self._is_outside:
             return
         count = self._new_callback_counter()
@@ -154,37 +154,41 @@ class JournalWriter:
     def before_steps(self) -> None:
         """Record direct changes to the physics before the next step."""
         if self._is_outside:
-            self._look()
+            self._record_direct_changes()
 
     def after_steps(self) -> None:
-        """Store the state after a step, because a step's own changes are not inputs."""
+        """Store the state after a step, because changes by the step itself are not inputs."""
         if self._is_outside:
-            self._by_hand.see()
+            self._direct_changes.store_state()
 
-    def _look(self) -> None:
-        found = self._by_hand.found()
+    def _record_direct_changes(self) -> None:
+        found = self._direct_changes.changes()
         if found is not None:
             self._write("by_hand", found)
-            self._by_hand.see()
+            self._direct_changes.store_state()
 
     # ------------------------------------------------------------------ entries
 
-    def _record_call(self, door: str, words: Mapping[str, object]) -> AnswerCallback | None:
-        """Write an entry and return the callback for the result, if there is one."""
+    def _record_call(self, operation: str, arguments: Mapping[str, object]) -> AnswerCallback | None:
+        """Write an entry and return the function that receives the result of the call; None if there is none."""
         try:
-            entry: JsonObject | None = dict(words) if door in _WRITTEN_AS_GIVEN else self._entries[door](**words)
+            entry: JsonObject | None = (
+                dict(arguments) if operation in _CALLS_STORED_UNCHANGED else self._entries[operation](**arguments)
+            )
         except NotEncodable as error:
-            self.gaps.append(f"{door} at t={self._sim.time:g} s had an argument that a bundle cannot hold: {error}")
+            self.gaps.append(
+                f"{operation} at t={self._sim.time:g} s had an argument that a bundle cannot store: {error}"
+            )
             return None
         if entry is None:
             return None
         then: AnswerCallback | None = entry.pop("then", None)
-        self._write(door, entry)
+        self._write(operation, entry)
         return then
 
-    def _write(self, do: str, words: Mapping[str, object]) -> None:
+    def _write(self, do: str, arguments: Mapping[str, object]) -> None:
         sim = self._sim
-        entry: dict[str, object] = {"steps": sim.engine.steps, "tick": sim.tick, "do": do, **words}
+        entry: dict[str, object] = {"steps": sim.engine.steps, "tick": sim.tick, "do": do, **arguments}
         if self._callback_position is not None:
             entry["in"] = list(self._callback_position)
         if sim.control.pausing.is_served:
@@ -192,9 +196,8 @@ class JournalWriter:
         line = json.dumps(entry).encode() + b"\n"
         if self._file.tell() + len(line) > MAX_JOURNAL_BYTES:
             if not self.gaps or "no more" not in self.gaps[-1]:
-                self.gaps.append(
-                    f"from t={sim.time:g} s on, no more commands are recorded: limit is {MAX_JOURNAL_BYTES >> 30} GiB"
-                )
+                limit = MAX_JOURNAL_BYTES >> 30
+                self.gaps.append(f"no more commands are recorded from t={sim.time:g} s on: the limit is {limit} GiB")
             return
         self._file.write(line)
         self.count += 1
@@ -207,8 +210,8 @@ class JournalWriter:
     def _of_advertise(self, publisher: Publisher) -> dict[str, object]:
         number = len(self._publishers) + 1
         self._publishers[id(publisher)] = publisher, number
-        words = {"topic": publisher.topic, "type": publisher.type_name, "latched": publisher.latched}
-        return {"number": number, **words}
+        arguments = {"topic": publisher.topic, "type": publisher.type_name, "latched": publisher.latched}
+        return {"number": number, **arguments}
 
     def _of_send(self, publisher: Publisher, message: Message) -> dict[str, object]:
         number = self._publishers.get(id(publisher), (None, 0))[1]
@@ -220,12 +223,13 @@ class JournalWriter:
 
     def _of_call(self, service: Service, request: object) -> dict[str, object] | None:
         if service.owner is None and not service.yields:
-            return None  # the caller's own service: the inputs that its callback makes are recorded instead
+            # a replay does not call a service of the caller; the inputs that its callback makes are recorded instead
+            return None
         return {"service": service.name, "request": encode_message(request)}
 
     def _of_send_goal(self, action: str, goal: object, on_feedback: object, on_done: object) -> dict[str, object]:
         callbacks = {"on_feedback": on_feedback, "on_done": on_done}
-        heard = {name: self._called.get(one) for name, one in callbacks.items() if one is not None}
+        heard = {name: self._callback_numbers.get(one) for name, one in callbacks.items() if one is not None}
         return {"action": action, "goal": encode_message(goal), **{k: v for k, v in heard.items() if v is not None}}
 
     def _of_offer(self, service: str) -> None:
@@ -275,7 +279,7 @@ def _encode_pose(pose: Pose | None) -> list[float] | None:
 
 
 def _encode_model_source(source: object, name: str | None, pose: Pose | None) -> dict[str, object]:
-    """Encode a model to be spawned: XML text unchanged, a file or name as requested."""
+    """Encode the source of a model to spawn: XML text, or a file or name as the caller wrote it."""
     if isinstance(source, SceneModel):
-        raise NotEncodable("model made in Python")
+        raise NotEncodable("model created in Python")
     return {"source": str(source), "name": name, "pose": _encode_pose(pose)}

@@ -52,7 +52,7 @@ def failure_from_checks(results: Iterable[CheckResult], *, was_given_up: bool = 
 
     Args:
         results: Results of all checks.
-        was_given_up: True if the run was stopped because its wall time ran out.
+        was_given_up: True if the run was stopped at its wall-clock limit.
 
     Returns:
         None if all checks passed and the run was not stopped early.
@@ -70,7 +70,7 @@ def strip_folders(text: str) -> str:
 
 @dataclass(frozen=True)
 class RunEnd:
-    """State of a run at the time it was packed.
+    """State of a run when its bundle was written.
 
     Attributes:
         steps: Steps made since loading.
@@ -109,11 +109,11 @@ class Manifest:
         params: Parameter files, as pairs of a model name (empty for all models) and a file.
         models: Models that were spawned during the run: requested source -> file in the bundle.
         code: Files of the user's plugins.
-        missing: Sentences about everything that could not be packed.
+        missing: One sentence for everything that could not be packed.
         fingerprint: Properties of the machine that made the bundle.
         seconds: Length of the message window [s].
         topics: Patterns of image topics whose messages were recorded.
-        first: Number of steps from which on messages are included.
+        first: Number of steps after which messages are included.
         end: State at the end of the run.
         streams: Topics of the last seconds: topic -> type, count, sha256.
         marks: Number of steps and state hash, once per simulated second.
@@ -145,7 +145,7 @@ class Manifest:
 
     @property
     def run_spec(self) -> RunSpec:
-        """Seed, overrides and options of the run; the files are those of the extracted bundle."""
+        """Specification with the seed, overrides and options of the run; its files are in the extracted bundle."""
         options: LoadOptions = {"base": self.base, "sleep": self.sleep}
         if self.on_error in ("stop", "disable"):
             options["on_error"] = cast(PluginErrorPolicy, self.on_error)
