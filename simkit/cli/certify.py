@@ -63,7 +63,7 @@ def certify(
         runs=runs,
         jobs=jobs,
         wall_timeout=scenario.wall_timeout if wall_timeout is None else wall_timeout,
-        told=None if json_ else lambda row: stdout_console().print(certificate.table_row(row)),
+        on_row=None if json_ else lambda row: stdout_console().print(certificate.table_row(row)),
     )
     if json_:
         print_json(report.to_dict())

@@ -19,14 +19,14 @@ FORMAT: Final = 1
 
 @dataclass(frozen=True)
 class Row:
-    """Run of a certificate.
+    """Result of one run of a certificate.
 
     Attributes:
         variation: Environment of the run.
         outcome: Result of the run.
-        streams: Hash of all topics; empty without subscribers. For a run with late subscribers, the hash covers the
-            later messages.
-        same: True if the run equals the first run.
+        streams: Hash of the messages of all topics; empty without subscribers. If the subscribers were added during
+            the run, the hash covers only the messages after that time.
+        same: True if the results of the run equal those of the first run.
     """
 
     variation: Variation
@@ -37,7 +37,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Difference:
-    """First difference of a run.
+    """First difference between a run and the first run.
 
     Attributes:
         variation: Environment of the run.
@@ -46,7 +46,7 @@ class Difference:
         time: Simulated time of that tick [s].
         owner: Plugin or sensor that caused it: `plugin 'drive' (robot.sdf:12)`; empty if unknown.
         how: Description of the cause.
-        hints: Places in its code that often cause such differences.
+        hints: Code lines of this plugin or sensor that often cause such differences.
         more: Sentences about further differences.
     """
 
@@ -67,9 +67,9 @@ class Certificate:
     Attributes:
         name: Name of the scenario.
         world, duration, seed: World, simulated duration [s] and seed of the runs.
-        rows: Runs; all are compared with the first.
-        differences: First difference of each run that differs; empty for a pass.
-        notes: Sentences about differences that do not count.
+        rows: Results of all runs; every run is compared with the first run.
+        differences: First difference of each run that differs; empty if the certificate passed.
+        notes: Sentences about differences that do not make the certificate fail.
         fingerprint: Fingerprint of the machine for which the certificate is valid.
     """
 
@@ -84,7 +84,7 @@ class Certificate:
 
     @property
     def passed(self) -> bool:
-        """True if all runs gave the same bits."""
+        """True if all runs gave exactly the same results."""
         return not self.differences
 
     def to_dict(self) -> JsonObject:
@@ -156,7 +156,7 @@ def table_header() -> str:
 
 
 def table_row(row: Row) -> str:
-    """Return the line of a run."""
+    """Return the table line of one run."""
     outcome = row.outcome
     state = outcome.state[:_HASH_WIDTH] if outcome.state else "-"
     streams = ("second half" if outcome.heard_from else row.streams[:_HASH_WIDTH]) or "-"
@@ -165,27 +165,27 @@ def table_row(row: Row) -> str:
     return f"{row.variation.name:<12}  {hashes}  {verdict:<9}  {row.variation.words}"
 
 
-def conclusion_text(made: Certificate) -> list[str]:
-    """Return the lines below the table, most important first."""
-    first = made.rows[0].outcome
+def conclusion_text(certificate: Certificate) -> list[str]:
+    """Return the lines that are printed below the table, the most important line first."""
+    first = certificate.rows[0].outcome
     lines: list[str] = []
-    for number, (one, also) in enumerate(_group_alike(made.differences)):
+    for number, (one, also) in enumerate(_group_by_cause(certificate.differences)):
         lines += _difference_text(one, also, is_first=number == 0)
-    if made.passed:
+    if certificate.passed:
         messages = sum(len(heard.digests) for heard in first.heard.values())
-        size = f"{first.ticks} steps ({made.duration:g} s), {messages} messages on {len(first.heard)} topics"
-        lines.append(f"the same bits in {len(made.rows)} runs: {size}, seed {made.seed}")
+        size = f"{first.ticks} steps ({certificate.duration:g} s), {messages} messages on {len(first.heard)} topics"
+        lines.append(f"the same bits in {len(certificate.rows)} runs: {size}, seed {certificate.seed}")
         if first.end:
             lines.append(f"every run ended with: {first.end}")
     else:
-        lines.append(f"{len(made.differences)} of {len(made.rows) - 1} runs differ from the first")
-    lines += [_relative_paths(f"note: {note}") for note in made.notes]
-    shown = ", ".join(f"{name} {value}" for name, value in made.fingerprint.items() if value)
+        lines.append(f"{len(certificate.differences)} of {len(certificate.rows) - 1} runs differ from the first")
+    lines += [_relative_paths(f"note: {note}") for note in certificate.notes]
+    shown = ", ".join(f"{name} {value}" for name, value in certificate.fingerprint.items() if value)
     return [*lines, f"on: {shown}"]
 
 
-def _group_alike(differences: Sequence[Difference]) -> list[tuple[Difference, list[str]]]:
-    """Group differences with the same cause; return each with the names of the other runs."""
+def _group_by_cause(differences: Sequence[Difference]) -> list[tuple[Difference, list[str]]]:
+    """Group differences with the same cause. Return the first of each group with the names of the other runs."""
     found: dict[object, tuple[Difference, list[str]]] = {}
     for one in differences:
         key = (one.owner, one.hints) if one.owner else (one.words, one.how)

@@ -24,8 +24,8 @@ from simkit.testing.certify.outcome_comparison import Culprit, differences, find
 from simkit.testing.certify.variations import Variation, choose_variations
 
 _FOLDERS: Final = ("resource_paths", "plugin_paths")
-_LEAST_LIMIT, _TIMES = 60.0, 10.0  # limit of a run: 60 s or ten times as long as the first run
-_WATCHED: Final = 5.0  # factor on the limit if every plugin call is recorded
+_LEAST_LIMIT, _TIMES = 60.0, 10.0  # wall-clock limit of a run: ten times as long as the first run, at least 60 s
+_WATCHED: Final = 5.0  # factor by which the limit is longer if every plugin call is recorded
 _SPARE_SECONDS: Final = 20.0  # [s], time for a process to end itself after its limit
 _FRAME: Final = re.compile(r'^  File "(.*)", line (\d+) in (.*)$', re.MULTILINE)
 
@@ -36,8 +36,8 @@ class ProcessRunner:
     Args:
         scenario: Scenario.
         apart: Use a separate process for each run.
-        limit: Wall-clock limit of a run [s]. If None, the first run has no limit, and its duration sets that of the
-            others.
+        limit: Wall-clock limit of a run [s]. If None, the first run has no limit, and its duration sets the limit of
+            the other runs.
 
     Raises:
         InputError: SK-CERT-002 the plugins cannot be transferred to another process.
@@ -56,7 +56,7 @@ class ProcessRunner:
         return found
 
     def run(self, variation: Variation, ticks: int | None = None) -> RunOutcome:
-        """Run the scenario to a tick, or to its end if that is None."""
+        """Run the scenario to a tick; run to its end if `ticks` is None."""
         request = ChildRequest(self._scenario, variation, ticks, plugins_from=self._plugins_from, limit=self._limit)
         return self._run(request)
 
@@ -66,7 +66,7 @@ class ProcessRunner:
         return self._run(ChildRequest(self._scenario, variation, ticks, True, half, self._plugins_from, limit))
 
     def end(self) -> None:
-        """End all running processes and start no more."""
+        """End all running processes and start no further process."""
         if self._processes is not None:
             self._processes.end()
 
@@ -101,7 +101,7 @@ def _outcome_of_stopped_process(ended: ProcessResult, limit: float | None, stack
     text = ""
     with suppress(OSError):
         text = stack.read_text(encoding="utf-8", errors="replace")
-    main_thread = text.rpartition("\nThread ")[2]  # the trace lists the newest threads first
+    main_thread = text.rpartition("\nThread ")[2]  # the stack trace lists the main thread last
     places = [CodePosition(file, int(line), name) for file, line, name in _FRAME.findall(main_thread)]
     if ended.is_late or text.startswith("Timeout"):
         reason = f"still running after {limit:g} s of wall time, stopped; use --wall-timeout for a longer limit"
@@ -120,7 +120,7 @@ def _plugin_file(scenario: RunSpec) -> Path | None:
         return None
     if scenario.file is not None and scenario.file.suffix.lower() == ".py":
         return scenario.file.absolute()
-    message = "plugins made in Python cannot be transferred to a fresh process"
+    message = "plugins created in Python cannot be transferred to a fresh process"
     hint = "write the scenario as a Python file with `scenario = RunSpec(..., plugins=(MyPlugin(),))`"
     raise InputError(f"SK-CERT-002 {message}\n    help: {hint}", "SK-CERT-002")
 
@@ -152,7 +152,7 @@ def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
 
 
 def _absolute_file(text: Any, mark: str = "=") -> Any:
-    """Make the file in a text such as `MODEL=FILE` or `FILE:POSE` absolute; return other texts unchanged."""
+    """Make the file in a text such as `MODEL=FILE` or `FILE:POSE` absolute; return any other text unchanged."""
     if not isinstance(text, (str, Path)):
         return text
     if Path(text).exists():
@@ -166,7 +166,7 @@ def _absolute_file(text: Any, mark: str = "=") -> Any:
 
 
 _WATCH_ATTEMPTS: Final = 2  # attempts to reproduce a difference while recording plugin calls
-_TICK_MARGIN: Final = 2  # ticks to run after the first that differs
+_TICK_MARGIN: Final = 2  # ticks to run after the first tick that differs
 
 ProgressCallback = Callable[[Row], None]
 
@@ -179,20 +179,20 @@ def certify(
     jobs: int = 1,
     apart: bool = True,
     wall_timeout: float | None = None,
-    told: ProgressCallback | None = None,
+    on_row: ProgressCallback | None = None,
 ) -> Certificate:
     """Run a scenario several times, each in a fresh process with another environment, and compare the results.
 
     Args:
         scenario: Scenario.
-        runs: Number of runs: the first ones of `VARIATIONS`, then these again with other hash seeds.
-        variations: Environments to use instead; the first run is the reference.
+        runs: Number of runs. They use the environments in `VARIATIONS`, then the same ones with other hash seeds.
+        variations: Environments to use instead of `runs`; the first one is that of the reference run.
         jobs: Number of parallel processes.
-        apart: Use a separate process for each run. In one process, where a debugger works, only subscribers and detours
-            vary, and there is no time limit.
+        apart: Use a separate process for each run. If False, all runs use this process, so that a debugger works. Then
+            only the subscribers and the detours of `Variation` differ, and there is no time limit.
         wall_timeout: Wall-clock limit of each run [s]. If None, the first run has no limit, and the others have ten
             times its duration, at least one minute.
-        told: Function that is called with each run when it is complete.
+        on_row: Function that is called with the result of each run when the run is complete.
 
     Returns:
         Certificate of all runs.
@@ -208,25 +208,19 @@ def certify(
         message = f"SK-CERT-001 cannot certify with {len(chosen)} runs\n    help: use --runs 2 or more"
         raise InputError(message, "SK-CERT-001")
     runner = ProcessRunner(scenario, apart=apart, limit=wall_timeout)
-    first = runner.first(chosen[0])
-    if first.failure is not None:
-        raise first.failure
-    if first.stopped:
-        place = f"; it was at {first.stack[0]}" if first.stack else ""
-        message = f"SK-CERT-004 the run {chosen[0].name!r} gave no result: {first.stopped}{place}"
-        raise InputError(message, "SK-CERT-004")
-    # if an error stopped the first run, the others run one step further to reach the same error
+    first = _run_reference(runner, chosen[0])
+    # if an error stopped the first run, the other runs need one more step to reach the same error
     ticks = first.ticks + (1 if first.end else 0)
-    told = told or (lambda _: None)
     rows = [Row(chosen[0], first, streams_hash(first), True)]
-    told(rows[0])
+    on_row = on_row or (lambda _: None)
+    on_row(rows[0])
     with ThreadPoolExecutor(max(1, jobs if apart else 1)) as pool:
         try:
             outcomes = pool.map(lambda variation: runner.run(variation, ticks), chosen[1:])
             for variation, outcome in zip(chosen[1:], outcomes, strict=True):
                 rows.append(Row(variation, outcome, streams_hash(outcome), not differences(first, outcome)))
-                told(rows[-1])
-        except BaseException:  # includes Ctrl-C: without this, the pool would wait for all processes
+                on_row(rows[-1])
+        except BaseException:  # for Ctrl-C too; otherwise, the pool would wait for all processes
             runner.end()
             raise
     known: dict[int, Difference] = {}
@@ -235,20 +229,32 @@ def certify(
     return Certificate(scenario.title, scenario.world, duration, scenario.seed, rows, found, notes, first.fingerprint)
 
 
+def _run_reference(runner: ProcessRunner, variation: Variation) -> RunOutcome:
+    """Run the reference run and return its outcome; raise an error if the run gave no result."""
+    first = runner.first(variation)
+    if first.failure is not None:
+        raise first.failure
+    if first.stopped:
+        position = f"; its last code position was {first.stack[0]}" if first.stack else ""
+        message = f"SK-CERT-004 the run {variation.name!r} gave no result: {first.stopped}{position}"
+        raise InputError(message, "SK-CERT-004")
+    return first
+
+
 # ---------------------------------------------------------------------- causes
 
 
 def _explain_difference(
     row: Row, first: Row, runner: ProcessRunner, ticks: int, known: dict[int, Difference]
 ) -> Difference:
-    """Return the first difference of a run and its cause.
+    """Return the first difference between a run and the reference run, with its cause.
 
     Args:
-        row: Run.
-        first: Reference run.
-        runner: Runner, to repeat both.
-        ticks: Number of steps.
-        known: Explained differences by first tick; the new one is added.
+        row: Result of the run that differs.
+        first: Result of the reference run.
+        runner: Runner that repeats both runs.
+        ticks: Number of steps of each run.
+        known: First tick -> difference that is already explained; this function adds the new difference.
     """
     found = differences(first.outcome, row.outcome)
     tick, step = first_tick(found), first.outcome.timestep
@@ -258,7 +264,7 @@ def _explain_difference(
         return _code_at_timeout(plain, row.outcome, first.outcome)
     if row.outcome.failure is not None:
         return plain
-    if tick is not None and tick in known:  # the same tick has the same cause; save two more runs
+    if tick is not None and tick in known:  # assume the same cause at the same tick, which saves two runs
         return replace(known[tick], variation=row.variation, words=found[0].words, more=more)
     end, culprit = ticks if tick is None else min(ticks, tick + _TICK_MARGIN), None
     for _ in range(_WATCH_ATTEMPTS):
@@ -273,7 +279,7 @@ def _explain_difference(
 
 def _culprit_of_error(plain: Difference, culprit: Culprit | None, first: RunOutcome, owner: str) -> Difference:
     if culprit is None and not owner:
-        how = "no plugin or sensor is known to cause it; the difference did not occur again while recording calls"
+        how = "the cause is unknown: the difference did not occur again while plugin calls were recorded"
         return replace(plain, how=how)
     name = culprit.owner if culprit is not None else owner
     file, start, end = first.sources.get(name, ("", 0, 0))
@@ -290,12 +296,12 @@ def _code_at_timeout(plain: Difference, stopped: RunOutcome, first: RunOutcome) 
         for name, (file, start, end) in first.sources.items():
             if place.file == file and start <= place.line < end:
                 hints = tuple(hints_in(file, start, end))
-                return replace(plain, owner=name, how=f"it was in {place.function} at {place}", hints=hints)
-    return replace(plain, how=f"it was at {stopped.stack[0]}") if stopped.stack else plain
+                return replace(plain, owner=name, how=f"it was running {place.function} at {place}", hints=hints)
+    return replace(plain, how=f"its last code position was {stopped.stack[0]}") if stopped.stack else plain
 
 
 def _attribute_notes(rows: Sequence[Row]) -> list[str]:
-    """Return notes on plugins whose attributes differ at the end although all outputs are equal."""
+    """Return notes about plugins whose attributes differ at the end of two runs although all outputs are equal."""
     first = rows[0].outcome
     notes: dict[str, None] = {}
     for row in rows[1:]:

@@ -1,4 +1,4 @@
-"""One run of a certificate."""
+"""One run of a certificate in its own process."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from simkit.run_spec import RunSpec
 from simkit.runtime import Simulation
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.certify.outcome import RunOutcome
-from simkit.testing.certify.run_witness import (
+from simkit.testing.certify.run_hashes import (
     PluginCallRecorder,
     TickHashes,
     TopicHashes,
@@ -31,8 +31,8 @@ from simkit.testing.run_record.fingerprint import fingerprint
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit.testing.scenarios.scenario_run import ScenarioCommands, open_scenario, run_scenario
 
-_SLICE: Final = 0.25  # [s] of simulated time between two collections of messages
-_DETOUR: Final = 0.5  # [s] of simulated time
+_SLICE: Final = 0.25  # simulated time [s] between two collections of messages
+_DETOUR: Final = 0.5  # simulated duration of the detour [s]
 _DETOUR_MODEL: Final = (
     '<sdf version="1.9"><model name="simkit_certify_box"><pose>0 0 1000 0 0 0</pose><link name="l"><inertial><mass>1'
     '</mass></inertial><collision name="c"><geometry><box><size>.1 .1 .1</size></box></geometry></collision></link>'
@@ -49,7 +49,7 @@ class ChildRequest:
         variation: Environment of the run.
         ticks: Number of steps; None for the scenario's own end, including `until`.
         is_watched: True if every plugin call is recorded.
-        half: Tick at which subscribers are added or the detour begins; None for half of the run.
+        half: Tick at which subscribers are added or the detour begins; None for the middle of the run.
         plugins_from: Python scenario file from which the plugins are loaded.
         limit: Wall-clock limit [s]; None for no limit.
     """
@@ -68,9 +68,9 @@ def run_child(request: ChildRequest) -> RunOutcome:
     started = time.perf_counter()
     outcome = RunOutcome()
     with ExitStack() as stack:
-        witness = PluginCallRecorder()
+        recorder = PluginCallRecorder()
         if request.is_watched:
-            stack.enter_context(record_plugin_calls(witness))
+            stack.enter_context(record_plugin_calls(recorder))
         try:
             scenario = request.scenario
             if request.plugins_from is not None:
@@ -79,8 +79,8 @@ def run_child(request: ChildRequest) -> RunOutcome:
         except SimkitError as error:
             return RunOutcome(failure=_picklable_error(error))
         if request.is_watched:
-            witness.loaded(sim)
-        _ChildRun(request, sim, witness, outcome).run()
+            recorder.loaded(sim)
+        _ChildRun(request, sim, recorder, outcome).run()
     outcome.seconds = time.perf_counter() - started
     return outcome
 
@@ -95,20 +95,20 @@ def _picklable_error(error: SimkitError) -> SimkitError:
 
 
 class _ChildRun:
-    """Run from its first tick to its last."""
+    """Run of the scenario from the first tick to the last."""
 
     def __init__(
-        self, request: ChildRequest, sim: Simulation, witness: PluginCallRecorder, outcome: RunOutcome
+        self, request: ChildRequest, sim: Simulation, recorder: PluginCallRecorder, outcome: RunOutcome
     ) -> None:
         self._request, self._scenario, self._sim = request, request.scenario, sim
-        self._variation, self._witness, self._outcome = request.variation, witness, outcome
+        self._variation, self._call_recorder, self._outcome = request.variation, recorder, outcome
         self._topic_hashes: TopicHashes | None = None
         self._marks = TickHashes(sim)
         self._end = sim.engine.clock.ticks(self._scenario.longest) if request.ticks is None else request.ticks
         self._half = self._end // 2 if request.half is None else request.half
 
     def run(self) -> None:
-        """Run and fill the outcome."""
+        """Run the scenario and write the results to the outcome."""
         outcome = self._outcome
         try:
             if self._variation.detour == "reset":
@@ -116,7 +116,7 @@ class _ChildRun:
             if self._variation.listening != "late":
                 self._listen()
             if self._request.ticks is None and self._scenario.until:
-                # only `run_scenario` evaluates the condition
+                # only `run_scenario` evaluates the condition `until`
                 run_scenario(self._scenario, self._sim, self._collect_messages)
             else:
                 self._run_to(self._end)
@@ -151,17 +151,17 @@ class _ChildRun:
         """Run for a short time, then reset the simulation."""
         self._set_paused(True)
         with suppress(SimkitError), ScenarioCommands(self._scenario, self._sim) as commands:
-            self._run_detour(commands)  # an error here would occur again after the reset
+            self._run_detour(commands)  # an error is ignored, because it would occur again after the reset
         self._sim.reset()
         self._set_paused(False)
         self._marks.state.clear()
         self._marks.inputs.clear()
         if self._request.is_watched:
-            self._witness.again()
-            self._witness.loaded(self._sim)
+            self._call_recorder.discard_calls()
+            self._call_recorder.loaded(self._sim)
 
     def _detour(self) -> None:
-        """Continue with an additional box, then restore the state from before."""
+        """Run further steps with an additional box, then restore the state from before these steps."""
         self._collect_messages()
         snapshot = self._sim.snapshot()
         self._set_paused(True)
@@ -173,7 +173,7 @@ class _ChildRun:
 
     def _run_detour(self, commands: ScenarioCommands | None) -> None:
         sim = self._sim
-        left = max(self._end, 2 * self._half) - sim.tick  # the scenario is undefined beyond its end
+        left = max(self._end, 2 * self._half) - sim.tick  # the scenario is not defined after its end
         for part in range(2):
             end = sim.tick + min(sim.engine.clock.ticks(_DETOUR / 2), left // 2)
             while sim.tick < end:
@@ -185,7 +185,7 @@ class _ChildRun:
                     sim.spawn(_DETOUR_MODEL)
 
     def _set_paused(self, is_paused: bool) -> None:
-        self._marks.is_paused = self._witness.is_paused = is_paused
+        self._marks.is_paused = self._call_recorder.is_paused = is_paused
         if self._topic_hashes is not None:
             self._topic_hashes.is_paused = is_paused
 
@@ -214,18 +214,18 @@ class _ChildRun:
             outcome.remembered[plugin_title(plugin)] = attribute_hashes(plugin_attributes(plugin))
             outcome.sources[plugin_title(plugin)] = _class_source(plugin)
         outcome.fingerprint = fingerprint(pictures=any("Image" in h.type_name for h in outcome.heard.values()))
-        outcome.events = self._witness.events
+        outcome.events = self._call_recorder.events
 
 
 def _latest_reading(sensor: Any) -> Any:
     try:
         return sensor.latest
-    except SimkitError:  # no renderer, which is already reported
+    except SimkitError:  # there is no renderer, and an earlier message reported this
         return None
 
 
 def _class_source(part: Any) -> tuple[str, int, int]:
-    """Return file, first line and last line of the class of a plugin or a sensor; empty if unknown."""
+    """Return the file, first line and last line of a plugin's or sensor's class; an empty file if unknown."""
     cls = type(getattr(part, "system", None) or part)
     try:
         lines, first = inspect.getsourcelines(cls)

@@ -1,4 +1,4 @@
-"""Hints at places in a plugin's code that often make runs differ; a hint is not a proof."""
+"""Hints about code lines of a plugin that often make runs differ; a hint is not a proof."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ _CALL_HINTS: Final = tomllib.loads(Path(__file__).with_name("call_hints.toml").r
 _CALLS: Final[dict[str, str]] = {name: hint for hint, names in _CALL_HINTS.items() for name in names}
 _RANDOM: Final = ("random.", "np.random.", "numpy.random.")
 _SEEDED: Final = ("Random", "default_rng", "RandomState", "Generator", "SeedSequence", "PCG64")
-_NOT_KEPT: Final = "snapshots and resets do not restore it; store it in an attribute of self"
+_NOT_RESTORED: Final = "snapshots and resets do not restore it; store it in an attribute of self"
 _CHANGING: Final = ("append", "add", "update", "pop", "setdefault", "extend", "insert", "clear", "remove", "discard")
 _MOST: Final = 6
 
 
 @dataclass(frozen=True)
 class CodeHint:
-    """Hint at one place.
+    """Hint about one line of code.
 
     Attributes:
         where: `file:line`.
-        text: Code at this place and its effect.
+        text: Code in this line and its effect.
     """
 
     where: str
@@ -34,7 +34,7 @@ class CodeHint:
 
 
 def hints_in(file: str, first: int, last: int) -> list[CodeHint]:
-    """Return hints for a range of lines in a Python file, and for functions of the module if the range has none.
+    """Return hints for a range of lines in a Python file. Without any, return those for the module's functions.
 
     Args:
         file: Path of the file.
@@ -72,12 +72,12 @@ def _find_hints(tree: ast.Module, span: tuple[int, int]) -> Iterator[tuple[int, 
         elif isinstance(node, ast.Attribute) and node.attr == "wanted":
             yield node.lineno, f"{_dotted_name(node)} depends on the subscribers; use it only to skip unused work"
         elif isinstance(node, (ast.Global, ast.Nonlocal)):
-            yield node.lineno, f"{type(node).__name__.lower()} {', '.join(node.names)}: {_NOT_KEPT}"
+            yield node.lineno, f"{type(node).__name__.lower()} {', '.join(node.names)}: {_NOT_RESTORED}"
         elif isinstance(node, (ast.Yield, ast.YieldFrom)):
-            yield node.lineno, f"position of a generator: {_NOT_KEPT}"
+            yield node.lineno, f"the position of a generator changes: {_NOT_RESTORED}"
         elif isinstance(node, ast.ClassDef) and span[0] <= node.lineno <= span[1]:
             for line, name in _container_assignments(node.body):
-                yield line, f"{name} belongs to the class, not to the instance: {_NOT_KEPT}"
+                yield line, f"{name} belongs to the class, not to the instance: {_NOT_RESTORED}"
         elif isinstance(node, (ast.For, ast.comprehension)) and _is_set(node.iter, sets):
             yield node.iter.lineno, "iterates over a set, whose order differs between processes; use sorted()"
 
@@ -93,11 +93,11 @@ def _module_container_writes(tree: ast.Module) -> Iterator[tuple[int, str]]:
         else:
             continue
         if name in names:
-            yield line, f"{name} belongs to the module: {_NOT_KEPT}"
+            yield line, f"{name} belongs to the module: {_NOT_RESTORED}"
 
 
 def _container_assignments(statements: list[ast.stmt]) -> Iterator[tuple[int, str]]:
-    """Return line and name of assignments of lists, dicts and sets."""
+    """Return the line and the name of each assignment of a list, dict or set."""
     containers = (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp)
     for statement in statements:
         if isinstance(statement, (ast.Assign, ast.AnnAssign)) and isinstance(statement.value, containers):
@@ -109,7 +109,7 @@ def _targets(statement: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
 
 
 def _imported_names(node: ast.AST) -> Iterator[tuple[str, str]]:
-    """Return imported names with their full names: `now` -> `time.time`."""
+    """Return the names that an import statement defines, with their full names: `now` -> `time.time`."""
     if isinstance(node, ast.Import):
         yield from ((alias.asname, alias.name) for alias in node.names if alias.asname)
     elif isinstance(node, ast.ImportFrom) and node.module and not node.level:

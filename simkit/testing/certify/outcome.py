@@ -14,19 +14,19 @@ import numpy.typing as npt
 from simkit.errors import SimkitError
 
 STACK_FILE: Final = "stack"
-"""File to which `faulthandler` writes the stack trace of a process that is ended."""
+"""File to which `faulthandler` writes the stack trace of a process that is stopped at its limit."""
 
 Numbers = npt.NDArray[np.uint64]
 
 
 @dataclass
 class TopicOutcome:
-    """Received messages of one topic.
+    """Hashes of the received messages of one topic.
 
     Attributes:
         type_name: ROS type.
         digests: Short hash of each message in CDR, shape (messages,).
-        ticks: Tick of arrival, shape (messages,); -1 if messages were collected later.
+        ticks: Tick at which each message was received, shape (messages,); -1 if messages were collected later.
         digest: Hexadecimal SHA-256 of all messages.
         owner: Publisher: `plugin 'drive' (robot.sdf:12)`.
     """
@@ -44,11 +44,11 @@ class PluginCall:
 
     Attributes:
         tick: Tick of the call.
-        owner: Plugin with its place.
+        owner: Plugin and its position: `plugin 'drive' (robot.sdf:12)`.
         hook: Name of the hook.
         before, after: Short hashes of the writable state before and after the call.
         changed: Hashes of attributes changed since the previous call; 0 for a deleted attribute.
-        shown: Short values of these attributes.
+        shown: Values of these attributes as short texts.
     """
 
     tick: int
@@ -62,7 +62,7 @@ class PluginCall:
 
 @dataclass(frozen=True)
 class CodePosition:
-    """Line of code that a run was executing.
+    """Line of code that a process was executing.
 
     Attributes:
         file, line: Position.
@@ -79,25 +79,25 @@ class CodePosition:
 
 @dataclass
 class RunOutcome:
-    """Outcome of one run.
+    """Results of one run.
 
     Attributes:
         failure: Error of loading the world; None if it was loaded.
         stopped: Reason why the process gave no result; empty if it gave one.
-        stack: Code positions at that time, innermost first.
+        stack: Code positions when the process was stopped, innermost function first.
         end: Error that ended the run; empty for a regular end.
         ticks: Number of steps.
         timestep: Time step [s].
         state: Hash of the physics at the end, as `simkit run` prints it.
         marks: Short hash of the physics after each tick, shape (ticks,).
         inputs: Short hash of the inputs at each tick, shape (ticks,).
-        heard: Received messages by topic.
-        heard_from: Tick after which messages count.
-        latest: Hash of each sensor's newest reading at the end, by scoped name.
-        remembered: Hashes of each plugin's attributes at the end, by plugin.
-        sources: File and lines of each plugin's code, by plugin.
+        heard: Topic -> hashes of its received messages.
+        heard_from: Tick at which the subscribers were added; only later messages are compared.
+        latest: Sensor -> hash of its newest reading at the end.
+        remembered: Plugin -> hashes of its attributes at the end.
+        sources: Plugin or sensor -> file, first line and last line of its class.
         fingerprint: Fingerprint of the machine.
-        events: Plugin calls, if they were recorded.
+        events: Recorded plugin calls; empty if the calls were not recorded.
         seconds: Wall time of the run [s].
     """
 
@@ -121,7 +121,10 @@ class RunOutcome:
 
 
 def write_pickle(path: Path, value: object) -> None:
-    """Write an object for the other process atomically; both processes have the same user and a private folder."""
+    """Write an object for the other process atomically.
+
+    Pickle is safe here, because both processes belong to the same user and use a private folder.
+    """
     beside = path.with_suffix(".part")
     beside.write_bytes(pickle.dumps(value))
     os.replace(beside, path)  # noqa: PTH105 - atomic on every platform

@@ -17,7 +17,7 @@ class OutcomeDifference:
     """Difference between two runs.
 
     Attributes:
-        words: Sentence.
+        words: Sentence that describes the difference.
         tick: First tick that differs; None if the difference has no tick.
         owner: Plugin or sensor that caused it; empty if unknown.
     """
@@ -28,7 +28,7 @@ class OutcomeDifference:
 
 
 def differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
-    """Return all differences of another run, earliest first."""
+    """Return all differences between the first run and another run, earliest first."""
     if other.stopped:
         return [OutcomeDifference(other.stopped)]
     if other.failure is not None:
@@ -44,7 +44,7 @@ def differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
 
 
 def first_tick(found: list[OutcomeDifference]) -> int | None:
-    """Return the first tick of all differences."""
+    """Return the earliest tick of all differences; None if no difference has a tick."""
     return min((f.tick for f in found if f.tick is not None), default=None)
 
 
@@ -88,7 +88,7 @@ def _topic_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDiffer
 
 
 def _first_message(mine: TopicOutcome, theirs: TopicOutcome, after: int) -> tuple[int | None, int | None]:
-    """Return index and tick of the first message that differs after a tick."""
+    """Return the index and the tick of the first message after a given tick that differs."""
     left, right = _after_tick(mine, after), _after_tick(theirs, after)
     index = _first_different_row(mine.digests[left], theirs.digests[right])
     if index is None:
@@ -143,7 +143,7 @@ class Culprit:
         owner: Plugin or sensor.
         tick: Tick of the cause.
         how: Description of the cause.
-        matters: True if the state or an output changed, false if only an attribute did.
+        matters: True if the state or an output differs, False if only an attribute of the plugin differs.
     """
 
     owner: str
@@ -153,7 +153,10 @@ class Culprit:
 
 
 def find_culprit(one: RunOutcome, other: RunOutcome) -> Culprit | None:
-    """Find the plugin or sensor that caused the first difference of two runs with recorded calls; None if unknown."""
+    """Find the plugin or sensor that caused the first difference between two runs; None if unknown.
+
+    Both runs must have recorded plugin calls.
+    """
     called = _first_different_call(one.events, other.events, one)
     ticks = {f.tick: f for f in reversed(_topic_differences(one, other)) if f.owner and f.tick is not None}
     tick = min(ticks, default=None)
@@ -163,7 +166,10 @@ def find_culprit(one: RunOutcome, other: RunOutcome) -> Culprit | None:
 
 
 def _first_different_call(ours: list[PluginCall], theirs: list[PluginCall], outcome: RunOutcome) -> Culprit | None:
-    """Return the first call with a different effect on the state, else the first with a different attribute."""
+    """Return the plugin whose call first had a different effect on the state.
+
+    If there is none, return the plugin whose attributes differed first.
+    """
     remembers: Culprit | None = None
     known: set[str] = set()
     for mine, yours in zip(ours, theirs, strict=False):
@@ -175,18 +181,18 @@ def _first_different_call(ours: list[PluginCall], theirs: list[PluginCall], outc
             return Culprit(early.owner, early.tick, words)
         if mine.before != yours.before:
             return remembers
-        attributes = _other_attributes(mine, yours)
+        attributes = _different_attributes(mine, yours)
         if attributes and mine.owner not in known:
             known.add(mine.owner)
             words = f"after its {mine.hook} at {tick_text(mine.tick, outcome)} its attributes differ"
             remembers = remembers or Culprit(mine.owner, mine.tick, f"{words}: {attributes}", matters=False)
         if mine.after != yours.after:
             cause = f"; {remembers.how}" if remembers and remembers.owner == mine.owner else ""
-            return Culprit(mine.owner, mine.tick, f"its {mine.hook} gives different inputs{cause}")
+            return Culprit(mine.owner, mine.tick, f"its {mine.hook} writes different inputs{cause}")
     return remembers
 
 
-def _other_attributes(mine: PluginCall, yours: PluginCall) -> str:
+def _different_attributes(mine: PluginCall, yours: PluginCall) -> str:
     """Describe the attributes that differ: `phase (0.25, not 0.75), seen`."""
     names = [n for n in sorted({*mine.changed, *yours.changed}) if mine.changed.get(n) != yours.changed.get(n)]
     texts = []

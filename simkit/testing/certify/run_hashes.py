@@ -38,12 +38,12 @@ def short_hash(content: bytes) -> int:
 
 
 def value_hash(value: object) -> int:
-    """Return a hash of a value and all its parts; equal values have equal hashes in different processes."""
+    """Return a hash of a value with its items and attributes. Equal values have equal hashes in all processes."""
     return _update_hash(value, {}, 0)
 
 
 def attribute_hashes(state: Mapping[str, object]) -> dict[str, int]:
-    """Return the hash of each attribute."""
+    """Return the hash of each attribute of a plugin by name."""
     return {str(name): value_hash(value) for name, value in state.items()}
 
 
@@ -72,7 +72,7 @@ def _update_hash(value: Any, seen: dict[int, tuple[int, object]], depth: int) ->
         return short_hash(value.dtype.str.encode() + value.tobytes())
     if id(value) in seen or depth > _MAX_DEPTH:
         return short_hash(f"again {seen.get(id(value), (-1,))[0]}".encode())
-    seen[id(value)] = len(seen), value  # keep a reference, so that the id is not reused
+    seen[id(value)] = len(seen), value  # store a reference, so that no other object gets the same id
     return _update_hash_of_items(value, seen, depth + 1)
 
 
@@ -98,7 +98,7 @@ def _update_hash_of_items(value: Any, seen: dict[int, tuple[int, object]], depth
 
 
 def _is_handle(value: object) -> bool:
-    """Check whether copies of a state refer to the same object: links, publishers, plugins, the simulation."""
+    """Check whether an object is shared by all copies of a state: a link, publisher, plugin, or the simulation."""
     copy = getattr(type(value), "__deepcopy__", None)
     return copy is not None and getattr(copy, "__module__", "").startswith("simkit.")
 
@@ -121,13 +121,13 @@ UNKNOWN = -1
 
 
 class TopicHashes:
-    """Subscriptions to all topics of a run, including later topics.
+    """Hashes of the messages on all topics of a run, including topics that are advertised later.
 
-    Internal topics of the bus (`/stats`, which has wall-clock fields) are left out unless they are named.
+    Internal topics of the bus (such as `/stats`, which has wall-clock fields) are included only if `topics` names them.
 
     Args:
         sim: Simulation.
-        how: Kind of subscription.
+        how: Kind of subscription, see `Listening`.
         topics: Shell patterns of topics; empty for all.
         skip: Shell patterns of topics to leave out.
     """
@@ -140,12 +140,12 @@ class TopicHashes:
             TopicTaps(sim, self._receiver_of).open()
 
     def take(self) -> None:
-        """Hash the collected messages; call this method from time to time between two steps."""
+        """Hash the messages in the queues; the caller calls this method regularly between two steps."""
         for stream in self._streams.values():
             stream.take()
 
     def heard(self) -> dict[str, TopicOutcome]:
-        """Return the received messages by topic."""
+        """Return the hashes of the received messages by topic."""
         self.take()
         owners = _topic_publishers(self._sim)
         return {topic: stream.heard(owners.get(topic, "")) for topic, stream in sorted(self._streams.items())}
@@ -169,7 +169,7 @@ class TopicHashes:
 
 
 class _TopicHash:
-    """Hashes of one topic."""
+    """Hashes of the messages on one topic."""
 
     def __init__(self, owner_hashes: TopicHashes, sim: Simulation, type_name: str) -> None:
         self._owner, self._sim, self._type_name = owner_hashes, sim, type_name
@@ -179,12 +179,12 @@ class _TopicHash:
         self._all = hashlib.sha256()
 
     def receive(self, message: object) -> None:
-        """Hash a message; used as a subscriber callback."""
+        """Hash a message at once; this method is a subscriber callback."""
         if not self._owner.is_paused:
             self._count(message, self._sim.tick)
 
     def keep(self, message: object) -> None:
-        """Store a message or lazy message for later."""
+        """Store a message or lazy message, which `TopicHashes.take` hashes later."""
         if not self._owner.is_paused:
             self._kept.append(message)
 
@@ -207,7 +207,7 @@ class _TopicHash:
 
 
 def _topic_publishers(sim: Simulation) -> dict[str, str]:
-    """Return the publishers of each topic."""
+    """Return the titles of the publishers of each topic."""
     found: dict[str, list[str]] = {}
     for topic, end, _, does in sim.communication.bus.endpoints():
         if does == "publishes" and end.owner is not None:
@@ -243,7 +243,7 @@ class PluginCallRecorder:
     def call(
         self, engine: EngineState, plugin: object, hook: str, method: Callable[..., object], values: tuple[object, ...]
     ) -> Any:
-        """Call a method of a plugin and record its effect."""
+        """Call a method of a plugin and record what the method changed."""
         if self.is_paused or not hasattr(plugin, "has_hook"):
             return method(*values)
         before, tick = writable_state_hash(engine.physics.data), engine.tick
@@ -257,7 +257,7 @@ class PluginCallRecorder:
         for plugin in sim.engine.structure.all_plugins():
             self._note(sim.mj_data, plugin, "load", 0, writable_state_hash(sim.mj_data))
 
-    def again(self) -> None:
+    def discard_calls(self) -> None:
         """Discard all recorded calls after a reset."""
         self.events.clear()
         self._known.clear()
@@ -276,20 +276,20 @@ class PluginCallRecorder:
 
 
 @contextmanager
-def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
-    """Redirect every plugin call to a recorder, for simulations that are loaded in this context."""
+def record_plugin_calls(recorder: PluginCallRecorder) -> Iterator[None]:
+    """Redirect every plugin call to a recorder, for all simulations that are loaded in the `with` block."""
     task, guard, least = PluginFaults.task, PluginFaults.guard, step_tasks.MIN_GROUP_SIZE
 
     def watched_task(self: Any, plugin: Any, hook: str) -> Callable[[int], None]:
         inner = task(self, plugin, hook)
 
         def call(tick: int = 0) -> None:
-            witness.call(self._engine, plugin, hook, inner, (tick,))
+            recorder.call(self._engine, plugin, hook, inner, (tick,))
 
         return call
 
     def watched_guard(self: Any, plugin: Any, hook: str, method: Callable[..., Any]) -> Callable[..., Any]:
-        return guard(self, plugin, hook, lambda *values: witness.call(self._engine, plugin, hook, method, values))
+        return guard(self, plugin, hook, lambda *values: recorder.call(self._engine, plugin, hook, method, values))
 
     PluginFaults.task, PluginFaults.guard, step_tasks.MIN_GROUP_SIZE = watched_task, watched_guard, 1 << 30  # type: ignore
     try:
@@ -299,19 +299,19 @@ def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
 
 
 def plugin_attributes(plugin: Any) -> JsonObject:
-    """Return a plugin's attributes, as in a snapshot."""
+    """Return the attributes of a plugin that a snapshot would store."""
     try:
         state = plugin.get_state()
     except Exception:  # noqa: BLE001 - a plugin may raise anything
         return {}
     if not isinstance(state, Mapping):
         return {"state": state}
-    inner = state.get("variables")  # gz systems
+    inner = state.get("variables")  # a gz system stores its attributes in this object
     return dict(inner if isinstance(inner, Mapping) else state)
 
 
 def writable_state_hash(data: mujoco.MjData) -> int:
-    """Return a hash of what plugins can write to: the state, controls and forces."""
+    """Return a hash of the values that plugins can write: state, controls and forces."""
     found = 0
     for field in (data.qpos, data.qvel, data.act, data.ctrl, data.qfrc_applied, data.xfrc_applied, data.mocap_pos):
         found = crc32(field.tobytes(), found)
@@ -332,7 +332,7 @@ class TickHashes:
         sim.communication.on_demand.add(lambda: True, None, self._mark, "after")
 
     def rows(self, ticks: int) -> tuple[npt.NDArray[np.uint64], npt.NDArray[np.uint64]]:
-        """Return both hashes as arrays with one entry per tick."""
+        """Return the hashes of the physics and of the inputs, each with shape (ticks,)."""
         all_ticks = range(1, ticks + 1)
         state, inputs = ([of.get(tick, 0) for tick in all_ticks] for of in (self.state, self.inputs))
         return np.array(state, np.uint64), np.array(inputs, np.uint64)

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Final, Literal
 
 Listening = Literal["called", "kept", "none", "late"]
-"""Kind of subscription: callbacks; collected for later; no subscribers; two subscribers from half of the run on."""
+"""Kind of subscription: callbacks, a queue that is read later, no subscribers, or two from half of the run on."""
 
 Detour = Literal["", "restore", "reset"]
-"""Detour during the run: at half time a snapshot, further steps and a restore; or a reset at the beginning."""
+"""Detour during the run: a snapshot, further steps and a restore in the middle, or a reset at the beginning."""
 
 _THREADS: Final = (
     *("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"),
@@ -27,8 +27,8 @@ class Variation:
 
     Attributes:
         name: Name in the table.
-        words: Description of the differences.
-        hash_seed: Seed of Python's string hashes.
+        words: Difference from a normal environment, in words.
+        hash_seed: Seed of Python's string hashes (`PYTHONHASHSEED`).
         threads: Number of threads for OpenMP, BLAS and software rendering.
         render_thread: True if pictures are rendered in parallel with the physics.
         listening: Kind of subscription.
@@ -58,7 +58,7 @@ class Variation:
         if self.elsewhere:
             home = folder / "home"
             home.mkdir()
-            # folders of models that Gazebo downloaded, so that another HOME does not hide them
+            # models that Gazebo downloaded are found in these folders, although HOME differs
             fetched = (Path.home() / name / "fuel" for name in (".gz", ".ignition"))
             caches = [found.get("GZ_FUEL_CACHE_PATH", ""), *(str(place) for place in fetched if place.is_dir())]
             found["GZ_FUEL_CACHE_PATH"] = os.pathsep.join(place for place in caches if place)
@@ -98,11 +98,11 @@ VARIATIONS: Final = (
     ),
     Variation("reset", "short run, then reset; different hash seed", 23, 1, False, "called", detour="reset"),
 )
-"""Environments; the first run is the reference."""
+"""Environments of the runs; the first one is that of the reference run."""
 
 
 def choose_variations(runs: int) -> list[Variation]:
-    """Return a number of variations: the first ones, then repetitions with different hash seeds."""
+    """Return one variation for each run: `VARIATIONS`, then the same ones with other hash seeds."""
     repeated = (
         replace(variation, name=f"{variation.name} {round_}", hash_seed=variation.hash_seed + 7919 * round_)
         for round_ in count(2)

@@ -12,7 +12,7 @@ import numpy as np
 import simkit
 from simkit import msgs
 from simkit.runtime.engine.snapshot import state_hash
-from simkit.testing.certify.run_witness import attribute_hashes, plugin_attributes, short_hash, writable_state_hash
+from simkit.testing.certify.run_hashes import attribute_hashes, plugin_attributes, short_hash, writable_state_hash
 
 _BOX = (
     '<sdf version="1.9"><model name="newcomer"><pose>0 0 60 0 0 0</pose><link name="l"><inertial><mass>1</mass>'

@@ -78,7 +78,7 @@ def test_what_is_steady_is_the_same_in_every_surrounding(tmp_path: Path) -> None
     [
         (
             "if self.sim.tick >= 40:\n    self.link.apply_wrench((time.time() % 1, 0, 0))",
-            *("elsewhere", 40, "gives different inputs", "wall"),
+            *("elsewhere", 40, "writes different inputs", "wall"),
         ),
         (
             "if self.sim.tick == 20:\n    self.drawn = random.random()\n"
@@ -92,10 +92,10 @@ def test_what_is_steady_is_the_same_in_every_surrounding(tmp_path: Path) -> None
         ),
         (
             "if self.out.wanted and self.sim.tick == 30:\n    self.link.apply_wrench((1, 0, 0))",
-            *("not received", 30, "gives different inputs", "depends on the subscribers"),
+            *("not received", 30, "writes different inputs", "depends on the subscribers"),
         ),
-        (COUNTED, "restored", 50, "gives different inputs", "snapshots and resets do not restore it"),
-        (COUNTED, "reset", 0, "gives different inputs", "snapshots and resets do not restore it"),
+        (COUNTED, "restored", 50, "writes different inputs", "snapshots and resets do not restore it"),
+        (COUNTED, "reset", 0, "writes different inputs", "snapshots and resets do not restore it"),
     ],
     ids=["clock", "dice", "set", "listener", "restore", "reset"],
 )  # fmt: skip
@@ -189,7 +189,7 @@ def test_a_run_that_hangs_is_blamed_on_the_code_it_stood_in(tmp_path: Path) -> N
     assert [str(place) for place in found.stack] == ["a.py:7", "b.py:9"]
     first = RunOutcome(sources={"plugin 'p'": ("b.py", 5, 12)})
     made = _code_at_timeout(Difference(VARIATIONS[1], "it hangs"), found, first)
-    assert made.owner == "plugin 'p'" and made.how == "it was in outer at b.py:9"
+    assert made.owner == "plugin 'p'" and made.how == "it was running outer at b.py:9"
 
 
 def test_more_runs_are_the_same_again_with_other_hash_seeds() -> None:

@@ -12,7 +12,7 @@ from renderer import RENDERS
 
 from simkit.plugins import Plugin
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
-from simkit.testing.certify.run_witness import PluginCallRecorder, plugin_title, record_plugin_calls
+from simkit.testing.certify.run_hashes import PluginCallRecorder, plugin_title, record_plugin_calls
 
 pytestmark = pytest.mark.slow  # processes and whole runs
 
@@ -62,8 +62,8 @@ def has_done_something(sim, plugin: Plugin, at_first, before: proof.Seen, after:
 
 def pushes_something(cls: type[Plugin], folder: Path) -> bool:
     """Whether one of its hooks changes forces, controls or the state itself."""
-    witness = PluginCallRecorder()
-    with record_plugin_calls(witness), proof_worlds.open_world(cls.__name__, folder) as sim:
+    recorder = PluginCallRecorder()
+    with record_plugin_calls(recorder), proof_worlds.open_world(cls.__name__, folder) as sim:
         sim.step(20)
         names = {plugin_title(p) for p in sim.engine.structure.all_plugins() if type(p) is cls}
-    return any(event.before != event.after for event in witness.events if event.owner in names)
+    return any(event.before != event.after for event in recorder.events if event.owner in names)

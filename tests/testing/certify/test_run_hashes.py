@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from simkit.testing.certify.run_witness import short_value_text, value_hash
+from simkit.testing.certify.run_hashes import short_value_text, value_hash
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -45,7 +45,7 @@ def test_a_thing_that_holds_itself_has_a_hash() -> None:
 
 
 def test_the_order_of_sets_and_dicts_and_the_hash_seed_do_not_show() -> None:
-    script = "from simkit.testing.certify.run_witness import value_hash as digest\n"
+    script = "from simkit.testing.certify.run_hashes import value_hash as digest\n"
     script += "print(digest({'x': {'alpha', 'beta', 'gamma'}, 'y': object()}))"
     answers = {
         subprocess.run(
