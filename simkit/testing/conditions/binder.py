@@ -1,4 +1,4 @@
-"""Binder of expressions: each node gets its value type in a world and a function that returns its value."""
+"""Binder of expressions: each node gets the type of its value and a function that returns the value."""
 
 from __future__ import annotations
 
@@ -164,7 +164,7 @@ class Binder:
                     holds: bool = get()
                     if holds is decisive:
                         return holds
-                except syntax.UndecidedValue as reason:  # a later operand may still decide
+                except syntax.UndecidedValue as reason:  # a later operand may decide the result alone
                     unknown = unknown or reason
             if unknown is not None:
                 raise unknown

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from simkit.testing.conditions.world_view import LatestMessage, WorldView
 
 
-_MAX_SHOWN = 6  # items of a list in a text
+_MAX_SHOWN = 6  # number of list items in a report; a longer list is described by its length
 
 
 ValueGetter = Callable[[], Any]
@@ -37,9 +37,9 @@ class BoundNode:
         node: Node of the syntax tree.
         kind: Type of the value.
         get: Function that returns the present value; raises UndecidedValue if it is unknown.
-        below: Operands.
-        feed: Topic's newest message, if the value depends on nothing else; None otherwise.
-        tell: Function that returns details about the value for reports.
+        below: Operands of the node.
+        feed: Source of the message, if the value depends only on the newest message of one topic; None otherwise.
+        tell: Function that returns details about the value, which reports append; None without details.
     """
 
     node: syntax.Node
@@ -75,7 +75,7 @@ def findings(source: str, part: BoundNode, *, expected: bool = True) -> list[str
     Args:
         source: Text of the expression.
         part: Node that is true or false.
-        expected: Expected value.
+        expected: Value that the condition should have.
     """
     texts: dict[str, None] = {}
     _collect_findings(source, part, expected, texts)
@@ -89,7 +89,7 @@ def _collect_findings(source: str, part: BoundNode, expected: bool, texts: dict[
     if isinstance(node, syntax.Not):
         _collect_findings(source, part.below[0], not expected, texts)
     elif isinstance(node, syntax.Junction):
-        # if all operands must have the expected value, only those that do not have it matter
+        # `and` needs all operands: only those without the expected value explain the result (reverse for `or`)
         is_all = (node.word == "and") == expected
         for operand in part.below:
             if not is_all or _current_value(operand) is not expected:
@@ -118,7 +118,7 @@ def _current_value(part: BoundNode) -> Any:
 
 
 def _is_literal(node: syntax.Node) -> bool:
-    """Check whether a node is constant."""
+    """Check whether the value of a node is constant."""
     if isinstance(node, syntax.Sign):
         return _is_literal(node.operand)
     if isinstance(node, syntax.Arithmetic):
@@ -197,7 +197,7 @@ def quoted_argument(binder: ExpressionBinder, call: syntax.Call, place: int, wha
 
 
 def as_vector(part: BoundNode) -> ValueGetter:
-    """Return a getter of a node's value as a float array, shape (n,); a number is returned unchanged."""
+    """Return a function that gets a node's value as a float array, shape (n,); a number is returned unchanged."""
     get = part.get
     if part.kind is NUMBER:
         return get
@@ -212,7 +212,7 @@ def vector_from_message(message: Message) -> Vector:
 
 
 def as_pose(part: BoundNode) -> Callable[[], Pose]:
-    """Return a getter of a node's pose; a pose message is converted."""
+    """Return a function that gets a node's pose; a pose message is converted."""
     get = part.get
     if part.kind is POSE:
         return get
@@ -227,9 +227,9 @@ def as_pose(part: BoundNode) -> Callable[[], Pose]:
 
 
 def as_numbers(part: BoundNode) -> ValueGetter | None:
-    """Return a getter of the numbers in a list, a vector or a scan; None if the node has no numbers.
+    """Return a function that gets the numbers in a list, a vector or a scan; None if the node has no numbers.
 
-    For a scan, rays without a hit (+inf, NaN) are left out; -inf, for an object below the minimum range, is kept.
+    Rays of a scan without a hit (+inf, NaN) are left out. Rays with -inf (object below the minimum range) remain.
     """
     get = part.get
     if part.kind.message == SCAN:
@@ -251,7 +251,7 @@ _JOINT_ATTRIBUTES = ("position", "velocity", "effort", "lower", "upper")
 
 
 def _numbered(names: Sequence[str], numbers: Callable[[Any], Any]) -> dict[str, _ReadField]:
-    """Return attributes that are numbers of a value.
+    """Return attributes that each select one number of a value, such as x, y and z.
 
     Args:
         names: Attribute names in the order of the numbers.
@@ -290,7 +290,7 @@ def _fields_of_value(kind: kinds.ValueType) -> dict[str, _ReadField]:
 
 
 def attribute_of(part: BoundNode, name: str) -> AttributeGetter | None:
-    """Return the type and getter of an attribute; None if it does not exist."""
+    """Return the type of an attribute and the function that gets its value; None if the attribute does not exist."""
     kind, get = part.kind, part.get
     if kind is kinds.JOINT:
         return _joint_attribute(get(), name)

@@ -33,10 +33,10 @@ class CheckResult:
     """Result of one check.
 
     Attributes:
-        check: Check.
+        check: Check that was evaluated.
         passed: True if the check passed.
         message: Explanation with the measured values.
-        time: Simulated time of the decision [s].
+        time: Simulated time at which the result was known [s].
     """
 
     check: Check
@@ -86,7 +86,9 @@ class Condition:
         return bool(self._part.get())
 
     def gap(self) -> tuple[bool, float, str]:
-        """Return the value of the condition, the distance of two compared numbers (else NaN), and a text for reports.
+        """Return the value of the condition, the difference of two compared numbers, and a text for reports.
+
+        For other conditions, the difference is NaN and the text is empty.
 
         Raises:
             UndecidedValue: The value is unknown.
@@ -149,7 +151,7 @@ class RunningCheck(ABC):
         self._result: CheckResult | None = None
 
     def look(self, time: float) -> None:
-        """Evaluate the state after a step at a time [s]; called until the check is decided."""
+        """Evaluate the check after a step at a simulated time [s], until the result is known."""
 
     def result(self, reason: str) -> CheckResult:
         """Return the result at the end of the run."""
@@ -158,8 +160,12 @@ class RunningCheck(ABC):
         return self._result
 
     @abstractmethod
-    def _at_end(self, cut: str) -> CheckResult:
-        """Return the result of an undecided check; `cut` describes an early end of the run, or is empty."""
+    def _at_end(self, early_end: str) -> CheckResult:
+        """Return the result of a check that is still open at the end of the run.
+
+        Args:
+            early_end: Description of an early end of the run; empty after a regular end.
+        """
 
     def _decide(self, passed: bool, message: str, time: float | None = None) -> CheckResult:
         self.is_decided = True
@@ -168,7 +174,7 @@ class RunningCheck(ABC):
 
 
 class ConditionCheck(RunningCheck):
-    """Check with a condition."""
+    """Check that evaluates a condition."""
 
     def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
@@ -188,7 +194,7 @@ class ReachedCheck(ConditionCheck):
     def look(self, time: float) -> None:
         by = self.check.by
         if by is not None and time > by + 1e-9:
-            self._decide(False, f"was not reached by {time_text(by)}: {self._how_far()}", by)
+            self._decide(False, f"was not reached by {time_text(by)}: {self._nearest_values()}", by)
             return
         try:
             holds, gap, text = self._condition.gap()
@@ -199,20 +205,20 @@ class ReachedCheck(ConditionCheck):
         elif gap < self._nearest:
             self._nearest, self._nearest_text, self._nearest_time = gap, text, time
 
-    def _how_far(self) -> str:
-        """Return the present values, and the nearest earlier values if they were nearer."""
+    def _nearest_values(self) -> str:
+        """Return the present values. Add the earlier values that were nearest to the goal, if they were nearer."""
         found = self._condition.findings()
         if not self._nearest_text or self._nearest_text in found:
             return found
         return f"{found}; nearest at {time_text(self._nearest_time)}: {self._nearest_text}"
 
-    def _at_end(self, cut: str) -> CheckResult:
-        end = f"was not reached by {time_text(self._sim.time)}" + (f", when {cut}" if cut else "")
-        return self._decide(False, f"{end}: {self._how_far()}")
+    def _at_end(self, early_end: str) -> CheckResult:
+        end = f"was not reached by {time_text(self._sim.time)}" + (f", when {early_end}" if early_end else "")
+        return self._decide(False, f"{end}: {self._nearest_values()}")
 
 
 class AlwaysCheck(ConditionCheck):
-    """Condition that must be true at every step from the time when its values are known."""
+    """Condition that must be true at every step, from the first step at which its values are known."""
 
     _since: float | None = None
     _last = 0.0
@@ -230,15 +236,15 @@ class AlwaysCheck(ConditionCheck):
         if not holds:
             self._decide(False, f"did not hold at {time_text(time)}: {self._condition.findings()}", time)
 
-    def _at_end(self, cut: str) -> CheckResult:
+    def _at_end(self, early_end: str) -> CheckResult:
         now = time_text(self._sim.time)
         if self._since is None:
             reason = self._condition.findings()
             if self._sim.time < self.check.after:
                 reason = f"the run ended at {now}, before {time_text(self.check.after)}"
             return self._decide(False, f"was never evaluated: {reason}")
-        if cut:
-            return self._decide(False, f"held until {now}, when {cut}")
+        if early_end:
+            return self._decide(False, f"held until {now}, when {early_end}")
         found = self._condition.findings(expected=False)
         if self._last < self._sim.time - 0.5 * self._sim.timestep:
             return self._decide(True, f"held from {time_text(self._since)} to {time_text(self._last)}, then: {found}")
@@ -248,10 +254,10 @@ class AlwaysCheck(ConditionCheck):
 class FinalCheck(ConditionCheck):
     """Condition that must be true at the end."""
 
-    def _at_end(self, cut: str) -> CheckResult:
+    def _at_end(self, early_end: str) -> CheckResult:
         now = time_text(self._sim.time)
-        if cut:
-            return self._decide(False, f"was not evaluated: at {now} {cut}")
+        if early_end:
+            return self._decide(False, f"was not evaluated: at {now} {early_end}")
         try:
             holds = self._condition.holds()
         except UndecidedValue:
@@ -260,7 +266,7 @@ class FinalCheck(ConditionCheck):
 
 
 class SeparationCheck(RunningCheck):
-    """Models or links that must not touch."""
+    """Model or link without contacts, or two of them that must not touch each other."""
 
     def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
@@ -273,27 +279,27 @@ class SeparationCheck(RunningCheck):
             spans.append(Span(at, at + len(repr(name))))
             at = spans[-1].end + 1
         self._touching = ContactQuery(
-            view.sim, *(view.scoped(name, source, span) for name, span in zip(names, spans, strict=True))
+            view.sim, *(view.scoped_name(name, source, span) for name, span in zip(names, spans, strict=True))
         )
 
     def look(self, time: float) -> None:
         if time >= self.check.after - 1e-9 and self._touching.now():
             self._decide(False, f"{self._touching.describe()} at {time_text(time)}", time)
 
-    def _at_end(self, cut: str) -> CheckResult:
+    def _at_end(self, early_end: str) -> CheckResult:
         now = time_text(self._sim.time)
-        if cut:
-            return self._decide(False, f"no contact until {now}, when {cut}")
+        if early_end:
+            return self._decide(False, f"no contact until {now}, when {early_end}")
         if self._sim.time < self.check.after:
             return self._decide(False, f"was never evaluated: the run ended at {now}")
         return self._decide(True, f"no contact until {now}")
 
 
-_MAX_LATENESS = 2.5  # number of periods without a message after which a topic counts as stopped
+_MAX_LATENESS = 2.5  # a topic counts as stopped after this number of periods without a message
 
 
 def configured_rate(sim: Simulation, topic: str) -> float | None:
-    """Return the configured rate of a topic's publishers together [Hz]; None if it is unknown."""
+    """Return the sum of the configured rates of a topic's publishers [Hz]; None if a rate is unknown."""
     owners: list[object] = [sensor for sensor in sim.engine.structure.all_sensors() if topic in sensor._topics.values()]
     if not owners:
         for _, end, _, what in sim.communication.bus.endpoints(topic):
@@ -304,7 +310,10 @@ def configured_rate(sim: Simulation, topic: str) -> float | None:
 
 
 def _publisher_rate(owner: object, timestep: float) -> float | None:
-    """Return a sensor's update rate (0 means every step) or the rate of a plugin's hook after steps [Hz]."""
+    """Return the rate of a sensor or of a plugin's hook `after_step` [Hz]; None if it is unknown.
+
+    A sensor with an update rate of 0 publishes after every step.
+    """
     rate = getattr(owner, "update_rate", None)
     if isinstance(rate, (int, float)) and hasattr(owner, "scoped") and hasattr(owner, "sample"):
         return min(float(rate), 1.0 / timestep) if rate > 0 else 1.0 / timestep
@@ -313,41 +322,41 @@ def _publisher_rate(owner: object, timestep: float) -> float | None:
 
 
 class TopicRateCheck(RunningCheck):
-    """Rate of messages from the first to the last; a topic that stops before the end fails."""
+    """Message rate between the first and the last message; a topic that stops before the end fails the check."""
 
     def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
         if not check.topic:
             raise InputError("SK-COND-009 a rate check has no topic", "SK-COND-009")
         self._topic = absolute_name(check.topic)
-        self._tally = view.tally(self._topic)
+        self._counter = view.message_counter(self._topic)
 
-    def _at_end(self, cut: str) -> CheckResult:
-        sim, tally, check = self._sim, self._tally, self.check
+    def _at_end(self, early_end: str) -> CheckResult:
+        sim, counter, check = self._sim, self._counter, self.check
         now = time_text(sim.time)
-        if cut:
-            return self._decide(False, f"{tally.count} messages received until {now}, when {cut}")
-        if not tally.count:
+        if early_end:
+            return self._decide(False, f"{counter.count} messages received until {now}, when {early_end}")
+        if not counter.count:
             topics = sim.communication.bus.all_topics()
             if self._topic in topics:
                 return self._decide(False, f"no message received on {self._topic} until {now}")
             near = did_you_mean(self._topic, topics)
             return self._decide(False, f"no publisher on {self._topic}" + (f"; {near}" if near else ""))
         target = check.rate if check.rate is not None else configured_rate(sim, self._topic)
-        found = tally.rate()
-        first, last = time_text(tally.first / 1e9), time_text(tally.last / 1e9)
+        found = counter.rate()
+        first, last = time_text(counter.first / 1e9), time_text(counter.last / 1e9)
         if found is None:
             message = f"only one message received on {self._topic} until {now}, at {last}"
             return self._decide(
-                False, message if tally.count == 1 else f"{tally.count} messages received, all at {last}"
+                False, message if counter.count == 1 else f"{counter.count} messages received, all at {last}"
             )
-        text = f"{self._topic}: {found:.6g} Hz ({tally.count} messages from {first} to {last})"
+        text = f"{self._topic}: {found:.6g} Hz ({counter.count} messages from {first} to {last})"
         if target is None:
             target, expected = found, ""
         else:
             expected = f", expected {target:.6g} Hz"
         if abs(found - target) > check.tolerance * target:
             return self._decide(False, f"{text}{expected} ± {check.tolerance * 100:.3g} %")
-        if sim.time - tally.last / 1e9 > _MAX_LATENESS / target + 1.5 * sim.timestep:
-            return self._decide(False, f"{text}, and none from then until {now}")
+        if sim.time - counter.last / 1e9 > _MAX_LATENESS / target + 1.5 * sim.timestep:
+            return self._decide(False, f"{text}, and no further message until {now}")
         return self._decide(True, text + expected)

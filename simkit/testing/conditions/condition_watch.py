@@ -36,8 +36,8 @@ class Watch:
         checks: Checks.
         until: Expression that ends the run when it is true; empty for none.
         timeout: Time by which `until` must be true [s].
-        absent: Behaviour for a topic without a publisher: "error", or "wait"; a check that still waits at the end
-            fails.
+        absent: Behaviour for a topic without a publisher. "error" raises an error. "wait" waits for a publisher, and
+            the check fails if there is none until the end of the run.
 
     Raises:
         InputError: Expressions have syntax errors or unknown names; the message lists all errors.
@@ -77,11 +77,11 @@ class Watch:
 
     @property
     def ended(self) -> bool:
-        """True if `until` is or was true, so the run is over."""
+        """True if `until` was true after any step; the run then ends."""
         return isinstance(self._until, ReachedCheck) and self._until.is_reached
 
     def results(self, reason: str) -> tuple[CheckResult, ...]:
-        """Return the results of all checks, that of `until` first; call this method after the run.
+        """Return the results of all checks after the run; the result of `until` is the first one.
 
         Args:
             reason: End of the run: "duration", "until", "timeout", "wall_timeout", or the text of an error.

@@ -15,21 +15,21 @@ if TYPE_CHECKING:
     from simkit.compiler import Compiled
 
 _MAX_SLOPE: Final = math.cos(math.radians(45.0))
-_MANY_CONTACTS: Final = 32  # from this number on, arrays are faster than Python numbers
+_MANY_CONTACTS: Final = 32  # arrays are faster than Python numbers if there are more contacts
 _HEIGHT_MAP: Final = int(mujoco.mjtGeom.mjGEOM_HFIELD)
 
 
 class ContactQuery:
-    """Contacts of one model, link or collision, or between two; surfaces that touch or overlap.
+    """Contacts of one model, link or collision, or contacts between two of them.
 
-    Without a second name, contacts with the ground are ignored: with static surfaces that push upwards, within 45° of
-    the vertical (floors, ramps, steps from above), and with height maps. Contacts between collisions of the first
-    entity are ignored too.
+    Two surfaces are in contact if they touch or overlap. Without a second name, contacts with the ground are ignored.
+    The ground consists of height maps and of static surfaces that push the first entity upwards, within 45° of the
+    vertical (floors, ramps, top faces of steps). Contacts between collisions of the first entity are ignored too.
 
     Args:
         sim: Simulation.
         first: Scoped name.
-        second: Another scoped name; None for all surroundings.
+        second: Scoped name of the second entity; None for all other entities.
     """
 
     def __init__(self, sim: Simulation, first: str, second: str | None = None) -> None:
@@ -39,7 +39,7 @@ class ContactQuery:
         self._asleep: tuple[tuple[int, int, int], ...] = ()
 
     def now(self) -> tuple[tuple[int, int, int], ...]:
-        """Return the contact number and two geoms, the first entity's first, of each contact at this tick."""
+        """Return (contact number, geom of the first entity, geom of the second entity) of each present contact."""
         self._bind()
         data = self._sim.engine.physics.fresh()
         sleepers = self._sleepers(data)
@@ -71,7 +71,7 @@ class ContactQuery:
     # ------------------------------------------------------------------ selection
 
     def _bind(self) -> None:
-        """Find the geoms of both entities again after a spawn or a removal."""
+        """Find the geoms of both entities; repeat the search after a model is spawned or removed."""
         compiled = self._sim.engine.structure.compiled
         if compiled is self._compiled:
             return
@@ -91,7 +91,7 @@ class ContactQuery:
         self._trees = trees or list(range(model.ntree))
 
     def _moving(self, geoms: Bools) -> list[int]:
-        """Return the kinematic trees of some geoms."""
+        """Return the kinematic trees to which the given geoms belong; static geoms have none."""
         model = self._sim.mj_model
         trees = np.unique(model.body_treeid[model.geom_bodyid[np.flatnonzero(geoms)]])
         return [int(tree) for tree in trees if tree >= 0]
@@ -118,7 +118,7 @@ class ContactQuery:
                 continue
             if self._second is None and self._is_fixed[touch[2]]:
                 up = up or self._up()
-                # the contact's normal points from the engine's first geom to its second
+                # the contact normal points from the first geom of the engine's pair to the second
                 rise = sign * sum(n * u for n, u in zip(contact.frame[row].tolist(), up, strict=False))
                 if rise >= _MAX_SLOPE or self._is_height_map[touch[2]]:
                     continue
@@ -126,7 +126,7 @@ class ContactQuery:
         return tuple(found)
 
     def _up(self) -> tuple[float, float, float]:
-        """Return the unit vector against gravity; z without gravity."""
+        """Return the unit vector opposite to gravity; the z axis in a world without gravity."""
         x, y, z = self._sim.mj_model.opt.gravity.tolist()
         size = math.sqrt(x * x + y * y + z * z)
         return (-x / size, -y / size, -z / size) if size else (0.0, 0.0, 1.0)
@@ -134,14 +134,14 @@ class ContactQuery:
     # ------------------------------------------------------------------ sleep
 
     def _sleepers(self, data: mujoco.MjData) -> list[int]:
-        """Return the relevant trees that sleep, for which the engine lists no contacts."""
+        """Return the sleeping trees of both entities; the engine lists no contacts for sleeping trees."""
         if not self._sim.engine.physics.sleep.counts:
             return []
         asleep = data.tree_asleep
         return [tree for tree in self._trees if asleep[tree] >= 0]
 
     def _at_rest(self, sleepers: int) -> tuple[tuple[int, int, int], ...]:
-        """Return contacts that include sleeping entities; they do not change until one wakes up."""
+        """Return all contacts, including those of sleeping entities, which do not change until an entity wakes up."""
         sim = self._sim
         is_all = sleepers == len(self._trees)
         if not (is_all and sim.tick - 1 <= self._asleep_at <= sim.tick):
@@ -151,5 +151,5 @@ class ContactQuery:
 
 
 def _collisions_below(name: str, collisions: tuple[str, ...]) -> set[str]:
-    """Return the collisions with a name and those below it."""
+    """Return the collision with the given name, or all collisions of the model or link with this name."""
     return {scoped for scoped in collisions if scoped == name or scoped.startswith(name + "::")}

@@ -109,7 +109,7 @@ VECTOR_OPERATORS: Final = {
 
 
 def _numeric(usage: str, count: int, function: Callable[..., float]) -> Function:
-    """Return a function that takes a fixed number of numbers."""
+    """Return a function of the expression language that has a fixed number of numeric arguments."""
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         parts = tuple(binder.number(node) for node in call.arguments)
@@ -152,20 +152,20 @@ NUMBER_FUNCTIONS: Final[dict[str, Function]] = {
 }
 
 
-# ---------------------------------------------------------------------- functions of several values
+# ---------------------------------------------------------------------- functions of lists
 
 
 Reduction = Callable[[Any], float]
 
 
 def cached_by_message(part: BoundNode, get: ValueGetter) -> ValueGetter:
-    """Wrap a getter so that its value is computed once for each new message of a topic."""
+    """Wrap a getter so that the value is computed only once for each message of a topic."""
     feed = part.feed
     if feed is None:
         return get
     latest, seen, value = feed.latest, None, None
 
-    def remembered() -> Any:
+    def cached_value() -> Any:
         nonlocal seen, value
         message = latest()
         if message is not seen:
@@ -173,16 +173,16 @@ def cached_by_message(part: BoundNode, get: ValueGetter) -> ValueGetter:
             seen = message
         return value
 
-    return remembered
+    return cached_value
 
 
-def _bind_reduction(usage: str, function: Reduction, *, of_none: float | None) -> Function:
-    """Return a function that takes several numbers or one list.
+def _bind_reduction(usage: str, function: Reduction, *, empty_value: float | None) -> Function:
+    """Return a function of the expression language that accepts several numbers or one list.
 
     Args:
         usage: Call syntax, for messages.
         function: Reduction of a non-empty array to a number.
-        of_none: Value for an empty list; None if it is undefined.
+        empty_value: Result for an empty list; None if the result is undefined.
     """
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
@@ -202,9 +202,9 @@ def _bind_reduction(usage: str, function: Reduction, *, of_none: float | None) -
             found = numbers()
             if len(found):
                 return float(function(found))
-            if of_none is None:
+            if empty_value is None:
                 raise UndecidedValue(f"{source} has an empty list")
-            return of_none
+            return empty_value
 
         return BoundNode(call, NUMBER, cached_by_message(parts[0], value), parts, parts[0].feed)
 
@@ -239,7 +239,12 @@ def _isfinite(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 
 def _bind_any_or_all(usage: str, decisive: bool) -> Function:
-    """Return `any` (decisive value True) or `all` (decisive value False), for several arguments or one list."""
+    """Return the function `any` or `all`, which accepts several arguments or one list.
+
+    Args:
+        usage: Call syntax, for messages.
+        decisive: Operand value that decides the result alone: True for `any`, False for `all`.
+    """
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         first = binder.part(call.arguments[0])
@@ -260,11 +265,11 @@ def _bind_any_or_all(usage: str, decisive: bool) -> Function:
 
 
 LIST_FUNCTIONS: Final[dict[str, Function]] = {
-    "min": _bind_reduction("min(list), min(a, b, …)", np.min, of_none=math.inf),
-    "max": _bind_reduction("max(list), max(a, b, …)", np.max, of_none=-math.inf),
-    "mean": _bind_reduction("mean(list), mean(a, b, …)", np.mean, of_none=None),
-    "sum": _bind_reduction("sum(list), sum(a, b, …)", np.sum, of_none=0.0),
-    "norm": _bind_reduction("norm(vector), norm(a, b, …)", _norm, of_none=0.0),
+    "min": _bind_reduction("min(list), min(a, b, …)", np.min, empty_value=math.inf),
+    "max": _bind_reduction("max(list), max(a, b, …)", np.max, empty_value=-math.inf),
+    "mean": _bind_reduction("mean(list), mean(a, b, …)", np.mean, empty_value=None),
+    "sum": _bind_reduction("sum(list), sum(a, b, …)", np.sum, empty_value=0.0),
+    "norm": _bind_reduction("norm(vector), norm(a, b, …)", _norm, empty_value=0.0),
     "abs": _numeric("abs(a)", 1, abs),
     "len": Function("len(list)", 1, 1, _len),
     "isfinite": Function("isfinite(a)", 1, 1, _isfinite),

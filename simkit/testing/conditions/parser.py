@@ -116,14 +116,14 @@ def parse(source: str) -> syntax.Expression:
     """Parse an expression; names are resolved later, when the expression is bound to a world.
 
     Raises:
-        InputError: SK-COND-001 a syntax error; SK-COND-008 the expression is too long or too deep. The message shows
-            the place.
+        InputError: SK-COND-001 a syntax error; SK-COND-008 the expression is too long or has too many
+            nested levels. The message shows the position of the error.
     """
     return syntax.Expression(source, _Parser(source).whole())
 
 
 class _Parser:
-    """Parser of one expression; tokens of quoted texts keep their quotes, so they cannot equal operators or names."""
+    """Parser of one expression; the token of a quoted text includes the quotes, so no operator or name equals it."""
 
     def __init__(self, source: str) -> None:
         self._source = source
@@ -206,7 +206,7 @@ class _Parser:
             return syntax.Index(left.span.to(end.span), self._level(left, index), left, index)
         if token.text == "(":
             return self._call(left, token)
-        # power binds to the right, and its exponent may have a sign
+        # a ** b ** c means a ** (b ** c), and an exponent may have a sign
         right = self._expression(_SIGN - 1 if token.text == "**" else binding)
         span = left.span.to(right.span)
         return syntax.Arithmetic(span, self._level(left, right), token.text, token.span, left, right)
@@ -214,7 +214,7 @@ class _Parser:
     def _chain(
         self, left: syntax.Node, words: Sequence[str], binding: int
     ) -> tuple[tuple[str, ...], tuple[syntax.Node, ...]]:
-        """Parse a chain of operators of one kind after a first operand that is already parsed."""
+        """Parse the rest of a chain such as `a and b and c`; the first operand is already parsed."""
         operators, operands = [], [left]
         while self._next.text in words:
             operators.append(self._take().text)

@@ -10,7 +10,7 @@ from simkit.errors import InputError
 REMOVED_CODE: Final = "SK-NAME-002"
 """Diagnostic code of an error from the handle of a removed entity."""
 
-_MAX_COLUMNS = 100  # maximum number of characters shown around an error
+_MAX_COLUMNS = 100  # maximum number of characters before and after the error in a message
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Span:
 
 
 class UndecidedValue(Exception):
-    """Value that is unknown now: no message was received, an index is out of range, or a model was removed."""
+    """Value that is unknown at this step: no message was received, an index is out of range, or a model was removed."""
 
 
 def expression_error(code: str, message: str, source: str, span: Span, hint: str = "") -> InputError:
@@ -116,7 +116,7 @@ class Arithmetic(Node):
 
 @dataclass(frozen=True, slots=True)
 class Comparison(Node):
-    """Comparison with one operand more than operators; the chain `0 < a < 1` is true if both comparisons are."""
+    """Chain of comparisons such as `0 < a < 1`, which is true if every comparison in the chain is true."""
 
     signs: tuple[str, ...]
     operands: tuple[Node, ...]

@@ -1,4 +1,4 @@
-"""Types of values in expressions; the type of every part is known before the first step."""
+"""Types of values in expressions; the type of every node is known before the first step."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ValueType:
         message: ROS type of a message; empty for other values.
         item: Type of a list's items; None for other values.
         length: Fixed number of items; None if it varies.
-        has_axes: True if a list of three numbers is a vector with x, y and z.
+        has_axes: True for a vector whose three numbers are x, y and z.
     """
 
     name: str

@@ -31,13 +31,13 @@ _ENTITY_ARGUMENT = "the name of a model or a link"
 def entity_argument(binder: ExpressionBinder, call: Call, place: int) -> Entity:
     """Return the model or link that an argument names."""
     node = quoted_argument(binder, call, place, _ENTITY_ARGUMENT)
-    return binder.view.thing(node.value, binder.source, node.span)
+    return binder.view.entity(node.value, binder.source, node.span)
 
 
 def _bind_relative(
     kind: kinds.ValueType, in_world: Callable[[Entity], object], seen: Callable[[Entity, Entity], object]
 ) -> BindFunction:
-    """Return a function of a model or link: its value in the world, or relative to a second one."""
+    """Return a function that reads a value of a model or link, in the world or relative to a second model or link."""
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         one = entity_argument(binder, call, 0)
@@ -67,7 +67,7 @@ def _joint(binder: ExpressionBinder, call: Call) -> BoundNode:
     node = quoted_argument(binder, call, 0, "the name of a joint")
     joint = binder.view.joint(node.value, binder.source, node.span)
     entities, name = binder.view.sim.contents.handles, joint.scoped
-    # after a removal, a new joint may have the same name
+    # look up the name again, because a new joint may have it after the first one was removed
     return BoundNode(call, kinds.JOINT, lambda: entities.tables["joint"].get(name, joint))
 
 
@@ -100,9 +100,9 @@ def _distance(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 
 def _point_argument(binder: ExpressionBinder, node: Node, part: BoundNode) -> ValueGetter:
-    """Return a getter of the point that an argument describes."""
+    """Return a function that gets the point that an argument describes."""
     if part.kind is kinds.TEXT and isinstance(node, Text):
-        entity = binder.view.thing(node.value, binder.source, node.span)
+        entity = binder.view.entity(node.value, binder.source, node.span)
         return lambda: entity.pose().position
     if kinds.is_pose_like(part.kind):
         pose = as_pose(part)
@@ -125,7 +125,7 @@ def _topic_argument(binder: ExpressionBinder, call: Call) -> tuple[str, str, Tex
 
 def _topic(binder: ExpressionBinder, call: Call) -> BoundNode:
     topic, type_name, _ = _topic_argument(binder, call)
-    feed = binder.view.feed(topic)
+    feed = binder.view.latest_message(topic)
     return BoundNode(call, kinds.message_type(type_name), feed.latest, feed=feed)
 
 
@@ -138,16 +138,16 @@ def _scan(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 
 def _count(binder: ExpressionBinder, call: Call) -> BoundNode:
-    tally = binder.view.tally(_topic_argument(binder, call)[0])
-    return BoundNode(call, kinds.NUMBER, lambda: float(tally.count))
+    counter = binder.view.message_counter(_topic_argument(binder, call)[0])
+    return BoundNode(call, kinds.NUMBER, lambda: float(counter.count))
 
 
 def _rate(binder: ExpressionBinder, call: Call) -> BoundNode:
     topic = _topic_argument(binder, call)[0]
-    tally = binder.view.tally(topic)
+    counter = binder.view.message_counter(topic)
 
     def value() -> float:
-        rate = tally.rate()
+        rate = counter.rate()
         if rate is None:
             raise UndecidedValue(f"fewer than two messages received on {topic}")
         return rate
@@ -157,19 +157,19 @@ def _rate(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 def _age(binder: ExpressionBinder, call: Call) -> BoundNode:
     topic = _topic_argument(binder, call)[0]
-    tally, sim = binder.view.tally(topic), binder.view.sim
+    counter, sim = binder.view.message_counter(topic), binder.view.sim
 
     def value() -> float:
-        if not tally.count:
+        if not counter.count:
             raise UndecidedValue(f"no message received on {topic}")
-        return (sim.time_ns - tally.last) / 1e9
+        return (sim.time_ns - counter.last) / 1e9
 
     return BoundNode(call, kinds.NUMBER, value)
 
 
 def _contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
     nodes = [quoted_argument(binder, call, place, _ENTITY_ARGUMENT) for place in range(len(call.arguments))]
-    names = [binder.view.scoped(node.value, binder.source, node.span) for node in nodes]
+    names = [binder.view.scoped_name(node.value, binder.source, node.span) for node in nodes]
     return ContactQuery(binder.view.sim, *names)
 
 

@@ -18,7 +18,7 @@ from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedV
 
 
 class _TopicListener(ABC):
-    """Listener to a topic between `open` and `close`.
+    """Subscriber of a topic between the calls of `open` and `close`.
 
     Args:
         sim: Simulation.
@@ -34,18 +34,18 @@ class _TopicListener(ABC):
         """Subscribe to the topic."""
 
     def open(self) -> None:
-        """Start listening."""
+        """Subscribe, if there is no subscription yet."""
         if self._subscription is None:
             self._subscription = self._subscribe()
 
     def close(self) -> None:
-        """Stop listening; received data remain."""
+        """End the subscription; received data remain."""
         if self._subscription is not None:
             self._subscription.close()
 
 
 class LatestMessage(_TopicListener):
-    """Newest message of a topic; lazy messages are made only on access."""
+    """Newest message of a topic; a lazy message is created only when it is read."""
 
     def _subscribe(self) -> Subscription:
         return self._sim.communication.bus.subscribe(self.topic, keep=1)
@@ -63,10 +63,10 @@ class LatestMessage(_TopicListener):
 
 
 class MessageCounter(_TopicListener):
-    """Number and times of messages on a topic; their content is not read.
+    """Number and times of the messages on a topic; the content of the messages is not read.
 
     Attributes:
-        count: Messages received since opening or since the last reset of the simulation.
+        count: Number of messages since `open` or since the last reset of the simulation.
         first, last: Simulated times of the first and the newest message [ns].
     """
 
@@ -76,7 +76,7 @@ class MessageCounter(_TopicListener):
         return self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
 
     def rate(self) -> float | None:
-        """Return the rate from the first to the newest message [Hz]; None before two messages at different times."""
+        """Return the rate from the first to the newest message [Hz]; None if no two messages have different times."""
         if self.count < 2 or self.last <= self.first:
             return None
         return (self.count - 1) * 1e9 / (self.last - self.first)
@@ -91,7 +91,7 @@ class MessageCounter(_TopicListener):
         self.count += 1
 
 
-_MAX_LISTED = 12  # names listed if none is similar
+_MAX_LISTED = 12  # maximum number of names in an error message
 
 
 class AbsentTopic(Exception):
@@ -103,7 +103,7 @@ class AbsentTopic(Exception):
 
 
 class Entity:
-    """Model or link by name; after a removal, a new entity of the same name takes its place.
+    """Model or link by name; if the entity was removed, a new entity with the same name is used.
 
     Args:
         sim: Simulation.
@@ -141,13 +141,13 @@ class Entity:
             return np.zeros(3), np.zeros(3)
         both = carrier._velocity()
         angular = both[:3]
-        # velocity of the model's origin, which moves rigidly with the canonical link
+        # velocity of the model's origin, which is rigidly connected to the canonical link
         x, y, z = (origin - carrier.pose.position).tolist()
         a, b, c = angular.tolist()
         return both[3:] + np.array((b * z - c * y, c * x - a * z, a * y - b * x)), angular
 
     def _find_replacement(self, error: InputError) -> Any:
-        """Return the entity that has the name now.
+        """Return the new entity that has the name of the removed one.
 
         Raises:
             UndecidedValue: No entity has the name.
@@ -166,18 +166,18 @@ class WorldView:
 
     Args:
         sim: Simulation.
-        absent: Behaviour for a topic without a publisher: "error", or "wait" for one.
+        absent: Behaviour for a topic without a publisher: raise an "error", or "wait" for a publisher.
     """
 
     def __init__(self, sim: Simulation, absent: Literal["error", "wait"] = "error") -> None:
         self.sim, self.absent = sim, absent
-        self._feeds: dict[str, LatestMessage] = {}
-        self._tallies: dict[str, MessageCounter] = {}
+        self._latest_messages: dict[str, LatestMessage] = {}
+        self._counters: dict[str, MessageCounter] = {}
         self._is_open = False
 
     # ------------------------------------------------------------------ names
 
-    def thing(self, name: str, source: str, span: Span) -> Entity:
+    def entity(self, name: str, source: str, span: Span) -> Entity:
         """Return a model or link by its scoped name, or by its short name if that is unique.
 
         Raises:
@@ -190,7 +190,7 @@ class WorldView:
         found: Joint = self._find(("joint",), name, source, span)
         return found
 
-    def scoped(self, name: str, source: str, span: Span) -> str:
+    def scoped_name(self, name: str, source: str, span: Span) -> str:
         """Return the scoped name of a model, a link or a collision."""
         if name in collision_table(self.sim.engine.structure.compiled).names:
             return name
@@ -230,38 +230,38 @@ class WorldView:
             return topic, topics[topic]
         near = did_you_mean(topic, topics)
         if self.absent == "wait":
-            self.feed(topic), self.tally(topic)  # listen from now on, so that no message is missed
+            self.latest_message(topic), self.message_counter(topic)  # subscribe now, so that no message is missed
             raise AbsentTopic(topic, near)
         message = f"there is no topic {topic!r}"
         raise expression_error("SK-COND-006", message, source, span, near or _available_text(topics))
 
-    def feed(self, topic: str) -> LatestMessage:
-        """Return the newest message of a topic."""
-        feed = self._feeds.setdefault(topic, LatestMessage(self.sim, topic))
+    def latest_message(self, topic: str) -> LatestMessage:
+        """Return the object with the newest message of a topic."""
+        feed = self._latest_messages.setdefault(topic, LatestMessage(self.sim, topic))
         if self._is_open:
             feed.open()
         return feed
 
-    def tally(self, topic: str) -> MessageCounter:
+    def message_counter(self, topic: str) -> MessageCounter:
         """Return the message counter of a topic."""
-        tally = self._tallies.setdefault(topic, MessageCounter(self.sim, topic))
+        counter = self._counters.setdefault(topic, MessageCounter(self.sim, topic))
         if self._is_open:
-            tally.open()
-        return tally
+            counter.open()
+        return counter
 
     def open(self) -> None:
-        """Start listening to all topics."""
+        """Subscribe to all topics of the expressions."""
         self._is_open = True
         for listener in self._listeners():
             listener.open()
 
     def close(self) -> None:
-        """Stop listening."""
+        """End all subscriptions."""
         for listener in self._listeners():
             listener.close()
 
     def _listeners(self) -> list[_TopicListener]:
-        return [*self._feeds.values(), *self._tallies.values()]
+        return [*self._latest_messages.values(), *self._counters.values()]
 
 
 def _list_names(names: Iterable[str]) -> str:

@@ -51,7 +51,7 @@ def still() -> Iterator[Any]:
         view = WorldView(sim)
         view.open()
         for topic in ("/imu", "/scan"):
-            view.feed(topic)
-            view.tally(topic)
+            view.latest_message(topic)
+            view.message_counter(topic)
         sim.run(1.0)
         yield view

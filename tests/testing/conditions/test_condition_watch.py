@@ -141,7 +141,7 @@ def test_a_topic_that_stops_before_the_end_does_not_tick(yard: Any) -> None:
         sim.remove("ball")
         sim.run(1.0)
         (found,) = watch.results("duration")
-    assert not found.passed and found.message.endswith("and none from then until t = 2 s")
+    assert not found.passed and found.message.endswith("and no further message until t = 2 s")
 
 
 def test_a_run_that_does_not_come_to_its_end_has_passed_nothing_that_was_open(yard: Any) -> None:
