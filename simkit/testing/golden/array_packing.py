@@ -22,18 +22,18 @@ _MAGIC: Final = b"SKGOLD\x01\n"
 _PRESET: Final = 6 | lzma.PRESET_EXTREME
 _FAST: Final = 3
 _LONG_BLOCK_BYTES: Final = 2 << 20
-_MAX_MEMORY: Final = 64 << 20  # [bytes] for the decompressor, without its output
+_MAX_MEMORY: Final = 64 << 20  # memory of the decompressor without its output [bytes]
 MAX_BLOCK_BYTES: Final = 1 << 30
 """Maximum size of an unpacked block and of all its arrays together [bytes]."""
 _TYPES: Final = frozenset(
     ("bool", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64")
 )
-_ORDERS: Final = ("plain", "time", "time2", "across")  # direction in which a number is predicted
+_ORDERS: Final = ("plain", "time", "time2", "across")  # neighbour from which a number is predicted
 _MAX_DIMENSIONS: Final = 5
 
 
 class PackingError(ValueError):
-    """Damaged data block, or data in another format."""
+    """Error of a data block that is damaged or has another format."""
 
 
 class Packer:
@@ -78,7 +78,7 @@ class Packer:
         head = json.dumps({"arrays": self._entries, "about": about}, separators=(",", ":"), ensure_ascii=False)
         text = head.encode()
         whole = b"".join((_MAGIC, struct.pack("<I", len(text)), text, *self._parts))
-        # large worlds compress well with any preset, and the best preset takes minutes for them
+        # large blocks compress well with any preset, and the best preset takes minutes
         preset = _PRESET if len(whole) <= _LONG_BLOCK_BYTES else _FAST
         return lzma.compress(whole, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC64, preset=preset)
 
@@ -218,7 +218,7 @@ class _Prediction(NamedTuple):
 
 
 def _predict(whole: Array) -> _Prediction:
-    """Encode the differences in the order that needs the fewest bytes."""
+    """Encode an array with the kind of prediction that needs the fewest bytes."""
     best: _Prediction | None = None
     for order in _ORDERS:
         if (order == "across" and whole.ndim < 2) or (order in ("time", "time2") and len(whole) < 2):
@@ -277,7 +277,7 @@ def _unzigzag(numbers: Array) -> Array:
 
 
 def _smallest_type(numbers: Array) -> Array:
-    """Convert numbers to the smallest unsigned type that holds them."""
+    """Convert numbers to the smallest unsigned type without a loss."""
     largest = int(numbers.max(initial=0))
     return numbers.astype(next(w for w in ("uint8", "uint16", "uint32", "uint64") if largest <= np.iinfo(w).max))
 

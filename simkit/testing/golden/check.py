@@ -24,8 +24,8 @@ from simkit.testing.scenarios.scenario_file import read_scenario
 
 CAUSE_BUDGET_SECONDS: Final = 60.0
 """Wall-clock limit of the search for causes [s]."""
-_MAX_NAMED: Final = 5  # world changes listed after an error of the scenario
-_MAX_DIFFERENCES: Final = 12  # differences stored in the history when a run is blessed
+_MAX_NAMED: Final = 5  # maximum number of world changes in an error message
+_MAX_DIFFERENCES: Final = 12  # maximum number of differences that the history stores for one blessing
 
 
 def check_golden(
@@ -41,15 +41,16 @@ def check_golden(
 
     Args:
         folder: Folder of the golden run.
-        scenario: Scenario to run. If None, use the scenario's file, or without a file the scenario in the golden run.
+        scenario: Scenario to run. If None, the file of the scenario is read again; without a file, the scenario
+            stored in the golden run is used.
         bless: Reason why the differences are correct; the new run then becomes golden. Without differences, nothing is
             written.
-        other_renderer: Allow pictures of another renderer to be blessed.
+        other_renderer: Allow a blessing of pictures that come from another renderer.
         causes: Search for the causes of differences.
         budget_s: Wall-clock limit of the search for causes [s].
 
     Returns:
-        Verdict. After a blessing, the verdict lists what differed before.
+        Verdict. After a blessing, the verdict lists the differences from the previous golden run.
 
     Raises:
         InputError: SK-GOLDEN-002 to SK-GOLDEN-004 the golden run cannot be read; SK-GOLDEN-006 its scenario cannot be
@@ -76,7 +77,7 @@ def check_golden(
 
 @contextmanager
 def _run_today(golden: RunRecord, scenario: RunSpec) -> Iterator[tuple[RunRecord, float]]:
-    """Run a scenario and yield its record and wall time [s]; close the simulation at the end."""
+    """Run a scenario and yield its record and its wall time [s]; close the simulation at the end of the block."""
     started = time.perf_counter()
     try:
         run = run_record(scenario)
@@ -96,7 +97,7 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
     try:
         run = run_record(still)
     except SimkitError:
-        return error  # the world itself cannot be loaded
+        return error  # the error is that the world cannot be loaded
     if run.simulation is not None:
         run.simulation.close()
     changes = world_changes(golden, run)
@@ -120,11 +121,11 @@ def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None) -> 
         problem = f": its scenario {stored.file.resolve()} does not exist\n    help: restore the file, or record anew"
     elif stored.test:
         test = shlex.quote(os.path.normpath(place / "../../.." / stored.test))
-        problem = f" belongs to a test that makes plugins or steps itself\n    help: run pytest {test}"
+        problem = f" belongs to a test that creates plugins or steps the simulation\n    help: run pytest {test}"
     elif stored.plugins:
         problem = (
-            f" was recorded with plugins made in Python ({', '.join(map(str, stored.plugins))}), unknown here\n"
-            "    help: check the run in the program that makes the plugins: use the fixture sensor_regression, or "
+            f" was recorded with plugins created in Python ({', '.join(map(str, stored.plugins))}), unknown here\n"
+            "    help: check the run in the program that creates the plugins: use the fixture sensor_regression, or "
             "simkit.testing.golden.check.check_golden(folder, scenario=...)"
         )
     else:

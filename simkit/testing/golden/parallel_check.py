@@ -43,7 +43,7 @@ class CheckResult:
 
     @property
     def rank(self) -> tuple[int, str]:
-        """Sort key: runs that could not be checked, then runs that differ, then runs that passed."""
+        """Key for sorting: runs that could not be checked are first, then runs that differ, then runs that passed."""
         if self.verdict is None:
             return 0, str(self.folder)
         return 2 if self.verdict.passed else 1, str(self.folder)
@@ -87,7 +87,7 @@ def _check_in_parallel(folders: list[Path], options: CheckOptions, jobs: int) ->
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    context = multiprocessing.get_context("spawn")  # graphics libraries do not survive a fork
+    context = multiprocessing.get_context("spawn")  # graphics libraries do not work in a forked process
     with ProcessPoolExecutor(jobs, context, _end_with_parent) as pool:
         return list(pool.map(_check_in_process, folders, [options] * len(folders)))
 
@@ -111,7 +111,7 @@ def _end_with_parent() -> None:
 
 def _check_in_process(folder: Path, options: CheckOptions) -> CheckResult:
     """Check a golden run in a child process; remove data that cannot be pickled from the result."""
-    with redirect_stdout(sys.stderr):  # plugins may print, but standard output belongs to the parent's report
+    with redirect_stdout(sys.stderr):  # plugins may print, but the parent process prints its report to standard output
         result = check_golden_folder(folder, options)
     if result.error is not None:
         result.error.__cause__ = result.error.__context__ = None

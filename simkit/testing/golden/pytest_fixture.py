@@ -50,10 +50,10 @@ class GoldenLocation:
         name: Name of the test with its class and parameters.
         beside: Folder of the test's file; worlds are searched in it first.
         test: Node id of the test in pytest.
-        reason: Reason for writing golden runs anew; None to compare.
+        reason: Reason for writing new golden runs; None to compare with the present ones.
         other_renderer: Allow pictures of another renderer to be written.
         pages: Folder for an HTML page of each run that differs; None for no pages.
-        done: Sentences about written golden runs, for pytest's summary.
+        done: Sentences about golden runs that were written or unchanged, for pytest's summary.
     """
 
     folder: Path
@@ -77,7 +77,7 @@ class SensorRegression:
 
     Args:
         place: Folder and options of the golden runs.
-        keep: Function that receives every loaded simulation and closes it at the end of the test.
+        keep: Function that receives every loaded simulation, with a label, and closes the simulation after the test.
     """
 
     def __init__(self, place: GoldenLocation, keep: Callable[[Simulation, str], None]) -> None:
@@ -106,8 +106,9 @@ class SensorRegression:
             topics: Patterns of recorded topics; default all topics except clocks.
             skip: Patterns of topics to leave out.
             tolerances: Tolerances by topic or field (`{"/scan": 0.01, "/imu": "statistics", "/odom": {"relative":
-                0.01}}`), or objects of `simkit.run_spec.Tolerance`. They have priority over those of a scenario.
-                Numbers in them also apply on the machine that recorded the golden run; then only topics are compared.
+                0.01}}`), or objects of `simkit.run_spec.Tolerance`. They have priority over the tolerances of a
+                scenario. Numeric tolerances also apply on the machine that recorded the golden run; then only topics
+                are compared.
             seed: Seed of the sensor noise.
             options: Further arguments of `simkit.load`: `plugins`, `overrides`, `resource_paths`, …
 
@@ -221,7 +222,7 @@ class SensorRegression:
             pytest.fail(f"{problem}\n{help_}", pytrace=False)
 
     def _compare_or_write(self, place: Path, record: RunRecord, elapsed: float, *, again: bool) -> Verdict:
-        """Compare a run with its golden run, or write it as the golden run."""
+        """Compare a run with its golden run; if a reason is set, write the run as the new golden run."""
         from simkit.testing.golden.check import make_golden, refuse_failed
         from simkit.testing.golden.store import is_golden, read_golden, write_golden
 

@@ -69,7 +69,7 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
 
 
 def decode_scenario(plain: JsonMapping, folder: Path) -> RunSpec:
-    """Decode a scenario; plugins made in Python are represented by the names of their classes.
+    """Decode a scenario; plugins created in Python are represented by the names of their classes.
 
     Args:
         plain: Data from `encode_scenario`. A world that is a long XML text is not included; the decoded world is then
@@ -171,7 +171,7 @@ def _class_name(plugin: object) -> str:
     return str(getattr(kind, "__qualname__", getattr(kind, "__name__", kind)))
 
 
-_MAX_FIELDS: Final = 400_000  # numbers in the compiled model; the fields of a larger model are not stored
+_MAX_FIELDS: Final = 400_000  # values in the compiled model; the fields of a larger model are not stored
 _DEPTH_STEP: Final = 2.0**-10  # [m], rounding step for depths in small pictures
 _STATISTICS: Final = ("mean", "deviation", "quantiles", "taus", "allan", "independent", "kurtosis")
 
@@ -182,7 +182,8 @@ def encode_record(record: RunRecord) -> tuple[JsonObject, bytes]:
     inner: JsonObject = {
         "streams": {topic: _pack_stream(packer, s, record.scenario) for topic, s in sorted(record.streams.items())},
         "states": _pack_states(packer, record.states),
-        "leaves": dict(record.leaves),  # in file order, so that an undone change gets its old position
+        # the values are in file order, so that a restored element gets its old position
+        "leaves": dict(record.leaves),
         "fields": _pack_fields(packer, record.fields),
     }
     if is_long_text(record.scenario.world):

@@ -26,10 +26,10 @@ FORMAT: Final = 1
 MAIN_FILE: Final = "golden.json"
 _DATA: Final = re.compile(r"data-[0-9a-f]{12}\.xz")
 _TEMPORARY_NAME: Final = re.compile(r"\.golden-\d+\.tmp")
-_MAX_TEXT_BYTES: Final = 16 << 20  # [bytes] of golden.json
+_MAX_TEXT_BYTES: Final = 16 << 20  # maximum size of golden.json [bytes]
 _MAX_DATA_BYTES: Final = 256 << 20
 _READ_ATTEMPTS: Final = 20  # attempts to read a golden run that another process is writing
-_MAX_HISTORY: Final = 50  # entries
+_MAX_HISTORY: Final = 50  # maximum number of entries
 
 
 def write_golden(
@@ -227,7 +227,7 @@ def _locked_folder(folder: Path) -> Iterator[int | None]:
 
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
-        with suppress(OSError):  # some file systems have no locks
+        with suppress(OSError):  # some file systems do not support locks
             fcntl.flock(handle, fcntl.LOCK_EX)
         yield handle
     finally:

@@ -98,7 +98,7 @@ def test_a_wider_tolerance_is_stored_coarser_and_an_exact_one_exactly() -> None:
 
 def test_tolerances_read_in_words() -> None:
     words = allowed_text(Tolerance("x", absolute=1e-3, relative=0.01, share=0.02), "m")
-    assert str(words) == "1 mm + 1 % of the value, 2 % of a message further off"
+    assert str(words) == "1 mm + 1 % of the value, 2 % of a message may differ more"
     assert allowed_text(Tolerance("x"), "m") == "nothing"
 
 

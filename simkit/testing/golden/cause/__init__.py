@@ -1,4 +1,4 @@
-"""Search for the cause of a difference between two runs: rerun the scenario with single changes undone.
+"""Search for the cause of a difference between two runs: rerun the scenario and undo single changes.
 
 The inputs are two records and their comparison. The result is an `Explanation`. The search has no list of known causes.
 It tests every difference in the inputs within its time limit. It writes no files.

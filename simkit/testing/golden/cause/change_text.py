@@ -1,4 +1,4 @@
-"""Texts for changes: names as in the file, numbers with units, and only as many digits as needed."""
+"""Texts that describe changes: names as in the file, and numbers with units and only as many digits as needed."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ def attribute_name(attribute: str) -> str:
 
 
 def entity_title(owner: str) -> str:
-    """Return kind and name of an entity: `link robot::wheel`."""
+    """Return the kind and the name of an entity: `link robot::wheel`."""
     return f"{entity_kind(owner)} {scoped_name(owner)}".strip()
 
 
 def owner_title(edit: Edit) -> str:
-    """Return kind and name of the entity that an edit belongs to."""
+    """Return the kind and the name of the entity whose value an edit changes."""
     return entity_title(edit.owner)
 
 
 def list_names(names: Sequence[str], most: int = 4) -> str:
-    """Join names; count those beyond the limit."""
+    """Join names with commas; after a maximum number of names, append the number of the others."""
     shown_ = list(names[: most if len(names) > most + 1 else len(names)])
     more = len(names) - len(shown_)
     return ", ".join(shown_) + (f" and {more} more" if more else "")
@@ -49,7 +49,7 @@ def edit_text(edit: Edit, leaves: Mapping[str, object]) -> str:
 
     Args:
         edit: Edit.
-        leaves: All values of the new run's world, needed to find the unit.
+        leaves: All values of the new run's world; the unit of some values depends on other values.
     """
     attribute = edit.attribute
     name = attribute_name(attribute)

@@ -1,4 +1,4 @@
-"""Grouping of values that differ into changes as a person made them, such as one change for a moved robot."""
+"""Grouping of values that differ into changes that a person made, such as one change for a moved robot."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ from simkit.testing.golden.compare.world_edits import (
 
 WorldValues = Mapping[str, Any]
 _UNGROUPED_ELEMENTS = frozenset(("", "params"))
-"""Elements whose values are independent of each other."""
-_LEAST_LIKENESS = 0.5  # share of equal values from which two entities count as one that was renamed
+"""Elements that are not one unit: each of their values is a change of its own."""
+_LEAST_LIKENESS = 0.5  # two entities with at least this share of equal values count as one renamed entity
 
 
 @dataclass(frozen=True)
 class Change:
-    """One change with all values that differ because of it.
+    """Change by a person, with all values that differ because of this change.
 
     Attributes:
         kind: Kind of change.
         words: Sentence about the change.
-        path, golden, run: Path and values of the most informative value.
+        path, golden, run: Path of the most informative value, and the value in both runs.
         where: `file:line`; empty if unknown.
         edits: Values to restore when the change is undone.
     """
@@ -65,9 +65,9 @@ def find_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> li
     if not edits:
         return []
     renamed, rest = _find_renames(edits, golden, run)
-    come_and_gone, rest = _entity_changes(rest, golden, run)
+    added_and_removed, rest = _entity_changes(rest, golden, run)
     moved, rest = _motions(rest, golden, run)
-    found = [*come_and_gone, *renamed, *moved, *_group_equal_changes(rest, golden, run)]
+    found = [*added_and_removed, *renamed, *moved, *_group_equal_changes(rest, golden, run)]
     order = {edit.path: n for n, edit in enumerate(edits)}
     return sorted(found, key=lambda c: min((order.get(e.path, len(order)) for e in c.edits), default=0))
 
@@ -160,7 +160,8 @@ def _entity_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) ->
             names = [scoped_name(p) for p in parts]
             mine = [e for e in edits if any(is_within(e.owner, p) for p in parts)]
             where = next((e.where for e in mine if e.where), "")
-            mine += [e for e in edits if e not in mine and _names_one(e, names)]  # a canonical link, say
+            # such as the name of a canonical link
+            mine += [e for e in edits if e not in mine and _contains_name(e, names)]
             edits = [e for e in edits if e not in mine]
             words = f"{len(parts)} {kind}s are {verb}: {list_names(names)}"
             if len(parts) == 1:
@@ -170,8 +171,8 @@ def _entity_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) ->
     return found, edits
 
 
-def _names_one(edit: Edit, names: list[str]) -> bool:
-    """Check whether a value is the name of an added or removed entity."""
+def _contains_name(edit: Edit, names: list[str]) -> bool:
+    """Check whether a value contains the name of one of the added or removed entities."""
     texts = [v for v in (edit.golden, edit.run) if isinstance(v, str)]
     return any(text == name or text.startswith(name + "::") for text in texts for name in names)
 
@@ -231,8 +232,8 @@ def _element_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -
     rest = []
     kinds = {e.path for e in edits if ABSENT not in (e.golden, e.run)}
     mine, theirs = _prefixes(golden), _prefixes(run)
-    hollow = [e for e in edits if _is_hollow(e)]
-    for edit in sorted(edits, key=_is_hollow):
+    hollow = [e for e in edits if _is_empty_element(e)]
+    for edit in sorted(edits, key=_is_empty_element):
         block = _changed_element(edit, kinds, theirs if edit.run is ABSENT else mine)
         if edit in hollow:
             block = next((b for b in groups if b.startswith(edit.path + ".")), block)
@@ -248,12 +249,12 @@ def _element_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -
             continue
         if head is not None and head in rest:
             rest.remove(head)
-        changes.append(_element_change_text(block, head, several, run))
+        changes.append(_element_change(block, head, several, run))
     return changes, rest
 
 
-def _is_hollow(edit: Edit) -> bool:
-    """Check whether an edit only states that an element is empty on one side."""
+def _is_empty_element(edit: Edit) -> bool:
+    """Check whether an edit only adds or removes an empty element."""
     return (edit.golden, edit.run) in ((ABSENT, ""), ("", ABSENT))
 
 
@@ -269,7 +270,7 @@ def _prefixes(leaves: WorldValues) -> set[str]:
 
 
 def _parent_element(path: str) -> str:
-    """Return a path without its last step."""
+    """Return the path of the element that contains a value: the path without its last step."""
     return path[: max(path.rfind("."), path.rfind("@"), path.rfind("["), 0)]
 
 
@@ -288,8 +289,8 @@ def _changed_element(edit: Edit, kinds: set[str], others: set[str]) -> str:
     return block if ABSENT in (edit.golden, edit.run) else ""
 
 
-def _element_change_text(block: str, head: Edit | None, several: list[Edit], run: WorldValues) -> Change:
-    """Return the change for an element that was added, removed or replaced."""
+def _element_change(block: str, head: Edit | None, several: list[Edit], run: WorldValues) -> Change:
+    """Return one change for all values of an element that was added, removed or replaced."""
     owner, attribute = split_entity_path(block)
     inner = [(e.path[len(block) :].lstrip(".@"), e) for e in several if e.path.startswith((block + ".", block + "@"))]
     every = tuple({e.path: e for e in ([head] if head else []) + several}.values())
@@ -317,7 +318,7 @@ def _group_by_element(edits: list[Edit]) -> list[list[Edit]]:
 
 
 def _group_alike(units: list[list[Edit]]) -> list[list[list[Edit]]]:
-    """Group the elements in which the same values changed in the same way."""
+    """Group elements in which the same values changed in the same way."""
     groups: dict[object, list[list[Edit]]] = {}
     for unit in units:
         groups.setdefault(tuple((_last(e.path), repr(e.golden), repr(e.run)) for e in unit), []).append(unit)
@@ -341,7 +342,7 @@ def _change(units: list[list[Edit]], run: WorldValues) -> Change:
     unit = units[0]
     first = unit[0]
     head = owner_title(first) + ": "
-    # the first text keeps its whole path, further ones in the same element only the last name
+    # the first text has the whole path; further texts of the same element have only the last name
     inner = [edit_text(e, run).removeprefix(head) for e in unit]
     block = attribute_name(first.attribute).rpartition(".")[0]
     inner[1:] = [text.removeprefix(block + ".") if block else text for text in inner[1:]]

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 from simkit.testing.golden.cause.edits import Change, find_changes
 from simkit.testing.golden.cause.file_changes import changes_outside_world, engine_changes
 from simkit.testing.golden.cause.first_tick import FirstDifferentTick, first_different_tick, largest_final_difference
-from simkit.testing.golden.cause.rerun import RunChangedWorld, ScenarioRerun, can_be_put_back, rerun_scenario
+from simkit.testing.golden.cause.rerun import RunChangedWorld, ScenarioRerun, can_be_undone, rerun_scenario
 from simkit.testing.golden.compare.difference import Cause, Comparison, Explanation
 from simkit.testing.golden.compare.world_edits import model_edits
 from simkit.testing.run_record.record import RunRecord
 
 IsSameRun = Callable[[frozenset[int]], bool | None]
-"""Function that tests if the run gives the golden outputs with these changes undone; None without time left."""
+"""Function that undoes some changes and returns True if the run gives the golden outputs; None if no time is left."""
 
 
 @dataclass
@@ -23,8 +23,8 @@ class SearchResult:
     """Result of undoing changes.
 
     Attributes:
-        needed: Changes that must be undone, and together suffice, for the golden outputs.
-        idle: Changes without effect.
+        needed: Changes that must be undone to get the golden outputs; no further change must be undone.
+        idle: Changes without an effect on the outputs.
         all_back: True if undoing all changes gives the golden outputs; None if this was not tested.
     """
 
@@ -55,7 +55,7 @@ def find_effective_changes(order: Sequence[int], same: IsSameRun) -> SearchResul
 
 
 def _bisect_changes(group: list[int], every: frozenset[int], same: IsSameRun, found: SearchResult) -> None:
-    """Sort a group into needed and idle changes by rerunning with all other changes undone."""
+    """Undo all changes except a group. Add the group to the needed or idle changes, or divide the group further."""
     answer = same(every - frozenset(group))
     if answer is None:
         return
@@ -70,7 +70,7 @@ def _bisect_changes(group: list[int], every: frozenset[int], same: IsSameRun, fo
     _bisect_changes(group[middle:], every, same, found)
 
 
-_MAX_CHANGES = 8  # causes listed in full
+_MAX_CHANGES = 8  # maximum number of causes in a report; further causes are counted
 
 
 def explain(
@@ -86,8 +86,8 @@ def explain(
     Args:
         golden: Stored record.
         run: New record.
-        comparison: Comparison of both.
-        rerun: Function that runs a scenario again in a changed world; None to test nothing.
+        comparison: Comparison of both records.
+        rerun: Function that runs a scenario again in a changed world. If None, the causes are not tested.
         budget_s: Wall-clock limit of all reruns [s].
     """
     changes, beside = changes_outside_world(world_changes(golden, run), golden, run)
@@ -95,7 +95,7 @@ def explain(
     parted = first_different_tick(golden.states, run.states)
     scenario = [c for c in beside if c.kind == "scenario"]
     every = [*scenario, *changes, *engine, *(c for c in beside if c.kind != "scenario")]
-    proof = _Proof([n for n, change in enumerate(every) if can_be_put_back(change, run)])
+    proof = _Proof([n for n, change in enumerate(every) if can_be_undone(change, run)])
     if proof.tried and rerun is not None and _has_recorded_difference(comparison):
         _prove(proof, ScenarioRerun(golden, run, comparison, every, rerun, budget_s), parted)
     causes = _rank_causes(every, proof)
@@ -138,7 +138,7 @@ def _has_recorded_difference(comparison: Comparison) -> bool:
 def _prove(proof: _Proof, again: ScenarioRerun, parted: FirstDifferentTick | None) -> None:
     proof.found = find_effective_changes(proof.tried, again.same)
     proof.until = again.horizon
-    if proof.found.needed and again.go_on():
+    if proof.found.needed and again.extend_to_whole_run():
         _explain_whole_run(proof, again)
     proof.is_whole = proof.until >= again.run.scenario.longest
     if parted is not None and parted.tick and proof.found.needed and parted.time <= again.horizon:
@@ -247,10 +247,10 @@ def _sentence(cause: Cause) -> str:
 
 
 def _short_path(where: str) -> str:
-    """Return a place relative to the working directory, if that is shorter."""
+    """Return a source position relative to the working directory, if this text is shorter."""
     file, colon, line = where.rpartition(":")
     try:
         near = os.path.relpath(file or where)
-    except ValueError:  # another drive
+    except ValueError:  # the file is on another drive
         return where
     return (near if len(near) < len(file) and not near.startswith("../..") else file) + colon + line

@@ -18,13 +18,13 @@ from simkit.testing.golden.compare.world_edits import (
 )
 from simkit.testing.run_record.record import RunRecord
 
-_HEAD = 16  # characters of a hash in a world value
+_HEAD = 16  # number of hash characters in a world value
 
 
 def changes_outside_world(
     changes: list[Change], golden: RunRecord, run: RunRecord
 ) -> tuple[list[Change], list[Change]]:
-    """Return the world's changes with the names of their files, and the changes outside the world.
+    """Return the changes of the world with file names added, and the changes outside the world.
 
     Args:
         changes: Changes of the world.
@@ -35,7 +35,7 @@ def changes_outside_world(
     named: list[Change] = []
     named_files: set[str] = set()
     for change in changes:
-        old, new = _name(golden, change.golden), _name(run, change.run)
+        old, new = _file_with_hash(golden, change.golden), _file_with_hash(run, change.run)
         if old or new:
             named_files |= {old, new}
             shown = new if old in (new, "") else old if not new else f"{old} → {new}"
@@ -49,8 +49,8 @@ def changes_outside_world(
     ]
 
 
-def _name(record: RunRecord, content: object) -> str:
-    """Return the file whose content a world value stands for; empty if there is none."""
+def _file_with_hash(record: RunRecord, content: object) -> str:
+    """Return the name of the file whose content hash is the given world value; empty if there is none."""
     if not isinstance(content, str) or not content.endswith(" bytes)"):
         return ""
     return next((name for name, digest in record.sources.items() if digest[:_HEAD] == content[:_HEAD]), "")
@@ -98,7 +98,7 @@ _DERIVED_FIELDS = frozenset(
         *("ipos", "iquat", "inertia", "margin", "M0", "Madr", "pos0", "poscom0", "mat0", "dir0", "gravcomp"),
     )
 )
-"""Fields that the engine's compiler derives from others; they are reported only if no other field differs."""
+"""Fields that the engine's compiler computes from other fields; a report lists them only if no other field differs."""
 
 
 def engine_changes(golden: RunRecord, run: RunRecord, changes: Sequence[Change]) -> list[Change]:

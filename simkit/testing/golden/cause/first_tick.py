@@ -12,7 +12,7 @@ from simkit.testing.run_record.record import States
 Numbers = npt.NDArray[np.float64]
 
 _ROUNDING = 1e-9
-"""Smallest scale of a quantity, so that differences below it are ranked last."""
+"""Smallest scale of a quantity, so that smaller differences are listed last."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class FirstDifferentTick:
         time: Simulated time of the tick [s].
         has_other_input: True if an input from plugins or commands differs at this tick or earlier.
         quantity: First quantity that differs, in words; empty if unknown.
-        words: Complete description.
+        words: Complete description of the difference.
     """
 
     tick: int
@@ -37,8 +37,8 @@ class FirstDifferentTick:
 def first_different_tick(golden: States, run: States) -> FirstDifferentTick | None:
     """Find the first difference in the physics of two runs; None if there is none.
 
-    A mark is a hash of one byte. One in 256 differing ticks therefore appears equal, and the next tick shows the
-    difference.
+    A mark is a hash of one byte, so the marks of different states are equal with a probability of 1/256. The
+    difference then appears at the next tick.
     """
     state, input_index = (
         _first_different_mark(golden.marks, run.marks),
@@ -168,12 +168,12 @@ def distinct_digits(golden: float, run: float) -> str:
         return f"{exact[0]} → {exact[1]}"
     for digits in (3, 4, 5, 6, 8, 10, 13, 17):
         a, b = f"{golden:.{digits}g}", f"{run:.{digits}g}"
-        if a != b and _keeps_distance(float(a), float(b), golden, run):
+        if a != b and _preserves_difference(float(a), float(b), golden, run):
             return f"{a} → {b}"
     return f"{golden!r} → {run!r}"
 
 
-def _keeps_distance(a: float, b: float, golden: float, run: float) -> bool:
+def _preserves_difference(a: float, b: float, golden: float, run: float) -> bool:
     """Check whether rounding changes the difference by at most 1 %."""
     difference = run - golden
     return not np.isfinite(difference) or abs((b - a) - difference) <= 0.01 * abs(difference)

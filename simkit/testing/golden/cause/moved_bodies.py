@@ -1,4 +1,4 @@
-"""Rigid motions between two worlds: a moved robot is reported once instead of once for each of its parts."""
+"""Rigid motions between two worlds: a moved robot is reported once, not once for each of its links."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from simkit.testing.golden.cause.first_tick import distinct_digits
 from simkit.testing.golden.compare.world_edits import Edit, entity_kind, parent_path, scoped_name, split_entity_path
 
 _LOCAL_FIELDS = {"pose_world": "pose_link", "xyz_world": "xyz_joint", "direction_world": "direction"}
-"""Values derived from the owner's pose -> values that a file states instead."""
-_CLOSE = 1e-9  # [m and rad], per metre from the origin
+"""Value in the world frame -> value in the file. A motion of the owner changes only the value in the world frame."""
+_CLOSE = 1e-9  # tolerance for equal motions [m and rad], per metre from the origin
 _FARTHEST = 1e15  # [m]
 _STRAIGHT = 1e-6
 _SMALL = 0.1  # [m]; smaller lengths are written in millimetres
@@ -29,8 +29,8 @@ class Motion:
         owner: Path of the entity.
         words: Description of the motion.
         numbers: Coordinates that differ, as in a file; may be empty.
-        along: Description of entities that moved with it; may be empty.
-        edits: All values that follow from the motion, the entity's own first.
+        along: Description of other entities that moved with this one; may be empty.
+        edits: All values that differ because of the motion; those of the entity itself are first.
     """
 
     owner: str
@@ -41,7 +41,7 @@ class Motion:
 
     @property
     def where(self) -> str:
-        """Place in the file."""
+        """Source position of the entity, `file:line`; empty if unknown."""
         return next((e.where for e in self.edits if e.where), "")
 
 
@@ -56,11 +56,11 @@ def find_motions(
         run: All values of the new world.
     """
     poses = [e for e in edits if e.attribute in ("pose_world", "pose_link") and _is_pose(e.golden) and _is_pose(e.run)]
-    # values that follow from another value of the entity and from the pose of its owner
+    # values that are computed from a local value of the entity and the pose of its owner
     derived = [e for e in edits if local_path(e.path) in run]
     rest = [e for e in edits if e not in derived and e not in poses]
     in_world = {e.owner: e for e in poses if e.attribute == "pose_world" and f"{e.owner}.pose_link" not in run}
-    # motion of the world frame that would move the entity in the same way
+    # motion of the world frame that moves the entity in the same way
     deltas = {owner: _pose(edit.run) @ _pose(edit.golden).inverse() for owner, edit in in_world.items()}
     carriers = _carrying_entities(run, set(in_world))
     found: dict[str, Motion] = {}
@@ -98,13 +98,13 @@ def _is_pose(value: object) -> bool:
 
 
 def local_path(path: str) -> str:
-    """Return the path of the local value that corresponds to a world value; empty if there is none."""
+    """Return the path of the local value that belongs to a value in world axes; empty if there is none."""
     beginning, dot, last = path.rpartition(".")
     return f"{beginning}{dot}{_LOCAL_FIELDS[last]}" if last in _LOCAL_FIELDS else ""
 
 
 def _owner_motion(owner: str, found: Mapping[str, Motion], roots: Mapping[str, str]) -> str | None:
-    """Return the motion of an entity: its own or that of the entity that carries it."""
+    """Return the path of the entity whose motion also moved the given one; None if it did not move."""
     while True:
         if owner in found:
             return owner
@@ -120,7 +120,10 @@ def _pose(numbers: Any) -> Pose:
 
 
 def _carrying_entities(run: Mapping[str, object], moved: set[str]) -> dict[str, list[str]]:
-    """Return what carries each entity, nearest last: its model, its joint's parent link, or a joint's link."""
+    """Return the entities that carry each moved entity, the nearest one last.
+
+    A model carries its links, the parent link of a joint carries the child link, and the child link carries the joint.
+    """
     owners = [split_entity_path(path)[0] for path in run if split_entity_path(path)[1] == "pose_world"]
     links = {scoped_name(owner): owner for owner in owners if entity_kind(owner) == "link"}
     found: dict[str, list[str]] = {owner: [parent_path(owner)] for owner in moved}
@@ -137,7 +140,7 @@ def _carrying_entities(run: Mapping[str, object], moved: set[str]) -> dict[str, 
 
 
 def _root_motion(owner: str, deltas: Mapping[str, Pose], carriers: Mapping[str, list[str]]) -> str:
-    """Return the outermost entity that carried an entity along; the entity itself if there is none."""
+    """Return the outermost entity that carries the given one and moved equally; the given one if there is none."""
     seen = {owner}
     at = owner
     while True:
@@ -224,7 +227,7 @@ def _rotation_axis(axis: Vector, golden: Pose) -> str:
 
 
 def _count_carried(motion: Motion) -> str:
-    """Describe the number of other links and models that moved along."""
+    """Describe the number of other links and models that moved with this entity."""
     owners = {e.owner for e in motion.edits} - {motion.owner}
     links = [o for o in owners if entity_kind(o) in ("link", "model") and not o.startswith(motion.owner + ".")]
     return f", with {len(links)} more on it" if links else ""

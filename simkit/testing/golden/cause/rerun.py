@@ -49,11 +49,11 @@ def rerun_scenario(scenario: RunSpec, change_world: ChangeWorld | None) -> RunRe
 
 
 class ScenarioRerun:
-    """Reruns with changes undone, within a time limit.
+    """Repetitions of a run in which some changes are undone, within a time limit.
 
     Args:
         golden, run: Records of both runs.
-        comparison: Comparison of both.
+        comparison: Comparison of both records.
         changes: Changes that can be undone.
         rerun: Function that runs a scenario.
         budget: Wall-clock limit of all reruns [s].
@@ -71,7 +71,7 @@ class ScenarioRerun:
         self._golden, self.run, self._comparison = golden, run, comparison
         self._changes, self._rerun = changes, rerun
         self._end = time.perf_counter() + budget
-        self._begin = self._pace = 0.0  # wall time of loading [s], and of one simulated second [s/s]
+        self._begin = self._pace = 0.0  # wall time for loading [s], and for one simulated second [s/s]
         self._known: dict[frozenset[int], bool | None] = {}
         self.horizon = self._first_horizon()
 
@@ -83,7 +83,7 @@ class ScenarioRerun:
         return self._known[chosen]
 
     def record(self, chosen: frozenset[int], duration: float) -> RunRecord | None:
-        """Return the record of the run with these changes undone; None without time left or if it failed."""
+        """Return the record of the run with these changes undone; None if no time is left or the run failed."""
         begun = time.perf_counter()
         if begun + self._begin + self._pace * duration > self._end:
             return None
@@ -102,8 +102,12 @@ class ScenarioRerun:
             self._begin = min(self._begin or taken, taken)
             self._pace = max(self._pace, (taken - self._begin) / max(duration, 1e-9))
 
-    def go_on(self) -> bool:
-        """Extend the reruns to the whole run and discard earlier results; return False if they cover it already."""
+    def extend_to_whole_run(self) -> bool:
+        """Extend the reruns to the whole run and discard earlier results.
+
+        Returns:
+            False if the reruns already cover the whole run.
+        """
         whole = self.run.scenario.longest
         if self.horizon >= whole:
             return False
@@ -116,7 +120,7 @@ class ScenarioRerun:
     # ------------------------------------------------------------------ comparison with the golden run
 
     def _first_horizon(self) -> float:
-        """Return the end of the rerun [s]: the end of the second with the first difference."""
+        """Return the end of the first reruns [s]: the end of the simulated second with the first difference."""
         whole = self.run.scenario.longest
         differences = self._comparison.differences
         if any(d.kind == "statistics" for d in differences) or not differences:
@@ -146,13 +150,13 @@ def _same_bits(golden: RunRecord, run: RunRecord, until: float) -> bool:
     for topic in {*golden.streams, *run.streams}:
         mine, other = golden.streams.get(topic), run.streams.get(topic)
         is_ignored = tolerance_of(run.scenario, topic, (golden.streams | run.streams)[topic].type_name, "").ignore
-        if not is_ignored and _chunks(mine, seconds) != _chunks(other, seconds):
+        if not is_ignored and _second_hashes(mine, seconds) != _second_hashes(other, seconds):
             return False
     return True
 
 
-def _chunks(stream: Stream | None, seconds: int) -> list[str]:
-    """Return the hashes of whole seconds without trailing seconds that have no message."""
+def _second_hashes(stream: Stream | None, seconds: int) -> list[str]:
+    """Return the hash of each second; leave out seconds without a message at the end."""
     found = list(stream.chunks[:seconds]) if stream is not None else []
     while found and found[-1] == _NOTHING:
         found.pop()
@@ -160,7 +164,7 @@ def _chunks(stream: Stream | None, seconds: int) -> list[str]:
 
 
 def cut_record(record: RunRecord, until: float) -> RunRecord:
-    """Return a record up to a time [s], exclusive."""
+    """Return the part of a record before a simulated time [s]."""
     limit = round(until * 1e9)
     streams = {name: _cut_stream(stream, limit) for name, stream in record.streams.items()}
     states = record.states
@@ -200,8 +204,8 @@ def _cut_column(column: Column, count: int) -> Column:
     return replace(column, values=column.values[: int(lengths.sum())], lengths=lengths)
 
 
-def can_be_put_back(change: Change, run: RunRecord) -> bool:
-    """Check whether a change can be undone: its golden values are complete, and the world is built from them."""
+def can_be_undone(change: Change, run: RunRecord) -> bool:
+    """Check whether a change can be undone: all its golden values are stored, and the world depends on them."""
     if change.kind == "scenario":
         return all(edit.path not in ("world", "plugins", "options") for edit in change.edits)
     if change.kind != "model" or not change.edits:

@@ -21,38 +21,38 @@ _KEPT_FIELDS = frozenset(("mjcf", "moved_by"))
 
 
 class CannotPatch(Exception):
-    """Golden value that is not sufficient to restore the object, such as the hash of a file."""
+    """Error of a golden value from which an object cannot be restored, such as the hash of a file."""
 
 
 class _PatchNode:
-    """Requested state of a world node: its own value and its children.
+    """Requested state of a world node: the value of the node and its child nodes.
 
     Attributes:
         value: Value of the node; ABSENT if it has none.
-        below: Field, or key in brackets -> child node.
+        children: Field, or key in brackets -> child node.
         is_touched: True if the node or a descendant must change.
     """
 
-    __slots__ = ("below", "is_touched", "value")
+    __slots__ = ("children", "is_touched", "value")
 
     def __init__(self) -> None:
         self.value: object = ABSENT
-        self.below: dict[str, _PatchNode] = {}
+        self.children: dict[str, _PatchNode] = {}
         self.is_touched = False
 
     @property
-    def is_there(self) -> bool:
+    def has_value(self) -> bool:
         """True if the node or a descendant has a value."""
-        return self.value is not ABSENT or any(one.is_there for one in self.below.values())
+        return self.value is not ABSENT or any(one.has_value for one in self.children.values())
 
     def reach(self, path: str, *, touch: bool) -> _PatchNode:
         """Return the node at a path; create missing nodes."""
         node = self
         node.is_touched |= touch
         for step in _steps(path):
-            if step not in node.below:
-                node.below[step] = _PatchNode()
-            node = node.below[step]
+            if step not in node.children:
+                node.children[step] = _PatchNode()
+            node = node.children[step]
             node.is_touched |= touch
         return node
 
@@ -70,7 +70,7 @@ def patch_world(
         world: World; it is not modified.
         now: Values of the world from `simkit.testing.run_record.world_values`.
         values: Path -> new value; ABSENT removes the value.
-        files: Files whose content may be restored; None for the files that the world uses.
+        files: Files from which content can be restored; None for the files that the world uses.
         order: Paths in file order, so that a restored element gets its old position.
 
     Raises:
@@ -88,7 +88,8 @@ def patch_world(
     try:
         changed = _PatchedBuilder(by_content).changed(world, root, "")
     except (TypeError, ValueError, AttributeError, KeyError, IndexError) as error:
-        raise CannotPatch(str(error)) from error  # values of another version, or from a manipulated file
+        # the values come from another version of simkit or from a manipulated file
+        raise CannotPatch(str(error)) from error
     assert isinstance(changed, SceneWorld)
     return changed
 
@@ -124,7 +125,7 @@ class _PatchedBuilder:
         owner = getattr(node, "scoped", None) or owner
         others = {}
         for one in fields(node):
-            inner = patch.below.get(one.name)
+            inner = patch.children.get(one.name)
             if inner is not None and inner.is_touched:
                 others[one.name] = self._field(type(node), one, getattr(node, one.name), inner, owner)
         return replace(node, **others) if others else node
@@ -137,15 +138,15 @@ class _PatchedBuilder:
         hints = _hints(kind)
         words = {"name": name, "scoped": whole, "parent": owner, "uri": ""}
         for one in fields(kind):
-            inner = patch.below.get(one.name)
+            inner = patch.children.get(one.name)
             default = default_of(one)
-            if inner is not None and inner.is_there:
+            if inner is not None and inner.has_value:
                 given[one.name] = self._field(kind, one, None if default is MISSING else default, inner, whole)
             elif one.name in words and isinstance(words[one.name], str) and hints[one.name] is str:
                 given[one.name] = words[one.name]
             elif hints[one.name] is Params:
                 given[one.name] = Params(one.name)
-            else:  # no value: the field is empty
+            else:  # the field has no value and is empty
                 given[one.name] = self._nothing(one, hints[one.name])
         return kind(**given)
 
@@ -155,9 +156,9 @@ class _PatchedBuilder:
             raise CannotPatch(one.name)
         if hint is Params:
             return self._params(now if isinstance(now, Params) else Params(one.name), patch)
-        if typing.get_origin(hint) is tuple and any(step.startswith("[") for step in patch.below):
+        if typing.get_origin(hint) is tuple and any(step.startswith("[") for step in patch.children):
             return self._elements(now or (), _node_kinds(hint), patch, owner)
-        if not patch.is_there:
+        if not patch.has_value:
             return self._nothing(one, hint)
         if isinstance(now, Mapping) or typing.get_origin(hint) in (Mapping, dict):
             return self._mapping(now or {}, patch)
@@ -191,21 +192,21 @@ class _PatchedBuilder:
     def _elements(
         self, now: Sequence[Any], kinds: Mapping[str, type], patch: _PatchNode, owner: str
     ) -> tuple[object, ...]:
-        """Return the items of a list without removed ones; added items follow their former predecessors."""
+        """Return the items of a list without removed items; added items get their position in the golden run."""
         there = dict(zip(item_keys(now), now, strict=True))
         found: dict[str, object] = {}
         for key, item in there.items():
-            inner = patch.below.get(f"[{key}]")
+            inner = patch.children.get(f"[{key}]")
             if inner is None or not inner.is_touched:
                 found[key] = item
-            elif inner.is_there:
+            elif inner.has_value:
                 is_block = isinstance(item, Params)
                 found[key] = self._params(item, inner) if is_block else self.changed(item, inner, owner)
         places = list(found)
         before = ""
-        for step, inner in patch.below.items():
+        for step, inner in patch.children.items():
             key = step[1:-1]
-            if step.startswith("[") and key not in there and inner.is_there:
+            if step.startswith("[") and key not in there and inner.has_value:
                 if not kinds:
                     raise CannotPatch(step)
                 found[key] = self.made(next(iter(kinds.values())), inner, owner, key)
@@ -216,17 +217,17 @@ class _PatchedBuilder:
 
     def _mapping(self, now: Mapping[str, object], patch: _PatchNode) -> dict[str, object]:
         found = dict(now)
-        for step, inner in patch.below.items():
+        for step, inner in patch.children.items():
             if inner.is_touched:
-                if inner.below:
+                if inner.children:
                     raise CannotPatch(step)
                 found.pop(step[1:-1], None)
-                if inner.is_there:
+                if inner.has_value:
                     found[step[1:-1]] = _as_scene_value(inner.value, None)
         return found
 
     def _params(self, now: Params, patch: _PatchNode) -> Params:
-        """Return a changed copy of a parameter block, in which no parameter counts as read."""
+        """Return a changed copy of a parameter block; the copy reports all its parameters as unread."""
         attributes = dict(now.attributes)
         children: list[Params] = []
         taken = set()
@@ -236,15 +237,15 @@ class _PatchedBuilder:
             taken.add(key)
             if inner is None or not inner.is_touched:
                 children.append(child.copied())
-            elif inner.is_there:
+            elif inner.has_value:
                 children.append(self._params(child, inner))
         for key, inner in elements.items():
-            if key not in taken and inner.is_there:
+            if key not in taken and inner.has_value:
                 children.append(self._params(Params(key.partition("[")[0], diagnostics=now.diagnostics), inner))
         for name, inner in given.items():
             if inner.is_touched:
                 attributes.pop(name, None)
-                if inner.is_there:
+                if inner.has_value:
                     attributes[name] = _element_text(inner.value)
         text = now.value
         if patch.is_touched and patch.value is not ABSENT and _text_value(text) != patch.value:
@@ -254,17 +255,17 @@ class _PatchedBuilder:
         return Params(now.name, text, attributes, children, now.where, now.diagnostics)
 
     def _split(self, patch: _PatchNode) -> tuple[dict[str, _PatchNode], dict[str, _PatchNode]]:
-        """Return the child elements by key and the attributes by name."""
+        """Return two mappings: the child elements by key, and the attributes by name."""
         elements: dict[str, _PatchNode] = {}
         given: dict[str, _PatchNode] = {}
-        for step, inner in patch.below.items():
+        for step, inner in patch.children.items():
             if step.startswith("@"):
                 given[step[1:]] = inner
                 continue
-            keyed = {k: v for k, v in inner.below.items() if k.startswith("[")}
+            keyed = {k: v for k, v in inner.children.items() if k.startswith("[")}
             for key, one in keyed.items():
                 elements[f"{step}[{escaped_key(key[1:-1])}]"] = one
-            if inner.value is not ABSENT or len(keyed) < len(inner.below):
+            if inner.value is not ABSENT or len(keyed) < len(inner.children):
                 elements[step] = inner
         return elements, given
 
@@ -339,7 +340,7 @@ def _hints(kind: type) -> dict[str, object]:
 
 
 def files_named_by(value: object) -> list[Path]:
-    """Return the files that a world or a part of it uses."""
+    """Return the files that a world or one of its objects uses."""
     if isinstance(value, Path):
         return [value]
     if is_dataclass(value) and not isinstance(value, type):

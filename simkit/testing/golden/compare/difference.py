@@ -24,12 +24,12 @@ class Difference:
         field: Path of the field within the message; empty for the whole topic.
         kind: Kind of difference.
         time: Time of the first difference [s].
-        size: Largest difference in the field's unit; NaN if it has no size.
+        size: Largest difference in the field's unit; NaN for a difference without a size.
         unit: Unit of `size`.
         words: Sentence such as `/scan.ranges: 14 of 360 rays +12 mm from t = 3.20 s`.
         allowed: Tolerance in words.
-        index: Index of the first message that differs; -1 if not applicable.
-        columns: Paths of the columns that form `field`, if it is not a column itself (an orientation).
+        index: Index of the first message that differs; -1 if the difference is not in a message.
+        columns: Paths of the columns if `field` has several columns (an orientation); empty otherwise.
     """
 
     topic: str
@@ -51,7 +51,7 @@ class Comparison:
     Attributes:
         tier: "exact" if no difference of machine or versions can change bits, else "tolerant".
         differences: Differences beyond their tolerance, by time, then topic; empty for a pass.
-        notes: Sentences about differences that do not count, and about what is not compared.
+        notes: Sentences about differences within the tolerances, and about data that are not compared.
         machine: Entries of the fingerprint that differ: name -> (golden, run).
         topics: Number of compared topics.
         messages: Number of compared messages.
@@ -101,7 +101,7 @@ class Explanation:
         causes: Causes, most likely first.
         tick: First tick at which the physics differs; None if it does not differ.
         time: Simulated time of that tick [s].
-        quantity: First state quantity that differs, in words; empty if there is none.
+        quantity: First quantity of the physics state that differs, in words; empty if there is none.
         lines: Complete explanation, as shown in reports.
     """
 

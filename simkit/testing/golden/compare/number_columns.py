@@ -1,4 +1,4 @@
-"""Comparison of number columns and orientations: the first message that differs, the size and the development."""
+"""Comparison of number columns and orientations: the first message that differs, the size and the change over time."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NAMES = ("child_frame_id", "name", "names", "joint_names", "link_name", "id")
 
 
 def _largest_deviation(shift: Floats, counted: Flags, messages: npt.NDArray[np.intp]) -> tuple[float, int]:
-    """Return the largest finite difference and its message; NaN and -1 if there is none."""
+    """Return the largest finite difference and the index of its message; NaN and -1 if there is none."""
     off = np.where(counted & np.isfinite(shift), np.abs(shift), -1.0)
     at = int(np.argmax(off))
     return (float(shift[at]), int(messages[at])) if off[at] >= 0.0 else (math.nan, -1)
@@ -48,7 +48,7 @@ def _setting_text(terms: FieldTerms, golden: FlatValues, run: FlatValues, first:
 
 
 def _which_values(terms: FieldTerms, numbers: npt.NDArray[np.intp], width: int, index: int) -> str:
-    """Describe the values of a message that differ: `14 of 360 rays (45 to 58) `."""
+    """Describe which values of a message differ: `14 of 360 rays (45 to 58) `."""
     names = _value_names(terms, width, index)
     if width == 1 and not names:
         return ""
@@ -67,7 +67,7 @@ def _which_values(terms: FieldTerms, numbers: npt.NDArray[np.intp], width: int, 
 
 
 def _value_names(terms: FieldTerms, width: int, index: int) -> list[str]:
-    """Return the names of a message's values from a neighbouring field of names; empty if there is none."""
+    """Return the names of a message's values from a field with names in the same message; empty if there is none."""
     if width > 64:
         return []
     parts = terms.field.split(".")
@@ -151,7 +151,7 @@ def compare_column(terms: FieldTerms, golden: Column, run: Column) -> FieldFindi
     found = field_finding(terms, shift, limit, mine, other, HALF_STEP * (golden.step + run.step))
     if found.difference is not None or not uneven.size:
         return found
-    # the first message with more or fewer values
+    # describe the first message with more or fewer values
     a, b, time = int(golden.of(first).size), int(run.of(first).size), terms.time(first)
     things = item_name(terms.stream.type_name, terms.field)
     words, size = f"{terms.name}: {a} {things} became {b} at {time_text(time)}", float(abs(b - a))
@@ -251,21 +251,21 @@ def _limit(terms: FieldTerms, golden: Column, run: Column, values: Array) -> Flo
 
 
 def _tolerances(tolerance: Tolerance, values: Array) -> Floats:
-    """Return the tolerance of each value, also where bits must be equal."""
+    """Return the tolerance of each value without rounding; a comparison of bits uses it as a scale."""
     with np.errstate(invalid="ignore"):
         part = (tolerance.relative or 0.0) * np.nan_to_num(np.abs(values.astype(np.float64)), posinf=0.0)
     return np.asarray((tolerance.absolute or 0.0) + part)
 
 
 def quaternion_paths(columns: Sequence[str]) -> list[str]:
-    """Return the paths that have x, y, z and w columns."""
+    """Return the paths of quaternions: those with columns x, y, z and w."""
     known = set(columns)
     bases = [path[:-2] for path in columns if path.endswith(".w")]
     return [base for base in bases if all(f"{base}.{axis}" in known for axis in "xyz")]
 
 
 def compare_orientation(terms: FieldTerms, golden: list[Column], run: list[Column]) -> FieldFinding | None:
-    """Compare quaternions x, y, z, w as rotations; None if they are not unit quaternions or differ in number."""
+    """Compare quaternions x, y, z, w as rotations; None if they are not unit quaternions or if their numbers differ."""
     mine, other = [FlatValues.of(c, terms.count) for c in golden], [FlatValues.of(c, terms.count) for c in run]
     widths = mine[0].widths
     if any(len(f.widths) != len(widths) or (f.widths != widths).any() for f in (*mine, *other)):
@@ -285,7 +285,7 @@ def compare_orientation(terms: FieldTerms, golden: list[Column], run: list[Colum
         limit = np.full(angle.shape, (terms.tolerance.absolute or 0.0) + 2.0 * step)
     axis = np.argmax(np.abs(vector), axis=-1)
     along = np.take_along_axis(vector * np.where(scalar < 0.0, -1.0, 1.0)[:, None], axis[:, None], axis=-1)[:, 0]
-    angles = replace(mine[0], values=np.zeros(angle.shape))  # only shape and messages of these values are used
+    angles = replace(mine[0], values=np.zeros(angle.shape))  # only the shape and the messages are used
     found = field_finding(terms, np.where(along < 0.0, -angle, angle), limit, angles, angles, 2.0 * step)
     if found.difference is None:
         return found

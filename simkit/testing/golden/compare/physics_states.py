@@ -13,8 +13,8 @@ from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text
 from simkit.testing.run_record.record import States
 
-_TINY: Final = 1e-9  # smallest scale, for a quantity that has hardly moved
-# absolute tolerance, and share of the largest value, on another machine; by a word in the quantity's name
+_TINY: Final = 1e-9  # smallest scale of a quantity, so that tiny motions are not reported as large relative differences
+# on another machine: word in the quantity's name, absolute tolerance, tolerance as a share of the largest value
 _ALLOWED: Final[tuple[tuple[str, float, float], ...]] = (
     ("velocity", 2e-2, 1e-2),
     ("position", 1e-3, 1e-3),
@@ -26,7 +26,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class _StateDifferences:
-    """States of the ticks and quantities that both runs recorded."""
+    """Differences of the ticks and quantities that both runs recorded."""
 
     names: list[str]
     times: Floats
@@ -102,7 +102,7 @@ def _bits(golden: States, run: States, kept: _StateDifferences) -> Difference | 
 
 
 def _largest_difference(kept: _StateDifferences, index: int, words: str, time: float, allowed: str) -> Difference:
-    """Describe the quantity with the largest difference relative to its size, in one recorded state."""
+    """Describe the quantity with the largest relative difference in one recorded state."""
     scale = np.maximum(np.abs(kept.golden).max(axis=0), _TINY)
     at = int(np.argmax(np.abs(kept.shift[index]) / scale))
     name, unit = kept.names[at], unit_of_quantity(kept.names[at], kept.joints)

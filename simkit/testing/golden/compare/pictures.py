@@ -1,4 +1,4 @@
-"""Comparison of pictures: the changed part, the size of the change, and the structural similarity."""
+"""Comparison of pictures: the part that changed, the size of the change, and the structural similarity."""
 
 from __future__ import annotations
 
@@ -49,24 +49,24 @@ def compare_pictures(
     if mine.hashes is not None and other.hashes is not None:
         known = min(count, len(mine.hashes), len(other.hashes))
         changed = np.flatnonzero(mine.hashes[:known] != other.hashes[:known])
-    met = _CommonPictures(run, mine.at(messages), other.at(messages), tolerance, is_exact, count, messages, changed)
+    pair = _CommonPictures(run, mine.at(messages), other.at(messages), tolerance, is_exact, count, messages, changed)
     if mine.small.dtype.kind == "f" or other.small.dtype.kind == "f":
-        ranked = _depths(met, notes)
+        ranked = _depths(pair, notes)
     else:
-        ranked = _colours(met, notes)
-    return _with_hashes(met, ranked) if is_exact else ranked
+        ranked = _colours(pair, notes)
+    return _with_hashes(pair, ranked) if is_exact else ranked
 
 
 @dataclass(frozen=True)
 class _CommonPictures:
-    """Pictures of the messages for which both runs stored them.
+    """Pictures of those messages for which both runs stored a picture.
 
     Attributes:
         stream: Stream of the new run.
         golden, run: Pictures of the golden run and of the new run.
         tolerance, is_exact, count: See `compare_pictures`.
         messages: Messages whose pictures both runs stored.
-        changed: Messages whose pictures differ, stored or not; None if unknown.
+        changed: Messages whose original pictures differ, also without a stored picture; None if unknown.
     """
 
     stream: Stream
@@ -79,7 +79,7 @@ class _CommonPictures:
     changed: npt.NDArray[np.intp] | None
 
     @property
-    def all_kept(self) -> bool:
+    def all_stored(self) -> bool:
         """True if the pictures of all messages are stored."""
         return len(self.messages) == self.count
 
@@ -97,7 +97,7 @@ class _CommonPictures:
 
 
 def _format_difference(run: Stream, mine: Pictures, other: Pictures) -> Difference | None:
-    """Compare size and encoding."""
+    """Compare the sizes and encodings of pictures; return None if they are equal."""
     changes = []
     if mine.shape != other.shape:
         changes.append(f"{mine.shape[1]} × {mine.shape[0]} px became {other.shape[1]} × {other.shape[0]} px")
@@ -112,16 +112,16 @@ def _format_difference(run: Stream, mine: Pictures, other: Pictures) -> Differen
     return Difference(run.topic, "", "picture", time, math.nan, "", words, "the same size and encoding", 0)
 
 
-def _with_hashes(met: _CommonPictures, ranked: Ranked) -> Ranked:
-    """Correct the time of the first difference by the hashes of all pictures, because only some pictures are stored."""
-    if met.changed is None or not met.changed.size:
+def _with_hashes(pair: _CommonPictures, ranked: Ranked) -> Ranked:
+    """Correct the time of the first difference: every picture has a hash, but only some pictures are stored."""
+    if pair.changed is None or not pair.changed.size:
         return ranked
-    first = int(met.changed[0])
-    time = float(met.stream.times_ns[first]) * 1e-9
+    first = int(pair.changed[0])
+    time = float(pair.stream.times_ns[first]) * 1e-9
     if not ranked:
-        words = f"{met.stream.topic}: pictures differ from {time_text(time)}, in {len(met.changed)} of {met.count}"
-        words += "" if met.all_kept else ", but in no stored picture"
-        difference = Difference(met.stream.topic, "", "picture", time, math.nan, "", words, "the same bits", first)
+        words = f"{pair.stream.topic}: pictures differ from {time_text(time)}, in {len(pair.changed)} of {pair.count}"
+        words += "" if pair.all_stored else ", but in no stored picture"
+        difference = Difference(pair.stream.topic, "", "picture", time, math.nan, "", words, "the same bits", first)
         return [(1.0, difference)]
     excess, difference = ranked[0]
     if first < difference.index:
@@ -133,41 +133,41 @@ def _with_hashes(met: _CommonPictures, ranked: Ranked) -> Ranked:
 # ---------------------------------------------------------------------- colours
 
 
-def _colours(met: _CommonPictures, notes: list[str]) -> Ranked:
-    count, topic = len(met.messages), met.stream.topic
+def _colours(pair: _CommonPictures, notes: list[str]) -> Ranked:
+    count, topic = len(pair.messages), pair.stream.topic
     if not count:
         return []
-    changed = _changed_tiles(met)
-    apart = np.abs(met.golden.small.astype(np.int16) - met.run.small).reshape(count, -1).mean(axis=1)
+    changed = _changed_tiles(pair)
+    apart = np.abs(pair.golden.small.astype(np.int16) - pair.run.small).reshape(count, -1).mean(axis=1)
     suspects = np.flatnonzero((apart > 0.0) | changed.any(axis=1))
     if not suspects.size:
         return []
-    tolerance = met.tolerance
+    tolerance = pair.tolerance
     failing, allowed = suspects, "the same bits"
-    if not met.is_exact:
+    if not pair.is_exact:
         image, least = float(tolerance.image or 0.0), float(1.0 if tolerance.ssim is None else tolerance.ssim)
-        failing = np.array([i for i in suspects if apart[i] > image or met.similarity(int(i)) < least], np.intp)
+        failing = np.array([i for i in suspects if apart[i] > image or pair.similarity(int(i)) < least], np.intp)
         allowed = f"a mean difference of {image:g} of 255, similarity {least:g}"
     if not failing.size:
         worst = int(np.argmax(apart))
         notes.append(
             f"{topic}: pictures differ by {apart[worst]:.2g} of 255 on average, within {allowed} "
-            f"(similarity {met.similarity(worst):.3f} at {met.when(worst)})"
+            f"(similarity {pair.similarity(worst):.3f} at {pair.when(worst)})"
         )
         return []
     first = int(failing[0])
-    words = f"{topic}: {_changed_part_text(changed[first], met.golden)}{_brightness(met, first)}"
-    words += f", similarity {met.similarity(first):.3f}, {_development_text(met, failing, apart)}"
-    size, index = float(apart[failing].max()), int(met.messages[first])
-    difference = Difference(topic, "", "picture", met.seconds(first), size, "of 255", words, allowed, index)
+    words = f"{topic}: {_changed_part_text(changed[first], pair.golden)}{_brightness(pair, first)}"
+    words += f", similarity {pair.similarity(first):.3f}, {_development_text(pair, failing, apart)}"
+    size, index = float(apart[failing].max()), int(pair.messages[first])
+    difference = Difference(topic, "", "picture", pair.seconds(first), size, "of 255", words, allowed, index)
     return [(float(apart.max()) / max(0.1, float(tolerance.image or 0.1)), difference)]
 
 
-def _changed_tiles(met: _CommonPictures) -> npt.NDArray[np.bool_]:
+def _changed_tiles(pair: _CommonPictures) -> npt.NDArray[np.bool_]:
     """Compare the tiles of each picture; the result has shape (messages, tiles)."""
-    a, b = met.golden.tiles, met.run.tiles
+    a, b = pair.golden.tiles, pair.run.tiles
     if a.shape != b.shape:
-        return np.zeros((len(met.messages), 1), bool)
+        return np.zeros((len(pair.messages), 1), bool)
     return np.asarray((a != b).reshape(len(a), -1))
 
 
@@ -186,9 +186,9 @@ def _changed_part_text(changed: npt.NDArray[np.bool_], mine: Pictures) -> str:
     return f"{number} of {total} tiles changed ({place})"
 
 
-def _brightness(met: _CommonPictures, row: int) -> str:
+def _brightness(pair: _CommonPictures, row: int) -> str:
     """Describe the mean change and whether the picture became brighter or darker."""
-    shift = met.run.small[row].astype(np.float64) - met.golden.small[row]
+    shift = pair.run.small[row].astype(np.float64) - pair.golden.small[row]
     mean, size = float(shift.mean()), float(np.abs(shift).mean())
     if size < 0.005:
         return ", not visible in the reduced picture"
@@ -201,25 +201,25 @@ def _brightness(met: _CommonPictures, row: int) -> str:
 # ---------------------------------------------------------------------- depths
 
 
-def _depths(met: _CommonPictures, notes: list[str]) -> Ranked:
+def _depths(pair: _CommonPictures, notes: list[str]) -> Ranked:
     """Compare depths [m]; if the reduced pictures are equal, compare the tiles of the full pictures."""
-    mine, other, topic = met.golden.small, met.run.small, met.stream.topic
-    kept = replace(met.stream, times_ns=met.stream.times_ns[met.messages], words={})
-    terms = FieldTerms(kept, "", met.tolerance, met.is_exact, len(met.messages), "m")
+    mine, other, topic = pair.golden.small, pair.run.small, pair.stream.topic
+    kept = replace(pair.stream, times_ns=pair.stream.times_ns[pair.messages], words={})
+    terms = FieldTerms(kept, "", pair.tolerance, pair.is_exact, len(pair.messages), "m")
     found = compare_column(terms, Column(mine, None, _rounding_step(mine)), Column(other, None, _rounding_step(other)))
     if found.difference is not None:
-        index = int(met.messages[found.difference.index])
+        index = int(pair.messages[found.difference.index])
         return [(found.excess, replace(found.difference, kind="picture", index=index))]
-    changed = _changed_tiles(met)
-    if not met.is_exact or not changed.any():
+    changed = _changed_tiles(pair)
+    if not pair.is_exact or not changed.any():
         if found.excess > 0.1:
             notes.append(f"{topic}: pictures differ within {terms.allowed}")
         return []
     first = int(np.argmax(changed.any(axis=1)))
-    part = _changed_part_text(changed[first], met.golden)
-    words = f"{topic}: {part}, not visible in the reduced picture, from {met.when(first)}"
-    index = int(met.messages[first])
-    return [(1.0, Difference(topic, "", "picture", met.seconds(first), math.nan, "m", words, "the same bits", index))]
+    part = _changed_part_text(changed[first], pair.golden)
+    words = f"{topic}: {part}, not visible in the reduced picture, from {pair.when(first)}"
+    index = int(pair.messages[first])
+    return [(1.0, Difference(topic, "", "picture", pair.seconds(first), math.nan, "m", words, "the same bits", index))]
 
 
 def _rounding_step(depths: Array) -> float:
@@ -231,19 +231,23 @@ def _rounding_step(depths: Array) -> float:
 # ---------------------------------------------------------------------- time
 
 
-def _development_text(met: _CommonPictures, failing: npt.NDArray[np.intp], apart: Array) -> str:
+def _development_text(pair: _CommonPictures, failing: npt.NDArray[np.intp], apart: Array) -> str:
     """Describe the first time, the number of pictures and the largest difference."""
     first = int(failing[0])
-    number, rest, things = len(failing), len(met.messages) - first, "pictures" if met.all_kept else "stored pictures"
-    if met.is_exact and met.changed is not None:  # hashes exist for all pictures, stored or not
-        index = int(met.messages[first])
-        number, rest, things = int((met.changed >= index).sum()), met.count - index, "pictures"
-    words = f"{'from' if number > 1 else 'at'} {met.when(first)}"
+    number, rest, things = (
+        len(failing),
+        len(pair.messages) - first,
+        "pictures" if pair.all_stored else "stored pictures",
+    )
+    if pair.is_exact and pair.changed is not None:  # every picture has a hash, even if the picture is not stored
+        index = int(pair.messages[first])
+        number, rest, things = int((pair.changed >= index).sum()), pair.count - index, "pictures"
+    words = f"{'from' if number > 1 else 'at'} {pair.when(first)}"
     if number < rest:
         words += f", in {number} of {rest} {things}"
     worst = int(failing[int(np.argmax(apart[failing]))])
     if worst > first and apart[worst] > 1.5 * apart[first]:
-        words += f", up to {apart[worst]:.2g} of 255 at {met.when(worst)}"
+        words += f", up to {apart[worst]:.2g} of 255 at {pair.when(worst)}"
     return words
 
 

@@ -33,7 +33,7 @@ def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> 
     same = not fingerprint_differences(golden.fingerprint, run.fingerprint) if exact is None else exact
     same_pictures = not fingerprint_differences(golden.fingerprint, run.fingerprint, True) if exact is None else exact
     is_reordered = exact is None and same and _is_reordered(golden, run)
-    if is_reordered:  # the engine sums in file order, so rounding differs
+    if is_reordered:  # the engine sums values in file order, so the rounding differs
         same = same_pictures = False
     found = Comparison("exact" if same else "tolerant")
     if is_reordered:
@@ -50,13 +50,13 @@ def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> 
     _compare_ends(golden, run, found)
     found.differences.sort(key=lambda d: (d.kind != "end", d.time, d.topic))
     if run.scenario.model and not found.differences:
-        _compare_meaning(golden, run, found)
+        _compare_worlds(golden, run, found)
     _note_diagnostics(golden, run, found)
     return found
 
 
 def _is_reordered(golden: RunRecord, run: RunRecord) -> bool:
-    """Check whether the common values of both worlds have different orders in their files."""
+    """Check whether values that both worlds have are in a different order in their files."""
     mine = [path for path in golden.leaves if path in run.leaves]
     return mine != [path for path in run.leaves if path in golden.leaves]
 
@@ -127,16 +127,16 @@ def _compare_ends(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
     time = min(ticks) * run.states.timestep
     if golden.end != run.end:
         words = f"the run ended with “{run.end}” at t = {ticks[1] * run.states.timestep:g} s"
-        words += f"; the golden one with “{golden.end}” at t = {ticks[0] * golden.states.timestep:g} s"
+        words += f"; the golden run with “{golden.end}” at t = {ticks[0] * golden.states.timestep:g} s"
         found.differences.append(Difference("", "", "end", time, math.nan, "", words, "the same end"))
     elif ticks[0] != ticks[1] and golden.states.timestep == run.states.timestep:
-        words = f"the run took {ticks[1]} steps, the golden one {ticks[0]}"
+        words = f"the run took {ticks[1]} steps, the golden run {ticks[0]}"
         size = float(abs(ticks[1] - ticks[0]))
         found.differences.append(Difference("", "", "end", time, size, "steps", words, "as many steps"))
 
 
-def _compare_meaning(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
-    """Compare the values of the worlds; a change is a difference even if no recorded output differs."""
+def _compare_worlds(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
+    """Compare the values of the worlds; a changed value is a difference even if all recorded outputs are equal."""
     other_version = golden.fingerprint.get("simkit") != run.fingerprint.get("simkit")
     common = golden.leaves.keys() & run.leaves.keys()
     leaves = sorted(path for path in common if not _is_same_value(golden.leaves[path], run.leaves[path]))
@@ -151,7 +151,7 @@ def _compare_meaning(golden: RunRecord, run: RunRecord, found: Comparison) -> No
         text = _count_text(golden, run, changed)
         found.differences.append(_unrecorded_difference("the world", len(changed), changed[0], text))
     elif found.tier == "exact" and golden.fields and run.fields:
-        # equal scene values may hide changes in parts that are written in MuJoCo's own format
+        # equal scene values may hide changes of elements in MuJoCo's own format, so compare the compiled fields
         edits = field_edits(golden, run)
         if edits:
             text = _listed([f"{edit.path} {edit.golden} → {edit.run}" for edit in edits])

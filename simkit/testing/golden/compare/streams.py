@@ -19,14 +19,14 @@ from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_
 from simkit.testing.run_record.noise_statistics import NoiseStatistics, StatisticDifference, statistic_differences
 from simkit.testing.run_record.record import Column, Stream
 
-_REGULAR = 0.02  # relative deviation of intervals at a steady rate, because a period need not be a multiple of the step
+_REGULAR = 0.02  # allowed relative deviation of intervals at a steady rate; a period may lie between two steps
 _EVENTS = 0.02  # share of messages that may be missing or additional on another machine, for topics without a rate
 
 Times = npt.NDArray[np.int64]
 
 
 def compare_times(golden: Stream, run: Stream, timestep: float, is_exact: bool) -> tuple[int, Difference | None]:
-    """Return the number of first messages whose times match, and the first difference in time.
+    """Return the number of messages before the first one whose time differs, and describe this difference.
 
     Args:
         golden: Stream of the golden run.
@@ -80,11 +80,12 @@ def _rate(times: Times) -> float | None:
     """Return the rate of a steady topic [Hz]; None if the topic is not steady."""
     if len(times) < 3:
         return None
-    gaps = np.diff(times)[1:]  # the first reading follows the first step, which is not a multiple of the period
+    # the first reading comes after the first step, not after a period, so the first interval is left out
+    gaps = np.diff(times)[1:]
     mean = float(gaps.mean())
     if mean <= 0.0 or float(np.abs(gaps - np.median(gaps)).mean()) > max(_REGULAR * mean, 1e6):
         return None
-    rate, error = 1e9 / mean, 2e6 / float(gaps.sum())  # readings wait for a step, so they are up to 2 ms late
+    rate, error = 1e9 / mean, 2e6 / float(gaps.sum())  # sensors are read after a step, so readings are up to 2 ms late
     return float(round(rate)) if abs(rate - round(rate)) <= error * rate else rate
 
 
@@ -111,7 +112,7 @@ def _later(nanoseconds: int) -> str:
 
 
 def difference_in_bits(golden: Stream, run: Stream) -> Difference:
-    """Describe a difference that only hashes show: `bits differ from t in 3–4 s, by less than 31 µm`."""
+    """Describe a difference that is known only from hashes: `bits differ from t in 3–4 s, by less than 31 µm`."""
     both = min(len(golden.chunks), len(run.chunks))
     second = next((i for i in range(both) if golden.chunks[i] != run.chunks[i]), both)
     times = run.times_ns
@@ -127,7 +128,7 @@ def difference_in_bits(golden: Stream, run: Stream) -> Difference:
 
 
 def rounding_text(stream: Stream) -> str:
-    """Return half the rounding steps of a stream's numbers as text, such as `31 µm`; empty if none is rounded."""
+    """Return the largest rounding error for each unit in a stream as text, such as `31 µm`; may be empty."""
     by_unit: dict[str, float] = {}
     for path, column in stream.columns.items():
         if column.step:
@@ -139,7 +140,7 @@ def rounding_text(stream: Stream) -> str:
 
 Ranked = list[tuple[float, Difference]]
 
-_NOTED_SHARE = 0.1  # differences below this share of the tolerance are not noted
+_NOTED_SHARE = 0.1  # notes do not mention a difference below this share of the tolerance
 
 
 @dataclass
@@ -147,7 +148,7 @@ class StreamComparison:
     """Result of comparing two streams.
 
     Attributes:
-        differences: Differences beyond the tolerance, the largest relative to its tolerance first.
+        differences: Differences beyond the tolerance, ordered by their ratio to the tolerance, largest first.
         notes: Sentences about differences within the tolerance.
     """
 
@@ -183,7 +184,7 @@ class StreamPair:
 
         Args:
             path: Path of the field.
-            count: Number of first messages to compare.
+            count: Number of messages to compare, from the first one on.
         """
         tolerance, unit = self.tolerance(path), unit_of(self.golden.type_name, path)
         if unit == "ns" and not self.is_exact and not tolerance.absolute:
@@ -249,7 +250,7 @@ def _compare_numbers(pair: StreamPair, count: int, found: StreamComparison) -> R
     for path in common:
         if path in compared or pair.tolerance(path).ignore:
             continue
-        is_setting = _is_setting(golden[path]) and _is_setting(run[path])  # constant, so message times do not matter
+        is_setting = _is_setting(golden[path]) and _is_setting(run[path])  # constant: message times have no effect
         terms = pair.terms(path, min(len(golden[path].values), len(run[path].values)) if is_setting else count)
         _keep_first(compare_column(terms, golden[path], run[path]), terms, ranked, found)
     return ranked
@@ -314,7 +315,7 @@ def _compare_texts(pair: StreamPair, count: int) -> Ranked:
 
 
 def _compare_statistics(pair: StreamPair, found: StreamComparison) -> Ranked:
-    """Compare noise statistics, where both runs have them."""
+    """Compare the noise statistics of the fields for which both runs have statistics."""
     golden, run = pair.golden, pair.run
     ranked: Ranked = []
     for path in sorted(golden.statistics.keys() | run.statistics.keys()):
@@ -347,7 +348,7 @@ def _compare_bits(pair: StreamPair, found: StreamComparison) -> None:
 
 
 def _loose_fields(pair: StreamPair) -> set[str]:
-    """Return the fields whose samples are not compared, although the digest covers them."""
+    """Return the fields that the digest includes although their samples are not compared."""
     golden, run = pair.golden, pair.run
     of_noise = {*golden.statistics, *run.statistics}
     fields = {*golden.columns, *run.columns, *golden.words, *run.words}

@@ -29,7 +29,7 @@ SSIM: Final = 0.98
 
 @cache
 def default_tolerance(type_name: str, field: str) -> Tolerance:
-    """Return the tolerance of a field without a scenario; every number in it is set.
+    """Return the default tolerance of a field; none of its numbers is None.
 
     Args:
         type_name: ROS type of the message.
@@ -87,7 +87,7 @@ def allowed_text(tolerance: Tolerance, unit: str) -> str:
     if tolerance.relative:
         parts.append(f"{100.0 * tolerance.relative:g} % of the value")
     words = " + ".join(parts) or "nothing"
-    return words + (f", {100.0 * tolerance.share:g} % of a message further off" if tolerance.share else "")
+    return words + (f", {100.0 * tolerance.share:g} % of a message may differ more" if tolerance.share else "")
 
 
 @dataclass(frozen=True)
@@ -97,9 +97,9 @@ class FieldTerms:
     Attributes:
         stream: Stream of the new run.
         field: Path of the field.
-        tolerance: Tolerance in which every number is set.
+        tolerance: Tolerance in which no number is None.
         is_exact: True if bits must be equal.
-        count: Number of first messages to compare.
+        count: Number of messages to compare, from the first one on.
         unit: SI unit of the field.
     """
 
@@ -131,8 +131,9 @@ class FieldFinding:
 
     Attributes:
         difference: Difference; None if all values are within the tolerance.
-        excess: Ratio of the largest difference to its tolerance; up to 1 for a pass, infinite if the tolerance is 0.
-        off: Largest difference that rounding does not explain, in the field's unit.
+        excess: Ratio of the largest difference to its tolerance: at most 1 if the field passed, infinite for a
+            tolerance of 0.
+        off: Largest difference after subtracting the possible rounding error, in the field's unit.
     """
 
     difference: Difference | None

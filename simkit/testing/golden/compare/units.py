@@ -88,7 +88,7 @@ def quantity_text(value: float, unit: str, signed: bool = True, error: float = 0
         value: Number in `unit`.
         unit: SI unit from `unit_of`.
         signed: Write a plus sign.
-        error: Uncertainty of the number in `unit`; digits below it are omitted.
+        error: Uncertainty of the number in `unit`; digits smaller than the uncertainty are omitted.
     """
     sign = "−" if value < 0 else "+" if signed else ""
     size = abs(value)

@@ -20,7 +20,7 @@ _ENTITY_FIELDS = frozenset(
 
 
 class _Absent:
-    """Type of ABSENT, the value of a path that one of two worlds does not have."""
+    """Type of ABSENT, which replaces the value of a path that one of two worlds does not have."""
 
     def __repr__(self) -> str:
         return "nothing"
@@ -45,7 +45,7 @@ def split_entity_path(path: str) -> tuple[str, str]:
 
 
 def _entity_step_end(path: str, at: int) -> int:
-    """Return the end of a path step that names an entity; `at` if there is none."""
+    """Return the index after a path step that names an entity; `at` if the step names no entity."""
     opened = path.find("[", at)
     if opened < 0 or path[at:opened] not in _ENTITY_FIELDS:
         return at
@@ -74,7 +74,7 @@ def parent_path(owner: str) -> str:
 
 
 def is_within(owner: str, outer: str) -> bool:
-    """Check whether an entity is another one or a descendant of it."""
+    """Check whether an entity is `outer` or a descendant of `outer`."""
     return not outer or owner == outer or owner.startswith(outer + ".")
 
 

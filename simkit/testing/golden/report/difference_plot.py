@@ -17,8 +17,8 @@ from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Array, Column, Pictures, States, Stream
 
 _Value = TypeVar("_Value")
-_DIFFERENCE_HEIGHT: Final = 110  # [px]: height of a chart of differences
-_QUANTITIES: Final = 3  # state quantities drawn
+_DIFFERENCE_HEIGHT: Final = 110  # height of a chart of differences [px]
+_QUANTITIES: Final = 3  # maximum number of state quantities in a figure
 
 
 @dataclass(frozen=True)
@@ -147,7 +147,7 @@ def _difference_chart(line: Series, title: str, x_label: str, unit: str, mark: f
 
 
 def _rate_chart(golden: Stream, run: Stream) -> PageChart:
-    """Draw the number of messages in each simulated second, without the last second, which may be incomplete."""
+    """Draw the number of messages in each simulated second, except for the last second, which may be incomplete."""
     lines = []
     seconds = max([1, *(int(stream.times_ns[-1]) // 10**9 for stream in (golden, run) if len(stream.times_ns))])
     for stream, role in ((golden, "golden"), (run, "run")):
@@ -221,7 +221,7 @@ def _line(x: Array, y: Array) -> Series:
 
 
 def _common_field(golden: Mapping[str, _Value], run: Mapping[str, _Value], field: str) -> tuple[_Value, _Value] | None:
-    """Return the values of a field in both runs; else those of a related field (part of it, or containing it)."""
+    """Return the values of a field in both runs; else those of a field inside or around the field."""
     both = sorted(golden.keys() & run.keys())
     near = [name for name in both if name == field]
     near += [name for name in both if field and field.startswith((f"{name}.", f"{name}["))]
@@ -253,7 +253,7 @@ def _unit(difference: Difference) -> str:
     return f" [{difference.unit}]" if difference.unit and difference.kind != "count" else ""
 
 
-_LARGEST: Final = 256  # [px], larger pictures are shown reduced
+_LARGEST: Final = 256  # larger pictures are reduced to this size [px]
 _BLUE_FIRST: Final = ("bgr", "8UC3")
 
 
@@ -289,7 +289,7 @@ def image_figure(verdict: Verdict, difference: Difference) -> ImageFigure | None
     if count == 0:
         return None
     golden, run = golden.at(messages), run.at(messages)
-    # the first stored picture at or after the first that differs
+    # the first stored picture that was sent with or after the first different message
     index = int(np.searchsorted(messages, difference.index)) if difference.index >= 0 else -1
     times = streams[0].times_ns
     rows = []

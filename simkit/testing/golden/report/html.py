@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from jinja2 import Template
 
 _TEMPLATE: Final = Path(__file__).with_name("report.html.j2")
-_LONGEST: Final = 2_000  # characters of a text
-_PLOTS: Final = 8  # figures of one golden run
-_ALL_PLOTS: Final = 80  # figures of a page
-_ROWS: Final = 200  # rows of a table
+_LONGEST: Final = 2_000  # maximum length of a text in characters
+_PLOTS: Final = 8  # maximum number of figures of one golden run
+_ALL_PLOTS: Final = 80  # maximum number of figures on a page
+_ROWS: Final = 200  # maximum number of rows in a table
 _BLESS: Final = 'simkit golden check GOLDEN --bless "reason for the change"'
 
 
@@ -48,7 +48,7 @@ class _MachineRow:
 
 @dataclass(frozen=True)
 class _VerdictView:
-    """Data that the page shows of one golden run, in addition to the verdict.
+    """Data about one golden run that the page shows in addition to the verdict.
 
     Attributes:
         number: Position on the page.
@@ -137,7 +137,7 @@ def _proof(cause: Cause) -> str:
 
 
 def _figures(verdict: Verdict, most: int) -> Iterator[PlotFigure | ImageFigure]:
-    """Draw the first difference of each topic, then the further ones; each field at most once."""
+    """Draw the first difference of each topic, then the further differences; draw each field at most once."""
     seen: set[tuple[str, str]] = set()
     before: Counter[str] = Counter()
     ranked_differences = []

@@ -14,7 +14,7 @@ REGULAR_ENDINGS: Final = frozenset({"duration", "until", "timeout", "wall_timeou
 """Ends of a run that are not errors; any other end is the text of an error."""
 MAX_DIFFERENCES: Final = 12
 """Maximum number of differences, checks and notes in a text; further ones are counted."""
-_SAME_BITS: Final = "the same bits"  # text of `Difference.allowed` on one machine
+_SAME_BITS: Final = "the same bits"  # text of `Difference.allowed` if bits must be equal
 PROOF_PREFIX: Final = "; with this change undone, "
 _LABEL: Final = 7  # width of the label in front of a line
 _OWN_LABEL: Final = re.compile(r"([a-z]{3,7}): ")
@@ -44,7 +44,7 @@ def text_report(verdict: Verdict, width: int = 100, *, most: int = MAX_DIFFERENC
 
 
 def passed_text(verdict: Verdict) -> str:
-    """Describe how equal a passed run is: `5 topics, 1200 messages, bit for bit; 2 checks (1.3 s)`."""
+    """Describe the comparison of a run that passed: `5 topics, 1200 messages, bit for bit; 2 checks (1.3 s)`."""
     comparison = verdict.comparison
     tier = "bit for bit" if comparison.tier == "exact" else "within the tolerances"
     parts = [f"{_count(comparison.topics, 'topic')}, {_count(comparison.messages, 'message')}, {tier}"]
@@ -98,7 +98,7 @@ def cause_text(cause: Cause) -> str:
 
 
 def proof_text(cause: Cause) -> str:
-    """Describe the outputs of the run with the change undone; empty if this was not tested."""
+    """Describe whether the run with the change undone gives the golden outputs; empty if this was not tested."""
     if cause.proven is None:
         return ""
     return PROOF_PREFIX + ("the outputs equal the golden run" if cause.proven else "the outputs still differ")
@@ -116,7 +116,7 @@ def allowed_text(difference: Difference, *, exact: bool) -> str:
 
 
 def machine_text(comparison: Comparison) -> str:
-    """List the properties of the machine that differ; empty if none do."""
+    """List the properties of the machine that differ; empty if there are none."""
     return ", ".join(
         f"{name} {golden or 'none'} → {run or 'none'}" for name, (golden, run) in comparison.machine.items()
     )
