@@ -40,7 +40,7 @@ class ServerConfig:
 
 
 class _Callbacks:
-    """System that calls the callbacks of a fixture; a reset does not change it."""
+    """System that calls the callbacks of a fixture; a reset does not remove the callbacks."""
 
     __slots__ = ("given", "hooks", "is_final", "steps")
 
@@ -93,11 +93,10 @@ class Server:
     # ------------------------------------------------------------------ running
 
     def run(self, blocking: bool = False, iterations: int = 0, paused: bool = True) -> bool:
-        """Run a number of iterations; 0 runs endlessly.
+        """Run a number of iterations; with 0, run until `stop` is called.
 
-        A fixed number of iterations always runs to its end before the method returns, even if `blocking` is false. The
-        result is the same, and `is_running` is false afterwards. An endless run that does not block uses a separate
-        thread until `stop`.
+        A fixed number of iterations is always complete when the method returns, even if `blocking` is false. Then
+        `is_running` is false. An endless run uses a separate thread if `blocking` is false; the thread ends at `stop`.
 
         Args:
             blocking: Wait for the end of an endless run.
@@ -105,7 +104,7 @@ class Server:
             paused: Call the hooks without stepping the physics.
 
         Returns:
-            True if it ran; false if a thread is already running.
+            True if the world ran; False if another thread already runs the world.
         """
         if self.is_running():
             return False
@@ -114,7 +113,7 @@ class Server:
                 self._go(iterations, paused)
             except KeyboardInterrupt:
                 if iterations:
-                    raise  # Ctrl-C is the regular end of an endless run only
+                    raise  # Ctrl-C is a regular end, but only of an endless run
             return True
         self._stops = False
         self._thread = threading.Thread(target=self._go, args=(0, paused), daemon=True, name="gz-server")

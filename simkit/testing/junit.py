@@ -13,9 +13,9 @@ from simkit.diagnostics import shorten
 from simkit.writers.atomic_output import write_atomically
 
 LONGEST: Final = 100_000
-"""Maximum length of a text in characters; of a longer text the beginning and the end are kept."""
+"""Maximum length of a text in characters; a longer text loses its middle part."""
 
-# characters that XML 1.0 cannot hold, not even as a character reference, and surrogates, which UTF-8 cannot hold
+# characters that XML 1.0 does not allow (even as a character reference), and surrogates, which UTF-8 cannot encode
 _ILLEGAL: Final = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 _COLOURS: Final = re.compile("\x1b\\[[0-9;?]*[ -/]*[@-~]|\x1b\\][^\x07\x1b]*(?:\x07|\x1b\\\\)")
 _LONGEST_NAME: Final = 2_000  # maximum length of a name or a message in characters
@@ -63,7 +63,7 @@ def write_junit(path: str | os.PathLike[str], suite: str, cases: Sequence[JunitC
 
 
 def junit_text(suite: str, cases: Sequence[JunitCase]) -> str:
-    """Return the content of the file; it has no time of day, so equal cases give equal texts."""
+    """Return the content of the file; the content has no date or time, so that equal cases give equal texts."""
     counts = {
         "tests": len(cases),
         "failures": sum(case.failure is not None for case in cases),
@@ -110,7 +110,7 @@ def _seconds(value: float) -> str:
 
 
 def _element_text(text: str) -> str:
-    """Escape a text between tags; replace characters that XML cannot hold, and remove colours."""
+    """Escape a text between tags, replace characters that XML does not allow, and remove terminal colours."""
     text = _COLOURS.sub("", text.replace("\r\n", "\n").replace("\r", "\n"))
     if len(text) > LONGEST:
         text = f"{text[: LONGEST // 2]}\n… {len(text) - LONGEST} characters left out …\n{text[-LONGEST // 2 :]}"

@@ -1,4 +1,4 @@
-"""Fingerprint of the conditions of a run besides its scenario: versions, processor, renderer, file hashes."""
+"""Fingerprint of the conditions of a run that its scenario does not contain: versions, processor, renderer, files."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 
 
 RENDERER: Final = "renderer"
-"""Key of the renderer, which matters only for runs with pictures."""
+"""Key of the renderer, which has an effect only on runs with pictures."""
 _INFORMATION_ONLY: Final = ("simkit code", "python")
-"""Keys that help to find a cause, but are not expected to change any bit."""
+"""Keys that help to find a cause, but should not change any bit of a run."""
 
 
 def fingerprint(*, pictures: bool = False) -> dict[str, str]:
     """Return versions, processor and system of this process.
 
     Args:
-        pictures: Include the renderer, which must be opened for this.
+        pictures: Include the renderer; simkit must start the renderer for this.
 
     Returns:
         Name -> value; `renderer` only on request.
@@ -81,10 +81,10 @@ def _version(package: str) -> str:
 
 
 def _cpu_features() -> str:
-    """Return the processor features by which NumPy and libm select their code: the widest of each family."""
+    """Return the processor features by which NumPy and libm select their code; of each family, only the widest one."""
     try:
         features = import_module("numpy._core._multiarray_umath").__cpu_features__
-    except (ImportError, AttributeError):  # some NumPy versions hide the table
+    except (ImportError, AttributeError):  # some NumPy versions do not have this table
         return ""
     relevant = ("AVX512F", "AVX512_SKX", "AVX512_ICL", "AVX512_SPR", "AVX2", "FMA3", "ASIMD", "SVE", "VSX4", "VX")
     return " ".join(name for name in relevant if features.get(name))
@@ -121,7 +121,7 @@ _SIMKIT_FOLDER: Final = Path(__file__).resolve().parents[2]
 def source_hashes(sim: Simulation) -> dict[str, str]:
     """Return the SHA-256 of meshes, pictures and code of external plugins, by file name.
 
-    A file name includes as many parent folders as necessary to be unique.
+    A file name includes parent folders if two files have the same name.
     """
     of_plugins = plugin_value_files(sim)
     are_leaves = values_of_files(of_plugins)[2]
@@ -182,7 +182,7 @@ def _plugin_code_files(sim: Simulation) -> Iterator[Path]:
 def imported_files(path: Path) -> list[Path]:
     """Return a code file and the files in its folder that it imports, directly or indirectly."""
     found = [path]
-    for file in found:  # the loop appends to this list
+    for file in found:  # the loop appends the imported files to this list
         if len(found) > _MAX_MODULES:
             break
         try:

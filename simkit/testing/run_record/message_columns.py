@@ -14,7 +14,7 @@ from simkit import msgs
 from simkit.testing.run_record.record import Column
 
 _STAMPS: Final = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
-_BASE, _NAME = 1, 2  # kinds of fields in the type store; other kinds are lists
+_BASE, _NAME = 1, 2  # kinds of fields in the type store of rosbags; other kinds are lists
 _NS: Final = 1_000_000_000
 
 
@@ -96,7 +96,7 @@ class MessageRows:
         return len(self._rows)
 
     def take(self, message: object) -> None:
-        """Add a message; its values are copied."""
+        """Add a message; the values of the message are copied."""
         self._rows.append(self._single(message))
         for path, get in self._arrays.items():
             self._kept[path].append(np.array(get(message)))
@@ -109,7 +109,7 @@ class MessageRows:
                 rows.take(item)
 
     def columns(self) -> tuple[dict[str, Column], dict[str, list[str]]]:
-        """Return numbers and texts by path."""
+        """Return all numbers as columns and all texts as lists, by path of the field."""
         fields = self._fields
         columns: dict[str, Column] = {}
         words: dict[str, list[str]] = {}
@@ -131,7 +131,7 @@ class MessageRows:
 
 
 def join_arrays(arrays: list[Any], dtype: str) -> Column:
-    """Join one array per message: as a table if all have the same length, else one after another."""
+    """Join the arrays of all messages: as a table if all have the same length, else one after another."""
     lengths = np.array([len(a) for a in arrays], dtype=np.int64)
     if not len(arrays):
         return Column(np.zeros((0, 0), dtype=dtype))
@@ -143,7 +143,7 @@ def join_arrays(arrays: list[Any], dtype: str) -> Column:
 def _add_nested_fields(
     columns: dict[str, Column], words: dict[str, list[str]], path: str, rows: MessageRows, counts: list[int]
 ) -> None:
-    """Add the fields of a message list, grouped by the message that contains the list."""
+    """Add the fields of nested messages; all values of one outer message become one entry."""
     inner, texts = rows.columns()
     starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
     is_even = len(set(counts)) == 1 and counts[0] > 0

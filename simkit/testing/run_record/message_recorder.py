@@ -1,4 +1,4 @@
-"""Recorders for the messages of one topic by type: fields, small pictures, thinned point clouds, noise statistics."""
+"""Recorders for the messages of one topic: all fields, small pictures, thinned point clouds, or noise statistics."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ def tile_hashes(image: Array, tile: int = TILE) -> npt.NDArray[np.uint32]:
 
 
 def shrink(image: Array, longest: int) -> Array:
-    """Reduce a picture: each pixel is the mean of the pixels that it covers, with the same type.
+    """Reduce a picture: each new pixel is the mean of the original pixels in its area, with the same type.
 
-    For depths, the mean includes finite values only. Without finite values, the first value is used (infinite or NaN).
+    The mean of depths includes only finite values. If an area has none, its first value is used (infinite or NaN).
 
     Args:
         image: Picture of type uint8, uint16 or float32, shape (height, width) or (height, width, channels).
@@ -105,11 +105,11 @@ class MessageRecorder:
         self._rows = MessageRows(type_name, _BINARY_FIELDS.get(type_name, frozenset()))
 
     def take(self, message: Message) -> None:
-        """Add a message; stored data are copied."""
+        """Add a message; the stored data are copies."""
         self._rows.take(message)
 
     def fill(self, stream: Stream) -> None:
-        """Write the recorded data to a stream."""
+        """Store the recorded data in a stream."""
         stream.columns, stream.words = self._rows.columns()
 
 
@@ -154,13 +154,13 @@ class _ImageRecorder(MessageRecorder):
         if number % self._every:
             return
         image = pixels_of_image(message)
-        if image is None or shape != self._shape:  # a changed size cannot be stored, but the digest covers it
+        if image is None or shape != self._shape:  # another size cannot be stored, but the digest includes the picture
             self._is_odd = True
             return
         small = shrink(image, self._longest)
         self._small.append(small if small.dtype != np.uint16 else small.astype(np.float32))
         self._tiles.append(tile_hashes(image))
-        if len(self._small) > _PICTURES_KEPT:  # keep every second one, so that two runs keep the same messages
+        if len(self._small) > _PICTURES_KEPT:  # keep every second, so that two runs store pictures of the same messages
             self._every *= 2
             del self._small[1::2], self._tiles[1::2]
 
@@ -268,10 +268,10 @@ class _NoiseRecorder(MessageRecorder):
             column, truth = read[path], true[path]
             if column.lengths is not None or column.values.shape != truth.values.shape or not len(column.values):
                 continue
-            with np.errstate(invalid="ignore"):  # inf - inf for rays without a hit in both
+            with np.errstate(invalid="ignore"):  # a ray without a hit gives inf - inf
                 residual = _table(column.values) - _table(truth.values)
             if not np.nan_to_num(residual).any():
-                continue  # without noise, samples are compared
+                continue  # without noise, the samples themselves are compared
             stream.statistics[path] = noise_statistics(residual, period)
             del stream.columns[path]
 

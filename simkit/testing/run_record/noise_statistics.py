@@ -1,4 +1,4 @@
-"""Statistics of sensor noise, and tests if two samples can come from the same noise."""
+"""Statistics of sensor noise, and tests whether two samples can come from the same noise."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ Floats = npt.NDArray[np.float64]
 FALSE_ALARM: Final = 1e-11
 """Probability that one test reports equal noise as different.
 
-A field has about ten tests. Therefore 10 000 checks of a robot with 100 fields raise no false alarm with a probability
-of more than 99.9 %.
+A field has about ten tests. In 10 000 checks of a robot with 100 fields, the probability of any false alarm is
+therefore below 0.1 %.
 """
 QUANTILES: Final = 129
-_COMPONENTS: Final = 16  # components with separate statistics; a covariance has 9
-_MIN_SAMPLES: Final = 8  # samples needed for a test
+_COMPONENTS: Final = 16  # maximum number of components with separate statistics; a covariance has 9
+_MIN_SAMPLES: Final = 8  # minimum number of samples for a test
 _SLOW_DRIFT: Final = 4  # number of slowest Fourier components, in which a drift appears
-_DRIFT_RATIO: Final = 4.0  # mean power relative to white noise that counts as drift; chance probability 1e-4
-_WALK: Final = 13.2  # variance of a random walk's mean relative to its slowest component: 4 pi squared by 3
-_ALLAN_LEAST: Final = 20  # independent differences of averages needed for an Allan deviation
+_DRIFT_RATIO: Final = 4.0  # mean power, relative to white noise, from which a drift is assumed; chance 1e-4
+_WALK: Final = 13.2  # 4 pi² / 3: variance of the mean of a random walk, divided by that of its slowest component
+_ALLAN_LEAST: Final = 20  # minimum number of independent differences of averages for an Allan deviation
 
 
 @dataclass
@@ -58,8 +58,8 @@ class StatisticDifference:
         what: "mean", "deviation", "distribution", "allan" or "count".
         component: Index of the component.
         golden, run: Values in both runs; for a distribution, the share of samples below `at`.
-        at: Value with the largest difference of distributions, in the field's unit; averaging time of an Allan
-            deviation [s].
+        at: Value at which two distributions differ most, in the field's unit; for an Allan deviation, the averaging
+            time [s].
         limit: Largest difference that chance explains; a ratio for deviations.
     """
 
@@ -128,7 +128,7 @@ def statistic_differences(
         of_deviation = _deviation_difference(golden, run, component, relative)
         of_mean = _mean_difference(golden, run, component, absolute)
         found += [of_mean, of_deviation]
-        if of_deviation is None:  # other deviations also change the distribution, and so do other means
+        if of_deviation is None:  # a different mean or deviation also changes the distribution
             found.append(None if of_mean else _distribution_difference(golden, run, component, absolute))
             found.append(_allan_difference(golden, run, component, relative))
     return [deviance for deviance in found if deviance is not None]
@@ -166,7 +166,7 @@ def _mean_difference(
 def _deviation_difference(
     golden: NoiseStatistics, run: NoiseStatistics, c: int, relative: float
 ) -> StatisticDifference | None:
-    """Compare deviations by the logarithm of their ratio, with variance (kurtosis - 1) / 4 by the number of samples.
+    """Compare deviations by the logarithm of their ratio, with variance (kurtosis - 1) / 4 / samples.
 
     Source: Shoemaker, "Fixing the F test for equal variances", The American Statistician 57(2), 2003.
     """
@@ -179,7 +179,7 @@ def _deviation_difference(
     kurtosis = max(3.0, *(s.kurtosis[c] for s in (golden, run) if s.kurtosis.size))
     inverse = 1.0 / max(2.0, _sample_counts(golden, c) - 1.0) + 1.0 / max(2.0, _sample_counts(run, c) - 1.0)
     error = math.sqrt((kurtosis - 1.0) / 4.0 * inverse)
-    sigmas = _sigmas(min(_sample_counts(golden, c), _sample_counts(run, c)))
+    sigmas = _standard_errors(min(_sample_counts(golden, c), _sample_counts(run, c)))
     limit = math.exp(min(100.0, sigmas * error)) * (1.0 + relative)
     return StatisticDifference("deviation", c, a, b, limit) if max(a / b, b / a) > limit else None
 
@@ -187,21 +187,21 @@ def _deviation_difference(
 def _distribution_difference(
     golden: NoiseStatistics, run: NoiseStatistics, c: int, absolute: float
 ) -> StatisticDifference | None:
-    """Compare distributions by Kolmogorov-Smirnov with the smallest distance that the quantiles permit."""
+    """Compare distributions by the Kolmogorov-Smirnov test, with the smallest distance that the quantiles allow."""
     a, b = golden.quantiles[c], run.quantiles[c]
     if a.size < 2 or b.size < 2 or golden.deviation[c] == 0.0:
         return None
-    places = np.unique(np.concatenate([a, b]))
-    low_a, high_a = _bounds(a, places)
-    gap = np.maximum(low_a - _bounds(b, places + absolute)[1], _bounds(b, places - absolute)[0] - high_a)
+    values = np.unique(np.concatenate([a, b]))
+    low_a, high_a = _share_limits(a, values)
+    gap = np.maximum(low_a - _share_limits(b, values + absolute)[1], _share_limits(b, values - absolute)[0] - high_a)
     at = int(np.argmax(gap))
     counts = _sample_counts(golden, c), _sample_counts(run, c)
     limit = math.sqrt(-math.log(FALSE_ALARM / 2.0) / 2.0 * (1.0 / counts[0] + 1.0 / counts[1]))
     if gap[at] <= limit:
         return None
-    low_b, high_b = _bounds(b, places)
+    low_b, high_b = _share_limits(b, values)
     below = (low_a[at] + high_a[at]) / 2.0, (low_b[at] + high_b[at]) / 2.0
-    return StatisticDifference("distribution", c, float(below[0]), float(below[1]), limit, float(places[at]))
+    return StatisticDifference("distribution", c, float(below[0]), float(below[1]), limit, float(values[at]))
 
 
 def _allan_difference(
@@ -228,7 +228,7 @@ def _allan_difference(
 
 
 def _degrees_of_freedom(statistics: NoiseStatistics, c: int, tau: float) -> float:
-    """Return the degrees of freedom of an Allan variance: half the number of averages, fewer for heavy tails."""
+    """Return the degrees of freedom of an Allan variance: half the number of averages, less for heavy tails."""
     width = max(1.0, tau / float(statistics.taus[0]))
     kurtosis = 3.0 + max(0.0, float(statistics.kurtosis[c]) - 3.0 if statistics.kurtosis.size else 0.0) / width
     return max(2.0, statistics.count / width / (kurtosis - 1.0))
@@ -241,16 +241,16 @@ def _sample_counts(statistics: NoiseStatistics, c: int) -> float:
     return float(max(2.0, min(statistics.count, statistics.independent[c])))
 
 
-def _sigmas(count: float) -> float:
-    """Return the number of standard errors that chance explains; more for few samples, whose error is uncertain."""
+def _standard_errors(count: float) -> float:
+    """Return the limit of a test in standard errors; the limit is higher for few samples."""
     from scipy.stats import t as student
 
     return float(student.isf(FALSE_ALARM / 2.0, max(2.0, count - 1.0)))
 
 
-def _bounds(quantiles: Floats, places: Floats) -> tuple[Floats, Floats]:
-    """Return the least and greatest share of a sample at or below each place, given its quantiles."""
-    steps, at_most = quantiles.size - 1, np.searchsorted(quantiles, places, side="right")
+def _share_limits(quantiles: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """Return the smallest and the largest possible share of samples up to each value, given their quantiles."""
+    steps, at_most = quantiles.size - 1, np.searchsorted(quantiles, values, side="right")
     return np.clip((at_most - 1) / steps, 0.0, 1.0), np.clip(at_most / steps, 0.0, 1.0)
 
 
@@ -258,7 +258,7 @@ def _bounds(quantiles: Floats, places: Floats) -> tuple[Floats, Floats]:
 
 
 def _allan(values: Floats, period: float) -> tuple[Floats, Floats]:
-    """Return averaging times and overlapping Allan deviations at doubling averaging times.
+    """Return the averaging times [s], each twice the previous one, and the overlapping Allan deviations.
 
     Source: IEEE Std 952-1997, annex C; Riley, "Handbook of Frequency Stability Analysis", NIST SP 1065, 5.2.4.
     """
@@ -279,7 +279,8 @@ def _allan(values: Floats, period: float) -> tuple[Floats, Floats]:
 def _independent_samples(centred: Floats) -> float:
     """Return the number of independent samples with the same information about the mean, from the autocorrelation.
 
-    Source: Geyer, "Practical Markov chain Monte Carlo", Statistical Science 7(4), 1992: sums of pairs, while positive.
+    Source: Geyer, "Practical Markov chain Monte Carlo", Statistical Science 7(4), 1992: adds pairs of
+    correlations as long as the sum of a pair is positive.
     """
     from scipy.fft import irfft, next_fast_len, rfft
 
@@ -295,6 +296,6 @@ def _independent_samples(centred: Floats) -> float:
     pairs = pairs[: int(ends[0])] if ends.size else pairs
     time = max(1.0, 2.0 * float(pairs.sum()) - 1.0)
     slow = np.abs(np.fft.rfft(centred)[1 : 1 + _SLOW_DRIFT]) ** 2 / total
-    if float(slow.mean()) > _DRIFT_RATIO:  # the mean of a random walk varies more than its slowest component shows
+    if float(slow.mean()) > _DRIFT_RATIO:  # a random walk: its mean varies more than its slowest component
         time = max(time, _WALK * float(slow.max()))
     return max(1.0, count / time)

@@ -20,10 +20,11 @@ Array = npt.NDArray[Any]
 
 @dataclass
 class Column:
-    """Field of a topic's messages.
+    """Values of one field in all messages of a topic.
 
     Attributes:
-        values: Values, shape (messages, …); shape (all values,) if the number of values varies between messages.
+        values: Values, shape (messages, …). If the number of values varies between messages, the values of all messages
+            follow each other, shape (values,).
         lengths: Number of values in each message, shape (messages,); None if all messages have the same shape.
         step: Rounding step of the values; 0 if they are exact.
     """
@@ -45,12 +46,13 @@ class Pictures:
     """Reduced pictures of a topic.
 
     Attributes:
-        small: Reduced pictures, shape (messages, height, width, channels), uint8, or float32 for depths [m] (not finite
-            without a hit).
+        small: Reduced pictures, shape (messages, height, width, channels). Colours are uint8. Depths [m] are float32,
+            NaN or infinite where a ray has no hit.
         shape: Height and width of the original pictures [px].
         encoding: Encoding of the messages.
         tiles: Hash of each tile of the original pictures, shape (messages, rows, columns), uint32.
-        kept: Messages in `small` and `tiles`, ascending, shape (kept,): every second, fourth, … of many; None for all.
+        kept: Indices of the messages in `small` and `tiles`, ascending, shape (kept,); None for all messages. If there
+            are many messages, only every second, fourth, … is stored.
         hashes: Hash of every original picture, shape (messages,), uint32; None if unknown.
     """
 
@@ -63,11 +65,11 @@ class Pictures:
 
     @property
     def messages(self) -> npt.NDArray[np.int64]:
-        """Messages whose pictures are in `small` and `tiles`."""
+        """Indices of the messages whose pictures are in `small` and `tiles`."""
         return np.arange(len(self.small)) if self.kept is None else self.kept
 
     def at(self, messages: npt.NDArray[np.int64]) -> Pictures:
-        """Return the pictures of some of the stored messages."""
+        """Return the pictures of some messages, whose pictures must be stored."""
         rows = np.searchsorted(self.messages, messages)
         return replace(self, small=self.small[rows], tiles=self.tiles[rows], kept=messages)
 
@@ -107,7 +109,7 @@ class Stream:
 
 @dataclass
 class States:
-    """Physics of a run: a one-byte mark of every tick, and some complete states.
+    """Physics of a run: a hash of one byte (mark) for every tick, and some complete states.
 
     Attributes:
         timestep: Time step [s].
@@ -147,12 +149,12 @@ class RunRecord:
         states: Physics.
         leaves: Values of the resolved world: path -> value (number, text, or list of numbers). Paths consist of names
             and therefore do not depend on the order in the file.
-        leaf_places: `file:line` of these values, where known; for a new run only.
+        leaf_places: Path -> `file:line` of the values whose position is known; for a new run only.
         fields: Fields of the compiled model by entity name (`geom robot::wheel::collision size`).
         sources: SHA-256 of the files of the run by name: meshes, pictures, parameter files and the code of plugins.
         diagnostics: Codes reported during loading, with their counts.
         end: End of the run: "duration", "until", …, or the text of an error.
-        simulation: Simulation of the run, still open; None for a stored record.
+        simulation: Simulation of the run, which is still open; None for a stored record.
         checks: Results of the scenario's checks; for a new run only.
         error: Error that ended the run; for a new run only.
         environment: Environment variables that select the world (`TURTLEBOT3_MODEL`); empty if not set.

@@ -38,14 +38,14 @@ _PARTS: Final[dict[str, tuple[str, Callable[[Any], Any]]]] = {
     _CONTACTS: ("contacts", attrgetter("collision1.name", "collision2.name")),
     "gazebo_msgs/msg/ContactsState": ("states", attrgetter("collision1_name", "collision2_name")),
 }
-"""Message type -> field with a list of items, and the sort key of its items; equal items keep their order."""
+"""Message type -> field with a list of items, and the sort key of the items; items with equal keys keep their order."""
 _POINTS: Final[dict[str, tuple[str, ...]]] = {
     _CONTACTS: ("positions", "normals", "depths", "wrenches"),
     "gazebo_msgs/msg/ContactsState": ("contact_positions", "contact_normals", "depths", "wrenches"),
 }
 """Message type -> parallel lists of contact points; the first list has the positions."""
 _ACROSS: Final = (1.0, math.sqrt(0.5), math.sqrt(1.0 / 3.0))
-"""Direction in which contact points are sorted; no edge or diagonal of a box is perpendicular to it."""
+"""Direction along which contact points are sorted; no edge or diagonal of a box is perpendicular to this direction."""
 _ROWS: Final[dict[str, tuple[str, ...]]] = {
     "gazebo_msgs/msg/ModelStates": ("name", "pose", "twist"),
     "gazebo_msgs/msg/LinkStates": ("name", "pose", "twist"),
@@ -54,7 +54,7 @@ _ROWS: Final[dict[str, tuple[str, ...]]] = {
 
 
 def sort_message(message: Message, type_name: str) -> object:
-    """Return a message whose items are sorted by name; the message itself if it is sorted or its order has a meaning.
+    """Return a message whose items are sorted by name; return other types of messages and sorted messages unchanged.
 
     Args:
         message: Message; it is not modified.
@@ -114,7 +114,7 @@ def _without_entity_numbers(contact: Message) -> object:
 _CLOCK: Final = "rosgraph_msgs/msg/Clock"
 _RENDERED: Final = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 ENVIRONMENT_VARIABLES: Final = ("TURTLEBOT3_MODEL",)
-_HASH_LETTERS: Final = 16  # characters of the hash of a second
+_HASH_LETTERS: Final = 16  # length of the hash of one second in hexadecimal digits
 
 
 def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord:
@@ -124,7 +124,7 @@ def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord
 
     Args:
         scenario: Scenario.
-        sim: Simulation of its world, in any state; None to load it.
+        sim: Simulation of the scenario's world, in any state; None to load the world.
 
     Raises:
         InputError: The world, a command or a check is invalid.
@@ -151,7 +151,7 @@ def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord
 
 
 class RunRecorder:
-    """Recorder of the topics and the physics of a simulation, from now on; a context manager around the run.
+    """Recorder of the topics and the physics of a simulation from this moment on; a context manager around the run.
 
     Args:
         scenario: Scenario with topics and tolerances.
@@ -186,7 +186,7 @@ class RunRecorder:
         """Return the record up to now.
 
         Args:
-            end: End of the run.
+            end: Reason why the run ended, as in `RunRecord`.
         """
         published = {topic for topic, _, _, does in self._sim.communication.bus.endpoints() if does == "publishes"}
         streams = {}
@@ -272,7 +272,7 @@ class StreamRecorder:
             self._second = hashlib.sha256()
         self._second.update(data)
         self._times.append(now)
-        if type_name == self._type_name:  # messages of a second type on the topic count in the digest only
+        if type_name == self._type_name:  # messages of a second type on the topic are only added to the digest
             self._message_recorder.take(message)
 
 

@@ -1,4 +1,4 @@
-"""Recorder of a run's physics by names: fields of the compiled model, a mark for each tick, and complete states."""
+"""Recorder of a run's physics: fields of the compiled model, a hash for each tick, and some complete states."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from simkit.testing.run_record.record import Array, States
 _STATES_KEPT: Final = 64  # maximum number of stored states
 _MAX_VALUES: Final = 6000  # maximum number of values in all stored states
 _MIN_STATES: Final = 3
-_MAX_WATCHED_BODIES: Final = 200  # with more bodies, forces are hashed only after a write access
+_MAX_WATCHED_BODIES: Final = 200  # in a world with more bodies, forces are hashed only after a write access
 
 
 class StateRecorder:
@@ -107,7 +107,7 @@ class StateRecorder:
     # ------------------------------------------------------------------ names
 
     def _bind_model(self) -> None:
-        """Bind to the present model and read its names."""
+        """Store the arrays and the names of the present model."""
         physics = self._sim.engine.physics
         model, data = physics.model, physics.data
         self._data = data
@@ -170,7 +170,7 @@ class StateQuantities:
         self.forces = [f"force on {name}" for name in self.velocities]
 
     def values(self, physics: Physics) -> tuple[dict[str, float], dict[str, float]]:
-        """Return the state and the inputs by name; forces only where they are not zero."""
+        """Return the state and the inputs by name; forces of zero are left out."""
         data = physics.data
         state = dict(zip(self.positions, data.qpos.tolist(), strict=True))
         state.update(zip(self.velocities, data.qvel.tolist(), strict=True))
@@ -201,7 +201,7 @@ def _union(states: Iterable[Iterable[str]]) -> list[str]:
 
 
 def _state_table(states: list[dict[str, float]], names: list[str]) -> npt.NDArray[np.float64]:
-    """Return a table with one row for each state; NaN for quantities that a state does not have."""
+    """Return a table with one row for each state. A quantity that a state does not have is NaN."""
     values = [[state.get(name, np.nan) for name in names] for state in states]
     return np.array(values, dtype=np.float64).reshape(len(states), len(names))
 
@@ -224,7 +224,7 @@ _KINDS: Final = {
 }
 _NAMES: Final = {"jnt": "joint", "cam": "camera", "mat": "material", "eq": "equality", "hfield": "heightmap"}
 _NUMBERING: Final = ("adr", "num", "id", "simple", "sameframe", "plugin", "signature", "priority_")
-"""Endings of fields with positions in the model's lists, which depend on the order in the file."""
+"""Endings of fields that contain indices of the model's lists; these indices depend on the order in the file."""
 _BINARY_FIELDS: Final = {"mesh": ("vert", "face"), "hfield": ("data",), "tex": ("data",)}
 
 

@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 _IGNORED_FIELDS: Final = frozenset(("where", "name", "scoped", "uri", "script", "skin", "missing", "mjcf", "moved_by"))
-"""Fields that are places or file names, that are part of the path, or that are not plain values."""
+"""Fields with source positions or file names, fields that are part of the path, and fields without plain values."""
 _SENSOR_FIELDS: Final = frozenset(("pose", "update_rate", "topic", "plugin"))
-"""Elements of a sensor that are also fields of the sensor."""
+"""Elements that are left out because the sensor object has a field with the same value."""
 WorldValues = JsonObject
 
 
 def values_of_simulation(sim: Simulation) -> tuple[WorldValues, dict[str, str]]:
-    """Return the values of a simulation's world.
+    """Return the values of a simulation's world and of the files that its plugins have read.
 
     Returns:
         Path -> number, text, or list of numbers (a pose is x, y, z and a quaternion w, x, y, z); path -> `file:line`.
@@ -41,7 +41,7 @@ def values_of_simulation(sim: Simulation) -> tuple[WorldValues, dict[str, str]]:
 
 
 def values_of_world(world: SceneWorld) -> tuple[WorldValues, dict[str, str]]:
-    """Return the values and places of a world that is not simulated."""
+    """Return the values of a world and their source positions, without a simulation."""
     walk = _WorldWalk()
     walk.dataclass(world, "", "")
     return walk.leaves, walk.places
@@ -107,7 +107,7 @@ def element_keys(elements: Iterable[Params]) -> list[str]:
 
 
 class _WorldWalk:
-    """Visitor of dataclasses and elements."""
+    """Visitor that collects the values of dataclasses and elements."""
 
     def __init__(self) -> None:
         self.leaves: WorldValues = {}
@@ -200,7 +200,7 @@ def escaped_key(key: str) -> str:
 
 
 def _element_value(text: str) -> object:
-    """Convert the text of an element: to numbers, so that `0.10` equals `0.1`; a file to its content hash."""
+    """Convert the text of an element to numbers (`0.10` equals `0.1`), or the path of a file to its content hash."""
     words = text.split()
     try:
         numbers = [float(word) for word in words]
@@ -222,7 +222,7 @@ def file_content_text(path: Path) -> str:
 
 
 def file_hash(path: Path) -> tuple[str, int]:
-    """Return SHA-256 and size of a file; empty and 0 if it cannot be read."""
+    """Return the SHA-256 and the size of a file [bytes]; an empty text and 0 if the file cannot be read."""
     try:
         stat = path.stat()
         return _cached_file_hash(str(path), stat.st_mtime_ns, stat.st_size)
@@ -243,7 +243,7 @@ _PLAIN_YAML_VALUE: Final = re.compile(r"[\w/*:-]+")
 
 
 def plugin_value_files(sim: Simulation) -> list[Path]:
-    """Return the value files that plugins have read, each once."""
+    """Return the files with values that plugins have read, without duplicates."""
     return list(dict.fromkeys(path.resolve() for path in sim.engine.structure.builder.files_read))
 
 
@@ -274,7 +274,7 @@ def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, object], dict[str,
 
 
 def _parse_document(path: Path) -> object:
-    """Parse a YAML file; None if it is not a YAML file or too large."""
+    """Parse a YAML file; return None if the file is not YAML or is too large."""
     if path.suffix.lower() not in _SUFFIXES:
         return None
     import yaml
@@ -286,7 +286,7 @@ def _parse_document(path: Path) -> object:
 
 
 def _flatten_document(node: Any, path: str, found: dict[str, tuple[object, int]], depth: int) -> bool:
-    """Add the values of a document; return False if it is too large or contains itself."""
+    """Add the values of a document; return False if the document is too large or contains itself."""
     if depth > _MAX_YAML_DEPTH or len(found) > _MAX_FILE_VALUES:
         return False
     line = node.start_mark.line + 1
@@ -307,7 +307,7 @@ def _flatten_document(node: Any, path: str, found: dict[str, tuple[object, int]]
 
 
 def _yaml_scalar(node: Any) -> object:
-    """Return a number or a text."""
+    """Return the value of a YAML node: a number, True, False or a text."""
     try:
         return float(node.value) if not node.style else node.value
     except ValueError:

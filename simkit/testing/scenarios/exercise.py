@@ -14,7 +14,7 @@ from simkit.yaml_reader import finite_number
 
 _KEYS: Final = ("title", "text", "hand_in", "robot", "parameters", "pass", "runs")
 _RUN_KEYS: Final = ("name", "seed", "set", "spawn", "parameters", "duration")
-_WALL_TIMEOUT: Final = 120.0  # [s], default limit of a run, so that a plugin with an endless loop gets a grade
+_WALL_TIMEOUT: Final = 120.0  # default wall-clock limit of a run [s], for plugins with an endless loop
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def read_exercise(path: str | Path) -> Exercise:
 
 
 class _ExerciseReader(ValueReader):
-    """Reader of the values of an exercise or of one of its runs."""
+    """Reader of the values of an exercise or of one run of an exercise."""
 
     def exercise(self, scenario: RunSpec) -> Exercise:
         if not scenario.checks and not scenario.until:

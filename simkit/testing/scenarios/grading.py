@@ -19,9 +19,9 @@ from simkit.run_spec import JsonObject
 from simkit.testing.junit import JunitCase
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun
 
-_SPARE_SECONDS: Final = 20.0  # [s], additional wall time for starting and ending a run's process
+_SPARE_SECONDS: Final = 20.0  # additional wall time for starting and ending the process of a run [s]
 _MAX_RESULT_BYTES: Final = 64 << 20
-_MAX_LINES_SHOWN: Final = 20  # last lines of printed output
+_MAX_LINES_SHOWN: Final = 20  # maximum number of printed lines in a grade; the last ones are stored
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class CheckGrade:
         points: Achieved points.
         worth: Achievable points.
         hint: Hint for a check that failed.
-        time: Simulated time of the decision [s].
+        time: Simulated time at which the result was known [s].
     """
 
     title: str
@@ -55,9 +55,9 @@ class RunGrade:
         name: Name of the run.
         seed: Seed of the sensor noise.
         time: Simulated time at the end [s].
-        marks: Grades of the checks.
+        marks: Grade of each check.
         error: Reason for an early end; empty for a complete run.
-        printed: Last lines that the run printed.
+        printed: Last lines of the output that the run printed.
     """
 
     name: str
@@ -96,7 +96,7 @@ class Grade:
 
     @property
     def passed(self) -> bool:
-        """True if the points suffice."""
+        """True if the points reach the pass mark of the exercise."""
         return self.points >= self.exercise.pass_mark * self.worth - 1e-9
 
 
@@ -118,7 +118,7 @@ def grade(exercise: Exercise, hand_in: Path | None = None, pictures: Path | None
 def grade_all(
     exercise: Exercise, hand_ins: Sequence[Path | None], pictures: Path | None = None, jobs: int = 1
 ) -> Iterator[Grade]:
-    """Run an exercise with several plugins and yield the grades in their order as soon as they are known.
+    """Run an exercise with several plugins; yield the grades in the order of the plugins, each as soon as possible.
 
     Args:
         exercise: Exercise.
@@ -146,13 +146,13 @@ def grade_all(
             for hand_in, name, outcomes in submissions:
                 file = "" if hand_in is None else str(hand_in)
                 yield Grade(exercise, file, tuple(one.result() for one in outcomes), name)
-        finally:  # also if the caller stops iterating: cancel waiting runs and end running ones
+        finally:  # cancel waiting runs and end running processes, even if the caller does not read all grades
             pool.shutdown(wait=False, cancel_futures=True)
             processes.end()
 
 
 def short_labels(hand_ins: Sequence[Path | None]) -> list[str]:
-    """Return a short unique name for each file, with the folder's name if several files have the same name."""
+    """Return a short unique name for each file; files with the same name also get the name of their folder."""
     stems = ["" if file is None else file.stem for file in hand_ins]
     longer = [
         stem if file is None or stems.count(stem) == 1 else f"{file.absolute().parent.name}_{stem}"
@@ -223,7 +223,7 @@ def _run_in_process(
 
 
 def _read_process_result(target: Path, token: str, count: int) -> JsonObject | None:
-    """Read the result of a run; None if the file was not written by simkit, because the plugin can write there too."""
+    """Read the result of a run. Return None if simkit did not write the file; the plugin can write to it too."""
     try:
         found = json.loads(read_input(target, _MAX_RESULT_BYTES)) if target.is_file() else None
     except (OSError, ValueError):

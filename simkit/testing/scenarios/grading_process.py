@@ -31,7 +31,7 @@ def main(job_file: str) -> None:
     found = _run_exercise(exercise, exercise.runs[job["number"]], hand_in, job["picture"])
     try:
         Path(job["target"]).write_text(json.dumps({**found, "token": job["token"]}), encoding="utf-8")
-    except OSError as error:  # the plugin has removed the folder
+    except OSError as error:  # the plugin removed the folder
         sys.exit(f"the result cannot be written: {error.strerror}")
 
 
@@ -61,7 +61,7 @@ def _run_exercise(exercise: Exercise, variation: ExerciseRun, hand_in: Path | No
                 save_picture(sim, Path(picture), render_view, driven)
             results = [(result.passed, result.message, result.time) for result in ended.results]
             return {"end": ended.reason, "time": sim.time, "results": results, "state": state_hash(sim)}
-    except (LoadError, InputError) as error:  # an error of the exercise or of the plugin
+    except (LoadError, InputError) as error:  # either the exercise or the plugin has an error
         if hand_in is None or not _is_sound_without_plugin(variation):
             return {"fault": str(error), "code": error.code}
         return {"error": str(error), "time": 0.0 if sim is None else sim.time}
@@ -76,7 +76,7 @@ def _run_exercise(exercise: Exercise, variation: ExerciseRun, hand_in: Path | No
 
 
 def _is_sound_without_plugin(variation: ExerciseRun) -> bool:
-    """Check whether the exercise's world loads and its checks can be bound without a submission."""
+    """Check whether the world and the checks of an exercise are valid without a submission."""
     from simkit.testing.conditions import Watch
 
     scenario = variation.scenario
@@ -89,7 +89,7 @@ def _is_sound_without_plugin(variation: ExerciseRun) -> bool:
 
 
 def _make_plugin(file: Path, parameters: JsonMapping) -> object:
-    """Create the plugin of a file.
+    """Create an instance of the plugin class in a file.
 
     Raises:
         LoadError: SK-PLUGIN-008 the file has no plugin, or running the file or creating the plugin failed.
@@ -115,7 +115,7 @@ def _make_plugin(file: Path, parameters: JsonMapping) -> object:
 
 
 def _error_position(error: BaseException, file: Path | None) -> str:
-    """Return the line of the plugin's file in which an error occurred."""
+    """Return the line of the plugin's file in which an error occurred; empty if it occurred in another file."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if file is not None and f.filename == str(file)]
     frames = frames or [
         f for f in traceback.extract_tb(error.__traceback__) if file and Path(f.filename) == file.resolve()

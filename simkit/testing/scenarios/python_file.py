@@ -1,4 +1,4 @@
-"""Scenario files in Python: run the file, get its variable `scenario`, and validate the values."""
+"""Scenario files in Python: run the file, read the variable `scenario`, and validate its values."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ TOLERANCE_MODES: Final = ("exact", "ignore", "statistics")
 
 
 def is_scenario_file(source: str | Path) -> bool:
-    """Check whether a name is that of a scenario file, by its suffix."""
+    """Check whether a file name has the suffix of a scenario file."""
     return Path(source).suffix.lower() in _SCENARIO_SUFFIXES
 
 
@@ -116,7 +116,7 @@ class ScenarioReader(ValueReader):
             self._document.error("SK-SCEN-003", message, "timeout", hint="with 'until', keep only 'timeout'")
         return RunSpec(
             world=self._text("world", ""),
-            duration=self._number("duration", self._played(), least=0.0) or 0.0,
+            duration=self._number("duration", self._bag_duration(), least=0.0) or 0.0,
             seed=self._whole("seed", 0, 0),
             name=self._text("name", ""),
             overrides=self._overrides(),
@@ -143,11 +143,11 @@ class ScenarioReader(ValueReader):
 
     def _overrides(self) -> tuple[str, ...]:
         if isinstance(self._fields.get("set"), dict):
-            return tuple(f"{path}={one}" for path, one in self._written("set").items())
+            return tuple(f"{path}={one}" for path, one in self._strings("set").items())
         return self._texts("set")
 
-    def _written(self, key: str) -> dict[str, str]:
-        """Return the values of a mapping as strings; report values that have no string form."""
+    def _strings(self, key: str) -> dict[str, str]:
+        """Return the values of a mapping as strings; report an error for values that cannot be converted."""
         found = {}
         for name, value in self._mapping(key).items():
             if is_scalar_text(value):
@@ -174,11 +174,11 @@ class ScenarioReader(ValueReader):
         self._wrong(value, "a list of {at, topic, message}, or the name of a file with such a list", "commands")
         return ()
 
-    def _played(self) -> float:
-        """Return the duration of the bag that is played [s]; 10 s without a bag."""
+    def _bag_duration(self) -> float:
+        """Return the duration of the bag in the key `play` [s]; 10 s without a bag."""
         bag_name = self._fields.get("play")
         if bag_name is None and "play_topics" in self._fields:
-            hint = "add play: BAG, whose commands are sent again"
+            hint = "add play: BAG with the bag whose commands are sent"
             self._document.error("SK-SCEN-004", "'play_topics' needs 'play'", "play_topics", hint=hint)
         if not isinstance(bag_name, str) or not bag_name.strip():
             if "play" in self._fields:
@@ -200,9 +200,9 @@ class ScenarioReader(ValueReader):
         if "params_files" in self._fields:
             found["params_files"] = tuple(_resolve_params_file(folder, one) for one in self._texts("params_files"))
         if "package_paths" in self._fields:
-            found["package_paths"] = {name: folder / one for name, one in self._written("package_paths").items()}
+            found["package_paths"] = {name: folder / one for name, one in self._strings("package_paths").items()}
         if "xacro_args" in self._fields:
-            found["xacro_args"] = self._written("xacro_args")
+            found["xacro_args"] = self._strings("xacro_args")
         if "base" in self._fields:
             found["base"] = self._text("base", "auto")
             if found["base"] not in ("auto", "fixed", "floating"):
@@ -294,7 +294,7 @@ class ScenarioReader(ValueReader):
         )
 
     def _expression(self, text: str, *keys: object) -> str:
-        """Validate the syntax of an expression; its names are resolved later, when it is bound to a world."""
+        """Validate the syntax of an expression; names in the expression are resolved later in a world."""
         from simkit.testing.conditions import parse
 
         if text:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
 
 
-_SLICE_SECONDS = 0.25  # [s] of simulated time between two checks of the wall clock
+_SLICE_SECONDS = 0.25  # simulated time between two checks of the wall clock [s]
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class ScenarioResult:
 
     Attributes:
         reason: "duration", "until", "timeout" or "wall_timeout".
-        results: Results of the checks in the scenario's order, that of `until` first.
+        results: Results of the checks; the result of `until` is first, the others are in the scenario's order.
     """
 
     reason: str
@@ -43,7 +43,7 @@ def open_scenario(scenario: RunSpec, **more: Any) -> Simulation:
 
     Args:
         scenario: Scenario.
-        more: Further keyword arguments of `simkit.load`, which override those of the scenario.
+        more: Further keyword arguments of `simkit.load`; they override the arguments in the scenario.
 
     Raises:
         LoadError: The world has errors.
@@ -66,8 +66,8 @@ def run_scenario(
         scenario: Scenario.
         sim: Simulation from `open_scenario`.
         on_slice: Function that is called between two steps, every 0.25 s of simulated time or more often.
-        absent: Behaviour of a condition on a topic without a publisher: "error", or "wait"; a check that still waits at
-            the end fails.
+        absent: Behaviour of a condition on a topic without a publisher. "error" raises an error. "wait" waits for a
+            publisher, and the check fails if there is none until the end of the run.
 
     Raises:
         InputError: A command or a check does not fit the world.
@@ -122,7 +122,7 @@ def resolve_commands(spec: RunSpec, topics: Mapping[str, str]) -> RunSpec:
 
 
 class ScenarioCommands:
-    """Sender of a scenario's commands at their ticks, from the present tick on; a context manager.
+    """Sender of a scenario's commands, from the present tick on; a context manager around the run.
 
     Args:
         scenario: Scenario.

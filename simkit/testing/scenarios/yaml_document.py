@@ -1,4 +1,4 @@
-"""YAML documents whose values know their line numbers, and a reader that validates the type of each value."""
+"""YAML documents with the line number of each value, and a reader that validates the types of values."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean, shorten
 from simkit.input_file import read_failure, read_input_text
 from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 
-MAX_BYTES = 1 << 20  # limit for a handwritten file [bytes]
-_MAX_DEPTH = 6  # nested levels for which lines are stored
+MAX_BYTES = 1 << 20  # size limit of a scenario file [bytes]; people write these files by hand
+_MAX_DEPTH = 6  # number of nested levels whose line numbers are stored
 _BOOLEAN_WORDS = {"on": True, "yes": True, "true": True, "off": False, "no": False, "false": False}
 
 
@@ -36,7 +36,7 @@ class Document:
             self._read(text)
 
     def where(self, *keys: object) -> Where:
-        """Return the place of a value, or of the nearest enclosing value with a known line."""
+        """Return the file and line of a value; if its line is unknown, the line of the value that contains it."""
         while keys and keys not in self._lines:
             keys = keys[:-1]
         return Where(str(self.path), self._lines.get(keys, 1))
@@ -69,7 +69,7 @@ class Document:
         try:
             root = compose_nodes(text)
             if root is not None:
-                self._note_lines(root)  # before node_value, which resolves merge keys
+                self._note_lines(root)  # call this first, because node_value replaces merge keys
                 self.values = node_value(root)
         except NotYaml as error:
             where = Where(str(self.path), error.line)
@@ -84,7 +84,7 @@ class Document:
 
 
 def _lines_by_path(node: Any, keys: tuple[object, ...]) -> Iterator[tuple[tuple[object, ...], int]]:
-    """Iterate over the keys and lines of all values; the line of a mapping's value is that of its key."""
+    """Iterate over the keys and lines of all values; a value of a mapping has the line of its key."""
     import yaml
 
     if not keys:
@@ -104,7 +104,7 @@ def _lines_by_path(node: Any, keys: tuple[object, ...]) -> Iterator[tuple[tuple[
 
 
 def resolve_spawn_file(folder: Path, spawn: str) -> str:
-    """Resolve the file in `MODEL:x,y,yaw[:name]` relative to a folder, if it exists there."""
+    """Resolve the file in `MODEL:x,y,yaw[:name]` relative to a folder, if the folder contains the file."""
     model, colon, rest = spawn.partition(":")
     return f"{folder / model}{colon}{rest}" if model and (folder / model).exists() else spawn
 
@@ -118,9 +118,9 @@ class ValueReader:
     """Reader of the values of a document.
 
     Args:
-        document: Document; it receives the errors.
+        document: Document, which reports the errors of the values.
         fields: Values by key.
-        at: Keys that lead to the values; empty for the top level.
+        at: Keys of the mapping that contains the values; empty for the top level.
     """
 
     def __init__(self, document: Document, fields: Mapping[str, object], at: tuple[object, ...] = ()) -> None:
