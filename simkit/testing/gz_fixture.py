@@ -157,7 +157,7 @@ class Server:
 
     @contextmanager
     def ecm(self, runner: int = 0) -> Iterator[EntityComponentManager]:
-        """Yield the entity component manager of the only world, number 0.
+        """Yield the entity component manager of the world; a server has only one world, number 0.
 
         Raises:
             ValueError: The number is not 0.
@@ -180,7 +180,7 @@ class Server:
         return manager_of(self.simulation).entity_count()
 
     def system_count(self, runner: int = 0) -> int:
-        """Return the number of plugins, including those that simkit adds."""
+        """Return the number of plugins, including the plugins that simkit adds."""
         return len(self.simulation.engine.structure.all_plugins())
 
     def iteration_count(self, runner: int = 0) -> int:

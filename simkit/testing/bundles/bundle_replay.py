@@ -54,7 +54,7 @@ class ReplayResult:
 
     @property
     def is_same(self) -> bool:
-        """True if the state, the messages and the failure equal those in the bundle."""
+        """True if the replay gave the state, the messages and the failure that the bundle contains."""
         return not self.differences
 
 
@@ -95,7 +95,7 @@ class _Replay:
 
     Args:
         bundle: Bundle to repeat.
-        folder: Folder to which its files were extracted.
+        folder: Folder with the extracted files of the bundle.
     """
 
     def __init__(self, bundle: Bundle, folder: Path) -> None:

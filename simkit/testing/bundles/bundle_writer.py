@@ -81,7 +81,7 @@ def write_bundle(
     overwrite: bool = False,
     with_code: bool = True,
 ) -> Path:
-    """Write the run up to now into one file; an interrupted call leaves no incomplete file.
+    """Write the run up to now into one file. If the call is interrupted, no incomplete file remains.
 
     Args:
         kept: Recorder that `keep` returned, or its simulation. The simulation must be between two steps.

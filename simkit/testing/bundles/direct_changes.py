@@ -66,9 +66,9 @@ class DirectChanges:
         return changes | {"one_shot": bool(sim.engine.physics.one_shot)} if changes else None
 
 
-def _encode_at_indices(values: Array, places: Array) -> dict[str, object]:
+def _encode_at_indices(values: Array, indices: Array) -> dict[str, object]:
     """Encode the values of an array at the given indices."""
-    return {"size": values.size, "at": encode_value(places), "values": encode_value(values[places])}
+    return {"size": values.size, "at": encode_value(indices), "values": encode_value(values[indices])}
 
 
 def state_vector(sim: Simulation) -> Numbers:
@@ -93,8 +93,8 @@ def apply_changes(sim: Simulation, changes: dict[str, object]) -> None:
 
 def _apply_state(sim: Simulation, changes: object) -> None:
     physics, values = sim.engine.physics, state_vector(sim)
-    places, numbers = _indices_and_values(changes, values.size)
-    values[places] = numbers
+    indices, numbers = _indices_and_values(changes, values.size)
+    values[indices] = numbers
     before = sim.mj_data.qpos.copy(), sim.mj_data.qvel.copy(), sim.mj_data.xfrc_applied.copy()
     mujoco.mj_setState(sim.mj_model, sim.mj_data, values, _SIGNATURE)
     data, model = sim.mj_data, sim.mj_model
@@ -128,9 +128,9 @@ def _changed_fields(before: dict[str, Array], now: dict[str, Array]) -> dict[str
     for name, values in now.items():
         old = before.get(name)
         flat = values.reshape(-1)
-        places = np.arange(flat.size) if old is None else np.flatnonzero(old.reshape(-1) != flat)
-        if places.size:
-            found[name] = _encode_at_indices(flat, places)
+        indices = np.arange(flat.size) if old is None else np.flatnonzero(old.reshape(-1) != flat)
+        if indices.size:
+            found[name] = _encode_at_indices(flat, indices)
     return found
 
 
@@ -140,23 +140,23 @@ def _apply_fields(sim: Simulation, changes: object) -> None:
     for name, change in changes.items():
         if name == "gravity":
             old = sim.gravity
-            places, numbers = _indices_and_values(change, 3)
-            old[places] = numbers
+            indices, numbers = _indices_and_values(change, 3)
+            old[indices] = numbers
             sim.gravity = old
             continue
         there = getattr(sim.mj_model, name, None) if name.isidentifier() and not name.startswith("_") else None
         if not isinstance(there, np.ndarray):
             raise MessageError(f"the model has no field {name!r:.60}")
-        places, numbers = _indices_and_values(change, there.size)
+        indices, numbers = _indices_and_values(change, there.size)
         sim.engine.physics.changed_model()
-        sim.engine.touch(name).reshape(-1)[places] = numbers
+        sim.engine.touch(name).reshape(-1)[indices] = numbers
 
 
 def _indices_and_values(changes: object, size: int) -> tuple[npt.NDArray[np.int64], Numbers]:
     """Decode the indices and values of changes to an array of a given size."""
     if not isinstance(changes, dict) or changes.get("size") != size:
         raise MessageError(f"the recorded change does not fit this world, whose array has {size} numbers")
-    places, numbers = decode_array(changes.get("at")).astype(np.int64), decode_array(changes.get("values"))
-    if places.shape != numbers.shape or (places < 0).any() or (places >= size).any():
+    indices, numbers = decode_array(changes.get("at")).astype(np.int64), decode_array(changes.get("values"))
+    if indices.shape != numbers.shape or (indices < 0).any() or (indices >= size).any():
         raise MessageError("the recorded change has an index outside the array")
-    return places, numbers
+    return indices, numbers

@@ -119,7 +119,7 @@ class JournalWriter:
             self._inside, self._callback_position = before
 
     def outside(self, callback: Callable[[object], object] | None) -> Callable[[object], object] | None:
-        """Wrap an external callback and count its calls, because an entry states in which call it was made."""
+        """Wrap an external callback and count its calls; a journal entry contains the number of its call."""
         if callback is None or not self._is_outside:
             return callback
         count = self._new_callback_counter()
@@ -139,7 +139,7 @@ class JournalWriter:
         return found
 
     def hears(self, topic: str, subscription: object) -> None:
-        """Count the messages of a new external subscriber, because an entry states at which message it was made."""
+        """Count the messages of a new external subscriber; journal entries contain the number of the message."""
         if not self._is_outside:
             return
         count = self._new_callback_counter()

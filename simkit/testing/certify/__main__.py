@@ -15,7 +15,7 @@ from simkit.testing.certify.outcome import STACK_FILE, read_pickle, write_pickle
 def main(request: str, result: str) -> None:
     """Read the request, run it, write the result, and exit at once, even if plugins have running threads.
 
-    If the run times out or is ended, its stack trace is written to a file beside the result.
+    If the run times out or is stopped, the stack trace of the process is written to a file beside the result.
     """
     exit_with_parent()
     child_request: ChildRequest = read_pickle(Path(request))

@@ -185,7 +185,7 @@ def conclusion_text(certificate: Certificate) -> list[str]:
 
 
 def _group_by_cause(differences: Sequence[Difference]) -> list[tuple[Difference, list[str]]]:
-    """Group differences with the same cause. Return the first of each group with the names of the other runs."""
+    """Group differences with the same cause. Return the first difference of each group and the further runs' names."""
     found: dict[object, tuple[Difference, list[str]]] = {}
     for one in differences:
         key = (one.owner, one.hints) if one.owner else (one.words, one.how)

@@ -26,7 +26,7 @@ from simkit.testing.certify.variations import Variation, choose_variations
 _FOLDERS: Final = ("resource_paths", "plugin_paths")
 _LEAST_LIMIT, _TIMES = 60.0, 10.0  # wall-clock limit of a run: ten times as long as the first run, at least 60 s
 _WATCHED: Final = 5.0  # factor by which the limit is longer if every plugin call is recorded
-_SPARE_SECONDS: Final = 20.0  # [s], time for a process to end itself after its limit
+_SPARE_SECONDS: Final = 20.0  # additional time in which a process can end itself after its limit [s]
 _FRAME: Final = re.compile(r'^  File "(.*)", line (\d+) in (.*)$', re.MULTILINE)
 
 
@@ -186,7 +186,7 @@ def certify(
     Args:
         scenario: Scenario.
         runs: Number of runs. They use the environments in `VARIATIONS`, then the same ones with other hash seeds.
-        variations: Environments to use instead of `runs`; the first one is that of the reference run.
+        variations: Environments to use instead of `runs`; the first one belongs to the reference run.
         jobs: Number of parallel processes.
         apart: Use a separate process for each run. If False, all runs use this process, so that a debugger works. Then
             only the subscribers and the detours of `Variation` differ, and there is no time limit.

@@ -34,7 +34,7 @@ class CodeHint:
 
 
 def hints_in(file: str, first: int, last: int) -> list[CodeHint]:
-    """Return hints for a range of lines in a Python file. Without any, return those for the module's functions.
+    """Return hints about a range of lines in a Python file; if there are none, about the module's functions.
 
     Args:
         file: Path of the file.

@@ -88,7 +88,7 @@ def _topic_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDiffer
 
 
 def _first_message(mine: TopicOutcome, theirs: TopicOutcome, after: int) -> tuple[int | None, int | None]:
-    """Return the index and the tick of the first message after a given tick that differs."""
+    """Compare the messages after a tick; return the index and the tick of the first message that differs."""
     left, right = _after_tick(mine, after), _after_tick(theirs, after)
     index = _first_different_row(mine.digests[left], theirs.digests[right])
     if index is None:

@@ -98,7 +98,7 @@ VARIATIONS: Final = (
     ),
     Variation("reset", "short run, then reset; different hash seed", 23, 1, False, "called", detour="reset"),
 )
-"""Environments of the runs; the first one is that of the reference run."""
+"""Environments of the runs; the first one belongs to the reference run."""
 
 
 def choose_variations(runs: int) -> list[Variation]:

@@ -93,7 +93,7 @@ class Binder:
         return self._kinds[type(node)](node)
 
     def fault(self, code: str, message: str, span: syntax.Span, hint: str = "") -> Exception:
-        """Return an error at a place in the expression."""
+        """Return an error that points at a part of the expression."""
         return syntax.expression_error(code, message, self.source, span, hint)
 
     # ------------------------------------------------------------------ names

@@ -89,7 +89,7 @@ def _collect_findings(source: str, part: BoundNode, expected: bool, texts: dict[
     if isinstance(node, syntax.Not):
         _collect_findings(source, part.below[0], not expected, texts)
     elif isinstance(node, syntax.Junction):
-        # `and` needs all operands: only those without the expected value explain the result (reverse for `or`)
+        # if all operands are needed, only operands without the expected value explain the result
         is_all = (node.word == "and") == expected
         for operand in part.below:
             if not is_all or _current_value(operand) is not expected:
@@ -181,13 +181,13 @@ class Function:
     make: BindFunction
 
 
-def quoted_argument(binder: ExpressionBinder, call: syntax.Call, place: int, what: str) -> syntax.Text:
+def quoted_argument(binder: ExpressionBinder, call: syntax.Call, index: int, what: str) -> syntax.Text:
     """Return an argument that must be a quoted name.
 
     Raises:
         InputError: SK-COND-004 the argument is not a quoted name.
     """
-    node = call.arguments[place]
+    node = call.arguments[index]
     if isinstance(node, syntax.Text):
         return node
     source = node.span.text(binder.source)

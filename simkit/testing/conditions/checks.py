@@ -124,7 +124,7 @@ class Condition:
         self._part = part
 
     def _bind_late(self) -> None:
-        """Bind the expression when its topic exists; an error then fails the check instead of the run."""
+        """Bind the expression when its topic exists. An error in the expression then fails the check, not the run."""
         bus = self._view.sim.communication.bus
         if self._fault or bus.revision == self._revision:
             return
@@ -206,7 +206,7 @@ class ReachedCheck(ConditionCheck):
             self._nearest, self._nearest_text, self._nearest_time = gap, text, time
 
     def _nearest_values(self) -> str:
-        """Return the present values. Add the earlier values that were nearest to the goal, if they were nearer."""
+        """Return the present values, and earlier values if these were nearer to the goal."""
         found = self._condition.findings()
         if not self._nearest_text or self._nearest_text in found:
             return found

@@ -25,7 +25,7 @@ BinaryOperator = Callable[[float, float], float]
 
 
 def divide(a: float, b: float) -> float:
-    """Return a / b."""
+    """Return a / b; infinity or NaN if b is zero."""
     if b:
         return a / b
     if not a or a != a or b != b:

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 _ENTITY_ARGUMENT = "the name of a model or a link"
 
 
-def entity_argument(binder: ExpressionBinder, call: Call, place: int) -> Entity:
+def entity_argument(binder: ExpressionBinder, call: Call, index: int) -> Entity:
     """Return the model or link that an argument names."""
-    node = quoted_argument(binder, call, place, _ENTITY_ARGUMENT)
+    node = quoted_argument(binder, call, index, _ENTITY_ARGUMENT)
     return binder.view.entity(node.value, binder.source, node.span)
 
 
@@ -168,7 +168,7 @@ def _age(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 
 def _contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
-    nodes = [quoted_argument(binder, call, place, _ENTITY_ARGUMENT) for place in range(len(call.arguments))]
+    nodes = [quoted_argument(binder, call, index, _ENTITY_ARGUMENT) for index in range(len(call.arguments))]
     names = [binder.view.scoped_name(node.value, binder.source, node.span) for node in nodes]
     return ContactQuery(binder.view.sim, *names)
 

@@ -111,7 +111,7 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
 
 
 def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None) -> RunSpec:
-    """Return the scenario to run; read its file again, because the file may have been changed."""
+    """Return the scenario to run. If the scenario has a file, read the file again, because it may have been changed."""
     stored = golden.scenario
     if given is not None:
         return given

@@ -33,8 +33,8 @@ class CheckResult:
 
     Attributes:
         folder: Folder of the golden run.
-        verdict: Verdict; None if the check could not be made.
-        error: Reason why the check could not be made; None otherwise.
+        verdict: Verdict; None if the check failed with an error.
+        error: Error that prevented the check; None without an error.
     """
 
     folder: Path

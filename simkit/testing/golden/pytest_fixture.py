@@ -38,7 +38,7 @@ _SCENARIO_ARGUMENTS: Final = (
     "overrides",
     "spawn",
     "plugins",
-)  # arguments of `simkit.load` that a scenario stores itself
+)  # arguments of `simkit.load` that are fields of a scenario
 
 
 @dataclass
@@ -282,11 +282,15 @@ def safe_name(text: str) -> str:
     return f"{plain[:_LONGEST]}-{hashlib.sha256(text.encode('utf-8', 'surrogatepass')).hexdigest()[:8]}"
 
 
-def _with_arguments(scenario: RunSpec, given: JsonObject, is_open: bool) -> RunSpec:
+def _with_arguments(scenario: RunSpec, arguments: JsonObject, is_open: bool) -> RunSpec:
     """Return a scenario whose fields are replaced by a test's arguments."""
-    own = {key: given.pop(key) for key in ("duration", "seed", "topics", "skip", *_SCENARIO_ARGUMENTS) if key in given}
-    if is_open and (given or {"seed", *_SCENARIO_ARGUMENTS} & own.keys()):
-        wrong = ", ".join(sorted([*given, *({"seed", *_SCENARIO_ARGUMENTS} & own.keys())]))
+    own = {
+        key: arguments.pop(key)
+        for key in ("duration", "seed", "topics", "skip", *_SCENARIO_ARGUMENTS)
+        if key in arguments
+    }
+    if is_open and (arguments or {"seed", *_SCENARIO_ARGUMENTS} & own.keys()):
+        wrong = ", ".join(sorted([*arguments, *({"seed", *_SCENARIO_ARGUMENTS} & own.keys())]))
         raise InputError(
             f"SK-GOLDEN-021 sensor_regression: {wrong}: not possible for a simulation that is already loaded",
             "SK-GOLDEN-021",
@@ -294,7 +298,7 @@ def _with_arguments(scenario: RunSpec, given: JsonObject, is_open: bool) -> RunS
     for key in _SCENARIO_ARGUMENTS:
         if key in own:
             own[key] = (own[key],) if isinstance(own[key], str) else tuple(own[key])
-    return replace(scenario, **own, options=cast(LoadOptions, {**scenario.options, **given}))
+    return replace(scenario, **own, options=cast(LoadOptions, {**scenario.options, **arguments}))
 
 
 def _topic_patterns(patterns: str | Sequence[str] | None) -> tuple[str, ...] | None:
@@ -304,20 +308,20 @@ def _topic_patterns(patterns: str | Sequence[str] | None) -> tuple[str, ...] | N
     return tuple(map(absolute_topic, (patterns,) if isinstance(patterns, str) else patterns))
 
 
-def _with_tolerances(scenario: RunSpec, given: Mapping[str, object] | Sequence[Tolerance]) -> RunSpec:
-    """Return a scenario with a test's tolerances before its own; numeric tolerances apply on every machine."""
-    own = _parse_tolerances(given)
+def _with_tolerances(scenario: RunSpec, tolerances: Mapping[str, object] | Sequence[Tolerance]) -> RunSpec:
+    """Return a scenario in which a test's tolerances have priority; numeric tolerances apply on every machine."""
+    own = _parse_tolerances(tolerances)
     if any(getattr(t, name) is not None for t in own if not t.statistics for name in _NUMBERS):
         scenario = replace(scenario, bits=False, state=False, model=False)
     return replace(scenario, tolerances=(*own, *scenario.tolerances))
 
 
-def _parse_tolerances(given: JsonMapping | Sequence[Tolerance]) -> tuple[Tolerance, ...]:
+def _parse_tolerances(tolerances: JsonMapping | Sequence[Tolerance]) -> tuple[Tolerance, ...]:
     """Parse tolerances in the form of a scenario file; accept `Tolerance` objects too."""
-    if not isinstance(given, Mapping):
-        return tuple(given)
+    if not isinstance(tolerances, Mapping):
+        return tuple(tolerances)
     found = []
-    for pattern, value in given.items():
+    for pattern, value in tolerances.items():
         fields: JsonMapping
         if isinstance(value, Tolerance):
             found.append(replace(value, pattern=absolute_topic(pattern)))

@@ -22,7 +22,7 @@ _COMPONENTS: Final = 16  # maximum number of components with separate statistics
 _MIN_SAMPLES: Final = 8  # minimum number of samples for a test
 _SLOW_DRIFT: Final = 4  # number of slowest Fourier components, in which a drift appears
 _DRIFT_RATIO: Final = 4.0  # mean power, relative to white noise, from which a drift is assumed; chance 1e-4
-_WALK: Final = 13.2  # 4 pi² / 3: variance of the mean of a random walk, divided by that of its slowest component
+_WALK: Final = 13.2  # 4 pi² / 3: variance of the mean of a random walk, divided by the power of its slowest component
 _ALLAN_LEAST: Final = 20  # minimum number of independent differences of averages for an Allan deviation
 
 
@@ -36,7 +36,7 @@ class NoiseStatistics:
         quantiles: Quantiles at equidistant probabilities, shape (components, quantiles).
         taus: Averaging times of the Allan deviation [s], shape (taus,).
         allan: Allan deviation at these times, shape (components, taus).
-        independent: Number of independent samples with the same information about the mean, shape (components,).
+        independent: Number of independent samples that would give the mean with the same accuracy, shape (components,).
         kurtosis: Fourth moment divided by the squared variance (3 for a normal distribution), shape (components,).
     """
 
@@ -277,7 +277,9 @@ def _allan(values: Floats, period: float) -> tuple[Floats, Floats]:
 
 
 def _independent_samples(centred: Floats) -> float:
-    """Return the number of independent samples with the same information about the mean, from the autocorrelation.
+    """Return the number of independent samples that would give the mean with the same accuracy.
+
+    The number is computed from the autocorrelation.
 
     Source: Geyer, "Practical Markov chain Monte Carlo", Statistical Science 7(4), 1992: adds pairs of
     correlations as long as the sum of a pair is positive.

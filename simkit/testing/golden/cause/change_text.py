@@ -38,7 +38,7 @@ def owner_title(edit: Edit) -> str:
 
 
 def list_names(names: Sequence[str], most: int = 4) -> str:
-    """Join names with commas; after a maximum number of names, append the number of the others."""
+    """Join names with commas; of a long list, show the first names and the number of further names."""
     shown_ = list(names[: most if len(names) > most + 1 else len(names)])
     more = len(names) - len(shown_)
     return ", ".join(shown_) + (f" and {more} more" if more else "")

@@ -76,7 +76,7 @@ def find_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> li
 
 
 def _whole_entities(leaves: WorldValues, others: WorldValues) -> list[str]:
-    """Return the outermost entities that only the first of two worlds has."""
+    """Return the outermost entities that exist only in the first of two worlds."""
     mine = dict.fromkeys(p for path in leaves for p in _entity_chain(split_entity_path(path)[0]))
     alone = mine.keys() - {p for path in others for p in _entity_chain(split_entity_path(path)[0])}
     return [p for p in mine if p in alone and parent_path(p) not in alone]

@@ -1,4 +1,4 @@
-"""Explanation of differences between a run and its golden run: changed inputs, and those that cause the differences."""
+"""Explanation of differences between a run and its golden run: changed inputs, and proven causes among them."""
 
 from __future__ import annotations
 
@@ -164,7 +164,7 @@ def _explain_whole_run(proof: _Proof, again: ScenarioRerun) -> None:
 
 
 def _rank_causes(every: Sequence[Change], proof: _Proof) -> list[Cause]:
-    """Order the causes: proven ones, then untested ones, then those without effect."""
+    """Order the causes: first proven causes, then untested causes, then changes without an effect."""
     found = []
     search = proof.found or SearchResult()
     for number, change in enumerate(every):

@@ -152,7 +152,7 @@ def largest_difference_text(
         names: Names of the quantities.
         golden: Values in the golden run, shape (quantities,).
         run: Values in the new run, shape (quantities,).
-        sizes: Scale of each quantity, shape (quantities,); None for the size of these values.
+        sizes: Smallest scale of each quantity, shape (quantities,); None to use only the size of both values.
     """
     a, b = np.asarray(golden, dtype=np.float64), np.asarray(run, dtype=np.float64)
     scale = np.maximum(np.abs(a), np.abs(b)) if sizes is None else np.maximum(sizes, np.abs(b))

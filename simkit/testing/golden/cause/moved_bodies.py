@@ -104,7 +104,7 @@ def local_path(path: str) -> str:
 
 
 def _owner_motion(owner: str, found: Mapping[str, Motion], roots: Mapping[str, str]) -> str | None:
-    """Return the path of the entity whose motion also moved the given one; None if it did not move."""
+    """Return the path of the entity whose motion moved `owner`; None if `owner` was not moved."""
     while True:
         if owner in found:
             return owner
@@ -140,7 +140,7 @@ def _carrying_entities(run: Mapping[str, object], moved: set[str]) -> dict[str, 
 
 
 def _root_motion(owner: str, deltas: Mapping[str, Pose], carriers: Mapping[str, list[str]]) -> str:
-    """Return the outermost entity that carries the given one and moved equally; the given one if there is none."""
+    """Return the outermost entity that carries `owner` and has the same motion; `owner` if there is none."""
     seen = {owner}
     at = owner
     while True:

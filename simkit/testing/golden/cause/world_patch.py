@@ -130,7 +130,7 @@ class _PatchedBuilder:
                 others[one.name] = self._field(type(node), one, getattr(node, one.name), inner, owner)
         return replace(node, **others) if others else node
 
-    def made(self, kind: type, patch: _PatchNode, owner: str, key: str) -> object:
+    def created(self, kind: type, patch: _PatchNode, owner: str, key: str) -> object:
         """Create a node that does not exist yet from its values."""
         name = re.sub(r"#\d+$", "", key)
         whole = owner if kind.__name__ == "ScenePlugin" else (f"{owner}::{name}" if owner and name else name or owner)
@@ -177,7 +177,7 @@ class _PatchedBuilder:
             kind = type(now) if is_dataclass(now) else next(iter(kinds.values()))
         if type(now) is kind:
             return self.changed(now, patch, owner)
-        return self.made(kind, patch, owner, "")
+        return self.created(kind, patch, owner, "")
 
     def _nothing(self, one: Field[Any], hint: object) -> object:
         if _may_be_none(hint):
@@ -209,7 +209,7 @@ class _PatchedBuilder:
             if step.startswith("[") and key not in there and inner.has_value:
                 if not kinds:
                     raise CannotPatch(step)
-                found[key] = self.made(next(iter(kinds.values())), inner, owner, key)
+                found[key] = self.created(next(iter(kinds.values())), inner, owner, key)
                 places.insert(places.index(before) + 1 if before in places else 0 if not before else len(places), key)
             if key in found:
                 before = key

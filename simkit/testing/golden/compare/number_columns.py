@@ -258,7 +258,7 @@ def _tolerances(tolerance: Tolerance, values: Array) -> Floats:
 
 
 def quaternion_paths(columns: Sequence[str]) -> list[str]:
-    """Return the paths of quaternions: those with columns x, y, z and w."""
+    """Return the paths of quaternions: paths for which columns x, y, z and w exist."""
     known = set(columns)
     bases = [path[:-2] for path in columns if path.endswith(".w")]
     return [base for base in bases if all(f"{base}.{axis}" in known for axis in "xyz")]
@@ -310,7 +310,7 @@ def _with_axis(
 
 
 def _rotation_between(a: Floats, b: Floats) -> tuple[Floats, Floats]:
-    """Return the rotation from a to b in a's frame as vector and scalar part; quaternions are x, y, z, w."""
+    """Return the rotation from a to b in the frame of a, as vector part and scalar part; quaternions are x, y, z, w."""
     av, aw, bv, bw = a[:, :3], a[:, 3], b[:, :3], b[:, 3]
     vector = aw[:, None] * bv - bw[:, None] * av - np.cross(av, bv)
     return vector, aw * bw + (av * bv).sum(axis=-1)

@@ -59,14 +59,14 @@ def compare_pictures(
 
 @dataclass(frozen=True)
 class _CommonPictures:
-    """Pictures of those messages for which both runs stored a picture.
+    """Pictures of the messages for which both runs stored a picture.
 
     Attributes:
         stream: Stream of the new run.
         golden, run: Pictures of the golden run and of the new run.
         tolerance, is_exact, count: See `compare_pictures`.
         messages: Messages whose pictures both runs stored.
-        changed: Messages whose original pictures differ, also without a stored picture; None if unknown.
+        changed: Messages whose original pictures differ, known from hashes of all pictures; None if unknown.
     """
 
     stream: Stream
@@ -113,7 +113,7 @@ def _format_difference(run: Stream, mine: Pictures, other: Pictures) -> Differen
 
 
 def _with_hashes(pair: _CommonPictures, ranked: Ranked) -> Ranked:
-    """Correct the time of the first difference: every picture has a hash, but only some pictures are stored."""
+    """Correct the time of the first difference by the hashes of all pictures; only some pictures are stored."""
     if pair.changed is None or not pair.changed.size:
         return ranked
     first = int(pair.changed[0])

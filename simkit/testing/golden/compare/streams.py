@@ -48,7 +48,7 @@ def compare_times(golden: Stream, run: Stream, timestep: float, is_exact: bool) 
 
 
 def shift_allowed(timestep: float) -> int:
-    """Return the time by which an event may shift on another machine [ns]: one step with a margin of 50 %."""
+    """Return the maximum time by which an event may shift on another machine [ns]: 1.5 steps."""
     return int(timestep * 1.5e9)
 
 
@@ -332,7 +332,7 @@ def _compare_statistics(pair: StreamPair, found: StreamComparison) -> Ranked:
 
 
 def _allowed_by_scenario(scenario: RunSpec, topic: str, path: str) -> tuple[float, float]:
-    """Return the absolute and relative tolerance that a scenario adds to the statistical one."""
+    """Return the absolute and relative tolerance that a scenario adds to the statistical tolerance."""
     tolerances = [t for t in scenario.tolerance(topic, path) if t.absolute is not None or t.relative is not None]
     return (tolerances[0].absolute or 0.0, tolerances[0].relative or 0.0) if tolerances else (0.0, 0.0)
 

@@ -46,8 +46,9 @@ def default_tolerance(type_name: str, field: str) -> Tolerance:
 
 
 def tolerance_of(scenario: RunSpec, topic: str, type_name: str, field: str) -> Tolerance:
-    """Return the tolerance of a field: each number from the first matching tolerance of the scenario, else the default.
+    """Return the tolerance of a field in a scenario.
 
+    Each number comes from the first matching tolerance of the scenario that sets the number, else from the default.
     A scenario that sets only an absolute tolerance has no relative tolerance, and vice versa.
     """
     found = default_tolerance(type_name, field)
@@ -65,7 +66,7 @@ def tolerance_of(scenario: RunSpec, topic: str, type_name: str, field: str) -> T
 
 
 def storage_step(type_name: str, field: str, scenario: RunSpec | None = None, topic: str = "") -> float:
-    """Return the step to which golden runs round a field: a power of two; 0 for exact storage.
+    """Return the step to which golden runs round the values of a field, a power of two; 0 for exact values.
 
     Args:
         type_name: ROS type of the message.

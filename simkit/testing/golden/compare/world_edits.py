@@ -199,7 +199,7 @@ def _plain(value: Any) -> object:
 
 
 def _pairs(golden: Mapping[str, Any], run: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
-    """Iterate over names with their values in both mappings, in the run's order; ABSENT if missing."""
+    """Iterate over (name, golden value, run value) in the order of the run; a missing value is ABSENT."""
     for name in [*run, *(name for name in golden if name not in run)]:
         yield name, golden.get(name, ABSENT), run.get(name, ABSENT)
 

@@ -119,10 +119,10 @@ def _array_figure(
             return PlotFigure(difference.words, f"component {worst}", parts)
     profile = [(_profile(ours), "golden"), (_profile(theirs), "run")]
     shared = min(len(ours), len(theirs))
-    apart = _profile(_difference(theirs[:shared], ours[:shared]))
+    shift = _profile(_difference(theirs[:shared], ours[:shared]))
     parts = [
         PageChart(profile, f"{title} at {seconds[first]:.6g} s", "number of the value", f"value{unit}"),
-        _difference_chart(apart, f"{title}: difference", "number of the value", unit),
+        _difference_chart(shift, f"{title}: difference", "number of the value", unit),
         _difference_chart(_line(seconds, far), f"{title}: largest difference", "time [s]", unit, difference.time),
     ]
     return PlotFigure(
@@ -221,7 +221,7 @@ def _line(x: Array, y: Array) -> Series:
 
 
 def _common_field(golden: Mapping[str, _Value], run: Mapping[str, _Value], field: str) -> tuple[_Value, _Value] | None:
-    """Return the values of a field in both runs; else those of a field inside or around the field."""
+    """Return the values of a field in both runs, or of a nested or enclosing field."""
     both = sorted(golden.keys() & run.keys())
     near = [name for name in both if name == field]
     near += [name for name in both if field and field.startswith((f"{name}.", f"{name}["))]
@@ -301,7 +301,7 @@ def image_figure(verdict: Verdict, difference: Difference) -> ImageFigure | None
 
 
 def _shown_messages(golden: Pictures, run: Pictures, count: int, index: int) -> list[int]:
-    """Select the first picture that differs and the one that differs most."""
+    """Select the first picture that differs and the picture with the largest difference."""
     if golden.small.shape[1:] != run.small.shape[1:]:
         return [index if 0 <= index < count else 0]
     far = np.array([_mean_difference(_pixel_difference(golden.small[i], run.small[i])) for i in range(count)])
@@ -321,8 +321,8 @@ def _image_row(golden: Pictures, run: Pictures, index: int, caption: str) -> Ima
         caption += f", from {low:.4g} (dark) to {high:.4g} (bright)"
     if ours.shape == theirs.shape:
         full = high - low if ours.dtype != np.uint8 else 255.0
-        factor, apart = _amplified_difference(_pixel_difference(ours, theirs), full)
-        shown.append((f"difference × {factor:.3g}", apart))
+        factor, amplified = _amplified_difference(_pixel_difference(ours, theirs), full)
+        shown.append((f"difference × {factor:.3g}", amplified))
     tiles = _tile_text(golden, run, index)
     return ImageRow([(name, _png(image)) for name, image in shown], caption + tiles)
 
@@ -353,16 +353,16 @@ def _pixel_difference(ours: Array, theirs: Array) -> Array:
     return np.abs(_difference(np.asarray(theirs, np.float64), np.asarray(ours, np.float64)))
 
 
-def _mean_difference(apart: Array) -> float:
+def _mean_difference(difference: Array) -> float:
     """Return the mean of a difference; a pixel that is finite in one image only counts as 255."""
-    return float(np.nan_to_num(apart, nan=255.0).mean()) if apart.size else 0.0
+    return float(np.nan_to_num(difference, nan=255.0).mean()) if difference.size else 0.0
 
 
-def _amplified_difference(apart: Array, full: float) -> tuple[float, Array]:
+def _amplified_difference(difference: Array, full: float) -> tuple[float, Array]:
     """Return an amplification factor and the amplified difference; values that are not finite are white."""
-    most = float(apart[np.isfinite(apart)].max(initial=0.0))
+    most = float(difference[np.isfinite(difference)].max(initial=0.0))
     factor = max(1.0, full / most) if most > 0.0 else 1.0
-    scaled = np.where(np.isfinite(apart), apart * factor * 255.0 / full, 255.0)
+    scaled = np.where(np.isfinite(difference), difference * factor * 255.0 / full, 255.0)
     return factor, _three_channels(np.clip(scaled, 0, 255).astype(np.uint8))
 
 

@@ -74,7 +74,7 @@ def write_html(path: str | os.PathLike[str], verdicts: Iterable[Verdict], *, ble
 
     Args:
         path: File to write; missing folders are created.
-        verdicts: Verdicts in any order; those that did not pass are shown first.
+        verdicts: Verdicts in any order; the page shows failed verdicts first.
         bless: Command that makes the new run golden.
 
     Raises:

@@ -92,7 +92,7 @@ def cause_lines(explanation: Explanation | None) -> list[str]:
 
 
 def cause_text(cause: Cause) -> str:
-    """Return a cause with its place and the result of its test."""
+    """Return a cause with its source position and the result of its test."""
     place = f" ({cause.where})" if cause.where and cause.where not in cause.words else ""
     return f"{cause.words}{place}{proof_text(cause)}"
 
