@@ -1,4 +1,4 @@
-"""Lets the tests here share their samples."""
+"""Import path for the shared test data."""
 
 from __future__ import annotations
 

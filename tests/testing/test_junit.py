@@ -1,4 +1,4 @@
-"""Results as JUnit XML: what every reader needs is there, whatever a text holds, and no half file ever."""
+"""JUnit XML: required attributes, escaping of any text, and atomic writes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_a_suite_counts_its_cases_and_adds_their_times() -> None:
         assert counted == {"tests": "4", "failures": "1", "errors": "1", "skipped": "1", "time": "1.750"}
 
 
-def test_each_case_says_what_became_of_it() -> None:
+def test_each_case_has_its_result() -> None:
     passed, failed, wrong, skipped = tree(CASES)[0]
     assert (passed.get("classname"), passed.get("name"), passed.get("time")) == ("drive", "straight", "1.250")
     assert len(passed) == 0
@@ -57,7 +57,7 @@ def test_each_case_says_what_became_of_it() -> None:
         ("two\r\nlines", "two\nlines"),
     ],
 )
-def test_any_text_is_read_back_less_what_xml_cannot_hold(text: str, read: str) -> None:
+def test_any_text_is_read_back_without_characters_invalid_in_xml(text: str, read: str) -> None:
     root = tree([JunitCase(text, text, failure=(text, text), output=text)])
     failure = root[0][0].find("failure")
     assert failure is not None
@@ -66,7 +66,7 @@ def test_any_text_is_read_back_less_what_xml_cannot_hold(text: str, read: str) -
     assert root[0][0].get("name") == " ".join(read.split())
 
 
-def test_an_endless_text_keeps_its_beginning_and_its_end() -> None:
+def test_a_long_text_keeps_its_beginning_and_its_end() -> None:
     text = tree([JunitCase("c", output="first" + "x" * 10 * LONGEST + "last")])[0][0].findtext("system-out")
     assert text is not None
     assert text.startswith("first")
@@ -75,11 +75,11 @@ def test_an_endless_text_keeps_its_beginning_and_its_end() -> None:
     assert "characters left out" in text
 
 
-def test_a_time_that_is_no_number_counts_as_none() -> None:
+def test_nan_and_negative_times_are_written_as_zero() -> None:
     assert tree([JunitCase("c", seconds=float("nan")), JunitCase("d", seconds=-1.0)])[0].get("time") == "0.000"
 
 
-def test_nothing_tried_is_a_file_too() -> None:
+def test_a_suite_without_cases_is_a_valid_file() -> None:
     assert tree([])[0].get("tests") == "0"
 
 
@@ -90,7 +90,7 @@ def test_equal_cases_give_equal_files_in_a_folder_that_is_made(tmp_path: Path) -
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a", "two.xml"]
 
 
-def test_a_place_that_cannot_be_written_is_an_error_and_nothing_is_left_behind(tmp_path: Path) -> None:
+def test_a_failed_write_is_an_error_and_leaves_no_file(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     for path in (tmp_path, tmp_path / "file" / "out.xml"):
         with pytest.raises(InputError, match="SK-CLI-016 cannot write"):
@@ -111,7 +111,7 @@ def test_a_link_stays_a_link_and_the_mask_of_the_process_counts(tmp_path: Path) 
     assert (tmp_path / "real").stat().st_mode & 0o777 == 0o640
 
 
-def test_a_pipe_is_written_as_it_is(tmp_path: Path) -> None:
+def test_a_report_can_be_written_to_a_pipe(tmp_path: Path) -> None:
     read, write = os.pipe()
     write_atomically(f"/dev/fd/{write}", b"<xml/>")
     os.close(write)

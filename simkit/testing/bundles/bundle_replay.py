@@ -83,7 +83,7 @@ def replay(
             listed = ", ".join(name.partition("/")[2].partition("/")[2] for name in bundle.manifest.code)
             raise InputError(
                 f"{CODE} {bundle.path} contains plugin code, which was not run: {listed}\n"
-                "    help: read it with simkit replay --list or --extract DIR, then allow it with --allow-code",
+                "    help: read the code with simkit replay --extract DIR, then allow the code with --allow-code",
                 CODE,
             )
         bundle.extract(Path(folder), with_code=allow_code)

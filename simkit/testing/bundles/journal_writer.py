@@ -119,7 +119,7 @@ class JournalWriter:
             self._inside, self._callback_position = before
 
     def outside(self, callback: Callable[[object], object] | None) -> Callable[[object], object] | None:
-        """Wrap an external callback and count its calls; a journal entry contains the number of its call."""
+        """Wrap an external callback and count its calls; journal entries contain the number of the call."""
         if callback is None or not self._is_outside:
             return callback
         count = self._new_callback_counter()

@@ -176,7 +176,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         raise InputError(f"{BROKEN} {path} is not a simkit bundle: {PAGE} has no 'format'", BROKEN)
     if fields["format"] > FORMAT:
         problem = f"{NEWER} {path} has format {fields['format']}; this version of simkit reads formats up to {FORMAT}"
-        raise InputError(f"{problem}\n    help: open it with a newer version of simkit", NEWER)
+        raise InputError(f"{problem}\n    help: open the bundle with a newer version of simkit", NEWER)
     try:
         return _parse_manifest(_ManifestReader(fields))
     except (_InvalidValue, OverflowError) as error:

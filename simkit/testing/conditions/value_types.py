@@ -67,12 +67,12 @@ def is_vector_like(kind: ValueType) -> bool:
 
 
 def is_pose_like(kind: ValueType) -> bool:
-    """Check whether a type is a pose, or a message that represents one."""
+    """Check whether a type is a pose or a message with a pose."""
     return kind is POSE or kind.message in _AS_POSE
 
 
 def is_orientation_like(kind: ValueType) -> bool:
-    """Check whether a type is an orientation, or a message that represents one."""
+    """Check whether a type is an orientation or a message with an orientation."""
     return kind is ORIENTATION or kind.message in _AS_ORIENTATION
 
 

@@ -1,8 +1,8 @@
 """Compact storage of arrays and texts: numbers are rounded, predicted, split into byte planes and compressed.
 
-A block is `SKGOLD` with a version, the length of a JSON text, that text, and the bytes of all arrays in order. The
-block is compressed with xz. A block may come from an untrusted source. Therefore all sizes are bounded before memory is
-allocated, number types come from a fixed list, and nothing is executed.
+A block consists of `SKGOLD` with a version, the length of a JSON text, the JSON text, and the bytes of all arrays in
+order. The block is compressed with xz. A block may come from an untrusted source. Therefore all sizes are checked
+before memory is allocated, number types come from a fixed list, and nothing is executed.
 """
 
 from __future__ import annotations

@@ -166,8 +166,8 @@ def make_golden(place: Path, verdict: Verdict, reason: str, *, other_renderer: b
         before, now = golden.fingerprint.get(RENDERER), run.fingerprint.get(RENDERER)
         if before and now and before != now:
             raise InputError(
-                f"SK-GOLDEN-007 {place} is not blessed: its pictures come from {before}, the new ones from {now}; "
-                "on all other machines they would differ\n    help: bless the run on a machine with the first "
+                f"SK-GOLDEN-007 {place} is not blessed: its pictures come from {before}, the new pictures from {now}; "
+                "on other machines the pictures would differ\n    help: bless the run on a machine with the first "
                 "renderer (CI), or add --bless-other-renderer",
                 "SK-GOLDEN-007",
             )

@@ -1,7 +1,7 @@
 """Golden runs on disk: a folder with the readable file `golden.json` and one data file.
 
 `golden.json` refers to its data file by hash. The data file is written first; then `golden.json` is replaced
-atomically. If writing is interrupted at any time, the folder holds either the old or the new golden run.
+atomically. If writing is interrupted at any time, the folder contains either the old or the new golden run.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def read_golden(folder: str | os.PathLike[str]) -> RunRecord:
 
     Raises:
         InputError: SK-GOLDEN-002 there is no golden run; SK-GOLDEN-003 the golden run is damaged or has another format;
-            SK-GOLDEN-004 a newer version of simkit wrote it.
+            SK-GOLDEN-004 a newer version of simkit wrote the golden run.
     """
     place = golden_folder(folder)
     main, name, digest, data = _read_main_and_data(place)
@@ -130,7 +130,7 @@ def read_main(folder: Path) -> JsonObject:
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(
             f"SK-GOLDEN-002 {folder}: there is no golden run (no {MAIN_FILE})\n"
-            "    help: make one with: simkit golden record WORLD --out DIR",
+            "    help: record a golden run with: simkit golden record WORLD --out DIR",
             "SK-GOLDEN-002",
         ) from None
     except OSError as error:

@@ -89,7 +89,7 @@ def load_python_scenario(file: Path, diagnostics: Diagnostics) -> RunSpec:
     """Run a Python file and return its `scenario`.
 
     Raises:
-        LoadError: SK-SCEN-001 the file does not exist; SK-SCEN-005 running it failed, or it has no scenario;
+        LoadError: SK-SCEN-001 the file does not exist; SK-SCEN-005 the file failed or has no scenario;
             SK-SCEN-003 for every invalid value.
     """
     where = Where(str(file))

@@ -1,4 +1,4 @@
-"""A bundle may come from a stranger: nothing of it is used before it was looked at, and no code of it runs unasked."""
+"""Bundles from untrusted sources: the archive is validated before use, and its code runs only if allowed."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def files_of(path: Path) -> Files:
 
 
 def write(target: Path, files: Files, page: Callable[[Any], Any] = lambda words: words, *, sums: bool = True) -> Path:
-    """A bundle of these files; sums and sizes are those of the files."""
+    """Write a bundle with these files; the manifest contains their hashes and sizes if `sums` is true."""
     words = json.loads(files["bundle.json"])
     if sums:
         words["files"] = {
@@ -72,12 +72,12 @@ def refused(path: Path, code: str, text: str = "") -> None:
         ("world", "is not a file that a bundle can contain"),
     ],
 )
-def test_a_name_that_leads_elsewhere_is_refused(sound: Path, tmp_path: Path, name: str, why: str) -> None:
+def test_a_file_name_outside_the_folder_is_rejected(sound: Path, tmp_path: Path, name: str, why: str) -> None:
     assert why in name_fault(name)
     refused(write(tmp_path / "b.zip", {**files_of(sound), name: b"x"}), "SK-BUNDLE-003")
 
 
-def test_a_link_is_refused(sound: Path, tmp_path: Path) -> None:
+def test_a_symbolic_link_is_rejected(sound: Path, tmp_path: Path) -> None:
     path = write(tmp_path / "b.zip", files_of(sound))
     with zipfile.ZipFile(path, "a") as archive:
         info = zipfile.ZipInfo("world/link")
@@ -86,7 +86,7 @@ def test_a_link_is_refused(sound: Path, tmp_path: Path) -> None:
     refused(path, "SK-BUNDLE-003", "link")
 
 
-def test_a_name_that_is_there_twice_is_refused(sound: Path, tmp_path: Path) -> None:
+def test_a_duplicate_file_name_is_rejected(sound: Path, tmp_path: Path) -> None:
     for other in ("world/world.sdf", "world/WORLD.sdf"):
         path = write(tmp_path / "b.zip", files_of(sound))
         with zipfile.ZipFile(path, "a") as archive, warnings.catch_warnings():
@@ -95,17 +95,17 @@ def test_a_name_that_is_there_twice_is_refused(sound: Path, tmp_path: Path) -> N
         refused(path, "SK-BUNDLE-003", "duplicate")
 
 
-def test_a_file_that_is_a_folder_too_is_refused(sound: Path, tmp_path: Path) -> None:
+def test_a_name_of_both_a_file_and_a_folder_is_rejected(sound: Path, tmp_path: Path) -> None:
     refused(write(tmp_path / "b.zip", {**files_of(sound), "world/world.sdf/x": b"x"}), "SK-BUNDLE-003", "folder")
 
 
-def test_a_bomb_is_refused_before_it_is_unpacked(sound: Path, tmp_path: Path) -> None:
+def test_a_zip_bomb_is_rejected_before_unpacking(sound: Path, tmp_path: Path) -> None:
     path = write(tmp_path / "b.zip", {**files_of(sound), "world/zeros": bytes(200 << 20)})
     assert path.stat().st_size < 1 << 20
     refused(path, "SK-BUNDLE-004", "times its size")
 
 
-def test_a_size_that_is_said_too_small_is_found(sound: Path, tmp_path: Path) -> None:
+def test_a_false_file_size_is_detected(sound: Path, tmp_path: Path) -> None:
     path = write(tmp_path / "b.zip", {**files_of(sound), "world/zeros": bytes(1 << 20)})
     data = path.read_bytes()
     size = (1 << 20).to_bytes(4, "little")
@@ -114,18 +114,18 @@ def test_a_size_that_is_said_too_small_is_found(sound: Path, tmp_path: Path) -> 
     refused(path, "SK-BUNDLE-001")
 
 
-def test_too_many_files_are_refused(sound: Path, tmp_path: Path) -> None:
+def test_too_many_files_are_rejected(sound: Path, tmp_path: Path) -> None:
     many = {f"world/{number}": b"" for number in range(20_001)}
     refused(write(tmp_path / "b.zip", {**files_of(sound), **many}), "SK-BUNDLE-004", "files")
 
 
 @pytest.mark.parametrize("name", ["world/world.sdf", "commands.jsonl", "last_seconds.mcap"])
-def test_a_file_that_was_changed_is_found(sound: Path, tmp_path: Path, name: str) -> None:
+def test_a_changed_file_is_detected(sound: Path, tmp_path: Path, name: str) -> None:
     files = files_of(sound)
     refused(write(tmp_path / "b.zip", {**files, name: files[name] + b" "}, sums=False), "SK-BUNDLE-001")
 
 
-def test_a_bundle_that_breaks_off_is_no_traceback(sound: Path, tmp_path: Path) -> None:
+def test_a_truncated_bundle_causes_no_traceback(sound: Path, tmp_path: Path) -> None:
     data = sound.read_bytes()
     path = tmp_path / "b.zip"
     for length in range(0, len(data), max(1, len(data) // 60)):
@@ -134,7 +134,7 @@ def test_a_bundle_that_breaks_off_is_no_traceback(sound: Path, tmp_path: Path) -
             open_bundle(path)
 
 
-def test_bytes_that_were_changed_are_no_traceback(sound: Path, tmp_path: Path) -> None:
+def test_changed_bundle_bytes_cause_no_traceback(sound: Path, tmp_path: Path) -> None:
     data = sound.read_bytes()
     path = tmp_path / "b.zip"
     for at in range(0, len(data), max(1, len(data) // 80)):
@@ -174,17 +174,17 @@ def _with(**changes: Any) -> Callable[[Any], Any]:
         (lambda words: {"format": 1}, "name"),
     ],
 )
-def test_a_first_page_that_says_something_else_is_refused(
+def test_a_manifest_that_does_not_match_is_rejected(
     sound: Path, tmp_path: Path, page: Callable[[Any], Any], text: str
 ) -> None:
     refused(write(tmp_path / "b.zip", files_of(sound), page), "SK-BUNDLE-001", text)
 
 
-def test_a_later_format_is_told_as_such(sound: Path, tmp_path: Path) -> None:
+def test_a_newer_format_is_reported(sound: Path, tmp_path: Path) -> None:
     refused(write(tmp_path / "b.zip", files_of(sound), _with(format=99)), "SK-BUNDLE-002", "99")
 
 
-def test_code_that_the_first_page_hides_is_refused(sound: Path, tmp_path: Path) -> None:
+def test_code_missing_in_the_manifest_is_rejected(sound: Path, tmp_path: Path) -> None:
     path = write(tmp_path / "b.zip", {**files_of(sound), "code/0/boom.py": b"raise SystemExit(7)"})
     refused(path, "SK-BUNDLE-001", "code")
 
@@ -206,7 +206,7 @@ def test_code_that_the_first_page_hides_is_refused(sound: Path, tmp_path: Path) 
         b'{"do": "publish", "steps": ' + b"9" * 5000 + b"}",
     ],
 )
-def test_an_entry_that_is_none_is_refused(sound: Path, tmp_path: Path, line: bytes) -> None:
+def test_an_invalid_journal_entry_is_rejected(sound: Path, tmp_path: Path, line: bytes) -> None:
     refused(write(tmp_path / "b.zip", {**files_of(sound), "commands.jsonl": line + b"\n"}), "SK-BUNDLE-001")
 
 
@@ -233,9 +233,7 @@ def test_an_entry_that_is_none_is_refused(sound: Path, tmp_path: Path, line: byt
         {"do": "reset", "seed": "x"},
     ],
 )
-def test_an_entry_that_cannot_be_done_is_told_and_harms_nothing(
-    sound: Path, tmp_path: Path, words: dict[str, Any]
-) -> None:
+def test_an_entry_that_cannot_be_played_is_reported(sound: Path, tmp_path: Path, words: dict[str, Any]) -> None:
     line = json.dumps({"steps": 0, **words}).encode()
     found = replay(write(tmp_path / "b.zip", {**files_of(sound), "commands.jsonl": line + b"\n"}))
     assert len(found.refused) == 1

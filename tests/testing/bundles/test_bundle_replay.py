@@ -1,4 +1,4 @@
-"""A bundle repeats the run that it was made from, whoever did what in it, and says so if it does not."""
+"""A replay repeats the run of a bundle with all external inputs, and reports differences."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ BALL = '<sdf version="1.9"><model name="ball"><pose>0 3 2 0 0 0</pose><link name
 
 
 def packed(sim: Any, folder: Path, **options: Any) -> Path:
-    """A bundle of a run as it stands."""
+    """Write a bundle of a run in its present state."""
     return write_bundle(sim, folder / "run.zip", **options)
 
 
@@ -38,7 +38,7 @@ def go(speed: float) -> dict[str, Any]:
     return {"linear": {"x": speed}}
 
 
-def test_a_run_with_commands_comes_out_the_same(tmp_path: Path) -> None:
+def test_a_run_with_commands_is_repeated(tmp_path: Path) -> None:
     with simkit.load(WORLD, seed=7) as sim, keep(sim):
         sim.run(0.2)
         sim.publish("/go", go(0.3))
@@ -62,7 +62,7 @@ def test_the_same_run_gives_the_same_bytes(tmp_path: Path) -> None:
     assert files[0] == files[1]
 
 
-def test_numbers_that_a_message_rounds_are_kept_in_full(tmp_path: Path) -> None:
+def test_numbers_are_recorded_in_full_precision(tmp_path: Path) -> None:
     heard: list[float] = []
 
     class Listener(simkit.WorldPlugin):
@@ -78,7 +78,7 @@ def test_numbers_that_a_message_rounds_are_kept_in_full(tmp_path: Path) -> None:
     assert entry["message"]["fields"]["data"] == 0.1, "CDR would make 0.10000000149 of it"
 
 
-def test_what_a_callback_sends_goes_out_in_its_step_again(tmp_path: Path) -> None:
+def test_messages_sent_by_a_callback_are_repeated_in_the_same_step(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, keep(sim):
         count = 0
 
@@ -95,7 +95,7 @@ def test_what_a_callback_sends_goes_out_in_its_step_again(tmp_path: Path) -> Non
         assert found.manifest.commands == count + 1, "the subscription and each answer"
 
 
-def test_what_is_set_by_hand_is_done_again(tmp_path: Path) -> None:
+def test_direct_changes_are_repeated(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, keep(sim):
         sim.run(0.1)
         sim.model("box").set_pose(simkit.Pose((1.0, 2.0, 3.0)))
@@ -110,7 +110,7 @@ def test_what_is_set_by_hand_is_done_again(tmp_path: Path) -> None:
         assert found.is_same, found.differences
 
 
-def test_spawning_removing_resetting_and_restoring_are_done_again(tmp_path: Path) -> None:
+def test_spawn_remove_reset_and_restore_are_repeated(tmp_path: Path) -> None:
     (tmp_path / "ball.sdf").write_text(BALL)
     with simkit.load(WORLD) as sim, keep(sim):
         sim.run(0.1)
@@ -134,7 +134,7 @@ def test_spawning_removing_resetting_and_restoring_are_done_again(tmp_path: Path
         assert not found.refused
 
 
-def test_a_client_that_comes_and_goes_is_there_again(tmp_path: Path) -> None:
+def test_publishers_that_are_closed_and_opened_are_repeated(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, keep(sim):
         sim.run(0.1)
         publisher = sim.communication.bus.advertise("/chatter", "std_msgs/msg/String")
@@ -150,7 +150,7 @@ def test_a_client_that_comes_and_goes_is_there_again(tmp_path: Path) -> None:
         assert found.manifest.streams["/chatter"]["count"] == 1
 
 
-def test_a_run_that_diverges_does_so_again(tmp_path: Path) -> None:
+def test_a_run_that_diverges_is_repeated(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim:
         sim_kept = keep(sim, tmp_path)
         sim.run(0.1)
@@ -181,7 +181,7 @@ WITH_PLUGIN = WORLD.replace('<model name="box">', '<model name="box"><plugin fil
 
 
 def failed(tmp_path: Path) -> Path:
-    """A bundle of a run whose plugin raised."""
+    """Write a bundle of a run in which a plugin raised an exception."""
     (tmp_path / "code").mkdir()
     (tmp_path / "code" / "boom.py").write_text(PLUGIN)
     with simkit.load(WITH_PLUGIN, plugin_paths=[tmp_path / "code"]) as sim:
@@ -191,7 +191,7 @@ def failed(tmp_path: Path) -> Path:
         return kept.written
 
 
-def test_a_plugins_code_runs_only_where_that_is_allowed(tmp_path: Path) -> None:
+def test_plugin_code_runs_only_if_allowed(tmp_path: Path) -> None:
     path = failed(tmp_path)
     with open_bundle(path) as bundle:
         assert bundle.manifest.code == ("code/0/boom.py",)
@@ -210,7 +210,7 @@ def test_a_bundle_has_no_folder_of_the_machine_that_made_it(tmp_path: Path) -> N
             assert str(tmp_path).encode() not in archive.read(name), name
 
 
-def test_another_outcome_is_told_with_the_second_and_the_topic(tmp_path: Path) -> None:
+def test_a_different_replay_reports_second_and_topic(tmp_path: Path) -> None:
     with simkit.load(WORLD, seed=1) as sim, keep(sim):
         sim.run(1.5)
         sim.publish("/go", go(0.2))
@@ -225,7 +225,7 @@ def test_another_outcome_is_told_with_the_second_and_the_topic(tmp_path: Path) -
 
 
 def _rewritten(path: Path, target: Path, change: Any) -> None:
-    """A bundle with another journal, and its sums mended."""
+    """Write a copy of a bundle with a changed journal and the matching hash."""
     import hashlib
 
     with zipfile.ZipFile(path) as old, zipfile.ZipFile(target, "w") as new:
@@ -237,7 +237,7 @@ def _rewritten(path: Path, target: Path, change: Any) -> None:
             new.writestr(name, old.read(name) if data is None else data)
 
 
-def test_a_world_that_was_edited_meanwhile_is_told(tmp_path: Path) -> None:
+def test_a_world_edited_during_the_run_is_reported(tmp_path: Path) -> None:
     world = tmp_path / "world.sdf"
     world.write_text(WORLD)
     with simkit.load(world) as sim, keep(sim):
@@ -247,7 +247,7 @@ def test_a_world_that_was_edited_meanwhile_is_told(tmp_path: Path) -> None:
             assert any("edited after the run began" in text for text in bundle.manifest.missing)
 
 
-def test_what_stands_elsewhere_is_packed(tmp_path: Path) -> None:
+def test_files_outside_the_world_folder_are_packed(tmp_path: Path) -> None:
     (tmp_path / "models" / "ball").mkdir(parents=True)
     (tmp_path / "models" / "ball" / "model.sdf").write_text(BALL)
     (tmp_path / "models" / "ball" / "model.config").write_text(
@@ -291,7 +291,7 @@ def test_keeping_changes_no_bit() -> None:
     assert states[0] == states[1]
 
 
-def test_a_run_that_has_begun_cannot_be_kept() -> None:
+def test_a_run_that_has_begun_cannot_be_recorded() -> None:
     with simkit.load(WORLD) as sim:
         sim.step()
         with pytest.raises(InputError, match="SK-BUNDLE-007"):
@@ -300,7 +300,7 @@ def test_a_run_that_has_begun_cannot_be_kept() -> None:
             write_bundle(sim, "nowhere.zip")
 
 
-def test_a_bundle_that_is_there_stays(tmp_path: Path) -> None:
+def test_an_existing_bundle_is_not_overwritten(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, keep(sim):
         packed(sim, tmp_path)
         with pytest.raises(InputError, match="SK-CLI-016"):

@@ -1,4 +1,4 @@
-"""Lets the tests here share their worlds with those of plugins, sensors, controllers and motions."""
+"""Import path for the test worlds of plugins, sensors, controllers and motions."""
 
 from __future__ import annotations
 

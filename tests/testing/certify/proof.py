@@ -1,4 +1,4 @@
-"""A run, and the same again: what both did, side by side."""
+"""Comparison of a part of a run with its repetition after a restore or a reset."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ _BOX = (
 
 @dataclasses.dataclass
 class Seen:
-    """What a stretch of a run did.
+    """Results of one part of a run.
 
     Attributes:
-        physics: hashes of state and inputs on the way.
-        messages: tick, topic and hash of each.
-        readings: of the sensors at its end.
-        memory: of the plugins at its end, attribute by attribute.
-        parameters: live parameters at its end.
-        state: the state hash at its end.
+        physics: hashes of state and inputs at each step.
+        messages: tick, topic and hash of each message.
+        readings: sensor readings at the end.
+        memory: hash of each plugin attribute at the end.
+        parameters: parameter values at the end.
+        state: state hash at the end.
     """
 
     physics: list[int]
@@ -43,7 +43,7 @@ class Seen:
 
 
 class Runner:
-    """Listens to everything, and sends every input commands that depend on a seed."""
+    """Run a simulation: subscribe to all topics, and send random commands to every input."""
 
     def __init__(self, sim: simkit.Simulation, steps: int) -> None:
         self.sim, self._steps = sim, steps
@@ -61,7 +61,7 @@ class Runner:
             )
 
     def run(self, seed: int) -> Seen:
-        """Some steps with commands at a few of them."""
+        """Make some steps; send commands before some of the steps."""
         sim, random, physics = self.sim, np.random.default_rng(seed), []
         self._messages.clear()
         for part in range(6):
@@ -86,7 +86,7 @@ class Runner:
         }
 
     def _set_parameters(self, random: np.random.Generator) -> None:
-        """Turns every live number a little."""
+        """Change every numeric parameter by a small amount."""
         for node, found in self.sim.communication.parameters.items():
             for name, parameter in found.items():
                 if isinstance(parameter.value, float):
@@ -105,22 +105,22 @@ class Runner:
 
 
 def memory_of(sim: simkit.Simulation) -> dict[str, dict[str, int]]:
-    """Hashes of what every plugin remembers."""
+    """Return the hashes of all plugin attributes."""
     return {f"{p.scoped}::{p.name}": attribute_hashes(plugin_attributes(p)) for p in sim.engine.structure.all_plugins()}
 
 
 def proven(
     sim: simkit.Simulation, steps: int = 60, begin: Callable[[simkit.Simulation], None] = lambda _: None
 ) -> tuple[dict[str, list[str]], tuple[Seen, Seen]]:
-    """Runs, goes back in every way there is, and runs again.
+    """Run a part of a simulation, go back by restore and by reset, and run the part again.
 
     Args:
-        sim: a simulation at its start.
-        steps: of each stretch.
-        begin: what is done to it there, and after a reset.
+        sim: simulation before its first step.
+        steps: number of steps of the part.
+        begin: function that prepares the simulation at the start and after a reset.
 
     Returns:
-        Way -> what was other; and the first stretch and the second.
+        Way back -> differences; the results of the first run and of the second run.
     """
     runner = Runner(sim, steps)
     begin(sim)
@@ -145,7 +145,7 @@ def proven(
 
 
 def differences(one: Seen, other: Seen) -> list[str]:
-    """What is other, in words."""
+    """Describe the differences between two results."""
     found = []
     if one.physics != other.physics or one.state != other.state:
         found.append("the physics")
@@ -169,7 +169,7 @@ def _digest(message: Any) -> int:
 
 
 def _fill(message: Any, random: np.random.Generator) -> Any:
-    """Small numbers into every number of a message."""
+    """Set every number of a message to a small random number."""
     for field in dataclasses.fields(message):
         value = getattr(message, field.name)
         if isinstance(value, bool):
@@ -198,7 +198,7 @@ def _push(random: np.random.Generator) -> dict[str, Any]:
 
 
 def _frame(random: np.random.Generator) -> dict[str, Any]:
-    """A frame that somebody tells on /tf."""
+    """Return a transform for the topic /tf."""
     transform = {"translation": _some(random), "rotation": {"w": 1.0}}
     return {
         "transforms": [{"header": {"frame_id": "world"}, "child_frame_id": "world_desired", "transform": transform}]

@@ -1,4 +1,4 @@
-"""A car in a lab, as text, with plugins wherever they are wanted."""
+"""SDF text of a test world with a car, and with plugins at any element."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _LAB = """<sdf version="1.9"><world name="w"><physics type="ode"><max_step_size>
 
 
 def lab(*, world: str = "", model: str = "", sensor: str = "", visual: str = "", actor: str = "") -> str:
-    """A car with four wheels, an arm, a lift and doors, a wall, a crate and somebody, with plugins somewhere."""
+    """Return a world with a car, a wall, a crate and an actor, and with plugins at the given elements."""
     shapes = {"slab": BOX.format("0.2 4 2"), "cube": BOX.format("0.3 0.3 0.3"), "hull": BOX.format("0.5 0.2 0.1")}
     parts = {"world": world, "model": model, "sensor": sensor, "visual": visual, "actor": actor}
     return _LAB.format(heavy=HEAVY, car=_CAR, **shapes, **parts)
@@ -65,12 +65,12 @@ def plugin(filename: str, content: str = "", name: str = "p") -> str:
 
 
 def gz(name: str, content: str = "", kind: str = "") -> str:
-    """A system of gz by the name of its library."""
+    """Return the element of a Gazebo system, by the name of its library."""
     return plugin(f"gz-sim-{name}-system", content, f"gz::sim::systems::{kind}" if kind else "p")
 
 
 def ros(name: str, content: str = "") -> str:
-    """A plugin of Gazebo Classic and ROS."""
+    """Return the element of a Gazebo Classic plugin for ROS."""
     return plugin(f"libgazebo_ros_{name}.so", content)
 
 
@@ -79,7 +79,7 @@ def tags(**values: object) -> str:
 
 
 def sensed(kind: str, inner: str = "", **places: str) -> str:
-    """The lab with a noisy sensor on the car, a plugin in it, and others elsewhere."""
+    """Return the test world with a noisy sensor that has a plugin, and with further plugins."""
     block = contract_worlds.NOISY.get(kind, contract_worlds.NOISELESS.get(kind, ""))
     block = "<pose>0.3 0 0.2 0 0 0</pose><update_rate>50</update_rate>" + block.replace("N</", f"{NOISY}</")
     return lab(sensor=f'<sensor name="s" type="{kind}">{block}{inner}</sensor>', **places)

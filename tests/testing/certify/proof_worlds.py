@@ -1,4 +1,4 @@
-"""A small world for every plugin that comes with simkit, in which it has something to do."""
+"""Small test worlds: one for every plugin of simkit, in which the plugin has an effect."""
 
 from __future__ import annotations
 
@@ -276,7 +276,7 @@ WORLDS: dict[str, str] = {
     ),
     "GazeboRosState": lab(world=ros("state", tags(update_rate=50))),
     "GazeboRosProperties": lab(world=ros("properties")),
-    # ------------------------------------------------------------------ what hangs on a sensor
+    # ------------------------------------------------------------------ plugins of sensors
     "GazeboRosBumper": lab(sensor=CONTACT.format("<update_rate>50</update_rate>" + ros("bumper"))),
     "GazeboRosImuSensor": sensed("imu", ros("imu_sensor")),
     "GazeboRosGpsSensor": sensed("gps", ros("gps_sensor")),
@@ -363,12 +363,12 @@ OPENED: dict[str, Callable[[Path], simkit.Simulation]] = {
     "LogRecord": _log("LogRecord"),
     "LogPlayback": _log("LogPlayback"),
 }
-"""Of plugins that need files."""
+"""Test worlds of plugins that need files."""
 
 
 @dataclass(frozen=True)
 class Idle:
-    """A plugin with nothing to remember or to send."""
+    """Plugin without attributes, messages and effects on the physics."""
 
     why: str
 
@@ -385,9 +385,9 @@ IDLE: dict[str, Idle] = {
     "Performers": Idle("says who may be detected"),
     "GazeboRosProperties": Idle("answers services"),
 }
-"""Those whose own doing cannot be seen in messages, forces or memory; that they change nothing is proven as well."""
+"""Plugins without messages, forces and attributes; the tests check that they change nothing."""
 
 
 def open_world(name: str, folder: Path) -> simkit.Simulation:
-    """The world of a plugin's class."""
+    """Load the test world of a plugin class."""
     return OPENED[name](folder) if name in OPENED else simkit.load(WORLDS[name], seed=3)

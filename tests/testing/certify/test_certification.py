@@ -1,4 +1,4 @@
-"""Worlds that are the same wherever they run, and plugins that are not: found, named, with their first tick."""
+"""Certificates of deterministic worlds, and of plugins that depend on their environment."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ PUSH = "        self.link.apply_wrench((0.1, 0, 0))\n"
 
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Runs of the command line have no processes of their own."""
+    """Run the command line without child processes."""
     monkeypatch.setattr("simkit.testing.certify.certify", functools.partial(certify, apart=False))
 
 
 def certified(folder: Path, body: str, names: str = "elsewhere", *, apart: bool = False) -> Certificate:
-    """A plugin with that `before_step`, run twice: as it is, and in another way."""
+    """Certify a plugin with this `before_step` in the reference run and in other variations."""
     (folder / "w.sdf").write_text(WORLD)
     (folder / "mine.py").write_text(HEAD + PUSH + "".join(f"        {line}\n" for line in body.splitlines()))
     scenario = RunSpec(world=str(folder / "w.sdf"), duration=0.1, options={"plugin_paths": [folder]})
@@ -61,7 +61,7 @@ def certified(folder: Path, body: str, names: str = "elsewhere", *, apart: bool 
     return certify(scenario, variations=ways, apart=apart)
 
 
-def test_what_is_steady_is_the_same_in_every_surrounding(tmp_path: Path) -> None:
+def test_a_deterministic_world_gives_the_same_bits_in_every_environment(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_text(WORLD.replace('<plugin filename="mine:Mine" name="mine"/>', ""))
     made = certify(RunSpec(world=str(tmp_path / "w.sdf"), duration=0.1), runs=6, jobs=2)
     assert made.passed and not made.notes
@@ -99,10 +99,10 @@ def test_what_is_steady_is_the_same_in_every_surrounding(tmp_path: Path) -> None
     ],
     ids=["clock", "dice", "set", "listener", "restore", "reset"],
 )  # fmt: skip
-def test_who_is_to_blame_is_named_with_the_first_tick(
+def test_the_plugin_that_caused_a_difference_is_named_with_the_first_tick(
     body: str, way: str, tick: int, how: str, hint: str, tmp_path: Path
 ) -> None:
-    made = certified(tmp_path, body, way, apart="'alpha'" in body)  # the order of sets is a process's
+    made = certified(tmp_path, body, way, apart="'alpha'" in body)  # each process has its own order of sets
     (found,) = made.differences
     assert not made.passed
     assert found.owner.startswith("plugin 'm::mine' (") and "w.sdf:4)" in found.owner
@@ -111,14 +111,14 @@ def test_who_is_to_blame_is_named_with_the_first_tick(
     assert not any("time.time" in one.text for one in found.hints if hint != "wall"), "that is the other class's"
 
 
-def test_what_nothing_shows_is_a_note(tmp_path: Path) -> None:
+def test_a_world_change_without_an_effect_on_outputs_is_a_note(tmp_path: Path) -> None:
     made = certified(tmp_path, "self.seen = time.time()")
     assert made.passed
     (note,) = made.notes
     assert "'m::mine'" in note and "(seen)" in note and "no output differs" in note
 
 
-def test_an_error_that_comes_in_every_run_at_the_same_tick_is_the_same(tmp_path: Path) -> None:
+def test_the_same_error_at_the_same_tick_is_no_difference(tmp_path: Path) -> None:
     made = certified(tmp_path, "if self.sim.tick == 30:\n    raise ValueError('at the same time')")
     assert made.passed
     assert "at the same time" in made.rows[0].outcome.end and made.rows[1].outcome.end == made.rows[0].outcome.end
@@ -151,7 +151,7 @@ def test_commands_of_a_scenario_are_sent_in_every_run(tmp_path: Path, in_this_pr
     assert sorted(p.name for p in tmp_path.iterdir()) == ["c.json", "s.yaml", "w.sdf"]
 
 
-def test_the_command_says_who_and_exits_with_5(tmp_path: Path, in_this_process: None) -> None:
+def test_the_command_names_the_plugin_and_exits_with_5(tmp_path: Path, in_this_process: None) -> None:
     (tmp_path / "w.sdf").write_text(WORLD)
     (tmp_path / "mine.py").write_text(HEAD + "        self.link.apply_wrench((time.time() % 1, 0, 0))\n")
     given = ["certify", str(tmp_path / "w.sdf"), "--plugin-path", str(tmp_path), "--duration", "0.05", "--runs", "2"]
@@ -160,7 +160,7 @@ def test_the_command_says_who_and_exits_with_5(tmp_path: Path, in_this_process: 
     assert "DIFFERENT" in done.stdout and "caused by plugin 'm::mine'" in done.stdout and "hint:" in done.stdout
 
 
-def test_a_world_with_errors_says_all_of_them_as_every_command_does(tmp_path: Path, in_this_process: None) -> None:
+def test_all_errors_of_a_world_are_reported(tmp_path: Path, in_this_process: None) -> None:
     broken = WORLD.replace("<mass>1</mass>", "<mass>one</mass>").replace("update_rate>100", "update_rate>often")
     (tmp_path / "w.sdf").write_text(broken)
     certified, run = (CliRunner().invoke(app, [name, str(tmp_path / "w.sdf")]) for name in ("certify", "run"))
@@ -168,18 +168,18 @@ def test_a_world_with_errors_says_all_of_them_as_every_command_does(tmp_path: Pa
     assert certified.stderr.count(" error SK-") >= 2 and certified.stderr == run.stderr
 
 
-def test_an_error_that_comes_in_every_run_does_not_stop_the_life_before_a_reset(tmp_path: Path) -> None:
+def test_an_error_in_every_run_does_not_stop_the_steps_before_a_reset(tmp_path: Path) -> None:
     made = certified(tmp_path, "if self.sim.tick == 30:\n    raise ValueError('at the same time')", "reset")
     assert made.passed and made.rows[1].streams == made.rows[0].streams != ""
 
 
-def test_a_run_whose_process_ends_is_other_and_says_where(tmp_path: Path) -> None:
+def test_a_process_that_exits_is_a_difference_with_its_code_position(tmp_path: Path) -> None:
     made = certified(tmp_path, "if not self.out.wanted:\n    os._exit(7)", "not received", apart=True)
     (found,) = made.differences
     assert found.words == "the process ended with 7: no output"
 
 
-def test_a_run_that_hangs_is_blamed_on_the_code_it_stood_in(tmp_path: Path) -> None:
+def test_a_run_that_hangs_names_the_running_code(tmp_path: Path) -> None:
     (tmp_path / "stack").write_text(
         'Timeout (0:00:02)!\nThread 0x2 (most recent call first):\n  File "other.py", line 3 in watch\n'
         '\nThread 0x1 (most recent call first):\n  File "a.py", line 7 in inner\n  File "b.py", line 9 in outer\n'
@@ -192,7 +192,7 @@ def test_a_run_that_hangs_is_blamed_on_the_code_it_stood_in(tmp_path: Path) -> N
     assert made.owner == "plugin 'p'" and made.how == "it was running outer at b.py:9"
 
 
-def test_more_runs_are_the_same_again_with_other_hash_seeds() -> None:
+def test_further_runs_repeat_the_variations_with_other_hash_seeds() -> None:
     many = choose_variations(12)
     assert len({(v.name, v.hash_seed) for v in many}) == 12
     assert many[6].name == "elsewhere 2" and many[6].hash_seed != many[1].hash_seed
@@ -209,13 +209,13 @@ def test_a_hash_of_streams_depends_on_every_message() -> None:
     assert streams_hash(RunOutcome()) == ""
 
 
-def test_one_run_is_none() -> None:
+def test_one_run_is_not_a_certificate() -> None:
     with pytest.raises(InputError, match="SK-CERT-001"):
         certify(RunSpec(world="empty"), runs=1)
 
 
 def test_a_scenario_that_does_not_fit_its_world_is_not_certified(tmp_path: Path) -> None:
-    """Every run would end at once, with the same nothing."""
+    """Without an error, every run would end at once with equal, empty results."""
     command = {"at": 0.1, "topic": "/none", "message": {}}
     with pytest.raises(InputError, match="no topic '/none'"):
         certify(RunSpec(world="empty", duration=0.2, commands=(command,)), runs=2)

@@ -1,4 +1,4 @@
-"""Hints: places in code that often make runs differ."""
+"""Hints about code lines that often make runs differ."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ def hints(folder: Path, body: str) -> list[str]:
         ("seen = []", "belongs to the class"),
     ],
 )
-def test_a_place_is_found(body: str, word: str, tmp_path: Path) -> None:
+def test_the_source_position_of_a_value_is_found(body: str, word: str, tmp_path: Path) -> None:
     (found,) = hints(tmp_path, body)
     assert word in found
 
 
-def test_names_that_stand_for_others_and_what_a_module_keeps_are_known(tmp_path: Path) -> None:
+def test_import_aliases_and_module_containers_are_known(tmp_path: Path) -> None:
     head = "from time import time as now\nfrom random import gauss\nimport numpy.random as dice\nSEEN = {}\n"
     (tmp_path / "a.py").write_text(
         f"{head}class A:\n    def f(self):\n        SEEN[1] = now() + gauss(0, 1) + dice.normal()"
@@ -53,7 +53,7 @@ def test_names_that_stand_for_others_and_what_a_module_keeps_are_known(tmp_path:
     )
 
 
-def test_what_is_sound_is_left_alone(tmp_path: Path) -> None:
+def test_deterministic_code_gets_no_hints(tmp_path: Path) -> None:
     sound = (
         "def f(self):\n    self.rng = np.random.default_rng(3)\n    for n in sorted({1, 2}): pass\n"
         "    return self.random('a').normal(1), self.sim.time\n"
@@ -61,11 +61,11 @@ def test_what_is_sound_is_left_alone(tmp_path: Path) -> None:
     assert hints(tmp_path, sound) == []
 
 
-def test_another_class_of_the_file_is_not_blamed(tmp_path: Path) -> None:
+def test_another_class_in_the_file_gets_no_hints(tmp_path: Path) -> None:
     (tmp_path / "a.py").write_text("class A:\n    x = 1\n\n\nclass B:\n    y = time.time()\n")
     assert hints_in(str(tmp_path / "a.py"), 1, 2) == []
 
 
-def test_a_file_that_is_no_python_has_no_hints(tmp_path: Path) -> None:
+def test_a_file_that_is_not_python_has_no_hints(tmp_path: Path) -> None:
     (tmp_path / "a.py").write_text("class (")
     assert hints_in(str(tmp_path / "a.py"), 1, 2) == [] == hints_in(str(tmp_path / "none.py"), 1, 2)

@@ -1,4 +1,4 @@
-"""The proof finds what it is for: state that no snapshot holds, of every kind that there is."""
+"""The proof detects every kind of state that a snapshot does not contain."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from simkit.plugins import ModelPlugin
 
 
 class Forgetful(ModelPlugin):
-    """Keeps what it does outside of its attributes."""
+    """Plugin whose state is outside its attributes."""
 
     steps: ClassVar = [0]
 
@@ -25,7 +25,7 @@ class Forgetful(ModelPlugin):
 
 
 class Faithful(Forgetful):
-    """The same, kept in an attribute of its own."""
+    """Plugin with the same state in an attribute."""
 
     def load(self, parent: Any, params: Any) -> None:
         super().load(parent, params)
@@ -37,11 +37,11 @@ def ways(plugin: ModelPlugin) -> dict[str, list[str]]:
         return proof.proven(sim)[0]
 
 
-def test_state_outside_of_a_plugins_attributes_is_found_on_every_way_back() -> None:
+def test_state_outside_of_attributes_is_found_after_snapshot_and_reset() -> None:
     found = ways(Forgetful())
     assert len(found) == 4
     assert all("the physics" in what for what in found.values())
 
 
-def test_state_in_attributes_comes_back() -> None:
+def test_state_in_attributes_is_restored() -> None:
     assert ways(Faithful()) == {}

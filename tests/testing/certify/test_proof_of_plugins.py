@@ -1,4 +1,4 @@
-"""Snapshot, restore and reset, proven for every plugin that comes with simkit: the same bits, whichever way back."""
+"""Every plugin of simkit gives the same bits after a restore and after a reset."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from simkit.plugins import Plugin
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
 from simkit.testing.certify.run_hashes import PluginCallRecorder, plugin_title, record_plugin_calls
 
-pytestmark = pytest.mark.slow  # processes and whole runs
+pytestmark = pytest.mark.slow  # slow: processes and complete runs
 
 CLASSES = sorted(
     {cls for cls in plugin_kinds().values() if cls.__module__.startswith("simkit.")}, key=lambda c: c.__name__
@@ -27,13 +27,13 @@ def _names() -> list[str]:
     return [cls.__name__ for cls in CLASSES]
 
 
-def test_every_plugin_has_a_world_in_which_it_is_proven() -> None:
+def test_every_plugin_has_a_test_world() -> None:
     named = [*proof_worlds.WORLDS, *proof_worlds.OPENED]
     assert sorted(named) == _names(), "give tests/testing/certify/proof_worlds.py a world for each plugin class"
 
 
 @pytest.mark.parametrize("cls", CLASSES, ids=_names())
-def test_a_run_with_the_plugin_repeats_whichever_way_it_is_brought_back(cls: type[Plugin], tmp_path: Path) -> None:
+def test_a_run_with_the_plugin_repeats_after_restore_and_reset(cls: type[Plugin], tmp_path: Path) -> None:
     if not RENDERS and any(word in cls.__name__ for word in DRAWN):
         pytest.skip("draws pictures, and there is no renderer")
     with proof_worlds.open_world(cls.__name__, tmp_path) as sim:
@@ -47,7 +47,7 @@ def test_a_run_with_the_plugin_repeats_whichever_way_it_is_brought_back(cls: typ
 
 
 def has_done_something(sim, plugin: Plugin, at_first, before: proof.Seen, after: proof.Seen) -> bool:
-    """Whether it came to remember something else, published, took a change of its parameters, or drives joints."""
+    """Check whether a plugin changed attributes, published, used its parameters, or drives joints."""
     name = f"{plugin.scoped}::{plugin.name}"
     published = {topic for _, topic, _ in (*before.messages, *after.messages)}
     ends = {
@@ -61,7 +61,7 @@ def has_done_something(sim, plugin: Plugin, at_first, before: proof.Seen, after:
 
 
 def pushes_something(cls: type[Plugin], folder: Path) -> bool:
-    """Whether one of its hooks changes forces, controls or the state itself."""
+    """Check whether a hook of a plugin changes forces, controls or the state."""
     recorder = PluginCallRecorder()
     with record_plugin_calls(recorder), proof_worlds.open_world(cls.__name__, folder) as sim:
         sim.step(20)

@@ -1,4 +1,4 @@
-"""Snapshot, restore and reset, proven for every kind of sensor that comes with simkit, with noise on all it has."""
+"""Every noisy sensor of simkit gives the same bits after a restore and after a reset."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from renderer import RENDERS
 import simkit
 from simkit.sensors import sensor_kinds
 
-pytestmark = pytest.mark.slow  # processes and whole runs
+pytestmark = pytest.mark.slow  # slow: processes and complete runs
 
 KINDS = [kind for kind, cls in sensor_kinds().items() if cls.__module__.startswith("simkit.")]
 
@@ -20,7 +20,7 @@ def thrown(sim: simkit.Simulation) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_run_with_the_sensor_repeats_whichever_way_it_is_brought_back(kind: str) -> None:
+def test_a_run_with_the_sensor_repeats_after_restore_and_reset(kind: str) -> None:
     if contract_worlds.is_rendered(kind) and not RENDERS:
         pytest.skip("draws pictures, and there is no renderer")
     with simkit.load(contract_worlds.source(kind, noisy=True), seed=5) as sim:

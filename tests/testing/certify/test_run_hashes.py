@@ -1,4 +1,4 @@
-"""Hashes of what plugins remember depend on values, and on nothing else."""
+"""Hashes of plugin attributes depend only on their values."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ def test_equal_values_have_equal_hashes_and_others_have_not() -> None:
     assert value_hash(Thing([1, {"a": np.arange(3)}])) == value_hash(Thing([1, {"a": np.arange(3)}]))
 
 
-def test_a_thing_that_holds_itself_has_a_hash() -> None:
+def test_an_object_that_contains_itself_has_a_hash() -> None:
     thing = Thing(None)
     thing.value = [thing]
     assert value_hash(thing) == value_hash(thing)
 
 
-def test_the_order_of_sets_and_dicts_and_the_hash_seed_do_not_show() -> None:
+def test_hashes_do_not_depend_on_set_order_or_hash_seed() -> None:
     script = "from simkit.testing.certify.run_hashes import value_hash as digest\n"
     script += "print(digest({'x': {'alpha', 'beta', 'gamma'}, 'y': object()}))"
     answers = {
@@ -60,7 +60,7 @@ def test_the_order_of_sets_and_dicts_and_the_hash_seed_do_not_show() -> None:
     assert value_hash({"a": 1, "b": 2}) == value_hash({"b": 2, "a": 1})
 
 
-def test_short_values_can_be_shown_and_long_ones_are_not() -> None:
+def test_only_short_values_are_shown() -> None:
     assert (
         short_value_text(0.25) == "0.25"
         and short_value_text((1, 2.5)) == "(1, 2.5)"

@@ -1,4 +1,4 @@
-"""A small world: a ground, a wall 2 m ahead, a ball that measures, a lidar on a post, an arm."""
+"""A small test world: ground, wall at 2 m, ball with sensors, lidar on a post, arm."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ YARD = """<sdf version="1.9"><world name="yard"><physics type="ode"><max_step_si
 
 @pytest.fixture
 def yard() -> Callable[..., Any]:
-    """Opens the world, with more in it; the ball rolls towards the wall [m/s], which it meets after 1.65 m."""
+    """Load the world with additional models; the ball rolls [m/s] and touches the wall after 1.65 m."""
 
     def opened(speed: float = 0.0, more: str = "", **options: Any) -> Any:
         sim = simkit.load(YARD % more, **options)
@@ -44,7 +44,7 @@ def yard() -> Callable[..., Any]:
 
 @pytest.fixture(scope="session")
 def still() -> Iterator[Any]:
-    """What reads a yard at t = 1 s, with a second of messages on its topics."""
+    """Return a view of the world at t = 1 s, with messages of one second."""
     from simkit.testing.conditions.world_view import WorldView
 
     with simkit.load(YARD % "") as sim:

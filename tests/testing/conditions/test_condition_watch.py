@@ -1,4 +1,4 @@
-"""Checks of a run: decided at the right step, told with the numbers found, and nobody's bits are changed."""
+"""Checks of a run: results at the correct step with measured values, and no change of any bit."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_a_run_ends_at_the_very_step_at_which_its_condition_holds(yard: Any) -> 
     x = sim.model("ball").pose.position[0]
     assert 1.0 < x < 1.0 + 1.5 * sim.timestep
     assert ended.results[0].message == f"was reached at t = {sim.time:g} s: pose('ball').x was {x:.6g}"
-    sim.run(0.1)  # and can go on from there
+    sim.run(0.1)  # the run can continue
     assert sim.time > 1.05
 
 
@@ -39,18 +39,18 @@ def test_a_condition_that_holds_from_the_start_ends_the_run_before_its_first_ste
     assert sim.tick == 0
 
 
-def test_a_condition_that_is_not_reached_says_how_near_it_came(yard: Any) -> None:
+def test_a_condition_that_is_not_reached_reports_the_nearest_values(yard: Any) -> None:
     sim = yard()
     sim.model("ball").set_velocity((0.0, 0.0, 2.0))
     ended = run_scenario(RunSpec("", until="pose('ball').z > 1", timeout=1.0), sim)
-    # 0.25 + v²/2g is 0.454 m, after v/g = 0.204 s; less g·t·dt/2, which steps of 2 ms make of it
+    # 0.25 + v²/2g is 0.454 m, after v/g = 0.204 s; minus g·t·dt/2 for steps of 2 ms
     assert ended.reason == "timeout" and not ended.passed
     message = ended.results[0].message
     assert message.startswith("was not reached by t = 1 s: pose('ball').z was 0.2499")
     assert message.endswith("nearest at t = 0.204 s: pose('ball').z was 0.452082")
 
 
-def test_each_kind_of_check_says_when_and_why(yard: Any) -> None:
+def test_each_kind_of_check_reports_time_and_reason(yard: Any) -> None:
     checks = [
         Check("goal", expression="pose('ball').x > 0.5", by=1.0),
         Check("goal", expression="pose('ball').x > 0.5", by=0.2),
@@ -85,7 +85,7 @@ def test_models_that_must_not_touch_are_named_with_the_links_that_did(yard: Any)
     assert found[1].message == f"ball::base touches wall::l at t = {found[1].time:g} s"
 
 
-def test_the_ground_is_what_carries_and_a_wall_is_not(yard: Any) -> None:
+def test_floors_are_ground_and_walls_are_not(yard: Any) -> None:
     ramp = (
         '<model name="ramp"><static>true</static><pose>-3 0 0 0 0.3 0</pose><link name="l"><collision name="c">'
         "<geometry><box><size>2 2 0.2</size></box></geometry></collision></link></model>"
@@ -104,13 +104,13 @@ def test_the_ground_is_what_carries_and_a_wall_is_not(yard: Any) -> None:
     assert [result.message for result in found if not result.passed] == []
 
 
-def test_what_sleeps_still_touches(yard: Any) -> None:
+def test_sleeping_models_still_have_contacts(yard: Any) -> None:
     box = '<collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>'
     mass = "<inertial><mass>1</mass></inertial>"
     sim = yard(more=f'<model name="die"><pose>0 -1 0.1 0 0 0</pose><link name="l">{mass}{box}</link></model>')
     sim.run(5.0)
     sim.engine.physics.fresh()
-    assert sim.mj_data.tree_asleep.max() >= 0  # else this shows nothing
+    assert sim.mj_data.tree_asleep.max() >= 0  # otherwise the test would check nothing
     found = results(
         sim,
         0.1,
@@ -120,7 +120,7 @@ def test_what_sleeps_still_touches(yard: Any) -> None:
     assert [result.message for result in found if not result.passed] == []
 
 
-def test_topics_tick_at_the_rate_they_are_set_to(yard: Any) -> None:
+def test_topics_have_their_configured_rate(yard: Any) -> None:
     checks = [
         Check("rate", topic="/imu"),
         Check("rate", topic="/scan"),
@@ -134,7 +134,7 @@ def test_topics_tick_at_the_rate_they_are_set_to(yard: Any) -> None:
     assert found[4].message == "no publisher on /skan; did you mean '/scan'?"
 
 
-def test_a_topic_that_stops_before_the_end_does_not_tick(yard: Any) -> None:
+def test_a_topic_that_stops_before_the_end_fails_its_rate_check(yard: Any) -> None:
     sim = yard()
     with Watch(sim, [Check("rate", topic="/imu")]) as watch:
         sim.run(1.0)
@@ -144,7 +144,7 @@ def test_a_topic_that_stops_before_the_end_does_not_tick(yard: Any) -> None:
     assert not found.passed and found.message.endswith("and no further message until t = 2 s")
 
 
-def test_a_run_that_does_not_come_to_its_end_has_passed_nothing_that_was_open(yard: Any) -> None:
+def test_open_checks_fail_if_the_run_ends_early(yard: Any) -> None:
     checks = [
         Check("always", expression="time >= 0"),
         Check("final", expression="time >= 0"),
@@ -157,7 +157,7 @@ def test_a_run_that_does_not_come_to_its_end_has_passed_nothing_that_was_open(ya
     assert all("SK-PHYS-001" in result.message for result in found[:4])
 
 
-def test_all_that_is_wrong_is_told_at_once_each_with_its_place(yard: Any) -> None:
+def test_all_problems_are_reported_at_once_with_their_positions(yard: Any) -> None:
     checks = [
         Check("goal", expression="pose('bal').x > 1", where="a.yaml:3"),
         Check("final", expression="time", where="a.yaml:5"),
@@ -172,7 +172,7 @@ def test_all_that_is_wrong_is_told_at_once_each_with_its_place(yard: Any) -> Non
         assert f"a.yaml:{line}: SK-COND-{code}" in text
 
 
-def test_a_topic_that_comes_later_may_be_waited_for(yard: Any) -> None:
+def test_a_check_can_wait_for_a_topic(yard: Any) -> None:
     import simkit
 
     checks = [
@@ -193,7 +193,7 @@ def test_a_topic_that_comes_later_may_be_waited_for(yard: Any) -> None:
     assert "did you mean 'data'?" in found[1].message and "no publisher on /never" in found[2].message
 
 
-def test_who_looks_changes_no_bits_and_nobody_else_misses_a_message(yard: Any) -> None:
+def test_a_watch_changes_no_bits_and_other_subscribers_get_all_messages(yard: Any) -> None:
     checks = [
         Check("always", expression="pose('ball').x < 9 and velocity('ball').z < 9 and not contact('ball', 'post')"),
         Check("always", expression="topic('/imu').linear_acceleration.z > -1e9 and min(scan('/scan')) > 0"),
@@ -212,13 +212,13 @@ def test_who_looks_changes_no_bits_and_nobody_else_misses_a_message(yard: Any) -
     assert seen[0] == seen[1] == seen[2] and len(seen[0][1]) == 101 and seen[0][2] == 11
 
 
-def test_a_count_is_right_beside_who_looks_at_the_newest_alone(yard: Any) -> None:
+def test_a_count_is_correct_with_another_reader_of_the_newest_message(yard: Any) -> None:
     checks = [Check("final", expression="count('/imu') == 101 and topic('/imu').linear_acceleration.z > 9")]
     (found,) = results(yard(), 2.0, *checks)
     assert found.passed, found.message
 
 
-def test_a_run_that_is_given_up_has_not_passed(yard: Any) -> None:
+def test_a_run_stopped_at_its_wall_clock_limit_has_not_passed(yard: Any) -> None:
     scenario = RunSpec("", duration=1e6, wall_timeout=0.05)
     ended = run_scenario(scenario, yard())
     assert ended.reason == "wall_timeout" and not ended.passed
@@ -230,7 +230,7 @@ def test_a_scenario_opens_and_runs_with_its_conditions() -> None:
         assert run_scenario(scenario, sim).passed
 
 
-def test_a_model_that_comes_in_the_place_of_a_removed_one_is_looked_at(yard: Any) -> None:
+def test_a_new_model_with_the_name_of_a_removed_one_is_used(yard: Any) -> None:
     sim = yard()
     ball = f'<sdf version="1.9"><model name="crate">{CRATE}</model></sdf>'
     sim.spawn(ball, pose=simkit.Pose((5, 0, 9)))
@@ -245,7 +245,7 @@ def test_a_model_that_comes_in_the_place_of_a_removed_one_is_looked_at(yard: Any
     assert "pose('crate').z was 3.9" in found[0][1] and "velocity('crate').z was -0.9" in found[1][1]
 
 
-def test_a_limit_on_what_was_removed_says_until_when_it_held(yard: Any) -> None:
+def test_a_limit_on_a_removed_model_reports_until_when_it_held(yard: Any) -> None:
     sim = yard()
     with Watch(sim, [Check("always", expression="pose('ball').z > 0")]) as watch:
         sim.run(0.1)
@@ -255,7 +255,7 @@ def test_a_limit_on_what_was_removed_says_until_when_it_held(yard: Any) -> None:
     assert result.message == ("held from t = 0 s to t = 0.1 s, then: pose('ball').z is unknown: ball was removed")
 
 
-def test_a_condition_of_nothing_but_numbers_says_what_it_was(yard: Any) -> None:
+def test_a_constant_condition_is_reported_as_text(yard: Any) -> None:
     (result,) = results(yard(), 0.01, Check("final", expression="1 > 2"))
     assert result.message == "1 > 2 was false at t = 0.01 s"
 

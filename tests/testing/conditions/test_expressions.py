@@ -1,4 +1,4 @@
-"""Expressions: read by a parser of their own, checked before the first step, the same answers as by hand."""
+"""Expressions: parsed without Python, validated before the first step, with correct results."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def value(text: str, view: Any) -> Any:
         ("round(2.6) + ceil(0.1)", 4.0),
     ],
 )
-def test_arithmetic_and_truth_come_out_as_by_hand(text: str, expected: Any, still: Any) -> None:
+def test_arithmetic_and_logic_have_the_expected_results(text: str, expected: Any, still: Any) -> None:
     found = value(text, still)
     assert found == pytest.approx(expected) if not isinstance(expected, bool) else found is expected
 
@@ -95,7 +95,7 @@ def test_a_world_is_read_as_its_handles_tell_it(text: str, expected: Any, still:
     assert found == pytest.approx(expected, abs=1e-3) if not isinstance(expected, bool) else found is expected
 
 
-def test_numbers_of_a_scan_are_those_of_the_rays_that_met_something(still: Any) -> None:
+def test_numbers_of_a_scan_are_the_ranges_of_hits(still: Any) -> None:
     import numpy as np
 
     ranges = np.asarray(still.sim.sensor("post::l::lds").latest.ranges, dtype=float)
@@ -105,7 +105,7 @@ def test_numbers_of_a_scan_are_those_of_the_rays_that_met_something(still: Any) 
         assert value(f"{name}(scan('/scan'))", still) == pytest.approx(getattr(np, name)(met))
 
 
-def test_speed_ahead_is_that_along_its_own_axes(yard: Any) -> None:
+def test_velocity_can_be_expressed_in_the_axes_of_the_entity(yard: Any) -> None:
     from simkit.testing.conditions.world_view import WorldView
 
     with yard() as sim:
@@ -170,7 +170,7 @@ def test_speed_ahead_is_that_along_its_own_axes(yard: Any) -> None:
         ("time" + ".x" * 300, "SK-COND-008", "", "levels"),
     ],
 )
-def test_a_mistake_is_shown_at_its_place_with_what_helps(
+def test_an_error_points_at_its_position_and_has_a_hint(
     text: str, code: str, place: str, says: str, still: Any
 ) -> None:
     with pytest.raises(InputError) as caught:
@@ -182,7 +182,7 @@ def test_a_mistake_is_shown_at_its_place_with_what_helps(
         assert shown[carets.index("^") : carets.rindex("^") + 1] == place
 
 
-def test_a_short_circuit_decides_over_what_is_not_known(yard: Any) -> None:
+def test_a_known_operand_can_decide_despite_unknown_operands(yard: Any) -> None:
     from simkit.testing.conditions.syntax_tree import UndecidedValue
     from simkit.testing.conditions.world_view import WorldView
 
@@ -196,7 +196,7 @@ def test_a_short_circuit_decides_over_what_is_not_known(yard: Any) -> None:
                 value(text, view)
 
 
-def test_a_removed_model_is_not_known_any_more(yard: Any) -> None:
+def test_the_value_of_a_removed_model_is_unknown(yard: Any) -> None:
     from simkit.testing.conditions.syntax_tree import UndecidedValue
     from simkit.testing.conditions.world_view import WorldView
 
@@ -210,7 +210,7 @@ def test_a_removed_model_is_not_known_any_more(yard: Any) -> None:
             part.get()
 
 
-def test_nonsense_of_any_kind_is_an_input_error_and_nothing_else(still: Any) -> None:
+def test_any_invalid_expression_is_an_input_error(still: Any) -> None:
     import random
 
     from simkit.testing.conditions.syntax_tree import UndecidedValue

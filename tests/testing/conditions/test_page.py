@@ -1,4 +1,4 @@
-"""`docs/conditions.md` names every function, and what it shows works."""
+"""`docs/conditions.md` names every function, and its examples work."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ PAGE = (Path(__file__).resolve().parents[3] / "docs" / "conditions.md").read_tex
 
 
 def block(language: str) -> str:
-    """The first block of a language."""
+    """Return the first code block of a language."""
     found = re.search(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
     assert found is not None
     return found.group(1)
 
 
-def test_every_function_is_told_of() -> None:
+def test_every_function_is_documented() -> None:
     assert [name for name in FUNCTIONS if not re.search(rf"\b{name}\b", PAGE)] == []
 
 
@@ -39,6 +39,6 @@ def test_the_command_prints_what_the_page_says(tmp_path: Path, monkeypatch: pyte
         assert found == pytest.approx(told, abs=0.05)
 
 
-def test_the_program_prints_what_held(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_prints_the_results_of_the_checks(capsys: pytest.CaptureFixture[str]) -> None:
     exec(compile(block("python"), "docs/conditions.md", "exec"), {})
     assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == ["True"] * 3

@@ -17,11 +17,11 @@ BALL = """<sdf version="1.9"><world name="w">
 <model name="wall"><static>true</static><pose>2 0 0 0 0 0</pose><link name="l"><collision name="c"><geometry><box>
 <size>0.1 4 4</size></box></geometry></collision></link></model>
 </world></sdf>"""
-"""A ball with an IMU and a lidar that falls on a floor before a wall."""
+"""World with a ball that falls on a floor in front of a wall; the ball has an IMU and a lidar."""
 
 
 def ball(folder: Path, *changes: tuple[str, str]) -> Path:
-    """The world in a file, with some texts of it replaced."""
+    """Write the world to a file; replace some texts."""
     text = BALL
     for before, after in changes:
         assert before in text

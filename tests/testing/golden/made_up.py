@@ -1,4 +1,4 @@
-"""Records made of a few arrays, as runs would give them."""
+"""Run records created from a few arrays."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OTHER_MACHINE = {**MACHINE, "mujoco": "4.0.1"}
 
 
 def times(count: int, rate: float, first: float = 0.0) -> Any:
-    """Of messages at a rate [ns]."""
+    """Return the times of messages at a rate [ns]."""
     return np.round((first + np.arange(count) / rate) * 1e9).astype(np.int64)
 
 
@@ -35,14 +35,14 @@ def stream(
     words: Mapping[str, list[str]] | None = None,
     pictures: Pictures | None = None,
 ) -> Stream:
-    """A stream with the hashes that its numbers give."""
+    """Return a stream with hashes of its numbers."""
     made = {path: c if isinstance(c, Column) else Column(np.asarray(c)) for path, c in columns.items()}
     found = Stream(topic, type_name, np.asarray(when, np.int64), made, dict(words or {}), pictures)
     return hashed(found)
 
 
 def hashed(found: Stream, of: Stream | None = None) -> Stream:
-    """With hashes as if its numbers were all that messages have."""
+    """Add hashes to a stream as if the messages had no other fields."""
     exact = of or found
     whole = hashlib.sha256()
     chunks = []
@@ -65,7 +65,7 @@ def hashed(found: Stream, of: Stream | None = None) -> Stream:
 
 
 def rounded(found: Stream, step: float) -> Stream:
-    """As it comes back from a golden: numbers rounded, hashes of the exact ones."""
+    """Return a stream as a golden run stores it: rounded numbers, and hashes of the exact numbers."""
     columns = {
         path: Column(np.rint(c.values / step) * step, c.lengths, step) if c.values.dtype.kind == "f" else c
         for path, c in found.columns.items()
@@ -76,7 +76,7 @@ def rounded(found: Stream, step: float) -> Stream:
 def states(
     shift: float = 0.0, first: int = 1000, names: tuple[str, ...] = ("cart position x", "arm velocity")
 ) -> States:
-    """Two seconds of physics that are off by `shift` from tick `first` on."""
+    """Return two seconds of physics that differ by `shift` from tick `first` on."""
     rng = np.random.default_rng(0)
     marks = rng.integers(0, 256, 2000).astype(np.uint8)
     ticks = np.arange(0, 2001, 250)
@@ -91,7 +91,7 @@ def states(
 def record(
     *streams: Stream, machine: Mapping[str, str] = MACHINE, tolerances: tuple[Tolerance, ...] = (), **more: Any
 ) -> RunRecord:
-    """A run that gave these streams."""
+    """Return the record of a run with these streams."""
     options = {key: more.pop(key) for key in ("state", "model") if key in more}
     scenario = RunSpec("world.sdf", 2.0, tolerances=tolerances, **options)
     return RunRecord(scenario, dict(machine), {s.topic: s for s in streams}, more.pop("states", states()), **more)

@@ -1,4 +1,4 @@
-"""Two runs made up, and what a comparison of them would say."""
+"""Two artificial runs and their comparison."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SCAN, ODOM, IMU, CAMERA, DEPTH = "/scan", "/odom", "/imu", "/camera/image", "/ca
 
 
 def record(shift: float = 0.0, *, seconds: float = 4.0, extra: int = 0) -> RunRecord:
-    """A run in which everything is off by `shift` from 2 s on."""
+    """Return a run in which all values differ by `shift` from 2 s on."""
     streams = {
         s.topic: s for s in (_scan(shift, seconds), _odom(shift, seconds + extra), _imu(shift), *_cameras(shift))
     }
@@ -46,7 +46,7 @@ def difference(topic: str, field: str, kind: Any, words: str, **more: Any) -> Di
 
 
 def failing() -> Verdict:
-    """A verdict of which every kind of difference is one."""
+    """Return a verdict with every kind of difference."""
     found = [
         difference(
             SCAN, "ranges", "value", "/scan.ranges: 14 of 360 rays +12 mm from t = 2.00 s", allowed="1 mm", index=20

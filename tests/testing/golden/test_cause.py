@@ -1,4 +1,4 @@
-"""What was changed is named, proven by putting it back, and nothing else is blamed."""
+"""Causes of differences: each change is named and proven by undoing it."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ Explained = Callable[..., Explanation]
 
 @pytest.fixture
 def explained(golden: RunRecord, tmp_path: Path) -> Explained:
-    """What is said of the golden world with texts in it replaced."""
+    """Explain a run of the golden world in which some texts are replaced."""
 
     def of(*replaced: tuple[str, str], count: int = 1, budget: float = 30.0) -> Explanation:
         text = WORLD
@@ -128,7 +128,7 @@ def test_the_same_change_in_two_places_is_one_line(explained: Explained) -> None
     )
 
 
-def test_of_several_changes_those_that_make_the_difference_are_told_from_those_that_do_not(
+def test_effective_and_idle_changes_are_distinguished(
     explained: Explained,
 ) -> None:
     found = explained(
@@ -143,7 +143,7 @@ def test_of_several_changes_those_that_make_the_difference_are_told_from_those_t
     assert found.lines[3].startswith("also changed, without effect: visual arm::rod::look: material.ambient")
 
 
-def test_a_model_that_is_gone_or_new_is_one_change(explained: Explained) -> None:
+def test_an_added_or_removed_model_is_one_change(explained: Explained) -> None:
     box = WORLD[WORLD.index('<model name="box"') : WORLD.index("</world>")]
     found = explained((box, ""))
     assert (found.causes[0].words, found.causes[0].proven) == ("model box is gone", True)
@@ -151,10 +151,10 @@ def test_a_model_that_is_gone_or_new_is_one_change(explained: Explained) -> None
     assert (found.causes[0].words, found.causes[0].proven) == ("model crate is new", True)
 
 
-def test_another_name_is_called_that(explained: Explained) -> None:
+def test_a_renamed_entity_is_reported_as_renamed(explained: Explained) -> None:
     found = explained(('sensor name="imu"', 'sensor name="imu_2"'))
     assert found.causes[0].words == "sensor arm::rod::imu was renamed to arm::rod::imu_2"
-    assert found.causes[0].proven  # its noise is another by its name
+    assert found.causes[0].proven  # the noise depends on the name of the sensor
 
 
 def test_another_shape_is_one_change(explained: Explained) -> None:
@@ -163,14 +163,14 @@ def test_another_shape_is_one_change(explained: Explained) -> None:
     assert len(found.causes) == 1 and found.causes[0].proven
 
 
-def test_an_element_that_is_gone_is_one_change(explained: Explained) -> None:
+def test_a_removed_element_is_one_change(explained: Explained) -> None:
     noise = '<noise type="gaussian"><mean>0</mean><stddev>0.01</stddev></noise>'
     found = explained((f"<y>{noise}</y>", "<y></y>"))
     assert "imu.angular_velocity.y.noise is gone (it had" in found.causes[0].words
     assert len(found.causes) == 1 and found.causes[0].proven
 
 
-def test_a_change_that_nothing_recorded_shows_is_said_to_be_one(explained: Explained) -> None:
+def test_a_change_without_an_effect_on_outputs_is_reported(explained: Explained) -> None:
     found = explained(("<diffuse>0.5 ", "<diffuse>0.6 "))
     assert found.lines[0].startswith(
         "cause: visual arm::rod::look: material.ambient r 0.5 → 0.6 (+20 %), diffuse r 0.5 → 0.6 (+20 %)"
@@ -179,7 +179,7 @@ def test_a_change_that_nothing_recorded_shows_is_said_to_be_one(explained: Expla
     assert found.tick is None
 
 
-def test_without_time_causes_are_named_without_proof(explained: Explained) -> None:
+def test_causes_are_listed_without_proof_if_no_time_is_left(explained: Explained) -> None:
     found = explained(("<damping>0.1<", "<damping>0.15<"), budget=0.0)
     assert [(c.words, c.proven) for c in found.causes] == [("joint arm::hinge: damping 0.1 → 0.15 (+50 %)", None)]
 
@@ -213,7 +213,7 @@ class Push(ModelPlugin):
 """
 
 
-def test_code_that_a_plugin_imports_is_named_with_the_tick_at_which_it_put_in_something_else(
+def test_changed_code_imported_by_a_plugin_is_named_with_the_first_different_input(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.syspath_prepend(str(tmp_path))
@@ -230,5 +230,5 @@ def test_code_that_a_plugin_imports_is_named_with_the_tick_at_which_it_put_in_so
     run.scenario = replace(run.scenario, options=before.scenario.options)
     found = explain(before, run, compare(before, run), rerun=None)
     assert found.lines[0] == "cause: the code of strength.py was changed"
-    assert found.tick == 52  # the step that begins at t = 0.102 s is the first that is pushed
+    assert found.tick == 52  # the force acts first in the step that begins at t = 0.102 s
     assert found.lines[2].startswith("the inputs from plugins and commands differ first at tick 52")

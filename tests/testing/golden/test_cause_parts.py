@@ -1,4 +1,4 @@
-"""The parts of an explanation, each by itself."""
+"""Functions that build an explanation."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_a_world_made_of_its_leaves_runs_to_the_same_bits() -> None:
         assert state_hash(sim) == wanted
 
 
-def test_what_was_in_a_file_that_is_not_there_any_more_cannot_be_put_back() -> None:
+def test_the_content_of_a_missing_file_cannot_be_restored() -> None:
     world = read_scene("turtlebot3_world")[0].world
     leaves, _ = values_of_world(world)
     path = next(path for path in leaves if path.endswith("geometry.file"))
@@ -64,7 +64,7 @@ def test_what_was_in_a_file_that_is_not_there_any_more_cannot_be_put_back() -> N
     "path", ["gravity", "models[turtlebot3].pose_world", "models[turtlebot3].links[base_link].inertial.com"]
 )
 @pytest.mark.parametrize("value", [3.0, "down", [1.0], [], {"a": 1}, [["x"]]])
-def test_leaves_that_somebody_tampered_with_are_no_traceback(path: str, value: object) -> None:
+def test_manipulated_world_values_cause_no_traceback(path: str, value: object) -> None:
     world = read_scene("turtlebot3_world")[0].world
     leaves, _ = values_of_world(world)
     with suppress(CannotPatch):
@@ -74,7 +74,7 @@ def test_leaves_that_somebody_tampered_with_are_no_traceback(path: str, value: o
     assert [change.path for change in changes] == [path]
 
 
-def test_leaves_that_are_nothing_of_the_kind_are_no_traceback() -> None:
+def test_invalid_world_values_cause_no_traceback() -> None:
     leaves, places = values_of_world(read_scene("turtlebot3_world")[0].world)
     odd = [None, "", [], "x", 3.0, [1.0, "a"], [[1.0]], True, {"a": [1]}, [0.0] * 7]
     for start in range(5):
@@ -84,7 +84,7 @@ def test_leaves_that_are_nothing_of_the_kind_are_no_traceback() -> None:
 
 
 @pytest.mark.parametrize("needed", [{0}, {3}, {1, 6}, {2, 3, 4}, {0, 7}])
-def test_the_changes_that_matter_are_found_in_few_runs(needed: set[int]) -> None:
+def test_effective_changes_are_found_in_few_runs(needed: set[int]) -> None:
     asked: set[frozenset[int]] = set()
 
     def same(back: frozenset[int]) -> bool:
@@ -97,7 +97,7 @@ def test_the_changes_that_matter_are_found_in_few_runs(needed: set[int]) -> None
     assert len(asked) <= 2 + 2 * len(needed) * 4
 
 
-def test_where_no_change_helps_nothing_is_blamed() -> None:
+def test_no_cause_is_named_if_undoing_all_changes_has_no_effect() -> None:
     found = find_effective_changes(range(3), lambda back: False)
     assert (found.needed, found.idle, found.all_back) == ([], [], False)
 
@@ -118,7 +118,7 @@ def states(marks: list[int], inputs: list[int], values: list[list[float]]) -> St
     )
 
 
-def test_the_first_tick_is_that_of_the_first_mark_that_differs() -> None:
+def test_the_first_different_mark_gives_the_first_tick() -> None:
     a = states([1, 2, 3, 4], [0, 0, 0, 0], [[0.0, 1.0], [1.0, 1.0]])
     b = states([1, 2, 9, 9], [0, 0, 0, 0], [[0.0, 1.0], [1.0, 1.5]])
     found = first_different_tick(a, b)
@@ -127,7 +127,7 @@ def test_the_first_tick_is_that_of_the_first_mark_that_differs() -> None:
     assert "all inputs are equal" in found.words
 
 
-def test_what_has_other_input_comes_before_what_follows_from_it() -> None:
+def test_a_different_input_is_listed_before_its_effects() -> None:
     a = states([1, 2, 3, 4], [0, 0, 0, 0], [[0.0], [1.0]])
     b = states([1, 2, 9, 9], [0, 0, 7, 7], [[0.0], [2.0]])
     found = first_different_tick(a, b)
@@ -135,7 +135,7 @@ def test_what_has_other_input_comes_before_what_follows_from_it() -> None:
     assert found.words.startswith("the inputs from plugins and commands differ first at tick 3 (t = 0.03 s)")
 
 
-def test_runs_that_start_elsewhere_are_said_to() -> None:
+def test_different_initial_states_are_reported() -> None:
     a = states([1, 2], [0, 0], [[0.0], [1.0]])
     b = states([5, 6], [0, 0], [[0.5], [1.0]])
     found = first_different_tick(a, b)
@@ -143,7 +143,7 @@ def test_runs_that_start_elsewhere_are_said_to() -> None:
     assert found.words == "the initial state differs: q0 0 → 0.5"
 
 
-def test_equal_runs_do_not_part() -> None:
+def test_equal_runs_have_no_first_different_tick() -> None:
     a = states([1, 2], [0, 0], [[0.0], [1.0]])
     assert first_different_tick(a, replace(a)) is None
 
@@ -158,5 +158,5 @@ def test_equal_runs_do_not_part() -> None:
         (0.1, 0.1 + 1e-13, "0.1 → 0.1000000000001"),
     ],
 )
-def test_numbers_have_the_digits_that_tell_them_apart(a: float, b: float, words: str) -> None:
+def test_numbers_have_enough_digits_to_differ(a: float, b: float, words: str) -> None:
     assert distinct_digits(a, b) == words

@@ -1,4 +1,4 @@
-"""A golden run is checked, blessed, and told about; by the command line too."""
+"""Golden runs are checked, blessed and reported, by functions and by the command line."""
 
 from __future__ import annotations
 
@@ -31,27 +31,27 @@ def golden(tmp_path: Path) -> Path:
     return tmp_path / "golden" / "ball"
 
 
-def test_what_is_as_it_was_passes(golden: Path) -> None:
+def test_an_unchanged_world_passes(golden: Path) -> None:
     code, said = simkit("golden", "check", golden)
     assert code == 0 and said.startswith("ok"), said
     assert simkit("golden", "check", golden, "--quiet") == (0, "")
 
 
-def test_it_passes_from_another_folder_too(golden: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_tests_pass_in_another_working_directory(golden: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir("/")
     assert simkit("golden", "check", golden)[0] == 0
     monkeypatch.chdir(golden)
     assert simkit("golden", "check", ".")[0] == 0
 
 
-def test_what_differs_ends_with_code_5_and_says_why(golden: Path, tmp_path: Path) -> None:
+def test_a_difference_exits_with_code_5_and_shows_the_cause(golden: Path, tmp_path: Path) -> None:
     ball(tmp_path, HEAVY)
     code, said = simkit("golden", "check", golden)
     assert code == 5
     assert said.startswith("FAILED") and "radius 0.1 → 0.101" in said
 
 
-def test_a_scenario_file_is_read_anew(tmp_path: Path) -> None:
+def test_a_scenario_file_is_read_again(tmp_path: Path) -> None:
     ball(tmp_path)
     scenario = tmp_path / "fall.yaml"
     scenario.write_text("world: ball.sdf\nduration: 0.3\n")
@@ -65,7 +65,7 @@ def test_a_scenario_file_is_read_anew(tmp_path: Path) -> None:
     assert code == 2 and "SK-GOLDEN-006" in said
 
 
-def test_a_scenario_that_the_world_no_longer_serves_says_what_has_changed(tmp_path: Path) -> None:
+def test_a_scenario_that_no_longer_fits_lists_the_world_changes(tmp_path: Path) -> None:
     plugin = '<plugin filename="gz-sim-apply-link-wrench-system" name="gz::sim::systems::ApplyLinkWrench"/>'
     world = (
         f'<sdf version="1.9"><world name="w">{plugin}<model name="m"><link name="l">'
@@ -109,7 +109,7 @@ def test_a_blessing_without_a_difference_changes_nothing(golden: Path) -> None:
     assert {path.name: path.read_bytes() for path in golden.iterdir()} == before
 
 
-def test_it_is_not_overwritten_unasked(golden: Path, tmp_path: Path) -> None:
+def test_an_existing_golden_run_is_not_overwritten(golden: Path, tmp_path: Path) -> None:
     code, said = simkit("golden", "record", tmp_path / "ball.sdf", "--out", golden)
     assert code == 2 and "SK-GOLDEN-005" in said
     words = ("golden", "record", tmp_path / "ball.sdf", "--out", golden, "--duration", 0.1, "--force")
@@ -117,7 +117,7 @@ def test_it_is_not_overwritten_unasked(golden: Path, tmp_path: Path) -> None:
     assert read_golden(golden).scenario.duration == 0.1
 
 
-def test_the_worst_comes_first_of_several(golden: Path, tmp_path: Path) -> None:
+def test_the_worst_result_is_the_first_of_several(golden: Path, tmp_path: Path) -> None:
     simkit("golden", "record", ball(tmp_path), "--out", golden.parent / "apples", "--duration", 0.1)
     (golden.parent / "pears").mkdir()
     (golden.parent / "pears" / "golden.json").write_text("{")
@@ -149,7 +149,7 @@ def test_a_run_that_fails_is_not_recorded(tmp_path: Path) -> None:
     assert not (tmp_path / "g").exists()
 
 
-def test_several_are_checked_at_once_with_the_same_outcome(golden: Path, tmp_path: Path) -> None:
+def test_parallel_checks_give_the_same_results(golden: Path, tmp_path: Path) -> None:
     simkit("golden", "record", tmp_path / "ball.sdf", "--out", golden.parent / "other", "--duration", 0.1)
     code, said = simkit("golden", "check", golden.parent, "-n", 2)
     assert code == 0 and "2 of 2 golden runs passed" in said

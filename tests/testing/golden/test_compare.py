@@ -1,4 +1,4 @@
-"""What differs between two runs, told in words."""
+"""Differences between two runs and their descriptions."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ STEP = 2.0**-15
 
 
 def scan(change: Any = None, *, when: Any = None, **settings: float) -> Stream:
-    """Two seconds of a lidar of 360 rays; `change` is given (messages, rays) and may write."""
+    """Return two seconds of a lidar with 360 rays; `change` may modify the array (messages, rays)."""
     when = times(20, 10.0, 0.1) if when is None else when
     ranges = np.full((len(when), 360), 2.0, np.float32)
     ranges += np.linspace(0.0, 0.5, 360, dtype=np.float32)
@@ -60,13 +60,13 @@ def golden_of(*streams: Stream, step: float = STEP, **more: Any) -> Any:
 # ---------------------------------------------------------------------- the same machine
 
 
-def test_two_runs_of_the_same_pass_though_the_golden_is_rounded() -> None:
+def test_a_repeated_run_passes_although_the_golden_run_is_rounded() -> None:
     found = compare(golden_of(scan(), imu()), record(scan(), imu()))
     assert found.passed and found.tier == "exact" and not found.notes
     assert (found.topics, found.messages) == (2, 420)
 
 
-def test_rays_that_moved_are_counted_signed_and_dated() -> None:
+def test_different_rays_are_reported_with_number_sign_and_time() -> None:
     def nearer(ranges: Any) -> None:
         ranges[11:, 45:59] += 0.012
 
@@ -76,7 +76,7 @@ def test_rays_that_moved_are_counted_signed_and_dated() -> None:
     assert found.time == pytest.approx(1.2) and found.size == pytest.approx(0.012, abs=2 * STEP)
 
 
-def test_a_shift_that_grows_says_how_far_it_gets() -> None:
+def test_a_growing_difference_reports_its_largest_value() -> None:
     def away(ranges: Any) -> None:
         ranges[5:, 10] -= 0.002 * np.arange(1, len(ranges) - 4)
 
@@ -84,7 +84,7 @@ def test_a_shift_that_grows_says_how_far_it_gets() -> None:
     assert said == "/scan.ranges: 1 of 360 rays (number 10) −2 mm from t = 0.60 s, up to −30 mm at t = 2.00 s"
 
 
-def test_one_message_alone_and_every_third_are_told_apart() -> None:
+def test_one_different_message_and_every_third_are_described_differently() -> None:
     def once(ranges: Any) -> None:
         ranges[4] += 0.5
 
@@ -95,7 +95,7 @@ def test_one_message_alone_and_every_third_are_told_apart() -> None:
     assert "from t = 0.50 s, in 6 of 16 messages" in words(golden_of(scan()), record(scan(now_and_then)))[0]
 
 
-def test_both_ways_and_rays_that_hit_nothing_any_more_are_named() -> None:
+def test_differences_of_both_signs_and_lost_hits_are_described() -> None:
     def mixed(ranges: Any) -> None:
         ranges[3:, 0:10:2] += 0.02
         ranges[3:, 1:10:2] -= 0.02
@@ -109,7 +109,7 @@ def test_both_ways_and_rays_that_hit_nothing_any_more_are_named() -> None:
     )
 
 
-def test_infinities_and_no_numbers_are_equal_to_themselves() -> None:
+def test_infinity_equals_infinity_and_nan_equals_nan() -> None:
     def nothing(ranges: Any) -> None:
         ranges[:, :5] = np.nan
         ranges[:, 5:9] = -np.inf
@@ -117,13 +117,13 @@ def test_infinities_and_no_numbers_are_equal_to_themselves() -> None:
     assert not words(golden_of(scan(nothing)), record(scan(nothing)), exact=False)
 
 
-def test_a_setting_that_is_another_reads_as_such() -> None:
+def test_a_changed_constant_is_described_as_a_setting() -> None:
     assert words(golden_of(scan(), step=2**-20), record(scan(range_max=4.0))) == [
         "/scan.range_max: 3.5 m became 4 m",
     ]
 
 
-def test_less_than_the_golden_keeps_is_a_difference_in_bits() -> None:
+def test_a_difference_below_the_rounding_is_a_difference_in_bits() -> None:
     def a_little(ranges: Any) -> None:
         ranges[12, 7] += 1e-6
 
@@ -132,7 +132,7 @@ def test_less_than_the_golden_keeps_is_a_difference_in_bits() -> None:
     assert found.words == "/scan: bits differ from t in 1–2 s, by less than 15.3 µm"
 
 
-def test_the_largest_against_its_tolerance_comes_first_of_what_begins_together() -> None:
+def test_differences_at_one_time_are_sorted_by_their_ratio_to_the_tolerance() -> None:
     other = imu()
     other.columns["linear_acceleration.x"].values[100:] += 0.001
     other.columns["linear_acceleration.z"].values[100:] += 0.5
@@ -153,7 +153,7 @@ def test_differences_come_in_the_order_of_time() -> None:
 # ---------------------------------------------------------------------- counts, times, topics
 
 
-def test_a_rate_that_is_another_is_told_in_hertz_and_messages() -> None:
+def test_a_changed_rate_is_reported_in_hertz_and_messages() -> None:
     when = np.unique(np.ceil(np.arange(1, 403) / 201.0 * 1000.0)).astype(np.int64) * 1_000_000
     golden = imu(when=times(400, 200.0, 0.005))
     (found,) = compare(golden_of(golden), record(imu(when=when))).differences
@@ -161,14 +161,14 @@ def test_a_rate_that_is_another_is_told_in_hertz_and_messages() -> None:
     assert found.words == "/imu: 200 Hz became 201 Hz: 400 messages became 402"
 
 
-def test_a_stream_that_ends_early_and_one_that_comes_late() -> None:
+def test_streams_that_end_early_or_start_late_are_described() -> None:
     short = words(golden_of(imu()), record(imu(when=times(300, 200.0))))
     assert any(s == "/imu: ends at t = 1.495 s: 400 messages became 300" for s in short)
     late = words(golden_of(imu()), record(imu(when=times(400, 200.0) + 3_000_000)))
     assert late == ["/imu: every message is sent 3 ms later"]
 
 
-def test_values_are_compared_up_to_where_times_part() -> None:
+def test_values_are_compared_up_to_the_first_different_time() -> None:
     def near_the_end(ranges: Any) -> None:
         ranges[12:] += 1.0
 
@@ -179,7 +179,7 @@ def test_values_are_compared_up_to_where_times_part() -> None:
     assert found[0].words == "/scan: message 9 is sent 50 ms later at t = 0.95 s; 20 messages as before"
 
 
-def test_a_topic_that_is_gone_and_a_new_one_are_both_named() -> None:
+def test_a_missing_and_a_new_topic_are_both_named() -> None:
     renamed = replace(imu(), topic="/imu/data")
     found = compare(golden_of(imu(), scan()), record(scan(), renamed)).differences
     assert [(d.kind, d.words) for d in found] == [
@@ -188,7 +188,7 @@ def test_a_topic_that_is_gone_and_a_new_one_are_both_named() -> None:
     ]
 
 
-def test_another_type_on_a_topic_is_told_and_not_compared() -> None:
+def test_a_changed_message_type_is_reported_and_not_compared() -> None:
     other = replace(scan(), topic="/imu")
     assert words(golden_of(imu()), record(other)) == [f"/imu: {IMU} became {SCAN}"]
 
@@ -202,7 +202,7 @@ def joints(off: float = 0.0) -> Stream:
     return stream("/joint_states", JOINTS, when, {"position": position}, {"name": ["left, right"] * 40})
 
 
-def test_joints_go_by_their_names_and_units_by_their_kind() -> None:
+def test_joints_are_compared_by_name_with_the_unit_of_their_type() -> None:
     turning = {"models[m].joints[left].type": "continuous", "models[m].joints[right].type": "revolute"}
     sliding = dict.fromkeys(turning, "prismatic")
     golden = golden_of(joints())
@@ -213,7 +213,7 @@ def test_joints_go_by_their_names_and_units_by_their_kind() -> None:
     assert words(golden, record(joints(0.01), leaves=sliding))[0].startswith("/joint_states.position: left +10 mm from")
 
 
-def test_lists_that_grow_say_so() -> None:
+def test_changed_lengths_of_lists_are_reported() -> None:
     lengths = np.ones(10, np.int64)
     more = lengths.copy()
     more[4:] = 3
@@ -242,20 +242,20 @@ def test_an_orientation_is_one_angle_about_an_axis() -> None:
     assert found.size == pytest.approx(math.radians(2.0), abs=2 * STEP)
 
 
-def test_a_quaternion_and_its_negative_are_the_same_turn() -> None:
+def test_a_quaternion_and_its_negative_are_the_same_rotation() -> None:
     assert not words(golden_of(odom()), record(odom(sign=-1.0)), exact=False)
     (said,) = words(golden_of(odom()), record(odom(sign=-1.0)))
     assert "the same rotation with opposite quaternion sign" in said
 
 
-def test_what_is_no_orientation_is_compared_by_its_numbers() -> None:
+def test_quaternions_that_are_not_unit_length_are_compared_as_numbers() -> None:
     nothing = {f"orientation.{axis}": np.zeros(5) for axis in "xyzw"}
     some = {**nothing, "orientation.x": np.full(5, 0.5)}
     golden, run = (stream("/imu", IMU, times(5, 5.0), columns) for columns in (nothing, some))
     assert [d.field for d in compare(golden_of(golden), record(run)).differences] == ["orientation.x"]
 
 
-def test_texts_are_shown_both() -> None:
+def test_both_texts_are_shown() -> None:
     other = scan()
     other.words["header.frame_id"][7:] = ["laser"] * 13
     (found,) = compare(golden_of(scan()), record(hashed(other))).differences
@@ -266,7 +266,7 @@ def test_texts_are_shown_both() -> None:
 # ---------------------------------------------------------------------- another machine
 
 
-def test_another_machine_is_compared_with_tolerances_and_says_what_is_other() -> None:
+def test_another_machine_is_compared_with_tolerances_and_its_differences_are_listed() -> None:
     def a_little(ranges: Any) -> None:
         ranges += 3e-4
 
@@ -277,7 +277,7 @@ def test_another_machine_is_compared_with_tolerances_and_says_what_is_other() ->
     assert note.startswith("/scan.ranges: up to 0.3 mm off") and "within 1 mm +" in note
 
 
-def test_a_share_of_the_rays_may_be_further_off_on_another_machine() -> None:
+def test_a_share_of_the_rays_may_differ_more_on_another_machine() -> None:
     def edges(ranges: Any, number: int) -> None:
         ranges[:, 100 : 100 + number] += 1.0
 
@@ -288,7 +288,7 @@ def test_a_share_of_the_rays_may_be_further_off_on_another_machine() -> None:
     assert words(golden, many) == ["/scan.ranges: 8 of 360 rays (100 to 107) +1 m from t = 0.10 s"]
 
 
-def test_two_millimetres_one_degree_and_one_hertz_are_seen_on_another_machine_too() -> None:
+def test_two_millimetres_one_degree_and_one_hertz_are_differences_on_another_machine() -> None:
     def moved(ranges: Any) -> None:
         ranges += 0.002
 
@@ -298,7 +298,7 @@ def test_two_millimetres_one_degree_and_one_hertz_are_seen_on_another_machine_to
         assert not compare(golden, record(changed, *run, machine=OTHER_MACHINE)).passed
 
 
-def test_a_scenarios_own_tolerance_counts_instead_of_the_default() -> None:
+def test_a_tolerance_of_the_scenario_replaces_the_default() -> None:
     def off(ranges: Any) -> None:
         ranges += 0.004
 
@@ -314,7 +314,7 @@ def test_a_scenarios_own_tolerance_counts_instead_of_the_default() -> None:
         assert compare(golden, run).passed is passes, tolerance
 
 
-def test_exact_holds_a_field_to_its_bits_on_every_machine() -> None:
+def test_an_exact_field_is_compared_bit_by_bit_on_every_machine() -> None:
     def off(ranges: Any) -> None:
         ranges[3] += 1e-4
 
@@ -322,7 +322,7 @@ def test_exact_holds_a_field_to_its_bits_on_every_machine() -> None:
     assert not compare(golden_of(scan()), run).passed
 
 
-def test_an_ignored_topic_is_a_note_and_an_ignored_field_lets_the_others_count() -> None:
+def test_an_ignored_topic_is_a_note_and_other_fields_are_still_compared() -> None:
     def off(ranges: Any) -> None:
         ranges += 1.0
 
@@ -335,7 +335,7 @@ def test_an_ignored_topic_is_a_note_and_an_ignored_field_lets_the_others_count()
     ]
 
 
-def test_a_touch_may_come_one_step_later_on_another_machine() -> None:
+def test_an_event_may_shift_by_one_step_on_another_machine() -> None:
     when = np.array([100, 350, 360, 900]) * 1_000_000
     golden, run = (
         stream("/bumper", CONTACTS, at, {"contacts.depths": np.zeros((4, 1))})
@@ -345,7 +345,7 @@ def test_a_touch_may_come_one_step_later_on_another_machine() -> None:
     assert not compare(golden_of(golden), record(run)).passed
 
 
-def test_parts_in_another_order_are_compared_with_tolerances() -> None:
+def test_a_different_order_of_models_is_compared_with_tolerances() -> None:
     golden = record(leaves={"models[a].x": 1, "models[b].x": 2})
     run = record(leaves={"models[b].x": 2, "models[a].x": 1}, states=states(1e-12))
     found = compare(golden, run)
@@ -354,34 +354,34 @@ def test_parts_in_another_order_are_compared_with_tolerances() -> None:
     assert not compare(golden, replace(run, leaves={"models[b].x": 3, "models[a].x": 1})).passed
 
 
-# ---------------------------------------------------------------------- physics, meaning, end
+# ---------------------------------------------------------------------- physics, world values, end
 
 
-def test_the_physics_names_its_first_tick_and_what_moved() -> None:
+def test_a_physics_difference_names_the_first_tick_and_the_quantity() -> None:
     (found,) = compare(record(), record(states=states(0.003, first=1100))).differences
     assert (found.kind, found.topic, found.field) == ("state", "", "cart position x")
     assert found.words == "physics: state differs from t = 1.10 s (tick 1100): cart position x +3 mm at t = 1.25 s"
     assert found.time == pytest.approx(1.1) and found.size == pytest.approx(0.003)
 
 
-def test_on_another_machine_the_states_that_were_kept_are_compared_with_tolerances() -> None:
+def test_stored_states_are_compared_with_tolerances_on_another_machine() -> None:
     near = record(states=states(5e-4), machine=OTHER_MACHINE)
     far = record(states=states(0.01), machine=OTHER_MACHINE)
     assert compare(record(), near).passed
     assert words(record(), far) == ["physics: state differs from t = 1.00 s: cart position x +10 mm"]
 
 
-def test_moving_parts_that_are_new_or_gone_are_named() -> None:
+def test_added_and_removed_moving_entities_are_named() -> None:
     other = states(names=("cart position x", "crate orientation w"))
     (said,) = words(record(), record(states=other))
     assert said == "physics: different moving entities: new: crate; gone: arm"
 
 
-def test_the_physics_is_left_alone_where_the_scenario_says_so() -> None:
+def test_the_physics_is_not_compared_if_the_scenario_excludes_it() -> None:
     assert compare(record(), record(states=states(1.0), state=False)).passed
 
 
-def test_a_world_that_means_something_else_is_a_difference_even_where_nothing_shows_it() -> None:
+def test_a_changed_world_value_is_a_difference_without_an_effect_on_outputs() -> None:
     golden = record(leaves={"a.size": 0.1, "a.pose": [0.0, math.nan]}, sources={"mesh.stl": "1"})
     same = record(leaves={"a.size": 0.1, "a.pose": [0.0, math.nan]}, sources={"mesh.stl": "1"})
     other = record(leaves={"a.size": 0.2, "a.pose": [0.0, math.nan]}, sources={"mesh.stl": "2"})
@@ -392,18 +392,18 @@ def test_a_world_that_means_something_else_is_a_difference_even_where_nothing_sh
     assert compare(golden, replace(other, scenario=replace(other.scenario, model=False))).passed
 
 
-def test_where_outputs_show_a_change_the_meaning_is_no_second_difference() -> None:
+def test_a_changed_world_is_no_second_difference_if_outputs_differ() -> None:
     golden = golden_of(scan(), leaves={"a": 1})
     assert [d.kind for d in compare(golden, record(scan(range_max=4.0), leaves={"a": 2})).differences] == ["value"]
 
 
-def test_a_newer_simkit_that_knows_more_of_a_world_is_a_note() -> None:
+def test_world_values_of_a_newer_simkit_are_a_note() -> None:
     newer = {**OTHER_MACHINE, "simkit": "2"}
     found = compare(record(leaves={"a": 1}), record(leaves={"a": 1, "b": 2}, machine=newer))
     assert found.passed and "exist in only one version of simkit: b" in found.notes[0]
 
 
-def test_a_run_that_ends_otherwise_comes_first() -> None:
+def test_a_different_end_of_the_run_is_listed_first() -> None:
     def off(ranges: Any) -> None:
         ranges += 1.0
 
@@ -411,7 +411,7 @@ def test_a_run_that_ends_otherwise_comes_first() -> None:
     assert found[0].kind == "end" and "“diverged at t = 0.3 s”" in found[0].words and found[1].kind == "value"
 
 
-def test_what_loading_reports_is_a_note() -> None:
+def test_changed_diagnostics_of_loading_are_a_note() -> None:
     found = compare(record(diagnostics={"SK-A-001": 1}), record(diagnostics={"SK-A-001": 3}))
     assert found.passed and found.notes == ["loading reports SK-A-001 3 times; in the golden run 1 times"]
 

@@ -1,4 +1,4 @@
-"""Pictures made small, hashed by tiles and compared."""
+"""Pictures: reduction, tile hashes and comparison."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from simkit.testing.run_record.record import Pictures, Stream
 
 
 def scene(shift: int = 0, brighter: int = 0, *, width: int = 160, height: int = 96) -> Any:
-    """A dark room with a bright box at a place."""
+    """Return a picture of a dark room with a bright box."""
     y, x = np.mgrid[0:height, 0:width]
     image = np.stack([60 + x // 4, 50 + y // 3, np.full_like(x, 80)], axis=-1)
     image[30:60, 40 + shift : 80 + shift] = (220, 120, 40)
@@ -41,7 +41,7 @@ def words(golden: Stream, run: Stream, **more: Any) -> list[str]:
     return [d.words for d in compare(record(golden), record(run, **more)).differences]
 
 
-def test_small_pictures_are_means_of_what_they_cover() -> None:
+def test_reduced_pixels_are_means_of_their_area() -> None:
     image = np.arange(24 * 16, dtype=np.uint8).reshape(16, 24, 1)
     small = shrink(image, 6)
     assert small.shape == (4, 6, 1) and small.dtype == np.uint8
@@ -50,7 +50,7 @@ def test_small_pictures_are_means_of_what_they_cover() -> None:
     assert shrink(scene(width=161, height=97), 64).shape == (39, 64, 3)
 
 
-def test_small_depths_are_means_of_what_was_hit() -> None:
+def test_reduced_depths_are_means_of_finite_depths() -> None:
     depth = np.full((8, 8, 1), 2.0, np.float32)
     depth[0, 0] = np.inf
     depth[4:, 4:] = np.inf
@@ -58,7 +58,7 @@ def test_small_depths_are_means_of_what_was_hit() -> None:
     assert small[0, 0, 0] == 2.0 and small[1, 1, 0] == np.inf and small.dtype == np.float32
 
 
-def test_a_pixel_changes_the_hash_of_its_tile_alone() -> None:
+def test_a_pixel_changes_only_the_hash_of_its_tile() -> None:
     image = scene()
     other = image.copy()
     other[40, 70, 1] += 1
@@ -67,7 +67,7 @@ def test_a_pixel_changes_the_hash_of_its_tile_alone() -> None:
     assert np.argwhere(changed).tolist() == [[1, 2]]
 
 
-def test_similarity_is_one_for_equal_pictures_and_less_the_more_is_other() -> None:
+def test_similarity_is_one_for_equal_pictures_and_decreases_with_the_difference() -> None:
     image = scene()
     assert structural_similarity(image, image) == pytest.approx(1.0, abs=1e-12)
     assert 1.0 > structural_similarity(image, scene(2)) > structural_similarity(image, scene(10)) > 0.0
@@ -77,20 +77,20 @@ def test_similarity_is_one_for_equal_pictures_and_less_the_more_is_other() -> No
     assert structural_similarity(flat, flat + 20) == pytest.approx(expected, abs=1e-9)
 
 
-def test_a_part_that_moved_is_placed_and_dated() -> None:
+def test_a_changed_part_of_a_picture_has_position_and_time() -> None:
     (said,) = words(camera([scene()] * 10), camera([scene()] * 4 + [scene(3)] * 6))
     assert said.startswith("/camera: 4 of 15 tiles changed (x 32 to 96, y 0 to 64 px) by ")
     assert "from t = 0.40 s" in said and "similarity 0.9" in said
 
 
-def test_brighter_is_called_so() -> None:
+def test_a_brighter_picture_is_described_as_brighter() -> None:
     (said,) = words(camera([scene()] * 3), camera([scene(brighter=9)] * 3))
     assert (
         said == "/camera: the whole picture changed by 9 of 255 on average, brighter, similarity 0.993, from t = 0.00 s"
     )
 
 
-def test_what_is_too_small_to_be_seen_when_small_is_still_a_difference_on_the_same_machine() -> None:
+def test_a_change_not_visible_in_the_reduced_picture_is_a_difference_on_the_same_machine() -> None:
     other = scene()
     other[90, 150] += 1
     golden, run = camera([scene()] * 3), camera([scene(), scene(), other])
@@ -99,7 +99,7 @@ def test_what_is_too_small_to_be_seen_when_small_is_still_a_difference_on_the_sa
     assert "1 of 15 tiles changed" in found.words and "not visible in the reduced picture" in found.words
 
 
-def test_on_another_renderer_a_mean_and_a_structure_decide() -> None:
+def test_pictures_of_another_renderer_are_compared_by_mean_and_similarity() -> None:
     rng = np.random.default_rng(0)
     noisy = np.clip(scene() + rng.integers(-3, 4, scene().shape), 0, 255).astype(np.uint8)
     machine = {**OTHER_MACHINE, "renderer": "another"}
@@ -137,14 +137,14 @@ def test_depths_are_compared_as_lengths() -> None:
     assert said == "/camera: 384 of 3072 pixels became infinite from t = 0.00 s"
 
 
-def test_another_size_or_encoding_is_told_instead_of_pixels() -> None:
+def test_a_changed_size_or_encoding_is_reported_instead_of_pixels() -> None:
     golden = camera([scene()] * 2)
     assert words(golden, camera([scene(width=200)] * 2)) == ["/camera: 160 × 96 px became 200 × 96 px"]
     assert words(golden, camera([scene(1)] * 2, "bgr8")) == ["/camera: encoding rgb8 became bgr8"]
 
 
 def strided(images: list[Any], every: int) -> Stream:
-    """A camera of which every second, fourth, … picture is kept, and a hash of all."""
+    """Return a camera stream that stores every second, fourth, … picture and the hashes of all pictures."""
     found = camera(images)
     assert found.pictures is not None
     kept = np.arange(0, len(images), every)
@@ -153,11 +153,11 @@ def strided(images: list[Any], every: int) -> Stream:
     return hashed(found)
 
 
-def test_pictures_of_runs_that_kept_others_are_met_by_their_messages() -> None:
+def test_runs_that_stored_different_pictures_are_compared_by_message() -> None:
     golden = strided([scene(i) for i in range(40)], 2)
     run = strided([scene(i + 3 * (i >= 21)) for i in range(40)], 4)
     (found,) = compare(record(golden), record(run)).differences
-    # of those that both kept 24 is the first, by 6 · 30 columns of 96 · 160 pixels
+    # 24 is the first message that both runs stored; 6 · 30 of 96 · 160 pixels differ
     assert "from t = 2.40 s" in found.words and "in " not in found.words.partition("from")[2].partition(";")[0]
     assert found.words.endswith("; the first picture that differs, at t = 2.10 s, is not stored")
     assert found.index == 21 and found.time == pytest.approx(2.1)
@@ -167,7 +167,7 @@ def test_pictures_of_runs_that_kept_others_are_met_by_their_messages() -> None:
     assert found.index == 24 and "not kept" not in found.words
 
 
-def test_one_picture_that_is_other_and_not_kept_is_found_by_its_hash() -> None:
+def test_a_different_picture_that_is_not_stored_is_found_by_its_hash() -> None:
     images = [scene(i) for i in range(40)]
     other = [*images[:9], scene(30), *images[10:]]
     (found,) = compare(record(strided(images, 2)), record(strided(other, 2))).differences
@@ -175,7 +175,7 @@ def test_one_picture_that_is_other_and_not_kept_is_found_by_its_hash() -> None:
     assert found.kind == "picture" and found.index == 9
 
 
-def test_depths_of_runs_that_kept_others_are_dated_by_their_messages() -> None:
+def test_differences_of_depths_have_the_times_of_their_messages() -> None:
     depth = np.full((48, 64, 1), 2.0, np.float32)
     golden = strided([depth] * 40, 2)
     run = strided([depth] * 20 + [depth + np.float32(0.012)] * 20, 4)

@@ -1,4 +1,4 @@
-"""Pictures, clouds and noise, as a golden run keeps them."""
+"""Pictures, point clouds and noise in golden runs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def picture(number: int) -> object:
 
 
 @pytest.mark.parametrize(("count", "every"), [(5, 1), (32, 1), (33, 2), (100, 4)])
-def test_of_many_pictures_every_second_or_fourth_is_kept(count: int, every: int) -> None:
+def test_every_second_or_fourth_of_many_pictures_is_stored(count: int, every: int) -> None:
     taker = message_recorder_for(RunSpec("", picture=16), None, "/image", "sensor_msgs/msg/Image")  # type: ignore[arg-type]
     for number in range(count):
         taker.take(picture(number))
@@ -39,7 +39,7 @@ def test_of_many_pictures_every_second_or_fourth_is_kept(count: int, every: int)
     assert len(set(found.hashes.tolist())) == len(found.hashes) == count
 
 
-def test_pixels_are_read_with_padding_and_either_order_of_bytes() -> None:
+def test_pixels_are_read_with_padding_and_both_byte_orders() -> None:
     rows = np.zeros((2, 10), np.uint8)
     rows[:, :6] = np.arange(6)
     image = msgs.make(
@@ -60,7 +60,7 @@ def test_points_are_read_by_their_fields() -> None:
     assert points_of_cloud(cloud)["y"].tolist() == [1.0, 5.0]
 
 
-def test_statistics_stand_in_the_place_of_samples(tmp_path: Path) -> None:
+def test_statistics_replace_samples(tmp_path: Path) -> None:
     scenario = RunSpec(
         str(ball(tmp_path)), duration=3.0, topics=("*imu*",),
         tolerances=(Tolerance("*imu.linear_acceleration.x", statistics=True),),
@@ -71,7 +71,7 @@ def test_statistics_stand_in_the_place_of_samples(tmp_path: Path) -> None:
     assert "linear_acceleration.x" not in stream.columns and "linear_acceleration.y" in stream.columns
     noise = stream.statistics["linear_acceleration.x"]
     assert noise.count == 301
-    # of 301 samples the deviation is known to 4 %: four of its own deviations
+    # the deviation of 301 samples is known to 4 %; the tolerance is four standard errors
     assert noise.deviation[0] == pytest.approx(0.1, rel=4 / np.sqrt(2 * 301))
     assert abs(noise.mean[0]) < 4 * 0.1 / np.sqrt(301)
     write_golden(tmp_path / "g", record)

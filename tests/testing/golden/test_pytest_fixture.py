@@ -1,4 +1,4 @@
-"""The fixture `sensor_regression`: a golden run beside each test, written on demand, by several workers at once too."""
+"""The fixture `sensor_regression`: golden runs of tests, also written by several workers."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ FOLDERS = [
 
 
 def run(folder: Path, *arguments: str) -> str:
-    """What pytest says of the tests there."""
+    """Run pytest in a folder and return the result."""
     alone = ["-p", "simkit.pytest_plugin", "-p", "no:cacheprovider", "-q", "--rootdir", str(folder), "-c", os.devnull]
     environment = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTHONPATH": str(ROOT), "COLUMNS": "160"}
     command = [sys.executable, "-m", "pytest", *alone, *arguments]
@@ -108,7 +108,7 @@ def with_tests(folder: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Tests with their golden runs."""
+    """Create a folder with tests and their golden runs."""
     folder = with_tests(tmp_path_factory.mktemp("tests"))
     said = run(folder, *WRITE)
     assert "1 failed, 17 passed" in said, said
@@ -128,14 +128,14 @@ def test_each_test_has_a_folder_of_its_own(folder: Path) -> None:
     assert said["scenario"]["world"] == "../../../puck.sdf"
 
 
-def test_what_only_a_test_can_do_again_says_which(folder: Path) -> None:
+def test_a_run_that_only_a_test_can_repeat_names_the_test(folder: Path) -> None:
     goldens = folder / "golden" / "test_puck"
     assert read_golden(goldens / "test_stepping_oneself").scenario.test == "test_puck.py::test_stepping_oneself"
     assert read_golden(goldens / "test_a_plugin-0.5").scenario.test == "test_puck.py::test_a_plugin[0.5]"
     assert read_golden(goldens / "test_a_world").scenario.test == ""
 
 
-def test_the_same_again_passes_and_writing_again_changes_no_byte(folder: Path) -> None:
+def test_a_repeated_run_passes_and_a_second_update_changes_no_byte(folder: Path) -> None:
     before = golden(folder)
     said = run(folder, "--simkit-update-golden", "-k", "not by_itself")
     assert "17 passed" in said, said
@@ -168,14 +168,14 @@ def test_a_failure_shows_what_differs_and_why_and_writes_a_page(folder: Path) ->
     assert "mass 1 → 1.25" in "\n".join(lines[:4]), text
     assert re.search(r"^  golden  golden/test_puck/test_a_plugin-2.0$", text, re.MULTILINE)
     assert "--simkit-update-golden" in text
-    assert "in_tests.py" not in said  # no line of simkit's own code
+    assert "in_tests.py" not in said  # the report has no line of simkit's code
     pages = sorted(p.name for p in (folder / "pages").iterdir())
     assert pages == ["test_puck-test_a_plugin-2.0.html", "test_puck-test_a_world.html"]
     assert "mass 1 → 1.25" in (folder / "pages" / pages[0]).read_text(encoding="utf-8")
     assert golden(folder) == before
 
 
-def test_without_a_golden_run_the_command_is_told_that_writes_it(folder: Path) -> None:
+def test_a_missing_golden_run_shows_the_command_that_writes_it(folder: Path) -> None:
     (folder / "test_new.py").write_text("def test_it(sensor_regression):\n    sensor_regression('puck.sdf')\n")
     said = run(folder, "test_new.py")
     assert "there is no golden run golden/test_new/test_it yet" in said
@@ -213,7 +213,7 @@ def test_tolerances_are_given_in_one_argument(
     assert verdict.run.scenario.tolerances == (expected,)
 
 
-def test_a_tolerance_in_numbers_counts_on_the_same_machine_too(tmp_path: Path) -> None:
+def test_a_numeric_tolerance_applies_on_the_same_machine(tmp_path: Path) -> None:
     def judged(mass: str, reason: str | None = None, **more: Any) -> None:
         (tmp_path / "puck.sdf").write_text(PUCK.replace("<mass>1</mass>", f"<mass>{mass}</mass>"))
         place = GoldenLocation(tmp_path / "golden" / "test_x", "test_y", tmp_path, "test_x.py::test_y", reason=reason)
@@ -257,26 +257,28 @@ class _Push(simkit.WorldPlugin):
         float("nan"),
     ],
 )
-def test_a_tolerance_that_is_none_says_what_is_allowed(regression: SensorRegression, given: object) -> None:
+def test_an_invalid_tolerance_lists_the_allowed_values(regression: SensorRegression, given: object) -> None:
     with pytest.raises(InputError, match=r"SK-GOLDEN-021 .*tolerances\['/imu'\]: found .*expected a number"):
         regression("puck.sdf", tolerances={"/imu": given})
 
 
-def test_an_argument_of_the_call_goes_over_the_scenarios_own(regression: SensorRegression) -> None:
+def test_an_argument_overrides_the_scenario(regression: SensorRegression) -> None:
     verdict = regression(RunSpec("puck.sdf", duration=5.0, seed=1, topics=("/none",)), duration=0.02, topics="imu")
     scenario = verdict.run.scenario
     assert (scenario.duration, scenario.seed, scenario.topics) == (0.02, 1, ("/imu",))
     assert list(verdict.run.streams) == ["/imu"]
 
 
-def test_two_runs_of_one_test_need_names(regression: SensorRegression) -> None:
+def test_two_runs_of_one_test_need_different_names(regression: SensorRegression) -> None:
     regression("puck.sdf", duration=0.01)
     regression("puck.sdf", duration=0.01, name="b")
     with pytest.raises(InputError, match="SK-GOLDEN-020"):
         regression("puck.sdf", duration=0.01)
 
 
-def test_what_an_open_simulation_cannot_change_is_refused(regression: SensorRegression, tmp_path: Path) -> None:
+def test_arguments_of_loading_are_rejected_for_a_loaded_simulation(
+    regression: SensorRegression, tmp_path: Path
+) -> None:
     import simkit
 
     sim = simkit.load(tmp_path / "puck.sdf")
@@ -291,7 +293,7 @@ def test_what_an_open_simulation_cannot_change_is_refused(regression: SensorRegr
         regression(3)  # type: ignore[arg-type]
 
 
-def test_a_run_whose_check_does_not_hold_is_not_made_golden(regression: SensorRegression, tmp_path: Path) -> None:
+def test_a_run_with_a_failed_check_cannot_become_golden(regression: SensorRegression, tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text("world: puck.sdf\nduration: 0.05\nat_end: [time > 1]\n")
     with pytest.raises(InputError, match="SK-GOLDEN-007 .*a check failed"):
         regression("s.yaml")
@@ -306,11 +308,11 @@ def test_a_run_whose_check_does_not_hold_is_not_made_golden(regression: SensorRe
         ("TestX.test_a", "TestX.test_a"),
     ],
 )
-def test_a_plain_name_is_the_folders(name: str, folder: str) -> None:
+def test_a_name_without_unsafe_characters_is_the_folder_name(name: str, folder: str) -> None:
     assert safe_name(name) == folder
 
 
-def test_other_names_give_other_folders_and_none_leaves_its_own() -> None:
+def test_different_names_give_different_safe_folders() -> None:
     names = ["test_a[a/b]", "test_a[a-b]", "test_a[a b]", "test_a[../..]", "test_a[..]", "test_a[é]", "test_a[\ud800]"]
     names += [f"test_a[{'x' * 300}{number}]" for number in range(2)]
     folders = [safe_name(name) for name in names]

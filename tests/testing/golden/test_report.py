@@ -1,4 +1,4 @@
-"""Reports of golden runs: the first lines say it, the page is one file that nothing in a name can harm."""
+"""Reports of golden runs: the most important lines are first, and all names in the page are escaped."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def tree(*verdicts: Verdict) -> etree._Element:
 # ---------------------------------------------------------------------- text
 
 
-def test_the_first_line_is_what_differs_first_and_the_second_its_cause() -> None:
+def test_the_first_line_is_the_first_difference_and_the_second_line_its_cause() -> None:
     first, second, *_ = text_report(failing(), 200)
     assert first == "FAILED  drive: /scan.ranges: 14 of 360 rays +12 mm from t = 2.00 s"
     assert second == (
@@ -45,7 +45,7 @@ def test_a_run_that_passes_is_one_line() -> None:
     assert text_report(passing()) == ["ok      stand: 5 topics, 900 messages, bit for bit (0.5 s)"]
 
 
-def test_every_difference_check_note_and_other_version_is_told() -> None:
+def test_differences_checks_notes_and_versions_are_reported() -> None:
     text = "\n".join(text_report(failing(), 200))
     for said in (
         "allowed 1 mm",
@@ -64,7 +64,7 @@ def test_lines_are_as_long_as_the_terminal_is_wide(width: int) -> None:
     assert all(line.startswith(("FAILED", "  ")) for line in lines)
 
 
-def test_a_long_list_says_how_much_is_left_out() -> None:
+def test_a_long_list_reports_the_number_of_omitted_items() -> None:
     verdict = failing()
     many = [difference(f"/t{i}", "x", "value", f"/t{i}.x differs") for i in range(40)]
     verdict.comparison.differences[:] = many
@@ -73,13 +73,13 @@ def test_a_long_list_says_how_much_is_left_out() -> None:
     assert any("… and 34 more differences" in line for line in lines)
 
 
-def test_sentences_of_the_explanation_go_before_a_list_of_causes() -> None:
+def test_the_text_of_an_explanation_replaces_the_list_of_causes() -> None:
     verdict = failing()
     verdict.explanation = Explanation(lines=["cause: the wheel is larger", "nothing else was changed"])
     assert text_report(verdict)[1:3] == ["  cause   the wheel is larger", "          nothing else was changed"]
 
 
-def test_a_run_that_broke_off_says_so_first() -> None:
+def test_a_failed_run_reports_the_failure_first() -> None:
     verdict = failing()
     verdict.run.end = "SK-PHYS-001 the physics diverged at 1.2 s: joint wheel\nsecond line"
     assert text_report(verdict, 200)[0].endswith(
@@ -87,7 +87,7 @@ def test_a_run_that_broke_off_says_so_first() -> None:
     )
 
 
-def test_a_world_that_is_another_without_effect_is_told_by_its_cause() -> None:
+def test_a_world_change_without_effect_is_reported_with_its_cause() -> None:
     words = "the world is another in 2 places: [1.0, 2.0, …"
     comparison = Comparison("exact", [difference("", "", "model", words, time=0.0)])
     explanation = Explanation([Cause("model", "model wall moved 2 mm along x", "models[wall]", 2.0, 2.002)])
@@ -114,7 +114,7 @@ def test_the_page_is_well_formed_and_loads_and_runs_nothing(tmp_path: Path) -> N
     assert "prefers-color-scheme: dark" in text
 
 
-def test_what_differs_comes_first_with_its_plots_pictures_and_causes() -> None:
+def test_failed_runs_are_first_with_plots_pictures_and_causes() -> None:
     root = tree(passing(), failing())
     sections = root.findall(f".//{XHTML}section")
     assert [section.get("class") for section in sections] == ["failed", "passed"]
@@ -135,7 +135,7 @@ def test_what_differs_comes_first_with_its_plots_pictures_and_causes() -> None:
     assert len(list(root.iter(XHTML + "img"))) == 2 * 3
 
 
-def test_no_name_however_odd_becomes_markup() -> None:
+def test_no_name_becomes_markup() -> None:
     verdict = replace(failing(), name=NASTY)
     verdict.comparison.differences = [
         replace(one, topic=NASTY if one.topic == SCAN else one.topic, words=NASTY, allowed=NASTY, unit=NASTY)
@@ -157,7 +157,7 @@ def test_no_name_however_odd_becomes_markup() -> None:
     assert junit_cases(verdict)
 
 
-def test_numbers_that_are_none_and_lists_of_other_lengths_are_drawn_or_left_out() -> None:
+def test_nan_and_lists_of_different_lengths_are_drawn_or_left_out() -> None:
     verdict = failing()
     golden, run = verdict.golden.streams[SCAN], verdict.run.streams[SCAN]
     golden.columns["ranges"] = Column(np.full((40, 5), np.nan))
@@ -172,7 +172,7 @@ def test_numbers_that_are_none_and_lists_of_other_lengths_are_drawn_or_left_out(
     assert "nan" not in re.sub(r"base64,[^\"]*", "", text)
 
 
-def test_streams_without_a_message_and_differences_of_unknown_fields_do_no_harm() -> None:
+def test_streams_without_messages_and_unknown_fields_are_drawn_without_an_error() -> None:
     verdict = failing()
     for stream in verdict.run.streams.values():
         stream.times_ns = stream.times_ns[:0]
@@ -204,7 +204,7 @@ def test_a_long_list_of_differences_is_cut() -> None:
     assert "808 more differences" in text
 
 
-def test_pictures_that_were_kept_now_and_then_are_found_by_their_message() -> None:
+def test_stored_pictures_are_found_by_message() -> None:
     verdict = failing()
     for side in (verdict.golden, verdict.run):
         pictures = side.streams[CAMERA].pictures
@@ -238,7 +238,7 @@ def test_every_topic_and_check_is_a_case_and_those_that_differ_fail() -> None:
     assert "radius 0.033 → 0.0333 m" in scan.failure[1]
 
 
-def test_a_run_that_broke_off_is_an_error() -> None:
+def test_a_failed_run_is_an_error() -> None:
     verdict = failing()
     verdict.run.end = "SK-PHYS-001 diverged"
     case = junit_cases(verdict)[0]

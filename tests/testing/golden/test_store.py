@@ -1,4 +1,4 @@
-"""Golden runs on disk: equal bytes, no half ones, and no trust in what is read."""
+"""Golden runs on disk: reproducible bytes, atomic writes, and validation of all data."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def record(tmp_path_factory: pytest.TempPathFactory) -> RunRecord:
     return found
 
 
-def test_what_is_read_is_what_was_written(tmp_path: Path, record: RunRecord) -> None:
+def test_a_golden_run_is_read_as_it_was_written(tmp_path: Path, record: RunRecord) -> None:
     write_golden(tmp_path / "g", record)
     golden = read_golden(tmp_path / "g")
     assert golden.leaves == record.leaves and golden.sources == record.sources
@@ -68,7 +68,7 @@ def test_recording_twice_gives_the_same_bytes(tmp_path: Path, record: RunRecord)
     assert [p.read_bytes() for p in first] == [p.read_bytes() for p in second]
 
 
-def test_a_checkout_elsewhere_finds_its_world(tmp_path: Path, record: RunRecord) -> None:
+def test_a_golden_run_in_another_checkout_finds_its_world(tmp_path: Path, record: RunRecord) -> None:
     (tmp_path / "a" / "worlds").mkdir(parents=True)
     world = shutil.copy(record.scenario.world, tmp_path / "a" / "worlds")
     write_golden(tmp_path / "a" / "golden" / "ball", replace(record, scenario=RunSpec(str(world))))
@@ -77,7 +77,7 @@ def test_a_checkout_elsewhere_finds_its_world(tmp_path: Path, record: RunRecord)
     assert source.resolve() == tmp_path / "b" / "worlds" / "ball.sdf"
 
 
-def test_a_scenario_comes_back_as_it_was(tmp_path: Path) -> None:
+def test_a_scenario_is_decoded_as_it_was_encoded(tmp_path: Path) -> None:
     ball(tmp_path)
     scenario = RunSpec(
         "ball.sdf", 3.0, 4, "falls", ("gravity=0 0 -1",), topics=("/imu",), skip=("/tf*",),
@@ -93,7 +93,7 @@ def test_a_scenario_comes_back_as_it_was(tmp_path: Path) -> None:
     assert Path(back.options["plugin_paths"][0]).resolve() == tmp_path / "plugins"
 
 
-def test_what_was_golden_before_is_gone_with_what_was_left_lying(tmp_path: Path, record: RunRecord) -> None:
+def test_old_data_files_and_unfinished_files_are_removed(tmp_path: Path, record: RunRecord) -> None:
     write_golden(tmp_path, record)
     (tmp_path / ".golden-1.tmp").write_bytes(b"half")
     changed = replace(record, leaves={**record.leaves, "gravity": [0, 0, 0]})
@@ -103,7 +103,7 @@ def test_what_was_golden_before_is_gone_with_what_was_left_lying(tmp_path: Path,
 
 
 def _written_but_killed(folder: Path, golden: RunRecord, at: int) -> int:
-    """Has another process write, which kills itself as it opens, renames or removes something for the `at`-th time."""
+    """Write in another process, which kills itself at the `at`-th call that opens, renames or removes a file."""
     child = os.fork()
     if child:
         return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
@@ -126,13 +126,15 @@ def _written_but_killed(folder: Path, golden: RunRecord, at: int) -> int:
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="a process cannot be forked here")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_killed_at_any_moment_it_leaves_the_old_or_the_new(tmp_path: Path, record: RunRecord) -> None:
+def test_a_killed_write_leaves_the_old_or_the_new_golden_run(tmp_path: Path, record: RunRecord) -> None:
     write_golden(tmp_path, record)
     outcomes = []
     for at in range(1, 20):
         new = replace(record, leaves={**record.leaves, "gravity": [0.0, 0.0, float(at)]})
         code = _written_but_killed(tmp_path, new, at)
-        outcomes.append((code, read_golden(tmp_path).leaves["gravity"][2] == at))  # raises for a half one
+        outcomes.append(
+            (code, read_golden(tmp_path).leaves["gravity"][2] == at)
+        )  # raises an error for an incomplete golden run
         if code == 0:
             break
     killed = [is_new for code, is_new in outcomes if code == -signal.SIGKILL]
@@ -155,9 +157,7 @@ def test_killed_at_any_moment_it_leaves_the_old_or_the_new(tmp_path: Path, recor
         (lambda said: said.update(diagnostics={"a": "x"}), "SK-GOLDEN-003"),
     ],
 )
-def test_what_is_wrong_with_it_is_said_with_a_code(
-    tmp_path: Path, record: RunRecord, change: object, code: str
-) -> None:
+def test_each_invalid_expression_has_a_code(tmp_path: Path, record: RunRecord, change: object, code: str) -> None:
     write_golden(tmp_path, record)
     said = json.loads((tmp_path / "golden.json").read_text())
     change(said)  # type: ignore[operator]
@@ -168,14 +168,14 @@ def test_what_is_wrong_with_it_is_said_with_a_code(
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"format": 1}', "[" * 100_000, "\xff\xfe", '{"format": 1e999}'])
-def test_what_is_no_golden_run_is_said(tmp_path: Path, text: str) -> None:
+def test_a_folder_without_a_golden_run_is_an_error(tmp_path: Path, text: str) -> None:
     (tmp_path / "golden.json").write_bytes(text.encode("latin-1"))
     with pytest.raises(InputError, match="SK-GOLDEN-003"):
         read_golden(tmp_path)
 
 
-def test_bytes_that_were_changed_never_end_in_anything_but_an_error(record: RunRecord, tmp_path: Path) -> None:
-    """The data with another byte here and there, under a hash that fits: a stranger's file."""
+def test_changed_data_bytes_cause_an_input_error(record: RunRecord, tmp_path: Path) -> None:
+    """Some bytes are changed and the hash is correct, as in a manipulated file."""
     import hashlib
     import lzma
 
@@ -201,7 +201,7 @@ def test_bytes_that_were_changed_never_end_in_anything_but_an_error(record: RunR
     assert failed > 30
 
 
-def test_a_block_that_would_unpack_to_more_than_there_is_room_for_is_refused() -> None:
+def test_a_block_that_would_unpack_to_too_many_bytes_is_rejected() -> None:
     import lzma
 
     with pytest.raises(PackingError):
@@ -228,7 +228,7 @@ def test_a_block_that_would_unpack_to_more_than_there_is_room_for_is_refused() -
         np.array([True, False, True]),
     ],
 )
-def test_arrays_come_back_bit_by_bit(values: np.ndarray) -> None:
+def test_arrays_are_unpacked_bit_by_bit(values: np.ndarray) -> None:
     packer = Packer()
     number = packer.add(values)
     back = Unpacker(packer.block(None)).array(number)
@@ -259,7 +259,7 @@ def test_goldens_are_found_in_folders(tmp_path: Path, record: RunRecord) -> None
 
 
 @pytest.mark.skipif(os.name == "nt" or getattr(os, "geteuid", lambda: 1)() == 0, reason="everything may be written")
-def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path, record: RunRecord) -> None:
+def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path, record: RunRecord) -> None:
     tmp_path.chmod(0o500)
     with pytest.raises(InputError, match="SK-GOLDEN-005"):
         write_golden(tmp_path / "g", record)
@@ -267,9 +267,7 @@ def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path, record: RunReco
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="a process cannot be forked here")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_four_who_write_and_one_who_reads_at_the_same_time_see_whole_golden_runs(
-    tmp_path: Path, record: RunRecord
-) -> None:
+def test_parallel_writers_and_a_reader_see_complete_golden_runs(tmp_path: Path, record: RunRecord) -> None:
     record = replace(record, fields={}, streams={})  # quickly written
     other = replace(record, end="until")
     write_golden(tmp_path / "g", record)
@@ -290,7 +288,7 @@ def test_four_who_write_and_one_who_reads_at_the_same_time_see_whole_golden_runs
     assert len(list((tmp_path / "g").iterdir())) == 2
 
 
-def test_a_long_world_of_xml_is_kept_with_the_data(tmp_path: Path, record: RunRecord) -> None:
+def test_a_long_xml_world_is_stored_with_the_data(tmp_path: Path, record: RunRecord) -> None:
     text = "<sdf>" + "<!-- Größe -->" * 500 + "</sdf>"
     write_golden(tmp_path / "g", replace(record, scenario=RunSpec(text)))
     assert (tmp_path / "g" / "golden.json").stat().st_size < 3000

@@ -1,4 +1,4 @@
-"""What is allowed by default, by a scenario, and what numbers are rounded to."""
+"""Default tolerances, tolerances of scenarios, and rounding of stored numbers."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_fields_have_their_units(type_name: str, field: str, unit: str, things: 
 
 
 @pytest.mark.parametrize(("type_name", "field"), [row[:2] for row in FIELDS])
-def test_every_default_gives_every_number(type_name: str, field: str) -> None:
+def test_default_tolerances_have_all_numbers(type_name: str, field: str) -> None:
     found = default_tolerance(type_name, field)
     numbers = (found.absolute, found.relative, found.share, found.image, found.ssim)
     assert all(number is not None and math.isfinite(number) for number in numbers) and found.statistics is False
@@ -72,7 +72,7 @@ def test_two_millimetres_and_one_degree_are_more_than_any_default_allows() -> No
     assert (turn.absolute or 0) < math.radians(1.0)
 
 
-def test_a_scenarios_numbers_go_over_the_defaults_each_for_itself() -> None:
+def test_each_number_of_a_scenario_overrides_its_default() -> None:
     scenario = RunSpec(
         "w.sdf",
         tolerances=(
@@ -93,10 +93,10 @@ def test_a_wider_tolerance_is_stored_coarser_and_an_exact_one_exactly() -> None:
     scenario = RunSpec("w.sdf", tolerances=(Tolerance("/a", absolute=1.0), Tolerance("/b", exact=True)))
     assert storage_step("std_msgs/msg/Float64", "data", scenario, "/a") == 1 / 8
     assert storage_step("std_msgs/msg/Float64", "data", scenario, "/b") == 0.0
-    assert storage_step("sensor_msgs/msg/PointCloud2", "points.rgb") == 0.0  # four bytes in the shape of a float
+    assert storage_step("sensor_msgs/msg/PointCloud2", "points.rgb") == 0.0  # a colour: four bytes stored as a float
 
 
-def test_tolerances_read_in_words() -> None:
+def test_tolerances_are_described_in_words() -> None:
     words = allowed_text(Tolerance("x", absolute=1e-3, relative=0.01, share=0.02), "m")
     assert str(words) == "1 mm + 1 % of the value, 2 % of a message may differ more"
     assert allowed_text(Tolerance("x"), "m") == "nothing"
@@ -119,20 +119,20 @@ def test_tolerances_read_in_words() -> None:
         (2_000_000, "ns", "+2 ms"),
     ],
 )
-def test_quantities_read_well(value: float, unit: str, words: str) -> None:
+def test_quantities_have_readable_units(value: float, unit: str, words: str) -> None:
     assert quantity_text(value, unit) == words
 
 
-def test_digits_that_rounding_has_made_are_left_out() -> None:
+def test_digits_below_the_rounding_are_left_out() -> None:
     assert quantity_text(0.0019876, "m", error=1.5e-5) == "+2 mm"
     assert quantity_text(0.0019876, "m") == "+1.99 mm"
     assert quantity_text(1e-4, "rad/s", error=1.0) == "+1.00e-4 rad/s"
 
 
-def test_headings_come_round_and_joints_do_not() -> None:
+def test_headings_are_periodic_and_joint_positions_are_not() -> None:
     assert period_of("gps_msgs/msg/GPSFix", "track") == 360.0
     assert period_of("sensor_msgs/msg/JointState", "position") == 0.0
 
 
-def test_moments_show_hundredths_or_what_there_is() -> None:
+def test_times_have_two_decimals_or_more() -> None:
     assert (time_text(3.2), time_text(0.001), time_text(1.2345678)) == ("t = 3.20 s", "t = 0.001 s", "t = 1.234568 s")

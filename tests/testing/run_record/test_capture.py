@@ -1,4 +1,4 @@
-"""What a run of a scenario is taken down as."""
+"""Records of scenario runs."""
 
 from __future__ import annotations
 
@@ -54,10 +54,10 @@ def test_recording_changes_nothing_of_the_run(tmp_path: Path, record: RunRecord)
         assert state_hash(sim) == record.states.digest
 
 
-def test_there_is_a_mark_for_every_tick_and_a_state_now_and_then(record: RunRecord) -> None:
+def test_every_tick_has_a_mark_and_some_ticks_have_a_state(record: RunRecord) -> None:
     states = record.states
     assert states.marks.shape == states.inputs.shape == (1000,)
-    # a ball that falls is elsewhere at each tick: equal bytes come by chance, about one of 256
+    # a falling ball has another state at each tick; two marks are equal with a probability of 1/256
     falling = states.marks[:150]
     assert (falling[1:] != falling[:-1]).mean() > 0.95
     assert states.ticks[0] == 0 and states.ticks[-1] == 1000 and 32 < len(states.ticks) <= 66
@@ -67,7 +67,7 @@ def test_there_is_a_mark_for_every_tick_and_a_state_now_and_then(record: RunReco
     assert heights[5] == pytest.approx(0.3 - 0.5 * 9.8 * time**2, abs=9.8 * 0.001 * time)  # semi-implicit Euler's lag
 
 
-def test_a_push_shows_in_the_inputs_at_its_tick_and_not_before(tmp_path: Path) -> None:
+def test_a_force_changes_the_inputs_from_its_tick_on(tmp_path: Path) -> None:
     def inputs(push: bool) -> np.ndarray:
         scenario = RunSpec(str(ball(tmp_path)), duration=0.1, plugins=(_Pusher(push),))
         found = run_record(scenario)
@@ -91,7 +91,7 @@ class _Pusher(simkit.WorldPlugin):
             self.sim.model("ball").link("l").apply_wrench((1.0, 0.0, 0.0))
 
 
-def test_the_order_of_models_in_a_file_shows_nowhere(tmp_path: Path, record: RunRecord) -> None:
+def test_the_order_of_models_in_a_file_has_no_effect_on_a_record(tmp_path: Path, record: RunRecord) -> None:
     text = ball(tmp_path).read_text()
     start, stop = text.index('<model name="wall">'), text.index("</world>")
     wall = text[start:stop]
@@ -116,7 +116,7 @@ def test_patterns_choose_topics(tmp_path: Path) -> None:
         assert len(found.streams) == wanted, list(found.streams)
 
 
-def test_a_run_that_fails_is_a_record_that_says_so(tmp_path: Path) -> None:
+def test_the_record_of_a_failed_run_has_the_error(tmp_path: Path) -> None:
     class Faulty(simkit.WorldPlugin):
         def load(self, sim: object, params: object) -> None:
             pass
@@ -132,6 +132,6 @@ def test_a_run_that_fails_is_a_record_that_says_so(tmp_path: Path) -> None:
     assert 19 <= len(found.states.marks) <= 20
 
 
-def test_a_world_that_is_not_there_is_said(tmp_path: Path) -> None:
+def test_a_missing_world_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InputError):
         run_record(RunSpec(str(tmp_path / "none.sdf")))

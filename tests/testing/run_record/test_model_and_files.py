@@ -1,4 +1,4 @@
-"""What nothing that is recorded shows: the engine's own language, and files that meshes name."""
+"""Values of the compiled model, and files that meshes refer to."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def taken(world: Path) -> RunRecord:
     return found
 
 
-def test_a_gear_that_nothing_shows_is_a_difference_of_the_model(tmp_path: Path) -> None:
+def test_a_changed_gear_without_effect_is_a_difference_of_the_model(tmp_path: Path) -> None:
     world = tmp_path / "arm.xml"
     records = []
     for gear in ("10", "20"):
@@ -86,7 +86,7 @@ class Stray(simkit.WorldPlugin):
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_a_plugin_that_prints_forks_and_goes_elsewhere_spoils_nothing(
+def test_a_plugin_that_prints_forks_or_changes_the_folder_is_recorded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = tmp_path / "ü ber"

@@ -1,4 +1,4 @@
-"""Statistics of noise: what chance explains is silent, what it does not is told."""
+"""Statistics of noise: only differences that chance does not explain are reported."""
 
 from __future__ import annotations
 
@@ -51,14 +51,14 @@ def test_the_numbers_are_those_of_the_noise() -> None:
 
 
 @pytest.mark.parametrize("kind", ["normal", "uniform", "quantised", "heavy", "slow"])
-def test_other_draws_of_one_noise_are_not_told_apart(kind: str) -> None:
+def test_two_samples_of_the_same_noise_are_equal(kind: str) -> None:
     found = [noise_statistics(sample(seed, 2000, kind), PERIOD) for seed in range(24)]
     for a in found[::2]:
         for b in found[1::2]:
             assert not statistic_differences(a, b)
 
 
-def test_a_fifth_more_noise_is_seen_in_the_samples_of_thirty_seconds_at_a_hundred_hertz() -> None:
+def test_twenty_per_cent_more_noise_is_detected_in_thirty_seconds_at_100_hz() -> None:
     seen = [
         statistic_differences(
             noise_statistics(sample(s, 3000), PERIOD), noise_statistics(1.2 * sample(99 + s, 3000), PERIOD)
@@ -69,7 +69,7 @@ def test_a_fifth_more_noise_is_seen_in_the_samples_of_thirty_seconds_at_a_hundre
     assert detectable_ratio(3000) < 1.2 < detectable_ratio(2000)
 
 
-def test_a_mean_is_seen_beyond_seven_of_its_errors_and_not_where_it_is_allowed() -> None:
+def test_a_shift_of_the_mean_beyond_seven_standard_errors_is_detected() -> None:
     golden, run = noise_statistics(sample(0), PERIOD), noise_statistics(sample(1) + 0.2, PERIOD)
     assert [d.what for d in statistic_differences(golden, run)] == ["mean"]
     assert not statistic_differences(golden, run, absolute=0.25)
@@ -83,20 +83,20 @@ def test_another_shape_with_the_same_mean_and_deviation_is_seen() -> None:
     assert [d.what for d in found] == ["distribution"]
 
 
-def test_noise_that_hangs_together_is_seen_by_its_allan_deviation() -> None:
+def test_correlated_noise_is_detected_by_its_allan_deviation() -> None:
     slow = sample(1, kind="slow")
     found = statistic_differences(noise_statistics(sample(0), PERIOD), noise_statistics(slow / slow.std(), PERIOD))
     assert "allan" in [d.what for d in found]
 
 
-def test_noise_that_is_gone_or_new_is_seen() -> None:
+def test_missing_or_new_noise_is_detected() -> None:
     nothing, some = noise_statistics(np.zeros(100), PERIOD), noise_statistics(sample(0, 100), PERIOD)
     assert [d.what for d in statistic_differences(some, nothing)] == ["deviation"]
     assert [d.what for d in statistic_differences(nothing, some)][:1] == ["deviation"]
     assert not statistic_differences(nothing, nothing)
 
 
-def test_few_samples_say_little_and_never_a_wrong_thing() -> None:
+def test_few_samples_cause_no_false_alarm() -> None:
     for count in (0, 1, 2, 7, 8, 20):
         a, b = noise_statistics(sample(0, count), PERIOD), noise_statistics(sample(1, count), PERIOD)
         assert isinstance(a, NoiseStatistics) and a.count == count and not statistic_differences(a, b)
@@ -106,7 +106,7 @@ def test_few_samples_say_little_and_never_a_wrong_thing() -> None:
     ] == ["count"]
 
 
-def test_rays_are_one_noise_and_what_is_infinite_is_left_out() -> None:
+def test_rays_are_pooled_and_infinite_values_left_out() -> None:
     values = sample(0, 3600).reshape(10, 360)
     values[:, 7] = np.nan
     values[3, 9] = np.inf
@@ -114,7 +114,7 @@ def test_rays_are_one_noise_and_what_is_infinite_is_left_out() -> None:
     assert found.mean.shape == (1,) and found.count == 3600 - 10 - 1 and found.allan.shape == (1, 0)
 
 
-def test_components_are_told_apart() -> None:
+def test_components_are_compared_separately() -> None:
     golden = noise_statistics(np.stack([sample(0), sample(1)], axis=1), PERIOD)
     run = noise_statistics(np.stack([sample(2), 1.5 * sample(3)], axis=1), PERIOD)
     assert [(d.what, d.component) for d in statistic_differences(golden, run)] == [("deviation", 1)]

@@ -1,4 +1,4 @@
-"""Parts of a message that have no order by meaning are taken down by name."""
+"""Items of a message whose order has no meaning are sorted by name."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_transforms_are_by_child_then_parent_and_equal_ones_keep_their_order() -
     assert msgs.serialize(sort_message(other, TF)) == msgs.serialize(found)
 
 
-def test_joints_of_a_model_stay_in_their_order() -> None:
+def test_joints_of_a_model_keep_their_order() -> None:
     kind = "sensor_msgs/msg/JointState"
     message = msgs.make(kind, name=["wheel", "arm"], position=[1.0, 2.0])
     assert sort_message(message, kind) is message
@@ -47,7 +47,7 @@ def test_states_of_all_models_are_by_name() -> None:
     assert len(msgs.serialize(found)) == len(msgs.serialize(message))
 
 
-def test_contacts_are_by_what_touches() -> None:
+def test_contacts_are_sorted_by_collision_names() -> None:
     kind = "ros_gz_interfaces/msg/Contacts"
     pairs = [("b", "a"), ("a", "c"), ("a", "b")]
     contacts = [{"collision1": {"name": a, "id": 4}, "collision2": {"name": b, "id": 10}} for a, b in pairs]
@@ -61,7 +61,7 @@ def test_contacts_are_by_what_touches() -> None:
     ("kind", "part"),
     [("ros_gz_interfaces/msg/Contacts", "contacts"), ("gazebo_msgs/msg/ContactsState", "states")],
 )
-def test_points_of_a_contact_are_in_one_order_whichever_the_engine_began_with(first: int, kind: str, part: str) -> None:
+def test_contact_points_are_sorted_independently_of_the_engine(first: int, kind: str, part: str) -> None:
     is_gz = part == "contacts"
     prefix = "" if is_gz else "contact_"
     corners = [(0.1, 0.1), (-0.1, 0.1), (-0.1, -0.1), (0.1, -0.1)]

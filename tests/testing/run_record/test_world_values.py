@@ -1,4 +1,4 @@
-"""What a world means, flat."""
+"""Values of a world as a flat table."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def leaves(path: Path) -> tuple[dict[str, object], dict[str, str]]:
         return values_of_simulation(sim)
 
 
-def test_a_value_is_found_by_names_with_its_place(tmp_path: Path) -> None:
+def test_a_value_has_a_path_of_names_and_a_source_position(tmp_path: Path) -> None:
     found, places = leaves(ball(tmp_path))
     path = "models[ball].links[l].collisions[c].geometry"
     assert found[path] == "Sphere" and found[path + ".radius"] == 0.1
@@ -40,7 +40,7 @@ def test_a_value_is_found_by_names_with_its_place(tmp_path: Path) -> None:
         ("<max>5</max>", "<max>5.05</max>"),
     ],
 )
-def test_a_change_that_matters_shows(tmp_path: Path, before: str, after: str) -> None:
+def test_an_effective_change_is_a_difference(tmp_path: Path, before: str, after: str) -> None:
     assert leaves(ball(tmp_path))[0] != leaves(ball(tmp_path, (before, after)))[0]
 
 
@@ -53,11 +53,11 @@ def test_a_change_that_matters_shows(tmp_path: Path, before: str, after: str) ->
         ("<mean>0</mean><stddev>0.1</stddev>", "<stddev>0.1</stddev><mean>0</mean>"),
     ],
 )
-def test_a_change_that_means_the_same_does_not(tmp_path: Path, before: str, after: str) -> None:
+def test_a_change_of_format_only_is_no_difference(tmp_path: Path, before: str, after: str) -> None:
     assert leaves(ball(tmp_path))[0] == leaves(ball(tmp_path, (before, after)))[0]
 
 
-def test_paths_come_apart_into_steps() -> None:
+def test_paths_are_split_into_steps() -> None:
     assert split_path("models[a].links[b::c].geometry.radius") == [
         ("models", "a"), ("links", "b::c"), ("geometry", ""), ("radius", ""),
     ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""An exercise says what a plugin that was handed in got, and why, whatever the plugin does."""
+"""Grades of submitted plugins, including plugins that fail in any way."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_each_run_and_check_gets_its_points_and_the_reason(folder):
     assert json.loads(json.dumps(grade_json(graded)))["points"] == 4.0
 
 
-def test_a_plugin_that_raises_gets_the_line_that_did(folder):
+def test_a_plugin_that_raises_is_reported_with_its_line(folder):
     file = hand_in(folder, "self.cart.set_velocity((1 / 0, 0, 0))")
     graded = grade(read_exercise(folder / "push.yaml"), file)
     assert not graded.passed and graded.points == 0.0
@@ -82,13 +82,13 @@ def test_a_plugin_that_raises_gets_the_line_that_did(folder):
     assert "push.py:10: self.cart.set_velocity((1 / 0, 0, 0))" in graded.outcomes[0].error
 
 
-def test_a_plugin_that_ends_the_process_gets_nothing_and_harms_nobody(folder):
+def test_a_plugin_that_ends_the_process_gets_no_points(folder):
     file = hand_in(folder, "__import__('os')._exit(0)")
     graded = grade(read_exercise(folder / "push.yaml"), file)
     assert graded.points == 0.0 and "the process ended with 0" in graded.outcomes[1].error
 
 
-def test_a_file_without_a_plugin_says_so(folder):
+def test_a_file_without_a_plugin_is_reported(folder):
     file = folder / "push.py"
     file.write_text("x = 1\n")
     graded = grade(read_exercise(folder / "push.yaml"), file)
@@ -105,7 +105,7 @@ def test_the_command_grades_several_and_writes_junit(folder):
     assert (folder / "o.xml").read_text().count("<failure") == 3
 
 
-def test_every_problem_of_an_exercise_is_told(tmp_path):
+def test_every_problem_of_an_exercise_is_reported(tmp_path):
     (tmp_path / "e.yaml").write_text(
         "world: cart.sdf\nexercise:\n  titel: x\n  pass: 3\n  runs:\n    - {seed: -1, duration: long}\n"
     )
@@ -116,7 +116,7 @@ def test_every_problem_of_an_exercise_is_told(tmp_path):
     assert [line for line, _ in found[1:]] == [3, 4, 6, 6]
 
 
-def test_what_is_wrong_with_the_exercise_is_not_the_students_fault(folder):
+def test_errors_of_the_exercise_are_not_reported_as_errors_of_the_plugin(folder):
     file = folder / "push.yaml"
     file.write_text(EXERCISE.replace("pose('cart').x", "pose('cat').x"))
     done = CliRunner().invoke(app, ["grade", str(file), str(folder / "push.py")])
@@ -127,7 +127,7 @@ def test_what_is_wrong_with_the_exercise_is_not_the_students_fault(folder):
 
 
 HOSTILE = {
-    # what is handed in -> what it is told; empty where it does what is asked in spite of it
+    # code of the plugin -> text in the grade; empty if the plugin passes
     "import subprocess, sys; subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(9)'])": "",
     "__import__('os').chdir('/')": "",
     "print('x' * 5_000_000)": "",
@@ -140,8 +140,8 @@ HOSTILE = {
 
 
 @pytest.mark.slow
-def test_a_hand_in_that_misbehaves_costs_its_own_points_and_nobody_elses(folder, monkeypatch):
-    """Also where files of the names of libraries lie about, and where one is called like one."""
+def test_a_faulty_submission_does_not_affect_other_submissions(folder, monkeypatch):
+    """The folder also contains files with the names of libraries."""
     exercise = EXERCISE.partition("  runs:")[0].replace("duration: 1\n", "duration: 0.6\n")
     (folder / "push.yaml").write_text(exercise.replace("limits:", "limits:\n  - \"topic('/out').data > 3\""))
     files = []
@@ -162,6 +162,6 @@ def test_a_hand_in_that_misbehaves_costs_its_own_points_and_nobody_elses(folder,
     assert len(found[2].outcomes[0].printed) <= 500
 
 
-def test_files_of_one_name_are_told_apart():
+def test_files_with_the_same_name_get_different_labels():
     files = [Path("a/x.py"), Path("b/x.py"), Path("c/a/x.py"), Path("y.py"), None]
     assert short_labels(files) == ["a_x_1", "b_x", "a_x_2", "y", ""]

@@ -1,4 +1,4 @@
-"""A scenario file is read whole, or every problem of it is told with its line."""
+"""Scenario files: all keys are read, or every problem is reported with its line."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_a_bare_name_that_is_no_file_beside_it_stays_one(tmp_path):
     assert scenario(tmp_path, "world: turtlebot3_world\n").source == "turtlebot3_world"
 
 
-def test_what_is_loaded_and_done_is_read(tmp_path):
+def test_all_keys_of_a_scenario_are_read(tmp_path):
     found = scenario(
         tmp_path,
         """
@@ -68,7 +68,7 @@ def test_what_is_loaded_and_done_is_read(tmp_path):
     assert found.commands[0]["at"] == 1 and found.commands[0]["where"].endswith("drop.yaml:13")
 
 
-def test_commands_may_be_a_script_beside_it(tmp_path):
+def test_commands_can_be_in_a_script_file(tmp_path):
     (tmp_path / "push.yaml").write_text("- {at: 0.5, topic: /push, message: {data: 1}}\n")
     found = scenario(tmp_path, "world: ball.sdf\ncommands: push.yaml\n")
     assert [command["topic"] for command in found.commands] == ["/push"]
@@ -106,7 +106,7 @@ def replaced(tolerance: Tolerance) -> Tolerance:
     return replace(tolerance, where="")
 
 
-def test_what_must_hold_is_an_expression_or_a_mapping(tmp_path):
+def test_a_condition_is_an_expression_or_a_mapping(tmp_path):
     found = scenario(
         tmp_path,
         """
@@ -136,7 +136,7 @@ def test_what_must_hold_is_an_expression_or_a_mapping(tmp_path):
     assert lands.where.endswith("drop.yaml:5")
 
 
-def test_every_problem_is_told_in_one_pass_with_its_line(tmp_path):
+def test_all_problems_are_reported_at_once_with_their_lines(tmp_path):
     found = problems(
         tmp_path,
         "world: ball.sdf\n"
@@ -152,7 +152,7 @@ def test_every_problem_is_told_in_one_pass_with_its_line(tmp_path):
     )
     assert sorted(found) == [
         (2, "SK-SCEN-002"),
-        (4, "SK-SCEN-003"),  # said twice
+        (4, "SK-SCEN-003"),  # duplicate key
         (4, "SK-SCEN-003"),  # not a duration
         (5, "SK-SCEN-003"),
         (6, "SK-SCEN-002"),
@@ -165,7 +165,7 @@ def test_every_problem_is_told_in_one_pass_with_its_line(tmp_path):
     ]
 
 
-def test_what_is_wrong_with_expressions_and_the_world_is_told_in_the_same_pass(tmp_path):
+def test_problems_of_expressions_and_the_world_are_reported_together(tmp_path):
     with pytest.raises(LoadError) as caught:
         scenario(
             tmp_path,
@@ -201,11 +201,11 @@ def test_what_is_wrong_with_expressions_and_the_world_is_told_in_the_same_pass(t
         ("world: \x00", "SK-SCEN-001"),
     ],
 )
-def test_what_is_no_scenario_says_so(tmp_path, text, code):
+def test_an_invalid_scenario_has_the_code_of_its_problem(tmp_path, text, code):
     assert code in [found for _, found in problems(tmp_path, text)]
 
 
-def test_a_file_that_is_not_there_says_so(tmp_path):
+def test_a_missing_file_is_reported(tmp_path):
     with pytest.raises(LoadError, match="SK-SCEN-001"):
         read_scenario(tmp_path / "none.yaml")
     with pytest.raises(LoadError, match="SK-SCEN-001"):
@@ -224,11 +224,11 @@ def test_a_python_file_has_a_scenario(tmp_path):
 
 
 @pytest.mark.parametrize("text, line", [("x = 1\n", None), ("a = 1\nb = a / 0\n", 2), ("def f(:\n", 1)])
-def test_a_python_file_without_one_or_that_fails_says_so(tmp_path, text, line):
+def test_a_python_file_that_fails_or_has_no_scenario_is_an_error(tmp_path, text, line):
     assert problems(tmp_path, text, "drop.py") == [(line, "SK-SCEN-005")]
 
 
-def test_a_name_is_a_scenarios_or_a_worlds():
+def test_a_scenario_file_is_recognised_by_its_suffix():
     assert is_scenario_file("drop.yaml") and is_scenario_file("a/drop.py")
     assert not is_scenario_file("ball.sdf") and not is_scenario_file("turtlebot3_world")
 
@@ -245,8 +245,8 @@ SLED = """<sdf version="1.9"><world name="ice"><model name="sled"><pose>0 0 1 0 
 <plugin filename="gz-sim-velocity-control-system" name="gz::sim::systems::VelocityControl"/></model></world></sdf>"""
 
 
-def test_what_is_played_is_sent_at_its_ticks_and_says_how_long_the_run_is(tmp_path):
-    """Bit for bit: also from a golden run's file, which names the bag from where it lies itself."""
+def test_a_bag_is_played_at_its_ticks_and_sets_the_duration(tmp_path):
+    """The run is bit-identical, also for a golden run, which stores the path of the bag relative to its folder."""
     from simkit.recording.bags.recorder import Recorder
     from simkit.runtime.engine.snapshot import state_hash
     from simkit.testing.golden.record_encoding import decode_scenario, encode_scenario
@@ -270,7 +270,7 @@ def test_what_is_played_is_sent_at_its_ticks_and_says_how_long_the_run_is(tmp_pa
             assert state_hash(sim) == wanted
 
 
-def test_what_cannot_be_played_is_told_with_its_line(tmp_path):
+def test_an_invalid_bag_is_reported_with_its_line(tmp_path):
     for text in ("play: none.mcap", "play: ball.sdf", "play: 3", "play: ''", "play_topics: [/a]"):
         ((line, code),) = problems(tmp_path, f"world: ball.sdf\n{text}\n")
         assert line == 2
@@ -293,11 +293,11 @@ def test_what_cannot_be_played_is_told_with_its_line(tmp_path):
         ("commands:\n - 1\n - {at: 1:30, topic: /a}\n - {at: 1}\n", [(n, "SK-CLI-011") for n in (3, 4, 5)]),
     ],
 )
-def test_what_says_nothing_or_two_things_is_told(tmp_path, text, found):
+def test_missing_and_conflicting_keys_are_reported(tmp_path, text, found):
     assert sorted(problems(tmp_path, "world: ball.sdf\n" + text)) == found
 
 
-def test_windows_and_editors_leave_their_marks_and_a_scenario_is_read(tmp_path):
+def test_a_scenario_with_a_byte_order_mark_and_windows_line_ends_is_read(tmp_path):
     (tmp_path / "ball.sdf").write_text(BALL)
     file = tmp_path / "drop.yaml"
     file.write_bytes("\ufeffworld: ball.sdf\r\nname: größe 机\r\ngoals:\r\n  - 1 > 0\r\n".encode())
@@ -305,7 +305,7 @@ def test_windows_and_editors_leave_their_marks_and_a_scenario_is_read(tmp_path):
     assert found.name == "größe 机" and found.checks[0].where.endswith(":4")
 
 
-def test_a_spawned_file_is_looked_for_beside_the_scenario(tmp_path):
+def test_a_spawned_file_is_resolved_relative_to_the_scenario(tmp_path):
     (tmp_path / "box.sdf").write_text("<sdf/>")
     found = scenario(tmp_path, "world: ball.sdf\nspawn: ['box.sdf:1,2,0', 'tiago:0,0,0']\n")
     assert found.spawn == (f"{tmp_path / 'box.sdf'}:1,2,0", "tiago:0,0,0")
@@ -313,7 +313,7 @@ def test_a_spawned_file_is_looked_for_beside_the_scenario(tmp_path):
     assert scenario(tmp_path, text, "drop.py").spawn == (f"{tmp_path / 'box.sdf'}:1,2,0",)
 
 
-def test_a_scenario_made_in_python_is_looked_at_too(tmp_path):
+def test_a_scenario_created_in_python_is_validated(tmp_path):
     text = """
 from simkit.run_spec import Check, RunSpec
 scenario = RunSpec(

@@ -102,7 +102,7 @@ _DERIVED_FIELDS = frozenset(
 
 
 def engine_changes(golden: RunRecord, run: RunRecord, changes: Sequence[Change]) -> list[Change]:
-    """Return fields of the compiled model that differ although the scene does not.
+    """Return fields of the compiled model that differ although the scene values are equal.
 
     Args:
         golden: Record of the golden run.

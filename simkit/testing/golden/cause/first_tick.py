@@ -84,9 +84,8 @@ def _description(
         text = f"the inputs from plugins and commands differ {when}"
         text += "; the state stays the same" if state_same else ""
     else:
-        text = (
-            f"the state differs {when}; until then all inputs are equal, so the model, the engine or the start differs"
-        )
+        text = f"the state differs {when}; until then all inputs are equal"
+        text += ", so the model, the engine or the initial state differs"
     return text + (f"; first {quantity}" if quantity else "")
 
 

@@ -126,7 +126,7 @@ def time_text(time: float) -> str:
 
 
 def _digits(size: float, error: float) -> str:
-    """Format a number with three digits, or fewer if uncertain; avoid an exponent if the result is short."""
+    """Format a number with three digits, or fewer for an uncertain number; write short results without an exponent."""
     if size == 0.0:
         return "0"
     if size >= 99_999.5 or size < 1e-3:
