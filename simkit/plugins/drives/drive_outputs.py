@@ -1,4 +1,4 @@
-"""Publish the odometry, transforms and joint states of Gazebo Classic's drives, as the plugin's options select."""
+"""Publishers of Gazebo Classic's drives: odometry, transforms and joint states, as the plugin's options select."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class DriveOutputOptions:
     Attributes:
         odometry_topic: Name of the odometry topic.
         odometry_frame: Frame of the odometry, parent of its transform.
-        base_frame: Frame of the robot's base, child of that transform.
+        base_frame: Frame of the robot's base, child of the odometry's transform.
         odometry: True to publish odometry.
         odometry_tf: True to publish the transform of the odometry.
         wheel_tf: True to publish the transforms of the joints' child links.
@@ -53,7 +53,7 @@ class DriveOutputs(SharedByCopies):
     """Publishers of one drive. A deep copy returns the same object, because there is no state to copy.
 
     Args:
-        plugin: Drive that owns the publishers; create them in its `load`.
+        plugin: Drive that publishes; its `load` creates this object.
         options: Selected outputs.
         joints: Joints whose transforms and states are published.
     """

@@ -39,10 +39,9 @@ class PosedEntity(SharedByCopies):
         frame: Scoped name of the parent; the world's name for a top-level model.
         child: Scoped name of the entity.
         place: Constant pose in the parent; None if the entity can move.
-        handle: Link or model of the entity, if it can move.
+        handle: Link or model of the entity; None if it cannot move.
         within: Model or link that contains the entity; None for the world.
-        moves: True if Gazebo publishes this pose on its topic for moving entities, when a second topic serves the
-            static ones.
+        moves: True if Gazebo publishes this pose on the topic for moving entities. Another topic has static entities.
     """
 
     frame: str
@@ -58,12 +57,13 @@ class _CompiledEntity(NamedTuple):
 
     Attributes:
         frame, child: Names from the `PosedEntity`.
-        place: Pose in its frame, if constant.
-        row: Index of its body among the sampled bodies.
-        offset: Pose of the entity in that body's frame.
+        place: Constant pose of the entity in `frame`; None if the entity can move.
+        row: Index of the entity's body among the sampled bodies.
+        offset: Pose of the entity in the frame of its body.
         base: Index of the parent's body among the sampled bodies; -1 for the world.
-        back: Pose of that body in the parent's frame.
-        is_body, is_base: True if the entity's (or the parent's) frame equals its body's frame.
+        back: Pose of the parent's body in the parent's frame.
+        is_body: True if the entity's frame equals the frame of its body.
+        is_base: True if the parent's frame equals the frame of its body.
     """
 
     frame: str
@@ -88,7 +88,7 @@ class EntityPoses(SharedByCopies):
     def __init__(self, sim: Simulation, entities: Sequence[PosedEntity]) -> None:
         self._sim = sim
         self._rows: dict[int, int] = {}
-        # plain tuples: `place` unpacks them once per entity and message
+        # tuples, because `place` unpacks one for each entity and message
         self._plan = [self._find(entity) for entity in entities]
         self._bodies = np.array(list(self._rows), dtype=np.intp)
 
@@ -157,7 +157,7 @@ class EntityPoses(SharedByCopies):
         return _CompiledEntity(entity.frame, entity.child, None, rows[0], own, rows[1], back, *are_bodies)
 
     def _spot(self, handle: Any) -> tuple[int, Pose]:
-        """Return the body that carries a link or a model, and the entity's pose in that body's frame."""
+        """Return MuJoCo's body of a link or model, and the pose of the link or model in the body's frame."""
         names, scene = self._sim.engine.names, handle.scene
         if handle.scoped in names.links:
             binding = names.link(handle.scoped)
@@ -238,7 +238,7 @@ def pose_numbers(pose: Pose) -> PoseNumbers:
 
 
 def _compose_poses(a: PoseNumbers, b: PoseNumbers) -> PoseNumbers:
-    """Return the product of two poses: `b` is given in the frame at `a`, the result in the frame of `a`."""
+    """Return the product of two poses, a · b."""
     ax, ay, az, aw, ai, aj, ak = a
     x, y, z, w, i, j, k = b
     tx, ty, tz = 2 * (aj * z - ak * y), 2 * (ak * x - ai * z), 2 * (ai * y - aj * x)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Triple = tuple[float, float, float]
 
-_STATIC, _OTHER = -1, -2  # owners of geoms that no motion moves
+_STATIC, _OTHER = -1, -2  # values of `_owners` for geoms that no motion moves
 _SIX = np.arange(6)
 
 
@@ -33,7 +33,7 @@ class KinematicMotion(SharedByCopies):
 
     Args:
         sim: Simulation of the model.
-        links: Scoped names of links. Links with a parent link or fixed to the world are not moved.
+        links: Scoped names of links. Links that have a parent link or are fixed to the world are ignored.
         carrier: Scoped name of the link that carries the frame.
         frame: Pose of the frame in the carrier.
     """
@@ -49,7 +49,7 @@ class KinematicMotion(SharedByCopies):
 
     @property
     def frame(self) -> Pose:
-        """World pose of the frame. Unlike a link's pose, reading it does not recompute after a velocity was set."""
+        """World pose of the frame. After a velocity was set, reading this pose needs no new forward pass."""
         self.bind()
         physics = self._sim.engine.physics
         if physics.stage == STALE:
@@ -73,13 +73,13 @@ class KinematicMotion(SharedByCopies):
 
 @dataclass(frozen=True, slots=True)
 class VelocityTarget:
-    """Commanded motion for the next step: all links turn and translate with a frame that has this twist.
+    """Commanded motion for the next step: the links move as if they were fixed to a frame that has this twist.
 
     Attributes:
         motion: Links to move.
         frame: Pose of the frame in the world.
         linear, angular: Velocity of the frame's origin and angular velocity, in the frame's axes [m/s, rad/s].
-        falls: True to leave the vertical speed to gravity while the model has no contact.
+        falls: True to let the model fall while it has no contact; then the vertical speed is not commanded.
     """
 
     motion: KinematicMotion
@@ -90,7 +90,7 @@ class VelocityTarget:
 
 
 class KinematicMover(SharedByCopies):
-    """Executor of velocity targets; the shared computation is done once per step.
+    """Applies velocity targets of many models; the computation that they share is done once per step.
 
     A deep copy returns the same object.
     """
@@ -102,7 +102,7 @@ class KinematicMover(SharedByCopies):
     def move(self, moves: Sequence[VelocityTarget]) -> None:
         """Apply the targets to the next step only.
 
-        At the end of the step each frame is where its twist leads: along a screw, in the plane along an arc.
+        During the step each frame moves along the exact path of its twist: a screw motion, or an arc in the plane.
 
         Args:
             moves: Targets whose links are not connected by joints.
@@ -113,7 +113,7 @@ class KinematicMover(SharedByCopies):
         self._bind(tuple(move.motion for move in moves))
         if physics.stage == STALE:
             physics.fresh()
-        # positions and unconstrained accelerations stay those of this forward pass, also after another model moved
+        # all targets use the positions and unconstrained accelerations of one forward pass
         data = physics.data
         touched = self._smooth_contacts(data) if data.ncon else frozenset()
         mobility = self._mobilities(data)
@@ -140,22 +140,23 @@ class KinematicMover(SharedByCopies):
     def _mobilities(self, data: mujoco.MjData) -> Vector:
         """Return the accelerations for unit forces on the six degrees of freedom of each free link, shape (6, nv).
 
-        One table row serves all free links: they are in different trees, so forces on one do not accelerate another.
+        One table row is enough for all free links: the links are in different kinematic trees, so a force on one link
+        does not accelerate another link.
         """
         mujoco.mj_solveM(self._sim.mj_model, data, self._columns, self._units)
         return self._columns
 
     def _smooth_contacts(self, data: mujoco.MjData) -> frozenset[int]:
-        """Remove the friction between moved models and static geometry; return the indices of the touched models.
+        """Remove the friction between moved models and static geometry; return the indices of models in contact.
 
-        A carried model presses on nothing, so there is no friction force to keep. MuJoCo's convex friction cone would
-        add a normal force at high sliding speeds, which lifts and tilts the model.
+        Gravity on a moved model is compensated, so there is no normal force that could cause friction. With friction,
+        MuJoCo's convex friction cone would add a normal force at high sliding speeds, which lifts and tilts the model.
         """
         contacts = data.contact
         first, second = self._owners[contacts.geom.T]
         least, most = np.minimum(first, second), np.maximum(first, second)
         sliding = np.flatnonzero((most >= 0) & ((least == _STATIC) | (least == most)))
-        if len(sliding) and self._is_pyramidal:  # pyramidal friction is in the constraint rows already: rebuild them
+        if len(sliding) and self._is_pyramidal:  # the constraint rows contain pyramidal friction, so they are rebuilt
             contacts.dim[sliding] = 1
             model = self._sim.mj_model
             mujoco.mj_makeConstraint(model, data)
@@ -176,7 +177,7 @@ class KinematicMover(SharedByCopies):
         self._bound = model, motions
         self._is_pyramidal = model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
         self._units, self._columns = np.zeros((6, model.nv)), np.zeros((6, model.nv))
-        owners = np.where(np.append(model.geom_bodyid, -1) == 0, _STATIC, _OTHER)  # the last for -1: no geom
+        owners = np.where(np.append(model.geom_bodyid, -1) == 0, _STATIC, _OTHER)  # index -1 means no geom
         for index, motion in enumerate(motions):
             motion.bind()
             owners[motion.geoms] = index
@@ -186,7 +187,7 @@ class KinematicMover(SharedByCopies):
 
 
 def _solve_force(mobility: Vector, acceleration: Vector) -> Vector:
-    """Return the force (6,) that produces this acceleration; the mobility is symmetric and positive definite."""
+    """Return the force (6,) that produces an acceleration (6,); the mobility (6, 6) is positive definite."""
     factor, force = np.ascontiguousarray(mobility), np.empty(6)
     mujoco.mju_cholFactor(factor, 0.0)
     mujoco.mju_cholSolve(force, factor, acceleration)
@@ -195,9 +196,9 @@ def _solve_force(mobility: Vector, acceleration: Vector) -> Vector:
 
 @functools.lru_cache(maxsize=256)
 def _screw(linear: Triple, angular: Triple, step: float) -> tuple[Vector, Vector]:
-    """Return the shift (3,) and rotation matrix (3, 3) of a frame after one step with this twist in its own axes.
+    """Return the shift (3,) and rotation matrix (3, 3) of a frame after one step with a twist in the frame's axes.
 
-    It is the exponential map of SE(3); a series replaces the quotients where they would lose digits.
+    This is the exponential map of SE(3). For small angles a series replaces the quotients, which would lose digits.
     """
     v, w = (np.clip(motion, -LARGEST, LARGEST) * step for motion in (linear, angular))
     square = float(w @ w)

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 ODOMETRY = "nav_msgs/msg/Odometry"
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
 COMMAND_TYPES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
-UNKNOWN = 1e12  # variance of quantities that a planar base does not measure, the same number as Gazebo's
+UNKNOWN = 1e12  # variance of quantities that a planar base does not measure; Gazebo uses the same number
 MEAN_STEPS = 10  # window of the mean twist [steps], the same as Gazebo's
-LONGEST = 1000  # stored angles [steps] before they are integrated
+LONGEST = 1000  # largest number of stored angles [steps]; then the angles are integrated
 
 Angles = tuple[float, ...]
 """Joint angles [rad]."""
@@ -57,7 +57,7 @@ class DeadReckoning:
         """Advance the pose along an arc of constant curvature, by the exponential map of SE(2).
 
         Args:
-            ahead: Forward distance in the base's own axes, which turn on the way [m].
+            ahead: Forward distance in the base's axes, which turn with the base [m].
             left: Distance to the left in the same axes [m].
             turn: Rotation to the left [rad].
         """
@@ -104,8 +104,8 @@ class TravelOdometry(abc.ABC):
     Attributes:
         stride: Number of steps that are integrated as one arc.
         mean_steps: Number of steps in the mean twist.
-        reckoning: Pose on the plane at the last `reckon`; the first pose is zero.
-        twist: Mean twist at the last `reckon`, in the base's axes.
+        reckoning: Planar pose at the last call of `reckon`; the first pose is zero.
+        twist: Mean twist at the last call of `reckon`, in the base's axes.
     """
 
     stride = MEAN_STEPS
@@ -120,7 +120,7 @@ class TravelOdometry(abc.ABC):
 
     @abc.abstractmethod
     def motion(self, before: Angles, after: Angles) -> Motion:
-        """Return the displacement for a change of angles [rad]; displacements along one arc add up."""
+        """Return the displacement along the arc between two sets of angles [rad]."""
 
     def note(self, angles: Angles) -> None:
         """Store the angles before a step."""
@@ -136,7 +136,7 @@ class TravelOdometry(abc.ABC):
         self.twist = BodyTwist((ahead, left, 0.0), (0.0, 0.0, turn))
 
     def _total_motion(self, angles: Angles) -> Motion:
-        """Return the displacement over the last steps, up to these angles."""
+        """Return the displacement over the steps of the mean twist, up to the current angles."""
         ahead = left = turn = 0.0
         for before, after in pairwise([*self._recent, angles]):
             more = self.motion(before, after)
@@ -144,7 +144,7 @@ class TravelOdometry(abc.ABC):
         return ahead, left, turn
 
     def _roll(self, angles: Angles) -> None:
-        """Integrate all stored angles and continue to these."""
+        """Integrate the pose over all stored angles, up to the current angles."""
         noted = self._noted
         last = self._at if self._at is not None else (noted or [angles])[0]
         for point in (*noted[self.stride :: self.stride], angles):
@@ -164,7 +164,8 @@ class WheelOdometry(TravelOdometry):
         step: Time between two calls of `note` [s].
 
     Attributes:
-        noter: Callback that stores the pending angles, if a `DriveFleet` collects the angles of many drives.
+        noter: Callback that passes collected angles to this object, if a `DriveFleet` collects the angles of many
+            drives.
     """
 
     noter: Callable[[], None] | None = None
@@ -174,7 +175,7 @@ class WheelOdometry(TravelOdometry):
         self._radius, self._separation = radius, separation
 
     def motion(self, before: Angles, after: Angles) -> Motion:
-        """Return the displacement along the arc that both wheels roll."""
+        """Return the displacement along the arc on which both wheels roll."""
         left, right = ((new - old) * self._radius for new, old in zip(after, before, strict=True))
         return (left + right) / 2, 0.0, (right - left) / self._separation
 
@@ -208,14 +209,14 @@ class WheelOdometry(TravelOdometry):
 
         Args:
             at: Angles at the last integrated point [rad].
-            recent: Angles of the steps before [rad].
+            recent: Angles of the last steps before `at` [rad].
             twist: Forward speed [m/s] and turning rate [rad/s].
         """
         self._at, self._recent = at, list(recent)
         self.twist = BodyTwist((twist[0], 0.0, 0.0), (0.0, 0.0, twist[1]))
 
     def __deepcopy__(self, memo: dict[int, object]) -> WheelOdometry:
-        """Return a copy with a state of its own, for a snapshot."""
+        """Return an independent copy for a snapshot."""
         self.catch_up()
         made = WheelOdometry(self._radius, self._separation, self._step)
         made.reckoning, made.twist, made._at = copy.copy(self.reckoning), self.twist, self._at
@@ -230,13 +231,13 @@ def wheel_angles(left: Joint, right: Joint) -> tuple[float, float]:
 
 
 def joint_angles(joints: Sequence[Joint]) -> Angles:
-    """Return the angles of any number of single-axis joints [rad], as `wheel_angles` does for two."""
+    """Return the angles of single-axis joints [rad]; as fast as `wheel_angles`, but for any number of joints."""
     qpos: Vector = joints[0]._physics.data.qpos
     return tuple(qpos.item(joint._one_qpos) for joint in joints)
 
 
 def command_of(message: Any) -> tuple[float, float] | None:
-    """Return the forward speed [m/s] and turning rate [rad/s] of a Twist or TwistStamped; None unless finite."""
+    """Return the forward speed [m/s] and turning rate [rad/s] of a Twist or TwistStamped; None if one is not finite."""
     twist = getattr(message, "twist", message)
     forward, turn = float(twist.linear.x), float(twist.angular.z)
     return (forward, turn) if math.isfinite(forward) and math.isfinite(turn) else None
@@ -254,7 +255,7 @@ class TrueMotion(SharedByCopies):
         self._link = canonical
         # if both frames coincide, the link's pose is cheaper to read
         self._frame: Model | Link = canonical if canonical.scene.pose_world == model.scene.pose_world else model
-        # constant vector from the link's origin to the model's, in the model's axes
+        # constant vector from the link's origin to the model's origin, in the model's axes
         there = model.scene.pose_world.inverse().transform(canonical.scene.pose_world.position)
         self._arm = (-there).tolist()
 
@@ -266,7 +267,7 @@ class TrueMotion(SharedByCopies):
         return (*pose.position.tolist(), *pose.quaternion.tolist())
 
     def state(self) -> tuple[Pose, BodyTwist]:
-        """Return the world pose of the model's frame, and that frame's twist in its own axes."""
+        """Return the world pose of the model's frame, and the frame's twist in its own axes."""
         pose = self._frame.pose
         back = quat_conjugate(pose.quaternion)
         x, y, z = quat_rotate(back, self._link.linear_velocity).tolist()
@@ -300,7 +301,7 @@ def odometry_message(
     Args:
         time_ns: Time of the message [ns].
         frame: Frame of the pose.
-        child: Frame whose pose is given, and whose axes the twist uses.
+        child: Child frame; the twist is in its axes.
         pose: Pose of `child` in `frame`.
         twist: Twist of `child`.
         covariance: Row-major covariance of the pose, shape (36,); zeros if omitted.
@@ -345,7 +346,7 @@ def transforms(time_ns: int, *items: tuple[str, str, Pose]) -> msgs.TFMessage:
 
 @functools.cache
 def message_types() -> Mapping[str, Any]:
-    """Return the message classes by name; calling them directly is several times faster than `msgs.make`."""
+    """Return message classes by name; calling a class is several times faster than `msgs.make`."""
     geometry = "Point Vector3 Quaternion Pose Twist PoseWithCovariance TwistWithCovariance Transform TransformStamped"
     others = (ODOMETRY, TRANSFORMS, "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
     names = (*(f"geometry_msgs/msg/{name}" for name in geometry.split()), *others)

@@ -1,11 +1,11 @@
-"""Odometry with the errors of real wheels, and the covariance that a drive predicts for them.
+"""Odometry with the errors of real wheels, and the covariance that a drive predicts for these errors.
 
-The random part is the model of Siegwart and Nourbakhsh, "Introduction to Autonomous Mobile Robots", section 5.2.4. The
-error of each wheel's travel has a variance that grows with the distance, k·|Δs|, independent of the update rate.
-Equation 5.9 propagates the covariance of the pose. Thrun, Burgard and Fox, "Probabilistic Robotics", table 5.6, use
-variances that grow with the square of a step's distance; these vanish as steps get short. The systematic part is the
-error that Borenstein and Feng (1996) measure on a robot: wheel radii and a wheel separation that differ from the values
-in the drive.
+The random errors follow the model of Siegwart and Nourbakhsh, "Introduction to Autonomous Mobile Robots", section
+5.2.4. The error of each wheel's travel has a variance that grows with the distance, k·|Δs|, independent of the update
+rate. Equation 5.9 propagates the covariance of the pose. The model of Thrun, Burgard and Fox, "Probabilistic Robotics",
+table 5.6, is not used: its variances grow with the square of a step's distance, so they vanish for short steps. The
+systematic errors are those that Borenstein and Feng (1996) measure on a robot: wheel radii and a wheel separation that
+differ from the values in the drive.
 """
 
 from __future__ import annotations
@@ -81,13 +81,13 @@ class NoisyOdometry:
         separation: True distance between the wheels [m].
         stream: Random stream; every update draws two normal numbers.
         angles: Angles of the left and the right wheel at the start [rad].
-        start: First pose.
+        start: Initial pose.
 
     Attributes:
         reckoning: Pose that the drive estimates.
         covariance: Covariance of x [m], y [m] and yaw [rad], shape (3, 3).
         twist: Twist over the last update, in the body's axes.
-        twist_covariance: Covariance of its forward speed [m/s] and turning rate [rad/s], shape (2, 2).
+        twist_covariance: Covariance of forward speed [m/s] and turning rate [rad/s], shape (2, 2).
     """
 
     def __init__(
@@ -115,7 +115,7 @@ class NoisyOdometry:
             left: Angle of the left wheel [rad].
             right: Angle of the right wheel [rad].
             elapsed: Time since the last update [s].
-            sideways: Displacement to the left [m]; wheels do not measure it, so it has no error.
+            sideways: True displacement to the left [m]. Wheels do not measure this displacement, so no error is added.
         """
         self._index += 1
         counted = tuple(self._count(angle) for angle in (left, right))
@@ -134,8 +134,8 @@ class NoisyOdometry:
     def messages_covariance(self) -> tuple[Vector, Vector]:
         """Return the row-major 6×6 covariances of pose and twist in ROS order, shape (36,) each.
 
-        Quantities that wheels do not measure have a huge variance. The lateral speed, which wheels prevent, has the
-        variance of the forward speed.
+        Quantities that wheels do not measure have a huge variance. The lateral speed, which is about zero on wheels,
+        has the variance of the forward speed.
         """
         pose, twist = (np.diag([UNKNOWN] * 6) for _ in range(2))
         pose[_PLANAR] = self.covariance
@@ -148,12 +148,12 @@ class NoisyOdometry:
         return math.floor(angle / step + 0.5) * step if step > 0 else angle
 
     def _spread(self, rolled: list[float], variances: Vector) -> None:
-        """Propagate the covariance over this motion and add the motion's own covariance (equation 5.9)."""
+        """Propagate the covariance of the pose over one motion, and add the covariance of the motion (equation 5.9)."""
         way, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / self._separation
         middle = self.reckoning.yaw + turn / 2
         cos, sin, arm = math.cos(middle), math.sin(middle), way / (2 * self._separation)
         along = np.array([[1, 0, -way * sin], [0, 1, way * cos], [0, 0, 1]])
-        # columns: left, right
+        # columns: derivatives by the travel of the left and of the right wheel
         by_wheel = np.array(
             [
                 [cos / 2 + arm * sin, cos / 2 - arm * sin],
@@ -172,10 +172,10 @@ class NoisyOdometry:
 
 
 class EquivalentWheelAngles:
-    """Wheel angles that would produce a true motion without slip.
+    """Wheel angles with which a base without slip would follow a true motion.
 
     Args:
-        pose: First pose.
+        pose: Initial pose.
         radius: Radius of the wheels [m].
         separation: Distance between the wheels [m].
     """
@@ -187,11 +187,11 @@ class EquivalentWheelAngles:
 
     @property
     def start(self) -> DeadReckoning:
-        """Planar pose at the last `follow`, at first the initial pose."""
+        """Planar pose at the last call of `follow`; before the first call, the initial pose."""
         return DeadReckoning(*self._last)
 
     def follow(self, pose: Pose) -> tuple[float, float, float]:
-        """Continue to a pose.
+        """Update the wheel angles for the motion from the last pose to a new pose.
 
         Returns:
             The angles of the left and the right wheel [rad], and the displacement to the left since the last pose [m].
@@ -212,7 +212,7 @@ class EquivalentWheelAngles:
 
 
 def replace_planar_pose(pose: Pose, reckoned: DeadReckoning) -> Pose:
-    """Return a true pose with x, y and yaw from dead reckoning; height and tilt stay true."""
+    """Return a pose with x, y and yaw from dead reckoning, and with height and tilt of the true pose."""
     turn = quat_from_rpy(0.0, 0.0, reckoned.yaw - _planar(pose)[2])
     return Pose((reckoned.x, reckoned.y, pose.position[2]), quat_multiply(turn, pose.quaternion))
 

@@ -1,4 +1,4 @@
-"""Publish the transforms of a robot: fixed frames on `/tf_static`, moving links on `/tf`."""
+"""Publishers of a robot's transforms: fixed frames on `/tf_static`, moving links on `/tf`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def frame_names(sim: Simulation) -> dict[str, str]:
-    """Return the frame name of each link of each model, by scoped link name; `StaticTransforms` states the rule."""
+    """Return the frame name of every link by scoped link name; see `StaticTransforms` for the rule."""
     frames: dict[str, str] = {}
     taken: set[str] = set()
     for scene in _moving_models_first(sim):
@@ -34,7 +34,7 @@ def frame_names(sim: Simulation) -> dict[str, str]:
 
 
 def _moving_models_first(sim: Simulation) -> list[SceneModel]:
-    """Return the models with movable ones first, so that a static model never takes a frame name from a robot."""
+    """Return all models, static models last, so that a robot's frames keep their plain names."""
     return sorted((handle.scene for handle in sim.models.values()), key=lambda scene: scene.static)
 
 
@@ -43,8 +43,9 @@ class StaticTransforms(WorldPlugin):
 
     Frames are plain link names as in ROS. If two models have a link of the same name, the frames of the later model are
     `<model>/<link>`. A sensor that has a frame of its own (`model::link::sensor`, as in Gazebo) gets a transform from
-    its link, on static models too. A camera's `<optical_frame_id>` gets a transform from the sensor's frame, unless a
-    link has that name. Part of every world; checks once a second of simulated time for added and removed models.
+    its link, on static models too. A camera's `<optical_frame_id>` gets a transform from the sensor's frame, but not if
+    a link has that name. Every world has this plugin. It looks for added and removed models once a second of simulated
+    time.
     """
 
     after_step_rate = 1.0
@@ -88,7 +89,7 @@ class StaticTransforms(WorldPlugin):
         links = {frames[link.scoped]: link.pose_world for link in scene.all_links()}
         for described in scene.all_sensors():
             link = children[described.parent] if described.on_joint else described.parent
-            # Classic's camera plugins name a link's frame; sensors of unsupported types exist in the scene only
+            # a sensor with a Classic camera plugin uses a link's frame; a sensor of unsupported type is not simulated
             if described.plugins or link not in frames or not self.sim.contents.has_sensor(described.scoped):
                 continue
             sensor = self.sim.sensor(described.scoped)
@@ -110,10 +111,11 @@ class RobotStatePublisherOptions(Options):
 
 
 class RobotStatePublisher(ModelPlugin):
-    """Publishes on `/tf`, `<publish_frequency>` (20) times a second, each link that a joint moves in its parent link.
+    """Publishes the pose of each link that a joint moves, in its parent link, on `/tf`.
 
-    Frames have the same names as on `/tf_static`. The poses are ground truth, also for joints without an encoder. In
-    ROS, the node `robot_state_publisher`, which is started beside Gazebo, computes these transforms from joint states.
+    Transforms are published `<publish_frequency>` (20) times a second, with the frame names of `/tf_static`. The poses
+    are ground truth, also for joints without an encoder. In ROS, the separate node `robot_state_publisher` computes
+    these transforms from joint states.
     """
 
     options = OptionsOf(RobotStatePublisherOptions)

@@ -1,4 +1,4 @@
-"""Limits of the speed, acceleration and jerk of commands."""
+"""Limits for the speed, acceleration and jerk of commands."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class SpeedLimiter(SharedByCopies):
 
 
 class SpeedLimitOptions(Options):
-    """Limits of the linear and the angular speed of a drive; `<max_velocity>` and its like apply to both.
+    """Limits of the linear and the angular speed of a drive; options such as `<max_velocity>` apply to both speeds.
 
     A lower limit must not be positive and an upper limit not negative, so that a drive can stop.
     """

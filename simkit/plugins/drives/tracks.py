@@ -1,4 +1,4 @@
-"""Belts and tracks: links whose surface moves, and the odometry of a vehicle from its commanded track speeds."""
+"""Belts and tracks: links whose surface moves, and the odometry of tracked vehicles."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def belt_of(
     Args:
         sim: Simulation of the link.
         link: Scoped name of the link.
-        track: Pose of the track's frame in the link; the belt runs along its x axis, around its y axis.
+        track: Pose of the track's frame in the link; the belt moves along the x axis and turns about the y axis.
         now: Callback that returns the current motion of the belt.
         friction: Coefficients along and across the belt; None to use the values of the file.
     """
@@ -41,19 +41,19 @@ def belt_of(
 
 
 def needs_direction(link: SceneLink) -> bool:
-    """Check whether a link's friction differs along and across; then even a stopped belt must define the direction."""
+    """Check whether a link's friction depends on direction; then also a stopped belt must define the directions."""
     return any(has_directional_friction(collision.surface) for collision in link.collisions)
 
 
 def report_missing_collisions(link: SceneLink, params: Params) -> None:
-    """Warn if a track link has no collisions, because a belt acts through contacts only."""
+    """Warn if a track link has no collisions, because a belt acts only through contacts."""
     if not link.collisions:
         message = f"link {link.name!r} of a track has no <collision>: the track moves nothing"
         params.diagnostics.warning("SK-PLUGIN-101", message, params.where, "add a <collision> to the link")
 
 
 class TrackOdometry:
-    """Odometry of a tracked vehicle, computed as if its tracks were wheels without slip; the first pose is zero.
+    """Odometry of a tracked vehicle from its commanded track speeds, without slip; the initial pose is zero.
 
     Args:
         separation: Distance between the tracks [m].
@@ -71,7 +71,7 @@ class TrackOdometry:
         self._speeds = left, right
 
     def at(self, now: int) -> tuple[Pose, BodyTwist]:
-        """Return the pose, and the twist in the body's axes, at time `now` [ns]."""
+        """Return the vehicle's pose, and its twist in its own axes, at time `now` [ns]."""
         left, right = self._speeds
         turning = (right - left) / self._separation
         return self._reckoned(now).pose, BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, turning))

@@ -42,7 +42,7 @@ class TwistDrive(ModelPlugin):
         Args:
             scene: Model of the drive.
             builder: Builder of the compiled model.
-            named: Joint names by role (`left wheel`).
+            named: Joint names by role, such as `left wheel`.
 
         Returns:
             The joints that were found, in the order of the roles.
@@ -56,7 +56,7 @@ class TwistDrive(ModelPlugin):
         return [joint for joints in wheels.values() for joint in joints]
 
     def start(self) -> None:
-        """Set all speeds to zero; call it first in `load`."""
+        """Set all speeds to zero; `load` must call this method first."""
         self.once = OneTimeWarnings(self)
         self._target: Speeds = (0.0,) * len(self._limiters)
         self._last = self._before_last = self._target
@@ -87,11 +87,11 @@ class TwistDrive(ModelPlugin):
             self.once.not_finite()
 
     def speeds_of(self, twist: Twist) -> Speeds:
-        """Return the speeds of a twist, one for each limiter."""
+        """Return the components of a twist that the drive follows, one for each limiter."""
         return float(twist.linear.x), float(twist.angular.z)
 
     def aim(self, speeds: Speeds) -> None:
-        """Set the target speeds from the next step on."""
+        """Set the target speeds that apply from the next step on."""
         self._target, self._settled = speeds, False
 
     def next_speeds(self) -> Speeds:

@@ -1,4 +1,4 @@
-"""Find the joints that a drive turns as wheels or steers, and compute the angles of steered wheels."""
+"""Find the wheel joints and steering joints of a drive, and compute the angles of steered wheels."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def find_drive_joint(scene: SceneModel, name: str, role: str, params: Params) ->
 
 
 def steering_angles(slope: float, base: float, width: float) -> tuple[float, float]:
-    """Return the angles of the left and right steered wheel [rad], for which all wheels turn around one point.
+    """Return the steering angles of the left and right wheel [rad] at which all wheels turn around one point.
 
     Args:
         slope: Tangent of the steering angle of a virtual middle wheel; positive to the left.

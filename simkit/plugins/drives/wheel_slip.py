@@ -41,8 +41,8 @@ class Wheel:
         name: Plain name of the link.
         contact: Link and joint of the wheel.
         radius: Radius [m].
-        force: Normal force for which the compliances are given [N].
-        lateral, longitudinal: Compliances along the axle and across it.
+        force: Normal force at which the wheel has these compliances [N].
+        lateral, longitudinal: Slip compliances along the axle and across the axle, without unit.
     """
 
     name: str
@@ -89,7 +89,8 @@ class WheelSlipBase(ModelPlugin):
     """Lets wheels slip in proportion to the force on their contacts; the compliances are live parameters.
 
     The compliances of a wheel are the parameters `slip_compliance_unitless_lateral/<link>` and
-    `slip_compliance_unitless_longitudinal/<link>` of the plugin's node; `/world/<world>/wheel_slip` sets them too.
+    `slip_compliance_unitless_longitudinal/<link>` of the plugin's node. The service `/world/<world>/wheel_slip` also
+    sets these compliances.
     """
 
     options = OptionsOf(WheelSlipOptions)
@@ -172,7 +173,7 @@ def _wheel_joint(scene: SceneModel, link: SceneLink, block: Params) -> SceneJoin
 
 
 def set_compliances(sim: Simulation, links: set[str], lateral: float, longitudinal: float) -> list[str]:
-    """Set the compliances of all wheels among some links, as `/world/<world>/wheel_slip` does.
+    """Set the slip compliances of the wheels among some links; used by `/world/<world>/wheel_slip`.
 
     Args:
         sim: Simulation of the wheels.
@@ -196,7 +197,7 @@ def set_compliances(sim: Simulation, links: set[str], lateral: float, longitudin
 
 
 class WheelSlip(WheelSlipBase):
-    """Lets wheels slip, along their axle and across it; no `<fdir1>` is needed."""
+    """Lets wheels slip along and across their axle; no `<fdir1>` is needed."""
 
     filenames = ("gz-sim-wheel-slip-system",)
     names = ("gz::sim::systems::WheelSlip",)
@@ -216,14 +217,14 @@ class _ClassicWheelSlip(WheelSlipBase):
         self._model = parent
         down = self.sim.mj_model.opt.gravity
         size = float(np.linalg.norm(down))
-        # Classic fixes the downward direction in the model's frame at the start, so it turns with the model
+        # in Classic the downward direction is constant in the model's frame, so this direction turns with the model
         world = down / size if size > 0 else np.array([0.0, 0.0, -1.0])
         self._down = quat_rotate(quat_conjugate(parent.scene.pose_world.quaternion), world).tolist()
         self._links = [self.sim.link(wheel.contact.link) for wheel in self.wheels]
         self._joints = [self.sim.joint(wheel.contact.joint) for wheel in self.wheels]
 
     def measured(self) -> list[tuple[Wheel, float, float, float]]:
-        """Return each wheel with its speeds forward, along the axle and at the rim [m/s]."""
+        """Return each wheel with its forward speed, its speed along the axle and its rim speed [m/s]."""
         data = self.sim.engine.physics.fresh()
         down = quat_rotate(self._model.pose.quaternion, self._down)
         found = []

@@ -1,4 +1,4 @@
-"""ros2_control in the simulation: hardware, controllers and the controller manager.
+"""Simulation of ros2_control: hardware, controllers and the controller manager.
 
 Inputs are the plugin element of a model (`gz_ros2_control`, `gazebo_ros2_control`, `gazebo_ros_control`), its
 `<ros2_control>` or `<transmission>` blocks, and parameter files in the layout of ROS 2 or ROS 1. Outputs are actuators

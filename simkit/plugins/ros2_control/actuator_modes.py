@@ -1,4 +1,4 @@
-"""Modes in which a joint is driven, with the gains, effort bounds and losses of each."""
+"""Drive modes of the hardware's joints: the gains, effort bounds and losses of each mode."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ _CATCH_UP_TIME: Final = 0.05
 _POSITION_REACH: Final = 2.0
 """Largest effort that a position servo requests, as a multiple of its effort limit.
 
-With 2, the full effort remains after the damping has taken its part.
+With 2, the servo can still request its full effort after damping has reduced the requested effort.
 """
 
 
 class ControlLoops:
-    """Gains of every joint in each mode: those of the file's PID loop, or else those of a servo.
+    """Gains of every joint in each mode: the PID gains in the file, or else gains computed for a servo.
 
     Args:
         model: compiled MuJoCo model.
@@ -49,9 +49,10 @@ class ControlLoops:
     Attributes:
         gains: kp [N·m/rad or N/m] and kv [N·m·s/rad or N·s/m], shape (joints, modes, 2).
         integral: ki, and the lower and upper bound of the integral part [N·m or N], shape (joints, modes, 3).
-        is_given: true where the gains come from the file, shape (joints, modes).
+        is_from_file: true where the gains come from the file, shape (joints, modes).
         bounds: lowest and highest effort [N·m or N], shape (joints, modes, 2).
-        calm: largest kp and kv at which a spring does not oscillate at the engine's time step, shape (joints, 2).
+        stable_springs: largest kp and kv at which a spring does not oscillate at the engine's time step, shape
+            (joints, 2).
     """
 
     def __init__(
@@ -64,12 +65,12 @@ class ControlLoops:
         count, step = len(joints), float(model.opt.timestep)
         limits = np.array([joint.max_effort for joint in joints], float)
         self.gains, self.integral = np.zeros((count, 5, 2)), np.zeros((count, 5, 3))
-        self.is_given, self.calm = np.zeros((count, 5), bool), np.zeros((count, 2))
+        self.is_from_file, self.stable_springs = np.zeros((count, 5), bool), np.zeros((count, 2))
         self.bounds = np.repeat(np.stack((-limits, limits), 1)[:, None], 5, 1)
         if not count:
             return
         least, most = felt_inertias(model, ids)
-        self.calm = np.stack((0.25 * least / step**2, least / step), 1)
+        self.stable_springs = np.stack((0.25 * least / step**2, least / step), 1)
         is_slide = model.jnt_type[ids] == int(mujoco.mjtJoint.mjJNT_SLIDE)
         self.gains[:, POSITION_MODE] = np.stack(drive_gains(limits, is_slide, least, most, step), 1)
         damping = _VELOCITY_DAMPING * least / step
@@ -82,7 +83,7 @@ class ControlLoops:
                     self.gains[k, mode] = min(kp, least[k] / step**2), min(kv, least[k] / step)
                     self.integral[k, mode] = pid.i, pid.i_min, pid.i_max
                     self.bounds[k, mode] = max(pid.u_min, -limits[k]), min(pid.u_max, limits[k])
-                    self.is_given[k, mode] = True
+                    self.is_from_file[k, mode] = True
 
 
 class ActiveModes:
@@ -97,20 +98,24 @@ class ActiveModes:
 
     Attributes:
         modes: modes that these values belong to.
-        zeros: array of zeros; its product with the commands is not 0 if a command is NaN or infinite.
+        zeros: array of zeros. Commands are multiplied by this array to find NaN and infinite ones, whose product is
+            not 0.
         kp, kv: gains of the actuators [N·m/rad or N/m, N·m·s/rad or N·s/m].
         servo_stiffness: kp of the servos; 0 for the other joints.
         lowest, highest: bounds of the effort [N·m or N].
         integral: ki of the file's loops, and the lower and upper bound of the integral part [N·m or N].
         is_position: true for joints driven by position.
-        is_compensated, compensation: true (or 1.0) for joints whose gravity and friction are compensated.
-        effort_share: 1 where the command is an effort, else 0.
-        all_compensated, all_position: true if all joints are compensated, or driven by position.
-        largest_lag: largest distance of a reference from its joint [rad or m].
+        is_compensated: true for joints whose gravity and friction are compensated.
+        compensation: `is_compensated` as numbers, 1.0 or 0.0.
+        effort_share: 1 for joints whose command is an effort, else 0.
+        all_compensated: true if all joints are compensated.
+        all_position: true if all joints are driven by position.
+        largest_lag: largest distance between a reference and the position of its joint [rad or m].
         velocity_joints: joints that are not driven by position: index, addresses, stiffness and velocity limit.
-        slacks, catch_up_times, groups: values of those joints, as `advance_references` takes them.
-        claimed_groups: complete array from which `groups` was taken.
-        has_effort, has_integral: true if any joint has an effort command, or an integral part.
+        slacks, catch_up_times, groups: arguments of `advance_references` for the `velocity_joints`.
+        claimed_groups: the argument `groups`, for all joints.
+        has_effort: true if any joint has an effort command.
+        has_integral: true if any joint has an integral part.
         period: time in which references move by `lowest_move` to `highest_move` [s].
     """
 
@@ -126,7 +131,7 @@ class ActiveModes:
         (kp, kv), bounds = loops.gains[rows, modes].T, loops.bounds[rows, modes]
         is_position = modes == POSITION_MODE
         is_servo = is_position | (modes == VELOCITY_MODE)
-        is_compensated = is_servo & ~loops.is_given[rows, modes]
+        is_compensated = is_servo & ~loops.is_from_file[rows, modes]
         integral = loops.integral[rows, modes].T
         rolls = np.flatnonzero(~is_position)
         stiffness = np.maximum(kp[rolls], 1e-12)

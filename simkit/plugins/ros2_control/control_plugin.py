@@ -95,7 +95,7 @@ class ControlPlugin(ModelPlugin):
     # ------------------------------------------------------------------ the plugin's element and its files
 
     def mark_ignored_elements(self, params: Params) -> None:
-        """Mark elements as read that have an effect in Gazebo and none in simkit."""
+        """Mark elements that have an effect only in Gazebo as read, so that they are not reported as unknown."""
         for name in ("robot_param", "robot_param_node", "position_proportional_gain"):
             params.child(name)
         for name in ("controller_manager_prefix_node_name", "controller_manager_node_name", "robotNamespace"):
@@ -117,7 +117,7 @@ class ControlPlugin(ModelPlugin):
     def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
         """Return the PID gains that replace a servo, by joint and interface.
 
-        They come from the hardware's joints. Gains in `pid_gains` of the plugin's own node override them.
+        The gains come from the hardware's joints. Gains in `pid_gains` of the plugin's own node override them.
         """
         found = {j.name: dict(j.pids) for c in self.hardware.components for j in c.joints}
         entry = self.files.of_node(f"{self.ros.namespace}/{self.name}")
@@ -148,15 +148,15 @@ class ControlPlugin(ModelPlugin):
         """Return the speed bounds [m/s, rad/s] of the controller that subscribes to a topic.
 
         Returns:
-            Lowest and highest linear velocity, and the same for the angular velocity; None if no controller has such
-            bounds.
+            Lowest and highest linear velocity, and lowest and highest angular velocity; None if no controller of the
+            topic has speed bounds.
         """
         loaded = self.manager.controllers.values()
         getters = (getattr(entry.controller, "speed_bounds", None) for entry in loaded)
         return next((bounds for get in getters if get is not None and (bounds := get(topic)) is not None), None)
 
     def _report_driven_twice(self, builder: SpecBuilder) -> None:
-        """Report joints that another plugin drives too."""
+        """Report joints that are also driven by another plugin."""
         driven = {ref.joint: ref.owner for record in builder.records.values() for ref in record.actuators}
         for joint in self.hardware.joints.values():
             if joint.command_interfaces and joint.scoped in driven:
@@ -165,7 +165,7 @@ class ControlPlugin(ModelPlugin):
                 self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
 
     def _adapted_run_files(self, run_files: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
-        """Adapt the parameter files of the run to the names that this manager looks for."""
+        """Adapt the parameter files of the run to the node names that this manager expects."""
         if run_files:
             for file in run_files:
                 namespace, name = self.ros.namespace, self._manager_name
@@ -188,7 +188,9 @@ class ControlPlugin(ModelPlugin):
                     yield read
         if not has_run_files and not any(element.value for element in elements):
             message = f"plugin {self.name!r} names no parameter file: no controller is loaded"
-            hint = f"give the file of the ROS launch file: {_PARAMS_FILE_HINT}; or name it in <simkit:parameters>"
+            hint = (
+                f"give the file that the ROS launch file loads: {_PARAMS_FILE_HINT}; or name it in <simkit:parameters>"
+            )
             params.diagnostics.note("SK-CONTROL-018", message, self.where, hint)
 
     # ------------------------------------------------------------------ run time
@@ -225,7 +227,7 @@ class ControlPlugin(ModelPlugin):
         params.diagnostics.note("SK-CONTROL-001", f"{message}are below {self.ros.namespace!r}", self.where, hint)
 
     def _remember_loaded(self) -> None:
-        """Do nothing: all attributes can be copied, so no copy has to be tried."""
+        """Do nothing, because all attributes can be copied; the base class would test this by copying them."""
 
     def before_step(self) -> None:
         try:
@@ -264,7 +266,7 @@ class GazeboRos2Control(ControlPlugin):
 
 
 class GazeboRosControl(ControlPlugin):
-    """Runs the controllers of files in ROS 1's layout.
+    """Runs the controllers that parameter files in ROS 1's layout declare.
 
     In ROS 1 a launch file loads these files, so the plugin's own `<parameters>` (or `<simkit:parameters>`) is an
     extension of simkit. Joints with gains in `gazebo_ros_control/pid_gains` are driven by PID loops.

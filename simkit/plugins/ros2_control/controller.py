@@ -34,8 +34,8 @@ Handle = TypeVar("Handle")
 class ControllerEndpoints(SharedByCopies):
     """Topics, services and actions that the controllers of one name have opened.
 
-    They stay open with the controller's name. A controller that is unloaded and loaded again, or configured again, uses
-    the same endpoints. Messages that arrive in the meantime are dropped.
+    The endpoints stay open after a controller is unloaded. A controller of the same name that is loaded or configured
+    again uses the same endpoints. Messages that arrive in the meantime are dropped.
 
     Attributes:
         handlers: callbacks of the current controller, by the kind and the name of the endpoint.
@@ -53,7 +53,7 @@ class ControllerEndpoints(SharedByCopies):
         return found
 
     def relay(self, key: Key, handler: Relay, absent: Relay = lambda *_: None) -> Relay:
-        """Set the handler of an endpoint and return a callback for it, which calls `absent` without a handler."""
+        """Set the handler of an endpoint; return a callback that calls the current handler, or `absent` without one."""
         self.handlers[key] = handler
         return lambda *values: self.handlers.get(key, absent)(*values)
 
@@ -68,9 +68,10 @@ T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 class Controller(SharedByCopies, abc.ABC):
     """Base class of all controllers.
 
-    The controller manager creates it and calls `configure` once. It calls `activate` and `deactivate` when the
-    controller is switched, and `update` at its rate while the controller is active. Between `activate` and `deactivate`
-    the controller has claimed the interfaces that it named. A value that it writes stays until it writes again.
+    The controller manager creates a controller and calls `configure` once. The manager calls `activate` and
+    `deactivate` when the controller is switched, and `update` at the update rate while the controller is active. From
+    `activate` to `deactivate` the controller has claimed the interfaces in `command_interfaces`. A written value stays
+    until the controller writes again.
 
     Attributes:
         types: type names in YAML files that select this class
@@ -80,11 +81,12 @@ class Controller(SharedByCopies, abc.ABC):
         params: parameters of the controller from the YAML file: an element for each key, `a.b` as the element b in a, a
             list as repeated elements (`[j.value for j in params.all("joints")]`).
         hardware: joints with their limits and mimic relations, and the tables of interfaces.
-        states: state interfaces that the controller named, bound before `configure` returns to the manager.
-        commands: command interfaces that the controller named, bound, and claimed while it is active.
-        update_rate: update rate [Hz]; 0 for the manager's.
+        states: interfaces in `state_interfaces`, available after `configure`.
+        commands: interfaces in `command_interfaces`, available after `configure`, claimed while the controller is
+            active.
+        update_rate: update rate [Hz]; 0 for the manager's update rate.
         log: logger below `simkit`.
-        endpoints: topics, services and actions of the controller; the manager sets those of its name.
+        endpoints: topics, services and actions; the manager keeps them for the next controller of the same name.
     """
 
     types: ClassVar[tuple[str, ...]] = ()
@@ -112,7 +114,7 @@ class Controller(SharedByCopies, abc.ABC):
         self.log = logging.getLogger(f"simkit.plugins.ros2_control.{name}")
         self.endpoints = ControllerEndpoints()
 
-    # ------------------------------------------------------------------ methods of a controller
+    # ------------------------------------------------------------------ methods that a controller implements
 
     @abc.abstractmethod
     def configure(self) -> None:
@@ -141,7 +143,7 @@ class Controller(SharedByCopies, abc.ABC):
             period: time since the last update [s].
         """
 
-    # ------------------------------------------------------------------ methods for a controller
+    # ------------------------------------------------------------------ methods that a controller calls
 
     @property
     def sim(self) -> Simulation:
@@ -203,11 +205,11 @@ class Controller(SharedByCopies, abc.ABC):
         description: str = "",
         on_change: Callable[[T], None] | None = None,
     ) -> Parameter[T]:
-        """Declare a live parameter of the controller's node, like `Plugin.declare`; the YAML gives its first value.
+        """Declare a live parameter of the controller's node, like `Plugin.declare`; the YAML file sets its first value.
 
         Args:
-            name: parameter name; `gains.arm_1_joint.p` is p in arm_1_joint in gains.
-            default: value where the YAML file has none; its type is the type of the parameter.
+            name: parameter name; dots separate the levels of the YAML file, as in `gains.arm_1_joint.p`.
+            default: value if the YAML file has none; its type is the type of the parameter.
             minimum: lower bound of a number.
             maximum: upper bound of a number.
             choices: allowed values, if the parameter has a fixed list of them.

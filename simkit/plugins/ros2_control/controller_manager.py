@@ -1,4 +1,4 @@
-"""The controller manager: loads, configures and switches controllers, and updates the active ones."""
+"""Controller manager: loads, configures and switches controllers, and updates the active controllers."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ _SECOND: Final = 1_000_000_000
 KNOWN_PARAMETERS: Final[Mapping[str, Sequence[str]]] = tomllib.loads(
     Path(__file__).with_name("known_parameters.toml").read_text(encoding="utf-8")
 )
-"""Names of parameters that every node or the manager has, by the kind of their owner."""
+"""Names of the parameters that every controller or the manager has, by the kind of node."""
 State = Literal["unconfigured", "inactive", "active"]
 
 
 @functools.cache
 def controller_kinds() -> Mapping[str, type[Controller]]:
-    """Return every known controller class by type name; computed once, read-only."""
+    """Return all controller classes by type name; the mapping is read-only and created once."""
 
     def names(cls: type[Controller]) -> tuple[str, ...]:
         own: tuple[str, ...] = vars(cls).get("types", ())  # inherited names belong to the base class
@@ -65,7 +65,7 @@ class ControllerManager(SharedByCopies):
         hardware: joints and sensors that the controllers claim.
         files: parameter files of the manager and its controllers.
         name: name of the manager's node.
-        diagnostics: diagnostics of the load, used until `start` has returned.
+        diagnostics: diagnostics that receive reports until `start` has returned.
 
     Attributes:
         namespace: namespace of the manager's node and of the controllers' nodes.
@@ -107,7 +107,7 @@ class ControllerManager(SharedByCopies):
 
     @property
     def reports(self) -> Diagnostics:
-        """Diagnostics for new problems: those of the load, and later those of the run."""
+        """Diagnostics that receive new problems: the loading diagnostics until `start` returns, then the run's."""
         found: Diagnostics = self.plugin.sim.engine.reports if self._diagnostics is None else self._diagnostics
         return found
 
@@ -177,17 +177,17 @@ class ControllerManager(SharedByCopies):
         return f"could not find a controller named '{name}'" + (f"; {near}" if near else "")
 
     def conflicts(
-        self, name: str, leaving: Iterable[str] = (), coming: Mapping[str, str] | None = None
+        self, name: str, leaving: Iterable[str] = (), claims: Mapping[str, str] | None = None
     ) -> dict[str, str]:
-        """Return the conflicting command interfaces of a controller, with the controller that drives their joint.
+        """Return the command interfaces whose joint another controller drives, with the name of that controller.
 
         Args:
             name: name of the controller.
             leaving: active controllers that are about to be deactivated.
-            coming: interfaces that are about to be claimed, with the name of the claiming controller.
+            claims: interfaces that are about to be claimed, with the name of the claiming controller.
         """
         released = set(leaving)
-        owners = {i: owner for i, owner in self.hardware.owners.items() if owner not in released} | dict(coming or {})
+        owners = {i: owner for i, owner in self.hardware.owners.items() if owner not in released} | dict(claims or {})
         by_joint = {i.rpartition("/")[0]: owner for i, owner in owners.items() if owner != name}
         needed = self.controllers[name].controller.command_interfaces()
         return {i: by_joint[joint] for i in needed if (joint := i.rpartition("/")[0]) in by_joint}
@@ -203,7 +203,7 @@ class ControllerManager(SharedByCopies):
         loaded.controller.activate()
 
     def _update_active(self) -> None:
-        """Let the hardware read the state interfaces that the active controllers need."""
+        """Set the state interfaces to read: those of the active controllers."""
         self._active_controllers = None
         active = (c.controller for c in self.controllers.values() if c.state == "active")
         self.hardware.set_read_interfaces(name for controller in active for name in controller.states.names)
@@ -225,7 +225,7 @@ class ControllerManager(SharedByCopies):
             strict: switch nothing if one of the controllers cannot be switched; otherwise skip that controller.
 
         Returns:
-            Description of the problem; empty without one.
+            Description of the problem; empty if there is none.
         """
         problems: list[str] = []
         leaving = self._switchable(deactivate, "deactivate", "active", problems, leaving=())
@@ -285,7 +285,7 @@ class ControllerManager(SharedByCopies):
     # ------------------------------------------------------------------ run time
 
     def start(self, chosen: Sequence[str]) -> None:
-        """Load, configure and activate controllers in their order; report those that cannot be activated."""
+        """Load, configure and activate controllers in order; report controllers that cannot be activated."""
         for name in chosen:
             where = self._declaration_location(name)
             problem = self.load(name)
@@ -293,7 +293,7 @@ class ControllerManager(SharedByCopies):
                 self.reports.warning("SK-CONTROL-013", f"{problem}; the controller is not loaded", where)
                 continue
             if self.configure(name):
-                continue  # the diagnostics of its parameters report the problem
+                continue  # `configure` has reported the problem
             conflicts = self.conflicts(name)
             if conflicts:
                 message = ", ".join(f"{i!r} (of {owner!r})" for i, owner in conflicts.items())
@@ -301,7 +301,8 @@ class ControllerManager(SharedByCopies):
                     "SK-CONTROL-014",
                     f"controller {name!r} stays inactive: earlier controllers have claimed {message}",
                     where,
-                    f"call {self.name}/switch_controller to activate {name} and deactivate the other controllers",
+                    f"call {self.plugin.ros.topic(f'{self.name}/switch_controller')} to activate {name} and deactivate "
+                    "the other controllers",
                 )
                 continue
             self.activate(name)

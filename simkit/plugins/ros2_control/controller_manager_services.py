@@ -43,7 +43,7 @@ def offer_services(manager: ControllerManager) -> None:
 
 
 def _report_problem(manager: ControllerManager, problem: str) -> bool:
-    """Report a problem if there is one; return true without a problem."""
+    """Report a problem; return true if the problem is empty, that is, if there is none."""
     if problem:
         manager.reports.warning("SK-CONTROL-010", problem, manager.plugin.where)
     return not problem
@@ -83,7 +83,7 @@ def _switch(manager: ControllerManager, request: SwitchController_Request) -> bo
 
 
 def _reload(manager: ControllerManager, force_kill: bool) -> bool:
-    """Unload all controllers; with an active one only if `force_kill` is set. Python has no library to reload."""
+    """Unload all controllers; if one is active, `force_kill` must be set. Python has no library to reload."""
     active = [name for name, loaded in manager.controllers.items() if loaded.state == "active"]
     if active and not force_kill:
         return _report_problem(manager, "controllers are active, so libraries are not reloaded: " + ", ".join(active))
@@ -125,7 +125,7 @@ def _component(manager: ControllerManager, component: ComponentDescription) -> d
 
 
 def _set_component(manager: ControllerManager, request: SetHardwareComponentState_Request) -> dict[str, object]:
-    """Accept the state `active` only: hardware in the simulation is always active."""
+    """Accept only the state `active`, because simulated hardware is always active."""
     active = {"id": 3, "label": "active"}
     names = [component.name for component in manager.hardware.components]
     if request.name not in names:

@@ -18,16 +18,16 @@ _INFINITY = math.inf
 class RateLimits(SharedByCopies):
     """Bounds on a speed, on its acceleration and on its jerk, in `linear.x` or `angular.z`.
 
-    All values are in SI units, and infinite without a bound. A kind of limit applies if `has_velocity_limits` (or the
-    like) is true. It also applies if that switch is absent and a bound is given, because newer versions have no switch.
-    A missing lower bound is the negative upper bound. NaN means no bound.
+    All values are in SI units; a missing bound is infinite. The velocity limits apply if `has_velocity_limits` is true.
+    They also apply if that switch is absent and the file has a bound, because newer versions have no switch. The same
+    rule holds for acceleration and jerk. The default of a lower bound is the negative upper bound. NaN means no bound.
 
     Attributes:
         least, most: bounds of the speed.
-        acceleration, deceleration: bounds of the acceleration while the speed is positive: upwards (≥ 0) and downwards
-            (≤ 0).
-        reverse_acceleration, reverse_deceleration: bounds while the speed is negative: away from zero (≤ 0) and towards
-            zero (≥ 0). At zero speed the two accelerations are the bounds.
+        acceleration: upper bound of the acceleration while the speed is positive or zero (≥ 0).
+        deceleration: lower bound of the acceleration while the speed is positive (≤ 0).
+        reverse_acceleration: lower bound of the acceleration while the speed is negative or zero (≤ 0).
+        reverse_deceleration: upper bound of the acceleration while the speed is negative (≥ 0).
         least_jerk, most_jerk: bounds of the jerk.
     """
 
@@ -38,7 +38,7 @@ class RateLimits(SharedByCopies):
         deceleration = _read_bound(block, "max_deceleration", None, 0.0)
         reverse = _read_bound(block, "max_acceleration_reverse", None, 0.0)
         back = _read_bound(block, "max_deceleration_reverse", 0.0, None)
-        if up == _INFINITY:  # without it the other acceleration limits have no effect either
+        if up == _INFINITY:  # without `max_acceleration`, the other acceleration limits have no effect
             down, deceleration, reverse, back = -_INFINITY, None, None, None
         self.acceleration = up
         self.reverse_acceleration = down if reverse is None else reverse
@@ -46,11 +46,11 @@ class RateLimits(SharedByCopies):
         self.reverse_deceleration = up if back is None else back
 
     def limit(self, target: float, last: float, before_last: float, period: float) -> float:
-        """Limit a speed in jerk, then in acceleration, then in magnitude, and return it.
+        """Return a target speed after limiting its jerk, then its acceleration, then the speed itself.
 
-        Jerk is limited only while the change of speed grows. It may end at once: otherwise a speed would oscillate
-        about its target for ever. This is the rule of control_toolbox's RateLimiter since 2024. The older rule allowed
-        jerks of twice the bound, and it oscillated.
+        Jerk is limited only while the acceleration grows in magnitude. Acceleration may end at once, because otherwise
+        the speed would oscillate about its target for ever. This is the rule of control_toolbox's RateLimiter since
+        2024. The older rule allowed jerks of twice the bound and caused oscillations.
 
         Args:
             target: requested speed.
@@ -74,7 +74,7 @@ class RateLimits(SharedByCopies):
 
 
 def _read_bounds(block: Params, what: str) -> tuple[float, float]:
-    """Read the bounds `min_<what>` and `max_<what>`; infinite without limits."""
+    """Read the bounds `min_<what>` and `max_<what>`; both are infinite if the limits do not apply."""
     has_switch = block.has(f"has_{what}_limits")
     is_enabled = block.boolean(f"has_{what}_limits", False)
     least, most = _read_bound(block, f"min_{what}", None, 0.0), _read_bound(block, f"max_{what}", 0.0, None)
@@ -82,7 +82,7 @@ def _read_bounds(block: Params, what: str) -> tuple[float, float]:
         return -_INFINITY, _INFINITY
     if most is None:
         if is_enabled or least is not None:
-            # a lower bound alone would limit nothing, without any sign of it
+            # a lower bound alone has no effect, so it is reported instead of ignored
             _report_missing_maximum(block, what)
         return -_INFINITY, _INFINITY
     return -most if least is None else least, most
@@ -115,13 +115,13 @@ class DriveOptions(SharedByCopies):
     Args:
         params: parameters of the controller.
         namespace: namespace of the controller's node.
-        measured: function that returns the separation and the radius of the model's wheels for the joints of a left and
-            a right wheel [m], None where the model does not show them; ROS 1's controller uses them where the file has
-            no value.
+        measured: function that measures the wheel separation and radius in the model [m], for the joints of a left and
+            a right wheel; None for a size that the model does not define. ROS 1's controller uses these sizes if the
+            file has none.
 
     Attributes:
         left, right: joints of the wheels.
-        separation, radius: distance and radius of the wheels from the file, without multipliers [m].
+        separation, radius: distance between the wheels and radius of the wheels, without multipliers [m].
         linear, angular: limits of the linear and the angular velocity.
         timeout_ns: time after which a command expires [ns].
         open_loop: true for odometry from the commands.
@@ -141,7 +141,7 @@ class DriveOptions(SharedByCopies):
     ) -> None:
         self.is_ros_1 = any(params.has(name) for name in _ROS_1_NAMES)
         self.left, self.right = _wheels(params, self.is_ros_1)
-        params.child("allow_multiple_cmd_vel_publishers")  # several publishers are always allowed, as with true
+        params.child("allow_multiple_cmd_vel_publishers")  # ignored: always as if true
         self.separation, self.radius = _wheel_size(params, self, measured)
         self.stamped = params.boolean("use_stamped_vel", not self.is_ros_1)
         odom, base = params.text("odom_frame_id", "odom"), params.text("base_frame_id", "base_link")
@@ -185,7 +185,7 @@ def _wheels(params: Params, is_ros_1: bool) -> tuple[tuple[str, ...], tuple[str,
 def _wheel_size(
     params: Params, options: DriveOptions, measure: Callable[[str, str], tuple[float | None, float | None]]
 ) -> tuple[float, float]:
-    """Return separation and radius of the wheels [m]."""
+    """Return separation and radius of the wheels [m], from the file or measured in the model."""
     keys = ("wheel_separation", "wheel_radius")
     missing = [key for key in keys if not params.has(key)]
     measured: tuple[float | None, float | None] = (None, None)
@@ -199,11 +199,11 @@ def _wheel_size(
         params.number(k, v, required=v is None, minimum=_SMALLEST_SIZE) for k, v in zip(keys, measured, strict=True)
     )
     separation, radius = found
-    return separation or 1.0, radius or 1.0  # the fallback follows a reported error
+    return separation or 1.0, radius or 1.0  # a missing size has already been reported as an error
 
 
 def _frame_prefix(params: Params, namespace: str) -> str:
-    """Return the prefix of the frames: `tf_frame_prefix`, else the namespace; never with a slash in front."""
+    """Return the prefix of the frame names without a leading slash: `tf_frame_prefix`, else the namespace."""
     enabled, prefix = params.boolean("tf_frame_prefix_enable", True), params.text("tf_frame_prefix", "")
     if not enabled:
         return ""

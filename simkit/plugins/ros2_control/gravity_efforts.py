@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 class GravityEfforts(SharedByCopies):
-    """Efforts that keep some one-axis joints from accelerating, with all joints of the robot in their current motion.
+    """Efforts that balance gravity and the forces of the current motion on some one-axis joints.
 
-    They balance gravity on everything that the joint carries through joints of its own model, and the Coriolis and
-    centrifugal forces of the motion. Contacts are not included, so the weight of an object in a gripper is not either.
+    Gravity acts on all links of the model that a joint carries. The forces of the motion are Coriolis and centrifugal
+    forces. Contact forces are not included, so the weight of an object in a gripper is not balanced.
 
     Args:
         sim: simulation that the joints belong to.
@@ -40,7 +40,7 @@ class GravityEfforts(SharedByCopies):
         if physics.fresh_velocities():
             bias: Vector = data.qfrc_bias[self._dofs]
             return bias
-        # only the needed part of a forward pass: a tenth of its time, with bit-identical results
+        # this part of a forward pass takes a tenth of the time, and its results are bit-identical
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_comVel(model, data)

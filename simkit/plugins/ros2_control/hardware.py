@@ -46,8 +46,8 @@ class Hardware(SharedByCopies):
         actuated: joints with command interfaces, and their actuators.
         sensors: sensors by name.
         actuators: transmission of each actuator, by the actuator's name; actuators have state interfaces too.
-        owners: controller that has claimed a command interface, by the interface's name.
-        springs: kp and kd by joint for controllers whose joints behave like springs, by controller.
+        owners: name of the claiming controller, by the name of the command interface.
+        springs: kp and kd by joint, by the name of a controller that simulates springs at its joints.
         holds_position: true if an unclaimed joint holds its position, whatever interfaces it has.
     """
 
@@ -63,9 +63,8 @@ class Hardware(SharedByCopies):
     holds_position: bool = True
     _sim: Simulation = field(init=False, repr=False)
     _sources: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
-    _unclaimed: Indices = field(
-        default_factory=lambda: np.zeros(0, np.intp)
-    )  # indices of `_sources` without a claimed interface
+    # indices of joints without a claimed interface
+    _unclaimed: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
     _read_interfaces: frozenset[str] = frozenset()  # state interfaces of the active controllers
     _model: mujoco.MjModel | None = None
     _plan: list[Reading | tuple[int, Callable[[], float]]] = field(default_factory=list)  # read at every update
@@ -115,7 +114,7 @@ class Hardware(SharedByCopies):
         self._sources = np.full(len(driven), -1, np.intp)
 
     def _couple_mimics(self, builder: SpecBuilder) -> None:
-        """Couple joints whose mimic relation is declared only in the hardware description."""
+        """Couple mimic joints in the engine if their mimic relation is only in the hardware description."""
         for joint in self.joints.values():
             leader = self.joints.get(joint.leader)
             binding = builder.names.joint(joint.scoped)
@@ -144,14 +143,14 @@ class Hardware(SharedByCopies):
         self._switch_modes()
 
     def release(self, owner: str) -> None:
-        """Release what a controller claimed: joints with a position interface hold, others are not driven."""
+        """Release the interfaces of a controller; its joints then hold their position or move freely."""
         self.owners = {name: other for name, other in self.owners.items() if other != owner}
         self._switch_modes()
 
     def _switch_modes(self) -> None:
         claimed: dict[str, str] = {}
         for owner, _, interface in (name.rpartition("/") for name in self.owners):
-            if claimed.get(owner) != POSITION:  # position wins over a velocity interface beside it
+            if claimed.get(owner) != POSITION:  # a joint with both is driven by position
                 claimed[owner] = interface
         modes = []
         springy = {name.rpartition("/")[0] for name, owner in self.owners.items() if owner in self.springs}
@@ -167,22 +166,22 @@ class Hardware(SharedByCopies):
         self.actuated.switch(np.array(modes, np.intp))
 
     def _group_joints(self) -> None:
-        """Pass the claims to the actuators: the wheels of one controller wait for one another."""
+        """Number the joints by their controller, because the wheels of one controller wait for one another."""
         by_joint = {name.rpartition("/")[0]: owner for name, owner in self.owners.items()}
         numbers = {owner: k for k, owner in enumerate(dict.fromkeys(by_joint.values()), 1)}
         claimed = [numbers.get(by_joint.get(joint.name, ""), 0) for joint in self.actuated.joints]
         self.actuated.groups = np.array(claimed, np.intp)
 
-    def _idle_mode(self, joint: HardwareJoint, of_leader: str) -> int:
-        """Return the mode of an unclaimed joint; `of_leader` is the claimed interface of its leader."""
-        if of_leader:
-            return _MODES[of_leader] if of_leader in joint.command_interfaces else FREE
+    def _idle_mode(self, joint: HardwareJoint, leader_interface: str) -> int:
+        """Return the mode of an unclaimed joint; a mimic joint has the mode of its leader's claimed interface."""
+        if leader_interface:
+            return _MODES[leader_interface] if leader_interface in joint.command_interfaces else FREE
         return POSITION_MODE if self.holds_position or POSITION in joint.command_interfaces else FREE
 
     # ------------------------------------------------------------------ run time
 
     def set_read_interfaces(self, names: Iterable[str]) -> None:
-        """Set the state interfaces to read from now on; the others are not updated."""
+        """Set the state interfaces to update from now on; all other interfaces keep their values."""
         self._read_interfaces = frozenset(names)
         self._model = None
 
@@ -198,7 +197,7 @@ class Hardware(SharedByCopies):
             states.deferred = self._deferred.copy()
 
     def _bind(self) -> None:
-        """Plan the readings for the current engine model; every model has its own addresses."""
+        """Prepare the readings for the current engine model, because each model has different addresses."""
         self._model, self._plan, self._deferred = self._sim.mj_model, [], []
         by_kind: dict[str, list[tuple[int, str]]] = {}
         for name in (n for n in self.states.names if n in self._read_interfaces):
@@ -211,15 +210,15 @@ class Hardware(SharedByCopies):
             elif owner in self.sensors:
                 by_kind.setdefault(f"sensor {owner}", []).append((self.states.index(name), interface))
         for kind, found in by_kind.items():
-            rows, places = np.array([row for row, _ in found], np.intp), tuple(place for _, place in found)
+            rows, names = np.array([row for row, _ in found], np.intp), tuple(name for _, name in found)
             if kind.startswith("sensor "):
                 sensor = self.sensors[kind.removeprefix("sensor ")]
-                self._deferred.append((rows, partial(sensor.read, self._sim, places)))
+                self._deferred.append((rows, partial(sensor.read, self._sim, names)))
             elif kind in _MODES:
-                # efforts have to be computed, so they are read only on access
+                # computing efforts takes time, so they are computed only on access
                 plan = self._deferred if kind == EFFORT else self._plan
-                plan.append((rows, self.reading(kind, places)))
-        self.states.deferred_places = frozenset(row for rows, _ in self._deferred for row in rows.tolist())
+                plan.append((rows, self.reading(kind, names)))
+        self.states.deferred_indices = frozenset(row for rows, _ in self._deferred for row in rows.tolist())
 
     def reading(self, interface: str, joints: Sequence[str]) -> Callable[[], Vector]:
         """Return a function that reads positions, velocities or efforts of joints from the current engine model."""
@@ -232,11 +231,11 @@ class Hardware(SharedByCopies):
             dofs = np.array([binding.dofs[0] for binding in bindings], np.intp)
             return lambda: physics.data.qvel[dofs]
         driven = {joint.name: k for k, joint in enumerate(self.actuated.joints)}
-        places = np.array([driven.get(joint, -1) for joint in joints], np.intp)
-        if (places >= 0).all():
-            return lambda: self.actuated.efforts()[places]
+        indices = np.array([driven.get(joint, -1) for joint in joints], np.intp)
+        if (indices >= 0).all():
+            return lambda: self.actuated.efforts()[indices]
         return lambda: np.append(self.actuated.efforts(), 0.0)[
-            places
+            indices
         ]  # the index -1 of a joint without actuator selects the appended 0
 
     def write(self, period: float) -> None:
@@ -280,7 +279,7 @@ def _hardware_joint(described: JointDescription, joint: SceneJoint) -> HardwareJ
         tuple(dict.fromkeys(described.commands)),
         lower=axis.lower,
         upper=axis.upper,
-        max_velocity=axis.velocity,  # <param name="max"> of an interface bounds nothing in Gazebo
+        max_velocity=axis.velocity,  # Gazebo ignores <param name="max"> of an interface
         max_effort=axis.effort,
         scoped=joint.scoped,
         is_continuous=joint.type in ("revolute", "continuous") and is_unlimited,

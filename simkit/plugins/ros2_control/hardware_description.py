@@ -25,7 +25,7 @@ _JOINT_PARAMS: Final = ("mimic", "multiplier", "offset", *(f"{s}_{g}" for s in (
 
 
 def report_unknown_elements(block: Params, found: Diagnostics) -> None:
-    """Report elements that no hardware has, and names in a joint that are nearly known ones."""
+    """Report unknown elements of `<ros2_control>`, and elements and parameters of joints that look misspelt."""
     owner = f"<ros2_control> {block.attribute('name')!r}"
     for child in block.children:
         if child.name not in _ELEMENTS and ":" not in child.name:
@@ -38,7 +38,7 @@ def report_unknown_elements(block: Params, found: Diagnostics) -> None:
                 _report_unused(f"{what}: <{child.name}>", child, near, found)
             name = child.attribute("name") if child.name == "param" else ""
             near = did_you_mean(name, _JOINT_PARAMS) if name else ""
-            if name not in _JOINT_PARAMS and near:  # drivers of real hardware have parameters of their own
+            if name not in _JOINT_PARAMS and near:  # other unknown names may be parameters of a hardware driver
                 _report_unused(f"{what}: <param name={name!r}>", child, near, found)
 
 
@@ -62,7 +62,7 @@ def parse_number(
 
 
 def parse_initial_position(text: str, joint: SceneJoint, element: Params, found: Diagnostics) -> float:
-    """Parse an initial position [rad or m] and clamp it to the joint's limits; NaN without one."""
+    """Parse an initial position [rad or m] and clamp it to the joint's limits; return NaN for an empty text."""
     value = parse_number(text, math.nan, element, found) if text else math.nan
     axis = joint.axes[0]
     if axis.lower <= value <= axis.upper or math.isnan(value):
@@ -76,7 +76,7 @@ def parse_initial_position(text: str, joint: SceneJoint, element: Params, found:
 
 
 def mimic_circle(name: str, leaders: Mapping[str, str]) -> Sequence[str]:
-    """Return the joints of the circle that a joint closes by mimicking its leader; empty without a circle."""
+    """Return the joints of a circle of mimic relations that contains a joint; empty if there is no circle."""
     circle, leader = [name], leaders[name]
     while leader and leader != name and leader not in circle:
         circle.append(leader)
@@ -96,8 +96,8 @@ class JointDescription:
     Attributes:
         name: plain name.
         commands, states: names of its interfaces, in the order of the file.
-        where: place in the file.
-        pids: PID gains of its own by interface (position, velocity).
+        where: location in the file.
+        pids: PID gains in the description, by interface (position, velocity).
         leader, multiplier, offset: mimic relation declared in the hardware description; no leader if empty.
         initial: initial position [rad or m]; NaN if the file has none.
     """
@@ -124,7 +124,7 @@ class SensorDescription:
 
 @dataclass(frozen=True, slots=True)
 class ComponentDescription:
-    """Component of the hardware: one `<ros2_control>` block, or the equivalent of one.
+    """Component of the hardware: one `<ros2_control>` block, or all `<transmission>` blocks together.
 
     Attributes:
         name: name of the component.
@@ -258,14 +258,14 @@ def _param_texts(element: Params) -> dict[str, str]:
 
 
 def _initial_position(interfaces: Iterable[Params], joint: SceneJoint, found: Diagnostics) -> float:
-    """Return the initial position of the interfaces, NaN without one; validate their bounds, which have no effect."""
+    """Return the initial position of the interfaces, or NaN if there is none; also validate their unused bounds."""
     initial = []
     for one in interfaces:
         texts = _param_texts(one)
         for bound in (texts.get("min", ""), texts.get("max", "")):
             if bound.strip().lower() not in ("", "inf", "-inf"):
                 parse_number(bound, 0.0, one, found)
-        if one.name == "state_interface" and one.attribute("name") == POSITION:  # Gazebo reads it only there
+        if one.name == "state_interface" and one.attribute("name") == POSITION:  # Gazebo ignores others
             first = texts.get("initial_value", one.attribute("initial_value"))
             initial.append(parse_initial_position(first, joint, one, found))
     return initial[0] if initial else math.nan
@@ -290,7 +290,7 @@ def _sensor(element: Params) -> SensorDescription:
 
 
 def _remove_repeated_joints(components: list[ComponentDescription], found: Diagnostics) -> list[ComponentDescription]:
-    """Remove a joint from all blocks after the first one that names it."""
+    """Remove joints that an earlier block has already named."""
     seen: set[str] = set()
     kept = []
     for component in components:
@@ -355,7 +355,7 @@ def _interfaces_of_ros_1(written: Sequence[str], owner: str, where: Where, found
         plain = interface.rpartition("/")[2]
         if plain in _ROS_1:
             names.append(_ROS_1[plain])
-        elif plain != "JointStateInterface":  # it only reads, and every joint has state interfaces
+        elif plain != "JointStateInterface":  # this interface only reads states, and every joint has state interfaces
             message = f"transmission {owner!r}: hardware interface {interface!r} is not supported "
             message += f"(supported: {', '.join(_ROS_1)})"
             found.warning("SK-CONTROL-009", f"{message}; it is ignored", where, did_you_mean(plain, _ROS_1))

@@ -1,4 +1,4 @@
-"""Command and state interfaces of the hardware: named numbers that controllers read and write in groups."""
+"""Command and state interfaces of the hardware: named values that controllers read and write."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ VELOCITY: Final = "velocity"
 EFFORT: Final = "effort"
 
 
-def array_index(places: Sequence[int]) -> slice | Indices:
-    """Convert indices to an array index: a slice if they are consecutive, which is the fastest kind."""
-    first, count = (places[0], len(places)) if len(places) else (0, 0)
-    if count and list(places) == list(range(first, first + count)):
+def array_index(indices: Sequence[int]) -> slice | Indices:
+    """Convert indices to an array index: a slice, which is faster, if the indices are consecutive."""
+    first, count = (indices[0], len(indices)) if len(indices) else (0, 0)
+    if count and list(indices) == list(range(first, first + count)):
         return slice(first, first + count)
-    return np.array(places, dtype=np.intp)
+    return np.array(indices, dtype=np.intp)
 
 
 Reading = tuple[Indices, Callable[[], Vector]]
-"""Indices of a table, and the function that reads their values."""
+"""Indices of an `InterfaceTable`, and the function that reads the values for these indices."""
 
 
 class InterfaceTable:
-    """All interfaces of one direction, in one array.
+    """All command interfaces or all state interfaces, with their values in one array.
 
     Attributes:
         names: `<joint or sensor>/<interface>`, such as `arm_1_joint/position`, in the order of the description.
-        values: values of the interfaces [rad, m, rad/s, m/s, N·m, N]; NaN without a value (yet).
-        deferred: pending readings, such as those of a sensor, that are done at the first access.
-        deferred_places: all indices of `values` whose readings can be pending.
+        values: values of the interfaces [rad, m, rad/s, m/s, N·m, N]; NaN before the first value.
+        deferred: readings that are postponed until the first access, such as sensor measurements.
+        deferred_indices: all indices of `values` that can have a postponed reading.
     """
 
     def __init__(self, names: Iterable[str] = ()) -> None:
@@ -48,23 +48,23 @@ class InterfaceTable:
         self._index = {name: k for k, name in enumerate(self.names)}
         self.values: Vector = np.full(len(self.names), np.nan)
         self.deferred: list[Reading] = []
-        self.deferred_places: frozenset[int] = frozenset()
+        self.deferred_indices: frozenset[int] = frozenset()
 
     def read_deferred(self, requested: frozenset[int]) -> None:
-        """Do the pending readings of the requested indices."""
+        """Perform the postponed readings of the requested indices."""
         now: list[Reading] = []
         later: list[Reading] = []
         for entry in self.deferred:
             (later if requested.isdisjoint(entry[0].tolist()) else now).append(entry)
         self.deferred[:] = later
-        for places, read in now:
-            self.values[places] = read()
+        for indices, read in now:
+            self.values[indices] = read()
 
     def index(self, name: str) -> int:
         """Return the index of a name in `values`.
 
         Raises:
-            InputError: the name is not known; the message has the closest one.
+            InputError: the name is not known; the message suggests the closest name.
         """
         found = self._index.get(name)
         if found is None:
@@ -73,7 +73,7 @@ class InterfaceTable:
         return found
 
     def select(self, names: Sequence[str]) -> InterfaceSelection:
-        """Select some interfaces, in the given order.
+        """Return the interfaces with these names, in the order of the names.
 
         Raises:
             InputError: a name is not known.
@@ -82,14 +82,14 @@ class InterfaceTable:
 
 
 class InterfaceSelection(SharedByCopies):
-    """Some interfaces of a table, in the order of a controller."""
+    """Interfaces of a table that one controller uses, in the controller's order."""
 
     def __init__(self, table: InterfaceTable, names: Sequence[str]) -> None:
         self._table = table
         self.names = tuple(names)
-        places = [table.index(name) for name in names]
-        self._places = frozenset(places)
-        self._array_index = array_index(places)
+        indices = [table.index(name) for name in names]
+        self._indices = frozenset(indices)
+        self._array_index = array_index(indices)
         self._is_view = isinstance(self._array_index, slice)
 
     def __len__(self) -> int:
@@ -99,8 +99,8 @@ class InterfaceSelection(SharedByCopies):
     def values(self) -> Vector:
         """Copy of the values."""
         table = self._table
-        if table.deferred and not table.deferred_places.isdisjoint(self._places):
-            table.read_deferred(self._places)
+        if table.deferred and not table.deferred_indices.isdisjoint(self._indices):
+            table.read_deferred(self._indices)
         found: Vector = table.values[self._array_index]
         return found.copy() if self._is_view else found
 

@@ -1,4 +1,4 @@
-"""Joint of the control hardware: its interfaces, its limits, and the gains of its own PID loops."""
+"""Joint of the control hardware: interfaces, limits, and gains of PID loops that replace a servo."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class HardwareJoint:
         max_effort: effort limit [N·m or N]; infinite without one.
         scoped: scoped name.
         is_continuous: true for a rotation without limits, whose angle errors are wrapped.
-        initial: initial position [rad or m]; NaN for that of the model.
+        initial: initial position [rad or m]; NaN to keep the model's initial position.
         leader: joint that it mimics; empty for none.
         multiplier, offset: mimic relation: position = multiplier · position of the leader + offset.
     """
@@ -58,12 +58,12 @@ class HardwareJoint:
 
 @dataclass(frozen=True, slots=True)
 class PidGains:
-    """Gains of a joint's own PID loop.
+    """Gains of a PID loop that replaces a joint's servo; the output is an effort [N·m or N].
 
     Attributes:
         p: effort per error.
         i: effort per error and second.
-        d: effort per rate of the error.
+        d: effort per error rate.
         i_max, i_min: bounds of the integral part of the effort.
         u_max, u_min: bounds of the complete effort.
     """

@@ -1,4 +1,4 @@
-"""Sensors of the control hardware: measurements of the simulation's sensors as state interfaces."""
+"""Sensors of the control hardware: state interfaces with the measurements of simulated sensors."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _IMU: Final = {
 _WRENCH: Final = {f"{part}.{axis}": f"wrench.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"}
 _RANGE: Final = {"range": "range"}
 SENSOR_INTERFACES: Final = {"imu": _IMU, "force_torque": _WRENCH, "sonar": _RANGE}
-"""Field of the message for each state interface, by kind of sensor."""
+"""Message field of each state interface, by kind of sensor."""
 
 
 @dataclass(frozen=True, slots=True)
 class HardwareSensor:
-    """Sensor as controllers see it.
+    """Simulated sensor whose measurements are state interfaces.
 
     Attributes:
         name: name in the hardware description.
@@ -43,7 +43,7 @@ class HardwareSensor:
     kind: str
 
     def read(self, sim: Simulation, interfaces: tuple[str, ...]) -> Vector:
-        """Return the last measurement by state interface; NaN before the first sample and for other interfaces."""
+        """Return the last measurement for each interface; NaN before the first sample and for unknown interfaces."""
         message = sim.sensor(self.scoped).latest
         fields = SENSOR_INTERFACES[self.kind]
         if message is None:
@@ -55,14 +55,14 @@ class HardwareSensor:
 
 @cache
 def _field_getter(kind: str, interfaces: tuple[str, ...]) -> attrgetter[Any]:
-    """Return the getter of some interfaces from a message of a kind of sensor."""
+    """Return a function that reads the fields of some interfaces from a message of this kind of sensor."""
     return attrgetter(*(SENSOR_INTERFACES[kind][interface] for interface in interfaces))
 
 
 def find_sensor(described: SensorDescription, scene: SceneModel, found: Diagnostics) -> HardwareSensor | None:
     """Find the sensor of the simulation for a `<sensor>` of `<ros2_control>`; return None after a warning.
 
-    The sensor has the same name, or it is the model's only sensor that measures these quantities.
+    A sensor with the same name is used, else the model's only sensor that measures the same quantities.
     """
     kind = next((k for k, fields in SENSOR_INTERFACES.items() if any(i in fields for i in described.interfaces)), "")
     if not kind:

@@ -1,4 +1,4 @@
-"""Pointing of a head: joint angles that aim at a point, and the point behind a pixel of its camera."""
+"""Head pointing: compute joint angles that point a head at a target, and the 3D point that a camera pixel shows."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.scene import SceneModel
 
-_GRID: Final = 25  # grid directions for each joint before the best one is refined
+_GRID: Final = 25  # angles that are tried for each joint, before the best pair is refined
 _STEPS: Final = 60
 _WORLD: Final = ("world", "map")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadJoints:
-    """Two joints in series and the frame that they turn, all in the world frame and in their current state.
+    """Current state of two joints in series and of the frame that they turn; poses are in the world frame.
 
     Attributes:
-        anchors: a point on each joint's axis, shape (2, 3) [m]; the joint nearer the base, which turns both, first.
+        anchors: a point on each joint's axis, shape (2, 3) [m]; the joint nearer the base is first.
         axes: axes of the joints, unit vectors, shape (2, 3).
         angles: current angles of the joints [rad].
         lower, upper: limits [rad].
-        frame: pose of the frame that is to point.
-        axis: direction in that frame that is to point, a unit vector.
+        frame: pose of the pointing frame.
+        axis: pointing direction in the pointing frame, a unit vector.
     """
 
     anchors: Vector
@@ -45,16 +45,16 @@ class HeadJoints:
     axis: Vector
 
     def error(self, angles: Vector, target: Vector) -> float:
-        """Return the angle [rad] between the pointing direction and a target [m], with the joints at other angles."""
+        """Return the angle [rad] between the pointing direction at these joint angles and the direction to a target."""
         return float(self._errors(angles[None], target)[0])
 
     def aim(self, target: Vector) -> tuple[Vector, float]:
-        """Find the angles within the limits that point best at a target.
+        """Find the joint angles within the limits that point best at a target [m].
 
-        The best direction of a grid is refined by the damped Gauss-Newton method.
+        The best angles of a grid are refined by the damped Gauss-Newton method.
 
         Returns:
-            Angles, shape (2,) [rad], and the remaining angle to the target [rad].
+            Joint angles, shape (2,) [rad], and the remaining angle between pointing direction and target [rad].
         """
         low, high = np.maximum(self.lower, self.angles - np.pi), np.minimum(self.upper, self.angles + np.pi)
         grid = np.stack(np.meshgrid(*(np.linspace(a, b, _GRID) for a, b in zip(low, high, strict=True))), -1)
@@ -63,9 +63,9 @@ class HeadJoints:
         angles = candidates[int(np.argmin(errors))]
         error, damping = float(errors.min()), 1e-6
         for _ in range(_STEPS):
-            miss = self._squared_errors(angles[None], target)[0]
+            miss = self._direction_differences(angles[None], target)[0]
             step = 1e-6
-            nudged = self._squared_errors(angles + step * np.eye(2), target)
+            nudged = self._direction_differences(angles + step * np.eye(2), target)
             slope = ((nudged - miss) / step).T
             move = np.linalg.solve(slope.T @ slope + damping * np.eye(2), -slope.T @ miss)
             new = np.clip(angles + move, low, high)
@@ -79,12 +79,12 @@ class HeadJoints:
         return angles, error
 
     def _errors(self, angles: Vector, target: Vector) -> Vector:
-        misses = self._squared_errors(angles, target)
-        errors: Vector = 2.0 * np.arcsin(np.clip(np.linalg.norm(misses, axis=1) / 2.0, 0.0, 1.0))
+        differences = self._direction_differences(angles, target)
+        errors: Vector = 2.0 * np.arcsin(np.clip(np.linalg.norm(differences, axis=1) / 2.0, 0.0, 1.0))
         return errors
 
-    def _squared_errors(self, angles: Vector, target: Vector) -> Vector:
-        """Return the direction to the target minus the pointing direction, shape (k, 3), for angles (k, 2)."""
+    def _direction_differences(self, angles: Vector, target: Vector) -> Vector:
+        """Return direction to the target minus pointing direction (unit vectors), shape (k, 3), for angles (k, 2)."""
         turns = angles - self.angles
         points = np.repeat(self.frame.position[None], len(turns), 0)
         rays = np.repeat(self.frame.rotate(self.axis)[None], len(turns), 0)
@@ -95,8 +95,8 @@ class HeadJoints:
             rays = _rotate_vectors(rays, self.axes[joint], turns[:, joint])
         offsets = target - points
         lengths = np.linalg.norm(offsets, axis=1, keepdims=True)
-        misses: Vector = offsets / np.maximum(lengths, 1e-12) - rays
-        return misses
+        differences: Vector = offsets / np.maximum(lengths, 1e-12) - rays
+        return differences
 
 
 def _rotate_vectors(vectors: Vector, axis: Vector, angles: Vector) -> Vector:
@@ -128,7 +128,7 @@ def frame_pose(sim: Simulation, model: str, name: str, extra_frames: Mapping[str
 
 
 def frame_link(sim: Simulation, model: str, name: str, extra_names: Sequence[str] = ()) -> tuple[str, Pose]:
-    """Find the link that a frame is fixed to, by its scoped name, and the pose of the frame in that link.
+    """Return the scoped name of the link that a frame is fixed to, and the pose of the frame in that link.
 
     Args:
         sim: simulation to search in.
@@ -156,7 +156,7 @@ def frame_link(sim: Simulation, model: str, name: str, extra_names: Sequence[str
 
 
 def is_moved_by_joint(sim: Simulation, link: str, joint: str) -> bool:
-    """Check whether a link is the child of a joint, or is fixed to it or carried by it; both by scoped name."""
+    """Check whether a joint moves a link, directly or through other joints; both names are scoped."""
     parents, body = sim.mj_model.body_parentid, int(sim.engine.names.link(link).body)
     turning = int(sim.mj_model.jnt_bodyid[sim.mj_model.dof_jntid[sim.engine.names.joint(joint).dofs[0]]])
     while body > 0 and body != turning:
@@ -181,8 +181,8 @@ def pixel_ray(camera_info: CameraInfo, u: float, v: float) -> Vector:
 
     Args:
         camera_info: `sensor_msgs/msg/CameraInfo` with K, and distortion of the `plumb_bob` model.
-        u: column; pixel centres are integers.
-        v: row.
+        u: column, 0 at the centre of the first pixel.
+        v: row, 0 at the centre of the first pixel.
 
     Raises:
         InputError: K is not the matrix of a camera.
@@ -219,7 +219,7 @@ def pixel_goal(
     Args:
         camera_info: message of the camera; its `header.frame_id` is the camera's optical frame.
         pixel: column and row.
-        distance: distance along the optical axis [m]; it matters little as long as the camera is near the neck.
+        distance: distance of the target along the optical axis [m]; its effect is small if the camera is near the neck.
         min_duration: shortest duration of the head's motion [s].
         max_velocity: velocity limit of the head's joints [rad/s].
 

@@ -1,17 +1,18 @@
-"""Actuators of the hardware's joints: one actuator of the engine for each joint, which acts as a servo or as a motor.
+"""Actuators of the hardware's joints: each joint has one MuJoCo actuator, which acts as a servo or as a motor.
 
-The force of an actuator is its state − kp · position − kv · velocity, within the effort limit. In a servo the state is
-kp · reference + kv · velocity of the reference + the effort that holds the joint against gravity and dry friction. The
-engine moves the reference on by itself. In a motor the state is the effort. The engine thus covers everything between
-two updates of the controllers, and a hundred commands per second do not cause steps in the motion. A position is
-commanded for the end of the coming period, and the reference moves there from the last one. The reference of a velocity
-servo is the integral of the commanded velocities, at most one full effort away from the joint. A velocity servo
-therefore loses no distance under load, and it holds its position when it stops.
+The force of an actuator is its state − kp · position − kv · velocity, within the effort limit. For a servo, the state
+is kp · reference + kv · velocity of the reference + the effort that balances gravity. For a motor, the state is the
+commanded effort. MuJoCo moves the reference at every step, also between two updates of the controllers, so that a
+hundred commands per second do not cause steps in the motion. A position command is the target for the end of the next
+period, and the reference moves from the last command to the new one. The reference of a velocity servo is the integral
+of the commanded velocities. The distance between this reference and the joint is limited to the distance at which the
+servo gives its full effort. A velocity servo therefore loses no distance under load, and it holds its position when it
+stops.
 
 Joint damping and dry friction in a file represent losses inside the drive (40 N·m·s/rad on an arm whose motors give 43
-N·m at up to 1.95 rad/s). A servo makes up for these losses, and its effort is the effort at the link. The joint
-therefore has neither loss while a servo drives it. It has both under an effort command, under a PID loop from the file,
-and when it is not driven.
+N·m at up to 1.95 rad/s). A servo compensates these losses, so its effort is the effort at the link. While a servo
+drives a joint, the joint therefore has no damping and no dry friction. The joint has both losses under an effort
+command, under a PID loop from the file, and when it is not driven.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ class JointActuators(SharedByCopies):
         actuators: actuators of the joints, in the same order.
         pids: PID gains that replace a servo, by joint and interface.
         modes: current mode of each joint.
-        targets: references of the servos [rad or m]; positions to hold without a command.
+        targets: references of the servos [rad or m]; these positions are held if there is no command.
         integrals: integral parts of the PID loops [N·m or N].
         groups: number of the controller that has claimed each joint; 0 for an unclaimed joint.
     """
@@ -101,7 +102,7 @@ class JointActuators(SharedByCopies):
         self.switch(np.array(idle, np.intp))
 
     def _bind(self) -> None:
-        """Look up addresses in the engine's model, which is a new one after every change of structure."""
+        """Look up the addresses of joints and actuators in MuJoCo's model, which is replaced when entities change."""
         sim = self._sim
         is_first, self._model = self._model is None, sim.mj_model
         model = self._model
@@ -131,20 +132,20 @@ class JointActuators(SharedByCopies):
     # ------------------------------------------------------------------ run time
 
     def set_springs(self, springs: Mapping[str, tuple[float, float]]) -> None:
-        """Set stiffness and damping of joints in `SPRING_MODE`, where kp and kd act against the commanded effort.
+        """Set stiffness and damping of joints in `SPRING_MODE`: effort = command − kp · position − kd · velocity.
 
-        Springs inside the engine are stable at any update rate of the controllers. Gains that would oscillate at the
-        engine's time step are reduced to stable ones.
+        The engine computes the springs at every step, so they are stable at any update rate of the controllers. Gains
+        that would oscillate at the engine's time step are reduced to stable gains.
 
         Args:
             springs: kp [N·m/rad or N/m] and kd [N·m·s/rad or N·s/m] by joint.
         """
         for k, joint in enumerate(self.joints):
             if joint.name in springs:
-                self._loops.gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._loops.calm[k])
+                self._loops.gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._loops.stable_springs[k])
 
     def spring_gains(self, joints: Sequence[str]) -> tuple[Vector, Vector]:
-        """Return kp and kd of joints as `set_springs` has set them."""
+        """Return the current kp and kd of joints in `SPRING_MODE`, after a reduction to stable gains."""
         index = {joint.name: k for k, joint in enumerate(self.joints)}
         kp, kd = self._loops.gains[[index[name] for name in joints], SPRING_MODE].T
         return kp.copy(), kd.copy()
@@ -200,7 +201,8 @@ class JointActuators(SharedByCopies):
         """Set the states and the controls of the actuators.
 
         Args:
-            commands: one for each joint in its mode; NaN for none: a position is held, a velocity or effort is 0.
+            commands: command of each joint [rad, rad/s or N·m; m, m/s or N]. NaN means no command: a joint driven by
+                position holds its position, and other joints get velocity or effort 0.
             period: time since the last call [s].
         """
         if not self.joints:
@@ -208,7 +210,7 @@ class JointActuators(SharedByCopies):
         self._rebind_if_needed()
         now, physics = self._active_modes(), self._sim.engine.physics
         data = physics.data
-        if self._has_mimics:  # a mimic has no command of its own
+        if self._has_mimics:  # the command of a mimic joint is computed from its leader's command
             offset = np.where(now.is_position, self._mimic_law[1], 0.0)
             commands = np.where(self._is_leader, commands, self._mimic_law[0] * commands[self._leaders] + offset)
         if commands.dot(now.zeros) != 0.0:  # fast check: 0 times NaN or infinity is not 0
@@ -237,7 +239,7 @@ class JointActuators(SharedByCopies):
         if now.period != period:
             now.period, now.highest_move = period, self._max_velocities * period
             now.lowest_move = -now.highest_move
-        # a blocked or displaced joint must not whip back, so its reference stays where the servo gives its full effort
+        # a blocked joint must not jump when it is released, so its reference stays within `largest_lag` of the joint
         positions, reach = data.qpos[self._qpos], now.largest_lag
         targets = np.minimum(np.maximum(targets, positions - reach), positions + reach)
         move = np.minimum(np.maximum(commands, self._position_limits[0]), self._position_limits[1])

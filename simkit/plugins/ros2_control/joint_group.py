@@ -41,16 +41,17 @@ _BAD_INTERFACES: Final = "SK-CONTROL-024"
 
 
 class JointGroup(SharedByCopies):
-    """Joints whose positions, velocities and accelerations are arrays (3, n).
+    """Joints of a trajectory controller; positions, velocities and accelerations of all joints are one array (3, n).
 
     Attributes:
         joints: names of the joints, in the order of the arrays.
-        commanded_joints: names of the commanded joints, as their command interfaces have them.
-        commands, states: kinds of the command and of the state interfaces.
+        commanded_joints: names of the commanded joints in the command interfaces.
+        commands, states: kinds of command and state interfaces, such as position and velocity.
         command_names, state_names: names of all interfaces: the first kind of all joints, then the second kind.
-        has_velocity_state, has_effort: true if velocities are measured, or efforts commanded.
-        places: indices of the commanded joints in `joints`.
-        span: the same indices as the fastest array index.
+        has_velocity_state: true if velocities are measured.
+        has_effort: true if efforts are commanded.
+        commanded_indices: indices of the commanded joints in `joints`.
+        span: the same indices as a slice, which is faster, if they are consecutive.
         turning: mask of the joints that rotate without limits.
         is_closed_loop: true if PIDs compute the commands from measurements: velocity alone or effort alone.
         compared: shape (3, 1): 1 for quantities that are both commanded and measured, else 0.
@@ -59,19 +60,19 @@ class JointGroup(SharedByCopies):
     def __init__(
         self, params: Params, hardware: Hardware, commands: Sequence[str] = (), states: Sequence[str] = ()
     ) -> None:
-        """Read the parameters of a controller; problems are recorded there.
+        """Read the parameters of a controller; problems are recorded in `params`.
 
         Args:
             params: parameters `joints`, `command_joints`, `command_interfaces`, `state_interfaces`, `gains`.
             hardware: joints that the controller may use.
-            commands: command interfaces if the file names none.
-            states: state interfaces if the file names none.
+            commands: default of `command_interfaces`.
+            states: default of `state_interfaces`.
         """
         self.joints = tuple(read_names(params, "joints", code=_BAD_INTERFACES))
         if not self.joints:
             params.error(_BAD_INTERFACES, "'joints' parameter is empty.", "joints: [arm_1_joint, arm_2_joint]")
-        self.commanded_joints, self.places = _commanded_joints(params, self.joints)
-        self.span = array_index(self.places.tolist())
+        self.commanded_joints, self.commanded_indices = _commanded_joints(params, self.joints)
+        self.span = array_index(self.commanded_indices.tolist())
         self.commands = commanded = _read_interfaces(params, "command_interfaces", commands, _ALLOWED_COMMANDS)
         self.states = measured = _read_interfaces(params, "state_interfaces", states, _ALLOWED_STATES)
         self.command_names = tuple(f"{joint}/{kind}" for kind in commanded for joint in self.commanded_joints)
@@ -84,8 +85,8 @@ class JointGroup(SharedByCopies):
             params.error(_BAD_INTERFACES, f"{message} are present", "state_interfaces: [position, velocity]")
         found = [hardware.joints.get(name) for name in self.commanded_joints]
         self.turning: Vector = np.zeros(len(self.joints), dtype=bool)
-        self.turning[self.places] = [f is not None and f.is_continuous for f in found]
-        gains = params.block("gains")  # Humble has these parameters there
+        self.turning[self.commanded_indices] = [f is not None and f.is_continuous for f in found]
+        gains = params.block("gains")  # ROS 2 Humble has the parameters of continuous joints in this block
         for j, joint in enumerate(self.joints):
             block, wraps = gains.block(joint), bool(self.turning[j])
             wraps = block.boolean("normalize_error", wraps) if block.has("normalize_error") else wraps
@@ -95,9 +96,9 @@ class JointGroup(SharedByCopies):
         self.compared: Vector = np.array([[1.0], [float(velocities)], [float(accelerations)]])
 
     def command_of(self, joint: str) -> str:
-        """Return the joint name in the command interface of a joint; its own name without a command interface."""
-        place = self.joints.index(joint)
-        matches = np.flatnonzero(self.places == place)
+        """Return the name that a joint has in its command interface, or its own name if it is not commanded."""
+        index = self.joints.index(joint)
+        matches = np.flatnonzero(self.commanded_indices == index)
         return self.commanded_joints[int(matches[0])] if len(matches) else joint
 
     def state(self, values: Vector) -> Vector:
@@ -108,7 +109,7 @@ class JointGroup(SharedByCopies):
         return motion
 
     def commanded(self, values: Vector) -> Vector | None:
-        """Return the positions (n,) in the command interfaces; None unless every joint has a finite one."""
+        """Return the commanded positions (n,); None if the position of a joint is not commanded or not finite."""
         count = len(self.joints)
         if POSITION not in self.commands or len(self.commanded_joints) != count:
             return None
@@ -122,22 +123,22 @@ class JointGroup(SharedByCopies):
             setpoint: desired motion and efforts.
             errors: desired − measured, shape (3, n).
             period: time since the last call [s].
-            pids: PIDs of the commanded joints, in a closed loop.
+            pids: PIDs of the commanded joints; only for a closed loop.
         """
-        motion, places = setpoint.motion, self.places
+        motion, indices = setpoint.motion, self.commanded_indices
         if self.commands == (POSITION,):
-            only: Vector = motion[0][places]
+            only: Vector = motion[0][indices]
             return only
         efforts = np.zeros(len(self.joints)) if setpoint.efforts is None else setpoint.efforts
         if pids is not None:
-            feed = motion[1][places] * pids.feedforward + (efforts[places] if self.has_effort else 0.0)
-            driven: Vector = feed + pids.update(errors[0][places], errors[1][places], period)
+            feed = motion[1][indices] * pids.feedforward + (efforts[indices] if self.has_effort else 0.0)
+            driven: Vector = feed + pids.update(errors[0][indices], errors[1][indices], period)
             return driven
         rows = {POSITION: motion[0], VELOCITY: motion[1], ACCELERATION: motion[2], EFFORT: efforts}
-        return np.concatenate([rows[kind][places] for kind in self.commands])
+        return np.concatenate([rows[kind][indices] for kind in self.commands])
 
     def at_rest(self, values: Vector) -> Vector:
-        """Return the values of the command interfaces on release: unchanged positions, and 0 for the rest."""
+        """Return the last commands to write before the interfaces are released: unchanged positions, otherwise 0."""
         count = len(self.commanded_joints)
         rest = values.copy()
         for k, kind in enumerate(self.commands):
@@ -147,7 +148,7 @@ class JointGroup(SharedByCopies):
 
 
 def _commanded_joints(params: Params, joints: tuple[str, ...]) -> tuple[tuple[str, ...], Indices]:
-    """Return the commanded joints and their indices: all joints, by the same or other names, or a subset."""
+    """Return the names of the commanded joints and their indices; the names may differ if all joints are commanded."""
     commanded = tuple(read_names(params, "command_joints", code=_BAD_INTERFACES)) or joints
     if len(commanded) == len(joints):
         return commanded, np.arange(len(joints))
@@ -176,7 +177,7 @@ _FEEDBACK: Final = "control_msgs/action/FollowJointTrajectory_Feedback"
 
 
 class TrajectoryMessages(SharedByCopies):
-    """Factory of feedback and state messages for one group of joints."""
+    """Creates feedback and state messages for one group of joints."""
 
     STATE: Final = "control_msgs/msg/JointTrajectoryControllerState"
 
@@ -189,7 +190,7 @@ class TrajectoryMessages(SharedByCopies):
         self._state_type: type[JointTrajectoryControllerState] = msgs.type_of(self.STATE)
 
     def feedback(self, now: int, desired: Vector, state: Vector, errors: Vector) -> FollowJointTrajectory_Feedback:
-        """Make the feedback of a goal from arrays (3, n)."""
+        """Create the feedback of a goal from arrays (3, n)."""
         measured = len(self._group.states)
         points = self._point(desired, 3), self._point(state, measured), self._point(errors, measured)
         none = (self._empty_multi_dof_point() for _ in range(3))
@@ -198,7 +199,7 @@ class TrajectoryMessages(SharedByCopies):
     def state(
         self, now: int, desired: Vector, state: Vector, errors: Vector, commands: Vector
     ) -> JointTrajectoryControllerState:
-        """Make the controller's state from arrays (3, n) and the values of its command interfaces."""
+        """Create the controller's state message from arrays (3, n) and the values of the command interfaces."""
         measured = len(self._group.states)
         reference, actual = self._point(desired, 3), self._point(state, measured)
         points = reference, actual, self._point(errors, measured), self._command_point(commands), reference, actual

@@ -23,15 +23,16 @@ class JointPids:
         i_low, i_high: bounds of the integral part of the command.
         low, high: bounds of the command.
         feedforward: command per desired velocity.
-        tracking: time constant of back-calculation [s]; 0 for the one that control_toolbox recommends.
-        deadband: largest error that does not add to the integral.
-        strategy: effect of a command at its bounds on the integral: "none"; "back_calculation" removes the surplus;
-            "conditional_integration" adds nothing in the direction of the bound.
+        tracking: time constant of back-calculation [s]; 0 for the time constant that control_toolbox recommends.
+        deadband: largest error that does not change the integral part.
+        strategy: change of the integral part while the command is at a bound: "none" changes nothing,
+            "back_calculation" reduces the integral part by the excess of the command over its bound, and
+            "conditional_integration" stops integration towards the bound.
         integral: current integral part of the command.
     """
 
     def __init__(self, gains: Params, joints: tuple[str, ...]) -> None:
-        """Read `gains: {<joint>: {p: …, i: …, d: …}}`; `i_clamp` is a bound in both directions."""
+        """Read `gains: {<joint>: {p: …, i: …, d: …}}`; `i_clamp` bounds the integral part in both directions."""
         blocks = [gains.block(joint) for joint in joints]
         for block in blocks:
             for name in _IGNORED_CLAMPS:

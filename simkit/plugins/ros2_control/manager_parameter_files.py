@@ -1,4 +1,4 @@
-"""Parameter files of a controller manager: adaptation to the manager's names, and a check for unused parameters."""
+"""Parameter files of a controller manager: conversion to the manager's node names, and check for unused parameters."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _ROS_1_LOOPS: Final = "gazebo_ros_control"
 def adapt_to_manager(
     given: ParameterFile, namespace: str, manager: str, diagnostics: Diagnostics, *, is_ros_1: bool
 ) -> ParameterFile:
-    """Return a file as it would be on the parameter server after a launch file had loaded it.
+    """Return a file with the node names that the manager expects, as if a launch file had loaded the parameters.
 
-    The launch file of ROS 1 loads a file into the robot's namespace, so a file without that name is placed below it. A
-    file of one ROS version declares controllers for a plugin of the other version too. In ROS 2 the declarations, with
-    their types, are below the manager's node; in ROS 1 they are in the robot's namespace.
+    In ROS 1 a launch file loads parameters into the robot's namespace, so parameters outside that namespace are moved
+    into it. A file of one ROS version also works with a plugin of the other version. The declarations of controllers
+    are copied to the node of the manager for ROS 2, and to the robot's namespace for ROS 1.
 
     Args:
         given: parameter file.
-        namespace: namespace of the robot, with its slash; empty for none.
+        namespace: namespace of the robot with a leading slash; empty if it has none.
         manager: name of the manager's node.
         diagnostics: diagnostics for parameters without effect.
         is_ros_1: true for the plugin of ROS 1.
@@ -52,7 +52,7 @@ def adapt_to_manager(
 
 
 def _declared_controllers(entry: Entry, *, only_type: bool) -> Iterator[tuple[str, Entry]]:
-    """Yield the blocks with a type; with `only_type`, the other parameters of a block are removed."""
+    """Yield name and block of each declared controller; `only_type` removes all parameters except the type."""
     for name, block in (entry.below or {}).items():
         kind = (block.below or {}).get("type")
         if kind is not None and kind.text:
@@ -76,7 +76,9 @@ def _wrap_in_namespace(entry: Entry, parts: Sequence[str]) -> Entry:
 def _report_ros_1_gains(own: Entry, given: ParameterFile, diagnostics: Diagnostics) -> None:
     below = own.below or {}
     if _ROS_1_LOOPS in below:
-        message = f"{given.path.name}: {_ROS_1_LOOPS} has gains for the plugin of ROS 1; this robot's is of ROS 2"
+        message = (
+            f"{given.path.name}: {_ROS_1_LOOPS} has gains for the plugin of ROS 1; this robot's plugin is for ROS 2"
+        )
         hint = "move them to the plugin's own node: pid_gains: {position: {JOINT: {kp: ..., kd: ...}}}"
         diagnostics.warning("SK-CONTROL-011", message, below[_ROS_1_LOOPS].where, hint)
 
@@ -85,7 +87,7 @@ _CONTROLLER_PARAMETERS: Final = ("joint", "joints", "joint_name", "left_wheel", 
 
 
 def report_unused_parameters(manager: ControllerManager, found: Diagnostics) -> None:
-    """Report every parameter in the files that has no effect, with the closest known name.
+    """Report every parameter in the files that has no effect, and suggest the closest known name.
 
     Args:
         manager: manager that uses the files; it has not loaded a controller yet.
@@ -99,7 +101,7 @@ def report_unused_parameters(manager: ControllerManager, found: Diagnostics) -> 
             _report_in_ros_1(name, entry, declared, found)
     nodes = [(pattern, entry) for file in manager.files.files for pattern, entry in file.nodes]
     for pattern, entry in nodes:
-        # a pattern also matches other nodes, which may use its parameters
+        # a pattern with * also matches other nodes, which may use these parameters
         if not pattern.endswith("*") and node_matches(pattern, node):
             for name, parameter in (entry.below or {}).items():
                 _report_in_manager(name, parameter, declared, manager.files.node_names(), found)
@@ -117,7 +119,7 @@ def report_high_rates(manager: ControllerManager, rate: float | None, found: Dia
 
 
 def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, str], found: Diagnostics) -> None:
-    """Report nodes in the files that do not exist and whose name is nearly that of a controller."""
+    """Report unknown node names in the files that are similar to the name of a controller."""
     known = {manager.name, manager.plugin.name, *declared, "**", "*"}
     for file in manager.files.files:
         for pattern, entry in file.nodes:
@@ -131,11 +133,11 @@ def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, st
 def _report_in_manager(
     name: str, entry: Entry, declared: Mapping[str, str], nodes: Sequence[str], found: Diagnostics
 ) -> None:
-    """Check one name among the manager's own parameters, in ROS 2's layout."""
+    """Report a parameter of the manager's node that is unknown, or is in the wrong place, in ROS 2's layout."""
     if name in declared:
         for key, parameter in (entry.below or {}).items():
             if key not in KNOWN_PARAMETERS["declaration"]:
-                message = f"{key!r} beside the type of {name!r} is ignored: a controller has its own node"
+                message = f"{key!r} next to the type of {name!r} is ignored; set it in the controller's own node"
                 hint = f"{name}: {{ros__parameters: {{{key}: ...}}}}"
                 found.warning("SK-CONTROL-011", message, parameter.where, hint)
     elif name in KNOWN_PARAMETERS["manager"]:
@@ -171,7 +173,7 @@ def _report_no_type(name: str, entry: Entry, found: Diagnostics) -> None:
 
 
 def _report_no_controllers(files: Sequence[ParameterFile], node: str, found: Diagnostics) -> None:
-    """Report that no file declares a controller where the manager looks for them."""
+    """Report that no file declares a controller below the manager's node."""
     names = [pattern for file in files for pattern, _ in file.nodes]
     names += [f"/{name}" for file in files if file.root is not None for name in file.root.below or {}]
     if names:  # an empty file has been reported

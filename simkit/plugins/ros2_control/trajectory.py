@@ -1,7 +1,8 @@
 """Trajectories of several joints: points with times, and the splines between them.
 
-The rules are those of ros2_controllers' joint_trajectory_controller. Two points with velocities are connected by a
-cubic spline, and two points with accelerations as well by a quintic one. Otherwise the connection is a straight line.
+The rules are those of ros2_controllers' joint_trajectory_controller. Two points are connected by a straight line. If
+both points have velocities, a cubic polynomial connects them; if both have accelerations too, a quintic polynomial
+does.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from simkit.pose import Vector
 SECOND: Final = 1_000_000_000
 _TURN: Final = 2.0 * np.pi
 _LOOK_AHEAD: Final = 32
-"""Number of setpoints computed at once: for arrays this small, 32 setpoints take as long as one."""
+"""Number of setpoints computed at once, because computing 32 setpoints takes as long as computing one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,8 +31,9 @@ class TrajectoryPoint:
 
     Attributes:
         time: time from the start [ns].
-        positions, velocities, accelerations: shape (n,), by the controller's joints [rad or m, per s, per s²].
-        efforts: shape (n,), by the controller's joints [N·m or N].
+        positions, velocities, accelerations: shape (n,), in the order of the controller's joints [rad or m, per s,
+            per s²].
+        efforts: shape (n,), in the same order [N·m or N].
     """
 
     time: int
@@ -57,15 +59,15 @@ class Spline(SharedByCopies):
     """Targets of all joints as a function of time.
 
     Attributes:
-        times: boundaries of the pieces, from the start [ns]; increasing.
+        times: start and end times of the pieces [ns], counted from the start of the trajectory; increasing.
         last: setpoint after the last piece.
     """
 
     def __init__(self, times: Sequence[int], pieces: Sequence[Vector], last: Setpoint) -> None:
-        """Initialise a spline from the results of `through`, `held` or `stop`.
+        """Initialise a spline; use `through`, `held` or `stop` to create one.
 
         Args:
-            times: boundaries of the pieces, one more than pieces [ns].
+            times: start and end times of the pieces [ns]; one more than there are pieces.
             pieces: coefficients (6, n) of increasing powers of the seconds since the beginning of the piece.
             last: setpoint after the last piece.
         """
@@ -78,16 +80,16 @@ class Spline(SharedByCopies):
 
     @property
     def end(self) -> int:
-        """End of the spline, from the start [ns]."""
+        """End time of the spline [ns], counted from the start of the trajectory."""
         return self.times[-1]
 
     def at(self, now: int, step: int = 0) -> Setpoint:
         """Return the targets of the joints at a time.
 
         Args:
-            now: time from the start [ns].
-            step: expected time until the next call [ns]; 0 if unknown. It allows to compute setpoints ahead, and
-                changes no bit of the result.
+            now: time since the start of the trajectory [ns].
+            step: expected time until the next call [ns]; 0 if unknown. With a step, further setpoints are computed
+                ahead, which does not change the results.
         """
         motion = self._ahead.get(now)
         if motion is not None and not self._efforts:
@@ -103,7 +105,7 @@ class Spline(SharedByCopies):
         return Setpoint(self._ahead[now])
 
     def _motions(self, times: npt.NDArray[np.int64]) -> Vector:
-        """Return motions, shape (times, 3, n); bit-identical for a time, whatever the other times are."""
+        """Return motions, shape (times, 3, n); each result is bit-identical to a call with this time alone."""
         pieces = np.maximum(np.searchsorted(self._begins, times, "right") - 1, 0)
         t = (np.maximum(times - self._begins[pieces], 0) / SECOND)[:, None]
         table = self._table[:, pieces]
@@ -113,7 +115,7 @@ class Spline(SharedByCopies):
         return motions.reshape(len(times), 3, -1)
 
     def _with_effort(self, now: int) -> Setpoint:
-        """Return the setpoint of a spline with efforts or without interpolation."""
+        """Return the setpoint at a time, for a spline that has efforts or is not interpolated."""
         i = max(bisect_right(self.times, now) - 1, 0)
         if self._setpoints:
             return Setpoint(self._setpoints[i], self._effort(i, 1.0))
@@ -130,21 +132,21 @@ class Spline(SharedByCopies):
 
     @classmethod
     def held(cls, positions: Vector, velocities: Vector | None = None) -> Spline:
-        """Create a spline that holds positions for ever (or velocities, for joints commanded by velocity)."""
+        """Create a spline that holds positions for ever, and velocities for joints commanded by velocity."""
         rest = np.zeros_like(positions)
         motion = np.stack([positions, rest if velocities is None else velocities, rest])
         return cls((0,), (), Setpoint(motion))
 
     @classmethod
     def through(cls, start: TrajectoryPoint, points: Sequence[TrajectoryPoint], *, steps: bool = False) -> Spline:
-        """Create a spline from a state through points.
+        """Create a spline from a state of the joints through points.
 
-        A first point at or before the time of `start` replaces the state: the spline then begins at that point.
+        If the first point is at or before the time of `start`, the spline begins at that point, and `start` is unused.
 
         Args:
-            start: state of the joints when the trajectory begins; its time [ns] counts from the start too.
+            start: state of the joints when the trajectory begins, with its time since the trajectory's start [ns].
             points: points with positions and increasing times.
-            steps: no interpolation: from the time of a point on, the target is the next point.
+            steps: true for no interpolation: between two points, the target is the later point.
         """
         count = len(_zero_if_missing(points[0].positions))
         ends = list(points)
@@ -170,7 +172,7 @@ class Spline(SharedByCopies):
 
     @classmethod
     def stop(cls, positions: Vector, velocities: Vector, decelerations: Vector) -> Spline:
-        """Create a spline that decelerates each joint to rest at its own deceleration [rad/s² or m/s²]."""
+        """Create a spline that brings each joint to rest with its own deceleration [rad/s² or m/s²]."""
         can_slow = decelerations > 0.0  # joints without deceleration stop at once
         velocities = np.where(can_slow, velocities, 0.0)
         slope = -np.sign(velocities) * decelerations
@@ -194,7 +196,7 @@ class Spline(SharedByCopies):
 def integrate_points(start: TrajectoryPoint, points: Sequence[TrajectoryPoint]) -> list[TrajectoryPoint]:
     """Add positions to points that have only velocities, or only accelerations, by integration.
 
-    The mean of both ends is integrated over the time between them, as in ros2_controllers.
+    The mean of two successive values is integrated over the time between them, as in ros2_controllers.
     """
     integrated: list[TrajectoryPoint] = []
     previous = start
@@ -214,7 +216,7 @@ def integrate_points(start: TrajectoryPoint, points: Sequence[TrajectoryPoint]) 
 
 
 def whole_turn_offset(here: Vector, first: Vector, turning: Vector) -> Vector:
-    """Return the full turns to add to a trajectory so that continuous joints take the short way to its first point.
+    """Return full turns to add to a trajectory, so that continuous joints reach its first point the shortest way.
 
     Args:
         here: current positions [rad].
@@ -222,14 +224,14 @@ def whole_turn_offset(here: Vector, first: Vector, turning: Vector) -> Vector:
         turning: mask of the joints that rotate without limits.
 
     Returns:
-        Multiples of 2π [rad], 0 for the other joints.
+        Multiples of 2π [rad], shape (n,); 0 for joints with limits.
     """
     turns: Vector = np.where(turning, np.round((here - first) / _TURN) * _TURN, 0.0)
     return turns
 
 
 def shortest_differences(errors: Vector, turning: Vector) -> Vector:
-    """Wrap angle differences of joints that rotate without limits to half a turn [rad]."""
+    """Wrap the angle differences [rad] of joints that rotate without limits to -π … π."""
     wrapped: Vector = np.where(turning, errors - np.round(errors / _TURN) * _TURN, errors)
     return wrapped
 
@@ -240,7 +242,7 @@ def _zero_if_missing(values: Vector | None) -> Vector:
 
 
 def _match_first_point(start: TrajectoryPoint, first: TrajectoryPoint) -> TrajectoryPoint:
-    """Return the state with zeros for the fields that only the first point has."""
+    """Return the start state, with zeros for velocities or accelerations that only the first point has."""
     rest = np.zeros(len(_zero_if_missing(first.positions)))
     velocities = rest if start.velocities is None and first.velocities is not None else start.velocities
     accelerations = rest if start.accelerations is None and first.accelerations is not None else start.accelerations
@@ -254,7 +256,7 @@ def _point_rows(point: TrajectoryPoint, count: int) -> Vector:
 
 
 def _hermite_piece(a: TrajectoryPoint, b: TrajectoryPoint) -> Vector:
-    """Return coefficients (6, n) of increasing powers for a Hermite polynomial of degree 1, 3 or 5."""
+    """Return the polynomial between two points: coefficients (6, n) of increasing powers; its degree is 1, 3 or 5."""
     p0, p1 = _zero_if_missing(a.positions), _zero_if_missing(b.positions)
     t = (b.time - a.time) / SECOND
     piece = np.zeros((6, len(p0)))

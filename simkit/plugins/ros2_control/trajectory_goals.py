@@ -1,4 +1,4 @@
-"""Checks of incoming trajectories and tolerances of their joints, with the rules of ros2_control."""
+"""Validation and tolerances of incoming trajectories, with the rules of ros2_control."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class TrajectoryRules:
     allow_velocity_at_end: bool = False
 
     def fault(self, message: JointTrajectory, now: int) -> str:
-        """Return the reason, in ros2_control's words, to reject a trajectory; empty if it can be followed.
+        """Return the reason to reject a trajectory, worded as in ros2_control; empty for a valid trajectory.
 
         Args:
             message: `trajectory_msgs/msg/JointTrajectory` to check.
@@ -115,14 +115,14 @@ def read_points(message: JointTrajectory, joints: Sequence[str], here: Vector) -
         here: positions of joints that the trajectory does not name.
     """
     names = [str(name) for name in message.joint_names]
-    places = np.array([joints.index(name) for name in names], dtype=np.intp)
+    indices = np.array([joints.index(name) for name in names], dtype=np.intp)
     rest = np.zeros(len(joints))
 
     def field(values: Vector, default: Vector) -> Vector | None:
         if not len(values):
             return None
         complete = default.copy()
-        complete[places] = values
+        complete[indices] = values
         return complete
 
     return [
@@ -139,7 +139,7 @@ def read_points(message: JointTrajectory, joints: Sequence[str], here: Vector) -
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tolerances:
-    """Largest allowed error of each joint; infinite without a check.
+    """Largest allowed error of each joint; infinite for errors that are not checked.
 
     Attributes:
         path: tolerances during the motion, shape (3, n): position, velocity, acceleration [rad or m, per s, per s²].
@@ -153,7 +153,7 @@ class Tolerances:
 
     @property
     def watches_path(self) -> bool:
-        """True if anything is checked during the motion."""
+        """True if any error is checked during the motion."""
         return bool(np.isfinite(self.path).any())
 
     @classmethod
@@ -171,10 +171,10 @@ class Tolerances:
         return cls(np.stack([_infinite_if_zero(path), none, none]), ends, goal_time)
 
     def with_goal(self, goal: FollowJointTrajectory_Goal, joints: Sequence[str]) -> tuple[Tolerances, str]:
-        """Apply the tolerances of a `FollowJointTrajectory` goal: positive replaces, -1 removes, 0 keeps a tolerance.
+        """Apply the tolerances of a goal: a positive number replaces a tolerance, -1 removes it, 0 does not change it.
 
         Returns:
-            Tolerances, and the reason if the goal's tolerances were invalid and therefore ignored (empty otherwise).
+            The tolerances to use, and a warning if the goal's tolerances were invalid and ignored (empty otherwise).
         """
         goal_time, fault = _resolve_tolerance(self.goal_time, stamp_ns(goal.goal_time_tolerance) / SECOND, 0.0)
         if fault:
@@ -204,10 +204,10 @@ class Tolerances:
 
 
 def describe_violation(off: Vector, tolerances: Vector, joints: Sequence[str]) -> str:
-    """Describe the joint that exceeds its tolerance most, in ros2_control's words.
+    """Describe the joint that exceeds its tolerance most, worded as in ros2_control.
 
     Args:
-        off: error of each joint, shape (3, n): position, velocity, acceleration [rad or m, per s, per s²].
+        off: absolute error of each joint, shape (3, n): position, velocity, acceleration [rad or m, per s, per s²].
         tolerances: tolerances in the same shape.
         joints: names of the joints.
     """

@@ -22,7 +22,7 @@ _GAINS: Final = {"p": "p", "i": "i", "d": "d", "ff_velocity_scale": "feedforward
 
 
 class LiveTolerances(SharedByCopies):
-    """Live parameters in `constraints` of a controller's joints."""
+    """Tolerances of a controller's joints: live parameters in `constraints`."""
 
     def __init__(self, controller: Controller, joints: tuple[str, ...]) -> None:
         def live(name: str, default: float, description: str) -> Parameter[float]:
@@ -36,7 +36,7 @@ class LiveTolerances(SharedByCopies):
         self._goal = [live(f"{joint}.goal", 0.0, "largest error at the end [rad or m]") for joint in joints]
 
     def tolerances(self) -> Tolerances:
-        """Return the current tolerances, which apply to a goal without its own."""
+        """Return the current tolerances, which apply to goals that do not set any."""
         path, goal = [p.value for p in self._path], [p.value for p in self._goal]
         return Tolerances.of(path, goal, self._stopped.value, self._goal_time.value)
 
@@ -59,7 +59,7 @@ class StopRule(SharedByCopies):
         self.duration = params.number("stop_trajectory_duration", 0.0, minimum=0.0)
 
     def spline(self, state: Vector, *, has_velocity: bool) -> Spline:
-        """Create the spline from a state to rest.
+        """Create the spline that brings the joints from a state to rest.
 
         Args:
             state: positions, velocities, accelerations, shape (3, n).
@@ -74,7 +74,7 @@ class StopRule(SharedByCopies):
 
 
 def read_timeout(params: Params, goal_time: float) -> float:
-    """Read `cmd_timeout` [s], 0 for none; a timeout up to `goal_time` [s] is ignored with a warning."""
+    """Read `cmd_timeout` [s], 0 for no timeout; a timeout not above `goal_time` [s] is ignored with a warning."""
     timeout = params.number("cmd_timeout", 0.0, minimum=0.0)
     if not 0.0 < timeout <= goal_time:
         return timeout
@@ -90,11 +90,12 @@ def read_pids(controller: Controller, joints: tuple[str, ...], find: Callable[[]
     Args:
         controller: controller that has the parameters.
         joints: joints of the PIDs.
-        find: function that returns the current PIDs at a change; a restored state has another object.
+        find: function that returns the current PIDs; it is called at each change of a gain, because restoring a
+            snapshot replaces the PIDs.
     """
     params = controller.params
     pids = JointPids(params.block("gains"), joints)
-    feed = params.block("velocity_ff")  # ROS 1 has the gain there
+    feed = params.block("velocity_ff")  # ROS 1 has the feedforward gains in this block
     for k, joint in enumerate(joints):
         pids.feedforward[k] = feed.number(joint, float(pids.feedforward[k]))
         for name, attribute in _GAINS.items():

@@ -1,9 +1,9 @@
-"""Transmissions: the motion and effort of the actuators behind the joints, from `<transmission>`.
+"""Transmissions: motion and effort of the actuators that drive the joints, as `<transmission>` describes them.
 
-Controllers command joints, in Gazebo and in simkit. Position, velocity and effort of an actuator are state interfaces
-with the actuator's name, computed when a controller reads them. The laws are those of ros2_control's
-transmission_interface. In them, n_a and n_j are the reductions of actuators and joints, and x is the position of a
-joint minus its offset:
+In Gazebo and in simkit, controllers command joints, not actuators. Position, velocity and effort of an actuator are
+state interfaces with the actuator's name, computed when a controller reads them. The laws are those of ros2_control's
+transmission_interface. Below, a is the position of an actuator, n_a and n_j are the reductions of actuators and joints,
+and x is the position of a joint minus its offset:
 
 * simple: a = n_a n_j x;
 * differential: a1 = n_a1 (n_j1 x1 + n_j2 x2), a2 = n_a2 (n_j1 x1 − n_j2 x2);
@@ -37,7 +37,7 @@ _SMALLEST_REDUCTION: Final = 1e-12  # the largest reduction is its inverse
 
 @dataclass(frozen=True, slots=True)
 class TransmissionLaw:
-    """Linear law between the joints and the actuators of a transmission.
+    """Linear relation between the joints and the actuators of a transmission.
 
     Attributes:
         actuators, joints: plain names.
@@ -53,7 +53,7 @@ class TransmissionLaw:
     offset: Vector
 
     def actuate(self, interface: str, joints: Vector) -> Vector:
-        """Convert an interface of the joints to the same interface of the actuators."""
+        """Convert values of one interface from the joints to the actuators."""
         if interface == EFFORT:
             return np.asarray(self.force @ joints)
         return np.asarray(self.motion @ (joints - self.offset if interface == POSITION else joints))
@@ -75,7 +75,10 @@ def transmission_laws(
         if law is None:
             counts = f"{len(transmission.joints)} joint(s) and {len(transmission.actuators)} actuator(s)"
             message = f"transmission {transmission.name!r} ({transmission.type or 'of no type'}) has {counts}"
-            hint = "give a simple one 1 of each, the others 2 of each with different names, and no reduction near 0"
+            hint = (
+                "a simple transmission needs 1 joint and 1 actuator, other types need 2 of each with different names; "
+                "no reduction may be near 0"
+            )
             found.warning("SK-CONTROL-008", f"{message}; its actuators are ignored", transmission.where, hint)
             continue
         missing = [joint for joint in law.joints if joint not in joints]
@@ -116,12 +119,12 @@ def _transmission_law(transmission: Transmission) -> TransmissionLaw | None:
 
 
 def _by_role(ends: Sequence[TransmissionEnd]) -> list[TransmissionEnd]:
-    """Sort ends by their roles (`joint1`, `joint2`) if all have one."""
+    """Sort the joints or actuators by role (`joint1`, `joint2`) if all of them have a role."""
     return sorted(ends, key=lambda end: end.role) if all(end.role for end in ends) else list(ends)
 
 
 def transmissions_of(scene: SceneModel, blocks: Iterable[Params]) -> list[Transmission]:
-    """Return the transmissions in `<ros2_control>`, or else those of the robot (which ROS 1 reads)."""
+    """Return the transmissions in `<ros2_control>`; if there are none, the robot's `<transmission>` blocks (ROS 1)."""
     found = [_read_transmission(element) for block in blocks for element in block.all("transmission")]
     return found or list(scene.transmissions)
 

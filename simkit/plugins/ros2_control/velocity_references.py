@@ -1,11 +1,12 @@
-"""References of velocity servos, which move as commanded, but no further ahead than the motors can follow.
+"""References of velocity servos: position targets that move at the commanded velocities.
 
-A reference that its joint cannot follow would wind up. It therefore stays within the distance that the full effort can
-make up for. The wheels of one controller move together. Where one wheel is too weak for the moment (for example because
-the load is on its side), the others wait for it. The base is then late, but it does not leave its path. A wheel that is
-commanded to stop holds the position where it comes to rest. It does not return to the position where it should have
-stopped, and does not push on against a wall. Only the lag across the commanded motion is corrected, that is, the lag by
-which the wheels of one controller differ.
+If a joint cannot follow, the distance between reference and joint would grow without limit (windup). The reference
+therefore stays within the distance at which the servo gives its full effort. The wheels of one controller move
+together: if one wheel is too weak for a moment, for example under a load on its side of the base, the other wheels wait
+for it. The base is then late, but it does not leave its path. A wheel that is commanded to stop holds the position
+where it comes to rest. The wheel does not move on to the position where it should have stopped, so it does not push
+against a wall. Only the lag across the commanded motion is corrected, that is, the lag by which the wheels of one
+controller differ.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from collections.abc import Sequence
 from typing import Final
 
 _ALLOWED_LAG_TIME: Final = 0.02
-"""Travel time by which a joint may lag in addition to the reach of its effort; then the other joints stop [s]."""
+"""Travel time [s] by which the lag may exceed the lag at full effort; then the controller's other joints stop."""
 
 _LARGEST_SAG: Final = 0.05
 """Largest displacement of a stopped joint under load [rad or m]."""
@@ -34,16 +35,18 @@ def advance_references(
     catch_up_times: Sequence[float],
     groups: Sequence[int],
 ) -> tuple[list[float], list[float]]:
-    """Return the references of velocity servos and their speeds, in plain numbers, as a base has few wheels.
+    """Return the new references of velocity servos and their speeds.
+
+    The arguments are sequences of numbers, which are faster than arrays because a base has few wheels.
 
     Args:
-        references: integrals of the commands [rad or m].
+        references: current references, the integrals of the commanded speeds [rad or m].
         speeds: new commanded speeds [rad/s or m/s].
         positions: current positions of the joints [rad or m].
         velocities: current velocities of the joints [rad/s or m/s].
-        previous_speeds: speeds of the references until now [rad/s or m/s].
-        slacks: lag at which a joint gets its full effort [rad or m].
-        catch_up_times: times in which a joint would make up for a lag [s].
+        previous_speeds: speeds of the references in the last period [rad/s or m/s].
+        slacks: lag at which the servo gives its full effort [rad or m].
+        catch_up_times: time constant with which a joint reduces a lag [s].
         groups: number of the controller of each joint; 0 for an unclaimed joint.
 
     Returns:
@@ -72,7 +75,7 @@ def advance_references(
             if speed == 0.0:
                 if previous_speeds[k] != 0.0:
                     lags[k] = across[k]
-                # a load moves a joint no faster than this, so a faster joint has not stopped yet
+                # under load a stopped joint moves no faster than this, so a faster joint has not stopped yet
                 elif abs(velocities[k]) > min(slacks[k], _LARGEST_SAG) / catch_up_times[k]:
                     lags[k] = 0.0
     moved = [position + lag for position, lag in zip(positions, lags, strict=True)]
@@ -82,8 +85,8 @@ def advance_references(
 def _reduce_to_slowest(
     speeds: Sequence[float], lags: Sequence[float], margins: Sequence[tuple[float, float]], groups: Sequence[int]
 ) -> list[float]:
-    """Return the speeds, reduced for each controller to the joint that can follow least."""
-    shares = []  # share of its speed that each joint can keep
+    """Return the speeds; all joints of a controller are slowed by the factor of the joint that lags most."""
+    shares = []  # for each joint, the fraction of the commanded speed that it can follow
     for speed, lag, (most, width) in zip(speeds, lags, margins, strict=True):
         behind = lag if speed > 0.0 else -lag if speed < 0.0 else 0.0
         shares.append(min(max((most - behind) / max(width, 1e-12), 0.0), 1.0))
@@ -97,7 +100,7 @@ def _reduce_to_slowest(
 
 
 def _lags_across_motion(lags: Sequence[float], previous_speeds: Sequence[float], groups: Sequence[int]) -> list[float]:
-    """Return the lags across the motion of each controller's joints; 0 for a single joint."""
+    """Return each lag without its part along the previous motion of the controller's joints; 0 for a single joint."""
     sums: dict[int, tuple[float, float]] = {}
     for lag, previous, group in zip(lags, previous_speeds, groups, strict=True):
         product, square = sums.get(group, (0.0, 0.0))

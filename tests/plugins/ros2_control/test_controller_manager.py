@@ -91,6 +91,16 @@ def test_the_first_of_two_controllers_claims_their_common_joint(tmp_path: Path) 
         assert "'j2/effort' (of 'by_position')" in reported_messages(sim, "SK-CONTROL-014")[0]
 
 
+def test_the_conflict_message_names_the_switch_service_with_its_namespace(tmp_path: Path) -> None:
+    plugin = "<ros><namespace>/r1</namespace></ros><parameters>arm.yaml</parameters>"
+    yaml = "/r1:\n" + "".join(f"  {line}\n" for line in TWO.splitlines())
+    with opened(tmp_path, arm(ALL_THREE, plugin=plugin), yaml) as sim:
+        assert states(sim, "/r1/controller_manager") == {"by_position": "active", "by_effort": "inactive"}
+        (conflict,) = [d for d in sim.diagnostics if d.code == "SK-CONTROL-014"]
+        assert conflict.hint.startswith("call /r1/controller_manager/switch_controller to activate by_effort")
+        assert "/r1/controller_manager/switch_controller" in sim.communication.services.names()
+
+
 def test_switching_changes_the_mode_of_one_joint_and_the_others_hold(tmp_path: Path) -> None:
     with opened(tmp_path, arm(ALL_THREE), TWO) as sim:
         command(sim, "by_position", 0.4, 0.2)

@@ -53,7 +53,10 @@ def test_a_misspelt_parameter_of_the_manager_is_a_warning(tmp_path: Path) -> Non
 
 def test_parameters_beside_the_type_of_a_controller_are_a_warning(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS.replace(TYPE, TYPE + "      joints: [j1]\n")) as sim:
-        assert "'joints' beside the type of 'arm_controller' is ignored" in reported_messages(sim, "SK-CONTROL-011")[0]
+        assert (
+            "'joints' next to the type of 'arm_controller' is ignored; set it in the controller's own node"
+            in reported_messages(sim, "SK-CONTROL-011")[0]
+        )
 
 
 def test_a_controller_rate_above_the_managers_is_a_warning(tmp_path: Path) -> None:

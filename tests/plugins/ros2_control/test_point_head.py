@@ -137,7 +137,7 @@ def test_the_head_takes_at_least_the_minimum_duration(sim: Any) -> None:
 def test_the_head_turns_towards_an_unreachable_point_up_to_its_limits(sim: Any) -> None:
     goal = look(sim, (-2.0, -1.0, 1.0))
     assert goal.status is GoalStatus.ABORTED
-    assert goal.reason.startswith("the limits of the neck keep it 1.")
+    assert goal.reason.startswith("the limits of the neck keep the pointing axis 1.")
     assert sim.joint("rob::pan").position == pytest.approx(-1.3, abs=0.005)
 
 
@@ -159,7 +159,7 @@ def test_a_cancelled_goal_leaves_the_head_where_it_is(sim: Any) -> None:
     ("goal", "reason"),
     [
         ({"target": {"header": {"frame_id": "optcal"}}}, "there is no frame 'optcal'; did you mean 'optical'?"),
-        ({"target": {"point": {"x": math.nan}}}, "the target is not a finite point"),
+        ({"target": {"point": {"x": math.nan}}}, "the target has a coordinate that is NaN, infinite or too large"),
         ({"pointing_frame": "nose"}, "there is no frame 'nose'"),
         ({"pointing_frame": "neck"}, "the frame 'neck' is not turned by joint 'tilt'"),
         ({"pointing_frame": "map"}, "the frame 'map' is not turned by joint 'tilt'"),

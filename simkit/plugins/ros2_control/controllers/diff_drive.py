@@ -36,7 +36,7 @@ _SHORTEST_PERIOD = 1e-4  # [s]; shorter periods give no useful speed
 
 
 class RollingMeanOdometry:
-    """Pose of the point midway between two wheels, from their rotation, and the mean of its speeds over recent updates.
+    """Odometry of the midpoint between two wheels: its pose, and the mean of its speeds over recent updates.
 
     Args:
         window: number of updates over which the twist is averaged.
@@ -68,14 +68,14 @@ class RollingMeanOdometry:
         return True
 
     def follow(self, ahead: float, turn: float, elapsed: float) -> None:
-        """Advance the pose by a command.
+        """Advance the pose as if the base followed a command exactly, and set the twist to the command.
 
         Args:
             ahead: linear velocity [m/s].
             turn: angular velocity [rad/s].
             elapsed: time since the last call [s].
         """
-        # two wheels 1 m apart
+        # the speeds of two wheels that are 1 m apart
         self.reckoning.advance((ahead - turn / 2) * elapsed, (ahead + turn / 2) * elapsed, 1.0)
         self._speeds.clear()
         self._speeds.append((ahead, turn))  # a commanded speed needs no mean
@@ -99,9 +99,10 @@ class DiffDriveController(Controller):
     """Drives wheels by velocity from `~/cmd_vel`, and publishes odometry on `~/odom` and `/tf`.
 
     A command is valid for `cmd_vel_timeout`; then the base brakes. Commands are limited in jerk, acceleration and speed
-    before they become wheel speeds. Three points differ from ros2_controllers on purpose. Odometry in open loop follows
-    the limited command, not the requested one (as in ROS 1). Odometry starts at the wheels' position at the first
-    activation, without a jump. Publications at `publish_rate` keep a fixed grid of times.
+    before they become wheel speeds. Three points differ from ros2_controllers on purpose. Open-loop odometry follows
+    the limited command (as in ROS 1) instead of the requested command. Odometry is zero at the wheel angles of the
+    first activation, so it starts without a jump. Messages are published at multiples of the `publish_rate` period,
+    so delays do not add up.
     """
 
     types = ("diff_drive_controller/DiffDriveController",)
@@ -138,7 +139,7 @@ class DiffDriveController(Controller):
         """Return the bounds of the commands on a topic; None for topics without commands.
 
         Returns:
-            Lowest and highest linear velocity [m/s], and the same for the angular velocity [rad/s].
+            Lowest and highest linear velocity [m/s], and lowest and highest angular velocity [rad/s].
         """
         if topic not in (self.plugin.ros.topic(self.topic(name)) for name in ("~/cmd_vel", "~/cmd_vel_unstamped")):
             return None
@@ -185,7 +186,7 @@ class DiffDriveController(Controller):
 
     @property
     def odometry_frame(self) -> tuple[str, str, Pose]:
-        """Frame of the odometry, frame of the base, and pose of the base in the odometry frame."""
+        """Name of the odometry frame, name of the base frame, and pose of the base in the odometry frame."""
         return self._options.odom_frame, self._options.base_frame, self._odometry.reckoning.pose
 
     def update(self, now_ns: int, period: float) -> None:
@@ -249,7 +250,7 @@ class DiffDriveController(Controller):
         return sum(values[:count]) / count, sum(values[count:]) / count
 
     def _publish(self, now_ns: int) -> None:
-        """Publish odometry and its transform, on the grid of the publish rate."""
+        """Publish odometry and its transform if the next multiple of the publish period is reached."""
         options, period_ns = self._options, self._period_ns
         if period_ns:
             missed = (now_ns - self._published_ns) // period_ns

@@ -16,7 +16,7 @@ _MOTOR_PARAMETERS: Final = ("motor_torque_constants", "reduction_ratios", "dt")
 
 
 class GravityCompensationController(Controller):
-    """Compensates gravity with PAL's controller: the arm has no weight and stays where a person leaves it.
+    """Compensates gravity as PAL's controller does: the arm seems weightless and stays where a person leaves it.
 
     Parameters: `command_joints` (or `joints`); `control_type` of each joint, `COMMAND` (compensated, the default) or
     `ZERO_TORQUE` (no effort); `torque_gain`, which scales all efforts; `static_frictions` [N·m] and `viscous_frictions`

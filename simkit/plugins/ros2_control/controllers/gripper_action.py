@@ -25,11 +25,12 @@ class GripperActionController(Controller):
     """Moves one gripper joint to the goals of `~/gripper_cmd`: a position [rad or m] and an effort limit [N·m or N].
 
     A goal succeeds within `goal_tolerance` of its position. A joint slower than `stall_velocity_threshold` for
-    `stall_timeout` has an object between the fingers. The goal then succeeds with `allow_stalling`, and otherwise it is
-    aborted. The commanded position stays, so the gripper keeps pressing. A new goal replaces the active one. After a
-    cancelled goal the joint stays where it is.
+    `stall_timeout` is stalled, usually on an object between the fingers. The goal then succeeds if `allow_stalling` is
+    set, and is aborted otherwise. The commanded position does not change, so the gripper keeps pressing. A new goal
+    replaces the active goal. After a cancelled goal the joint holds its current position.
 
-    With position commands, the effort of a goal appears only in results and feedback, as in ros2_control.
+    With position commands, the effort of a goal has no effect: it only appears in results and feedback, as in
+    ros2_control.
     """
 
     types = ("position_controllers/GripperActionController",)
@@ -62,7 +63,7 @@ class GripperActionController(Controller):
         self._clear()
 
     def _read_own_parameters(self) -> None:
-        """Read the parameters of a derived kind; does nothing here."""
+        """Read the parameters of a derived class; the base class has none."""
 
     def _clear(self) -> None:
         self._goal: GoalHandle | None = None
@@ -113,7 +114,7 @@ class GripperActionController(Controller):
         self._moved_ns, self._next_feedback, self._is_new = self.sim.time_ns, 0, True
 
     def _read_command(self, request: Message) -> tuple[float, float, str]:
-        """Position and effort of a goal, and why it cannot be taken."""
+        """Return position and effort of a goal, and the reason to reject the goal (empty if there is none)."""
         position, effort = float(request.command.position), float(request.command.max_effort)
         fault = "" if math.isfinite(position) and math.isfinite(effort) else "The command is not a finite number."
         return position, effort, fault
@@ -142,7 +143,7 @@ class GripperActionController(Controller):
             self._report_progress(self._goal, now_ns, error, float(velocity))
 
     def _report_progress(self, goal: GoalHandle, now: int, error: float, velocity: float) -> None:
-        """End the goal if it is reached or stalled, else publish its feedback."""
+        """End the goal if its position is reached or the joint is stalled, else publish feedback."""
         if abs(error) < self._tolerance:
             self._goal = None
             goal.succeed(self._result(reached_goal=True), "Successfully moved to goal.")

@@ -1,7 +1,7 @@
-"""Controllers of values from a topic: forwarded to command interfaces, or followed by a PID loop for each joint.
+"""Controllers that forward commands from a topic to command interfaces, or follow the commands with PID loops.
 
-The kinds for one joint are those of ROS 1 (`effort_controllers/JointPositionController` and the like). The kinds for
-several joints exist in ROS 1 and ROS 2 (`JointGroupPositionController`, `forward_command_controller`).
+The controllers for one joint are controllers of ROS 1, such as `effort_controllers/JointPositionController`. The
+controllers for several joints exist in ROS 1 and ROS 2 (`JointGroupPositionController`, `forward_command_controller`).
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class ForwardCommandController(Controller):
         self._command = None
 
     def set_command(self, data: Sequence[float]) -> None:
-        """Set the command; one of another length, or with NaN or infinite values, is reported and ignored."""
+        """Set the command; a command of wrong length or with NaN or infinite values is reported and ignored."""
         values = np.array(data, dtype=float)
         problem = ""
         if len(values) != len(self._names):
@@ -192,14 +192,14 @@ class _LoopController(Controller):
         return [f"{joint}/{part}" for part in (POSITION, VELOCITY) for joint in self._joints]
 
     def activate(self) -> None:
-        """Set the targets to the current positions, or to zero velocity."""
+        """Set the targets to the current positions, or to zero velocity for velocity loops."""
         position = self.states.values[: len(self._joints)]
         self._target = position if self.measured == POSITION else np.zeros(len(self._joints))
         self._last = None
         self._pids.restart()
 
     def set_command(self, data: Sequence[float]) -> None:
-        """Set the targets; an invalid command is reported and ignored."""
+        """Set the targets; a command of wrong length or with NaN or infinite values is reported and ignored."""
         values = np.array(data, dtype=float)
         if len(values) == len(self._joints) and np.isfinite(values).all():
             self._target = values

@@ -24,9 +24,9 @@ _FIELDS: Final = (POSITION, VELOCITY, EFFORT)
 class JointStateBroadcaster(Controller):
     """Publishes state interfaces of the joints on `joint_states` and `dynamic_joint_states`.
 
-    All state interfaces are published, or those of `joints` and `interfaces`. In `joint_states`, a joint has NaN for an
-    interface that it lacks, as in ros2_controllers. Joints in `extra_joints`, which the hardware does not have, are at
-    0.
+    All state interfaces are published, or those that `joints` and `interfaces` select. In `joint_states`, a joint has
+    NaN for an interface that it lacks, as in ros2_controllers. Joints in `extra_joints`, which the hardware does not
+    have, are published with zeros.
     """
 
     types = ("joint_state_broadcaster/JointStateBroadcaster",)
@@ -46,7 +46,7 @@ class JointStateBroadcaster(Controller):
         self._names = [*joints, *extra]
         self._columns = np.full((3, len(self._names)), np.nan)
         self._columns[:, len(joints) :] = 0.0
-        self._places = np.array(
+        self._indices = np.array(
             [_FIELDS.index(fields[i]) * len(self._names) + joints.index(o) for o, i in owners if i in fields], np.intp
         )
         self._state_names = [f"{owner}/{interface}" for owner, interface in owners if interface in fields]
@@ -57,7 +57,7 @@ class JointStateBroadcaster(Controller):
         self._dynamic = self.advertise(f"{prefix}dynamic_joint_states", DYNAMIC)
 
     def _chosen_joints(self, joints: Sequence[str], interfaces: Sequence[str]) -> list[str]:
-        """Return the state interfaces to publish; a selection needs both lists."""
+        """Return the state interfaces to publish; all interfaces, if one of both lists is empty."""
         all_names = self.hardware.states.names
         if any(joints) and any(interfaces):
             return [f"{joint}/{interface}" for joint in joints for interface in interfaces]
@@ -75,7 +75,7 @@ class JointStateBroadcaster(Controller):
     def update(self, now_ns: int, period: float) -> None:
         if self._publisher.wanted:
             columns = self._columns.copy()
-            columns.ravel()[self._places] = self._joint_states.values
+            columns.ravel()[self._indices] = self._joint_states.values
             position, velocity, effort = columns
             message = msgs.type_of(JOINT_STATE)(
                 msgs.header(now_ns, self._frame), self._names, position, velocity, effort

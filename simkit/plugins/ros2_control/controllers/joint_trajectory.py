@@ -1,4 +1,4 @@
-"""Joint trajectory controller of ros2_controllers: `joint_trajectory_controller`."""
+"""Joint trajectory controller with the behaviour of ros2_controllers' `joint_trajectory_controller`."""
 
 from __future__ import annotations
 
@@ -37,20 +37,20 @@ SCALING: Final = "control_msgs/msg/SpeedScalingFactor"
 SUCCESSFUL, INVALID_GOAL, PATH_VIOLATED, GOAL_VIOLATED = 0, -1, -4, -5
 _HOLD: Final = "hold"
 _FASTEST: Final = 1000.0  # largest speed scaling
-_IGNORED_PARAMETERS: Final = ("start_with_holding", "verbose")  # it always holds first and logs through `logging`
+_IGNORED_PARAMETERS: Final = ("start_with_holding", "verbose")  # always holds at the start, and uses `logging`
 
 
 class JointTrajectoryController(Controller):
     """Follows trajectories from `~/joint_trajectory` and from goals of `~/follow_joint_trajectory`.
 
-    Two points with velocities are connected by a cubic spline, with accelerations as well by a quintic one, else by a
-    line. A trajectory begins at the measured state, or with `interpolate_from_desired_state` at the last command. Each
-    command is the setpoint for the end of the coming period. A new trajectory replaces the active one.
+    Points are connected by straight lines, or by cubic splines if they have velocities, or by quintic splines if they
+    also have accelerations. A trajectory begins at the measured state, or at the last command if
+    `interpolate_from_desired_state` is set. Each command is the setpoint for the end of the next period. A new
+    trajectory replaces the active trajectory. An invalid trajectory is rejected, and the active trajectory continues.
 
-    A goal ends as in ros2_control: with PATH_TOLERANCE_VIOLATED as soon as an error exceeds
-    `constraints.<joint>.trajectory`. After the last point it ends with SUCCESSFUL once all errors are within
-    `constraints.<joint>.goal`, or with GOAL_TOLERANCE_VIOLATED after `constraints.goal_time`. Then the joints hold. A
-    trajectory that cannot be followed changes nothing.
+    The result of a goal is PATH_TOLERANCE_VIOLATED as soon as an error exceeds `constraints.<joint>.trajectory`. After
+    the last point, the result is SUCCESSFUL once all errors are within `constraints.<joint>.goal`, or
+    GOAL_TOLERANCE_VIOLATED after `constraints.goal_time`. Then the joints hold their positions.
     """
 
     types = ("joint_trajectory_controller/JointTrajectoryController",)
@@ -91,7 +91,7 @@ class JointTrajectoryController(Controller):
         self._scaling = scaling.number("initial_scaling_factor", 1.0, minimum=0.0, maximum=_FASTEST)
         self._scaling_state = scaling.text("state_interface", "")
         self._scaling_command = scaling.text("command_interface", "")
-        # true if the commands are positions of the spline, independent of measurements
+        # true if commands are read from the spline only, without measurements
         self._is_plain = self._group.commands == (POSITION,) and not (self._scaling_state or self._scaling_command)
         self._is_active = False
         self._open()
@@ -102,7 +102,7 @@ class JointTrajectoryController(Controller):
         if not self._group.is_closed_loop:
             self.params.block("gains").mark_all_read()
             return None
-        joints = tuple(self._group.joints[place] for place in self._group.places)
+        joints = tuple(self._group.joints[index] for index in self._group.commanded_indices)
         return read_pids(self, joints, lambda: self._pids)
 
     def _open(self) -> None:
@@ -117,9 +117,9 @@ class JointTrajectoryController(Controller):
         ]
 
     def _clear(self) -> None:
-        """Reset the state to that before the first trajectory."""
+        """Reset to the state before the first trajectory."""
         self._goal: GoalHandle | None = None
-        self._next_trajectory: JointTrajectory | Spline | str | None = None  # the text is _HOLD
+        self._next_trajectory: JointTrajectory | Spline | str | None = None  # a string is always _HOLD
         self._spline: Spline | None = None
         self._tolerances = self._constraints.tolerances()
         self._is_holding = self._is_first = self._is_idle = False
@@ -160,14 +160,14 @@ class JointTrajectoryController(Controller):
     # ------------------------------------------------------------------ messages and goals
 
     def _on_trajectory(self, message: JointTrajectory) -> None:
-        """Accept a trajectory from the topic."""
+        """Store a trajectory from the topic for the next update; an invalid trajectory is reported."""
         fault = self._rules.fault(message, self.sim.time_ns)
         if fault:
             self._warnings.warn("SK-CONTROL-020", fault, f"a trajectory is ignored: {fault}")
         if fault or not self._is_active:
             return
         if self._goal is not None:
-            what = "a trajectory on the topic replaces the trajectory of the active goal, which ends with the new one"
+            what = "a trajectory on the topic replaces the active goal's; the goal ends with the new trajectory"
             self._warnings.warn("SK-CONTROL-022", "replaced", what, "cancel the goal first")
         else:
             self._tolerances = self._constraints.tolerances()
@@ -209,12 +209,12 @@ class JointTrajectoryController(Controller):
             self._warnings.warn("SK-CONTROL-020", what, what)
 
     def _report_unfollowable(self, message: JointTrajectory) -> None:
-        """Report parts of a trajectory that the joints cannot follow as written."""
+        """Report efforts without an effort interface, and positions outside the limits of their joint."""
         if not self._group.has_effort and any(len(point.effort) for point in message.points):
-            self._warnings.warn("SK-CONTROL-025", "effort", "efforts are ignored without effort command interface")
-        for place, name in enumerate(message.joint_names):
+            self._warnings.warn("SK-CONTROL-025", "effort", "efforts are ignored: there is no effort command interface")
+        for index, name in enumerate(message.joint_names):
             joint = self.hardware.joints.get(self._group.command_of(str(name)))
-            goals = [p.positions[place] for p in message.points if len(p.positions)]
+            goals = [p.positions[index] for p in message.points if len(p.positions)]
             beyond = [] if joint is None else [p for p in goals if not joint.lower - 1e-6 <= p <= joint.upper + 1e-6]
             if joint is not None and beyond:
                 limits = f"its limits are {joint.lower:g} and {joint.upper:g}"
@@ -244,7 +244,7 @@ class JointTrajectoryController(Controller):
         self._follow_spline(now_ns, period, state)
 
     def _continue_spline(self, now: int) -> bool:
-        """Command the next setpoint if nothing else has to be done; return true if this was the case."""
+        """Command only the next setpoint; return false, without a command, if the update needs more than that."""
         spline, scaling = self._spline, self._scaling
         if spline is None or (self._watches_path and not self._is_holding):
             return False
@@ -360,7 +360,7 @@ class JointTrajectoryController(Controller):
     # ------------------------------------------------------------------ readings
 
     def _errors(self, desired: Vector, state: Vector) -> Vector:
-        """Return desired − measured, shape (3, n); 0 for quantities that are not both commanded and measured."""
+        """Return desired − measured, shape (3, n); a quantity that is not both commanded and measured has error 0."""
         group = self._group
         errors = (desired - state) * group.compared
         if self._has_continuous_joints:

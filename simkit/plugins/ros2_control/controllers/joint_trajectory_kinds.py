@@ -1,4 +1,4 @@
-"""Further kinds of joint trajectory controllers: those of ROS 1, and PAL's impedance controller."""
+"""Joint trajectory controllers of ROS 1, and PAL's joint impedance controller."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ class PositionVelocityJointTrajectoryController(PositionJointTrajectoryControlle
 
 
 class ImpedanceController(JointTrajectoryController):
-    """Pulls joints along a trajectory by springs and dampers, with compensated gravity: PAL's joint impedance control.
+    """Pulls joints along a trajectory by springs and dampers, with gravity compensation (PAL's impedance control).
 
-    It works like a joint trajectory controller with effort commands, and its gains are `kp` and `kd` of
-    `impedance_gains.<joint>`. On the robot these are the gains of the motors, in the direction in which each motor is
-    mounted. The stiffness at the joint is |kp| · `motor_params.<joint>.reduction_ratio` [N·m/rad], and the damping is
-    |kd| times the same ratio [N·m·s/rad].
+    The controller works like a joint trajectory controller with effort commands. Its gains are `kp` and `kd` in
+    `impedance_gains.<joint>`. On the robot they are gains of the motors, and a motor that is mounted in reverse has
+    negative gains. The stiffness at the joint is |kp| · `motor_params.<joint>.reduction_ratio` [N·m/rad]. The damping
+    at the joint is |kd| times the same ratio [N·m·s/rad].
     """
 
     types = ("impedance_controllers/JointTrajectoryController",)
@@ -65,7 +65,7 @@ class ImpedanceController(JointTrajectoryController):
     def _read_gains(self) -> JointPids | None:
         gains, motors = self.params.block("impedance_gains"), self.params.block("motor_params")
         self._springs = []
-        for joint in (self._group.joints[place] for place in self._group.places):
+        for joint in (self._group.joints[index] for index in self._group.commanded_indices):
             gain, motor = gains.block(joint), motors.block(joint)
             motor.child("motor_torque_constant")
             ratio = motor.number("reduction_ratio", 1.0, minimum=1e-9)
@@ -76,5 +76,5 @@ class ImpedanceController(JointTrajectoryController):
         super().update(now_ns, period)
         if self._command is not None:
             kp, kd = self.hardware.actuated.spring_gains(self._group.commanded_joints)
-            position, velocity = self._command.motion[:2, self._group.places]
+            position, velocity = self._command.motion[:2, self._group.commanded_indices]
             self.commands.values = kp * position + kd * velocity + self._gravity.efforts()

@@ -1,4 +1,4 @@
-"""Point-head action: turns a head towards a point, as the `point_head_action` of PAL's and other robots' heads."""
+"""Action that turns a head towards a point, like `point_head_action` of PAL's and other robots."""
 
 from __future__ import annotations
 
@@ -23,18 +23,19 @@ if TYPE_CHECKING:
 POINT_HEAD: Final = "control_msgs/action/PointHead"
 _FEEDBACK_NS: Final = SECOND // 20
 _FARTHEST: Final = 1e12  # [m]
-_LONGEST: Final = 2e9  # [s] that a duration message holds
+_LONGEST: Final = 2e9  # [s]; a duration message cannot represent more than 2.1e9 s
 _SETTLING_NS: Final = SECOND // 2
 
 
 class PointHeadAction(Controller):
     """Turns a head to goals of `<controller>/point_head_action`, through the trajectory controller in `controller`.
 
-    The two joints of the neck turn the frame `pointing_frame` so that its `pointing_axis` goes through the target. The
-    target is a point in any frame, and it is resolved once, when the goal arrives. The motion takes at least
-    `min_duration`, and no joint is faster than `max_velocity` or its limit. The goal succeeds once the axis is within
-    `success_angle_threshold` of the target. It is aborted if the limits of the neck keep the axis further away. The
-    controller claims no interfaces. Another trajectory for the head during the motion ends the goal.
+    The two joints of the neck turn the frame `pointing_frame` so that its `pointing_axis` points at the target. The
+    target is a point in any frame; it is converted to the world frame once, when the goal arrives. The motion takes at
+    least `min_duration`, and no joint is faster than `max_velocity` or its own limit. The goal succeeds once the angle
+    between the axis and the target is at most `success_angle_threshold`. The goal is aborted if the limits of the neck
+    do not allow this angle. The controller claims no interfaces. Another trajectory for the head during the motion
+    ends the goal.
     """
 
     types = ("simkit/PointHeadAction", "head_action/PointHeadAction")
@@ -68,7 +69,7 @@ class PointHeadAction(Controller):
         self._motion_goal: GoalHandle | None = None
         self._pointing: tuple[str, Vector] = "", np.zeros(3)
         self._target, self._next_feedback = np.zeros(3), 0
-        self._settled_by_ns = 0  # until this time the head may still settle after its motion
+        self._settled_by_ns = 0  # time until which the head may settle after its motion
 
     def activate(self) -> None:
         self._clear()
@@ -110,16 +111,16 @@ class PointHeadAction(Controller):
     def _read_target(self, target: PointStamped) -> Vector:
         point = np.array([target.point.x, target.point.y, target.point.z])
         if not (np.abs(point) <= _FARTHEST).all():
-            raise InputError("the target is not a finite point")
+            raise InputError("the target has a coordinate that is NaN, infinite or too large")
         return self._frame(target.header.frame_id or "world").transform(point)
 
     def _read_pointing(self, request: PointHead_Goal) -> tuple[str, Vector]:
-        """Return the frame that is to point, and its axis."""
+        """Return the frame that points at the target, and the unit vector of its pointing axis."""
         axis = np.array([request.pointing_axis.x, request.pointing_axis.y, request.pointing_axis.z])
         if not axis.any():
             axis = self._own_axis
         if not (np.abs(axis) <= _FARTHEST).all() or not (length := float(np.linalg.norm(axis))):
-            raise InputError("the pointing axis is not a direction")
+            raise InputError("the pointing axis is zero, or has a component that is NaN, infinite or too large")
         tilt = self.hardware.joints[self._joints[1]].handle
         frame = request.pointing_frame or self._own_frame or tilt.scene.child_link
         is_fixed = frame.lstrip("/") in ("world", "map", *self._odometry_frames())
@@ -133,7 +134,7 @@ class PointHeadAction(Controller):
         return frame_pose(self.sim, self.plugin.scoped, name, self._odometry_frames())
 
     def _odometry_frames(self) -> dict[str, Pose]:
-        """Return the poses of odometry frames of the robot's base, such as `odom`, from its odometry."""
+        """Return the world poses of odometry frames, such as `odom`, computed from the odometry of the base."""
         manager = getattr(self.plugin, "manager", None)
         found: dict[str, Pose] = {}
         for loaded in getattr(manager, "controllers", {}).values():
@@ -144,7 +145,7 @@ class PointHeadAction(Controller):
         return found
 
     def _head_joints(self, pointing: tuple[str, Vector]) -> HeadJoints:
-        """Return the current state of the neck."""
+        """Return the current axes, angles and limits of the neck's joints, with the pointing frame."""
         data = self.sim.engine.physics.fresh()
         joints = [self.hardware.joints[name] for name in self._joints]
         ids = [int(self.sim.mj_model.dof_jntid[joint.handle.mj_dofs[0]]) for joint in joints]
@@ -214,7 +215,7 @@ class PointHeadAction(Controller):
         elif now_ns < self._settled_by_ns and move.status is GoalStatus.SUCCEEDED:
             return
         elif move.status is GoalStatus.SUCCEEDED:
-            reason = f"the limits of the neck keep it {error:.3f} rad from the target"
+            reason = f"the limits of the neck keep the pointing axis {error:.3f} rad away from the target"
             self._end_goal(lambda ended: ended.abort(reason=reason))
         else:
             reason = f"the head did not reach the target: {move.reason}"

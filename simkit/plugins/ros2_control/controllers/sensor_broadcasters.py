@@ -18,7 +18,7 @@ _IMU_FIELDS: Final = tuple(SENSOR_INTERFACES["imu"])
 
 
 class ImuSensorBroadcaster(Controller):
-    """Publishes the IMU that `sensor_name` names on `~/imu`, in the frame `frame_id`."""
+    """Publishes the measurements of the IMU `sensor_name` on `~/imu`, in the frame `frame_id`."""
 
     types = ("imu_sensor_broadcaster/IMUSensorBroadcaster",)
 
@@ -54,7 +54,7 @@ _WRENCH_FIELDS: Final = tuple(SENSOR_INTERFACES["force_torque"])
 
 
 class ForceTorqueSensorBroadcaster(Controller):
-    """Publishes the sensor in `sensor_name`, or the interfaces in `interface_names`, on `~/wrench`."""
+    """Publishes the wrench of the sensor `sensor_name`, or of the interfaces in `interface_names`, on `~/wrench`."""
 
     types = ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",)
 
