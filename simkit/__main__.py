@@ -1,4 +1,4 @@
-"""`python -m simkit` is `simkit`."""
+"""Entry point for `python -m simkit`, which runs the command `simkit`."""
 
 from simkit.cli import main
 

@@ -94,16 +94,16 @@ def load(
         overrides: `PATH=VALUE` texts as for `--set`.
         sleep: leave bodies at rest out of the physics until something reaches them; see `docs/sleeping.md`.
         package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`.
-        render_thread: draw camera images on a second thread beside the physics. The result has the same bits. The
-            default is True where the process may use two processor cores or more.
+        render_thread: draw camera images on a second thread in parallel to the physics; the images have the same bits.
+            The default is True if the process may use two processor cores or more.
         on_error: policy for a plugin that raises: "stop" ends the run with a PluginError, "disable" continues without
             the plugin. The argument has priority over the file (`<simkit:on_error>`) and the plugin's class. With None,
-            these decide; their default is "stop".
+            the file or the class sets the policy; the default is "stop".
         spawn: models to add while the world is loaded: `"MODEL:x,y,yaw[:name]"` texts or `SpawnedModel` objects. MODEL
             is a file or a bare name. Unlike models of `Simulation.spawn`, these models are still present after a reset.
         params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2.
-            `"MODEL=FILE"` limits a file to one model. Models that are spawned later read the files too. Their values
-            have priority over the files that the plugins name.
+            `"MODEL=FILE"` limits a file to one model. Models that are spawned later read these files too. Values in
+            these files have priority over the files that the plugins name.
         change_world: function that receives the resolved world, with all options above applied, and returns the world
             to build.
 
@@ -141,7 +141,7 @@ def load(
     builder.parameter_files = parameter_files
     builder.files_read += [item.file.path for item in parameter_files]
     parts = make_all_parts(world, builder, diagnostics, allowed, plugins)
-    if parameter_files and not diagnostics.has_errors:  # `parts` lacks the plugins whose parameters have errors
+    if parameter_files and not diagnostics.has_errors:  # `parts` does not contain plugins whose parameters have errors
         from simkit.plugins.run_parameter_files import report_unused_parameter_files
 
         report_unused_parameter_files(
@@ -213,7 +213,7 @@ def describe(
 def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tuple[SceneSensor, dict[str, Any] | None]:
     """Return a sensor with the defaults of its preset, and its options as plain data.
 
-    The options are None where the kind of the sensor is not simulated.
+    The options are None if this kind of sensor is not simulated.
     """
     sensor = add_preset_defaults(scene_sensor, diagnostics)
     kind = sensor_kinds().get(sensor.kind)
@@ -292,7 +292,7 @@ def _scene(
 
 
 def _spawned_reader(resolver: Resolver) -> Any:
-    """Return a function that reads a model for `spawn`. It returns None for a model with errors, which it records."""
+    """Return a function that reads a model for `spawn`; for a model with errors, it records them and returns None."""
 
     def read(source: Source, diagnostics: Diagnostics, **options: Any) -> SceneModel | None:
         try:
@@ -327,7 +327,7 @@ def read_scene(
     base: str = "auto",
     missing_meshes: bool = False,
 ) -> tuple[Scene, Diagnostics]:
-    """Return the resolved scene of a file, before anything is built from it, and the diagnostics of reading it.
+    """Return the resolved scene of a file and the diagnostics of reading the file; nothing is built yet.
 
     Raises:
         LoadError: the file has errors.

@@ -1,4 +1,4 @@
-"""Child processes of simkit with a time limit; each one keeps the end of its output and stops with its parent."""
+"""Child processes with a time limit: the end of their output is stored, and they stop when their parent ends."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class ProcessResult:
 
 
 class ChildProcesses:
-    """Runner of simkit's modules in child processes. Several threads may use one runner at a time."""
+    """Runs simkit's modules in child processes. Several threads may use the same object at a time."""
 
     def __init__(self) -> None:
         self._alive: set[subprocess.Popen[bytes]] = set()
@@ -62,8 +62,8 @@ class ChildProcesses:
         Args:
             module: full name of the module.
             arguments: command-line arguments of the module.
-            environment: all environment variables of the child; None for those of this process.
-            folder: working directory of the child; None for that of this process.
+            environment: all environment variables of the child; None for the environment of this process.
+            folder: working directory of the child; None for the working directory of this process.
             limit: wall-time limit [s]; None for no limit.
         """
         with self._lock:
@@ -113,7 +113,7 @@ class ChildProcesses:
 
 
 class _OutputTail:
-    """Reader thread that keeps the end of a process's output. It reads everything, so that the process never blocks."""
+    """Thread that stores the end of a process's output; it reads all output, so that the process never blocks."""
 
     def __init__(self, pipe: IO[bytes] | None) -> None:
         self._pipe, self._kept = pipe, bytearray()
@@ -137,7 +137,8 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
     """Kill a process and its own child processes, which may outlive it."""
     if hasattr(os, "killpg"):
         try:
-            os.killpg(process.pid, signal.SIGKILL)  # it leads its own session, so its pid is the id of its group
+            # the process has its own session, so its process id is also the id of its process group
+            os.killpg(process.pid, signal.SIGKILL)
             return
         except (ProcessLookupError, PermissionError):
             pass

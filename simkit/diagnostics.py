@@ -33,7 +33,7 @@ _QUOTED = re.compile(r"'([^']+)'")
 class Diagnostics:
     """Collection of diagnostics in order; identical ones are kept once.
 
-    After `MOST_ERRORS` errors LoadError is raised: searching for a hundred thousand more would take minutes.
+    After `MOST_ERRORS` errors LoadError is raised, because a search for a hundred thousand errors would take minutes.
     """
 
     def __init__(self, items: Iterable[Diagnostic] = ()) -> None:
@@ -87,7 +87,7 @@ class Diagnostics:
             self._put(item)
 
     def pass_on(self, to: Diagnostics) -> None:
-        """Add all diagnostics, now and in future, to another collection."""
+        """Add all present and future diagnostics to another collection."""
         to.extend(self._items)
         self._successor = to
 
@@ -122,7 +122,7 @@ def closest(name: str, allowed: Iterable[str], least: float = 0.6) -> str | None
     Args:
         name: misspelled name.
         allowed: known names.
-        least: smallest similarity that counts, from 0 to 1.
+        least: smallest accepted similarity, from 0 to 1.
 
     Returns:
         Closest name, or None if no name is similar enough.
@@ -139,7 +139,7 @@ def _closest(name: str, names: tuple[str, ...], least: float) -> str | None:
     if not found:
         folded = {n.lower(): n for n in names}
         if name == name.lower() and len(folded) == len(names) and all(n in folded for n in names):
-            return None  # ignoring case gives the same search
+            return None  # all names are lower case already
         found = [folded[m] for m in difflib.get_close_matches(name.lower(), list(folded), n=1, cutoff=least)]
     return found[0] if found else None
 

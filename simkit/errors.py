@@ -23,7 +23,7 @@ from simkit.diagnostic_record import Diagnostic
 
 
 class SimkitError(Exception):
-    """Base of every error that simkit raises on purpose."""
+    """Base class of all errors that simkit raises on purpose."""
 
     exit_code: ClassVar[int] = 1
     code: str = "SK-CORE-001"
@@ -56,7 +56,7 @@ class InputError(SimkitError):
 
 
 class LoadError(InputError):
-    """Errors in a file that is to be loaded.
+    """Errors in a file, found while the file was loaded.
 
     Attributes:
         diagnostics: every problem found in one pass, including warnings and notes.
@@ -87,7 +87,7 @@ class ActionError(InputError):
 
 
 class ParameterError(InputError):
-    """Live parameter that does not exist, or a value that it does not accept."""
+    """Live parameter that does not exist, or a value that the parameter does not accept."""
 
     code = "SK-PARAMETER-001"
 
@@ -144,7 +144,7 @@ class SubscriberError(SimkitError):
 
 
 class RegressionError(SimkitError):
-    """Difference between recorded outputs and the golden ones."""
+    """Difference between the outputs of a run and the golden outputs."""
 
     exit_code: ClassVar[int] = 5
     code = "SK-GOLDEN-001"

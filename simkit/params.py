@@ -1,8 +1,8 @@
 """Typed reader for a block of parameters from a file.
 
-A `Params` is a tree of elements that is independent of any XML library. It records which elements were read, so that
-unread elements can be reported. It records an invalid value as a diagnostic instead of raising, so that one pass finds
-all problems.
+A `Params` is a tree of elements that is independent of any XML library. The tree records which elements were read, so
+that unread elements can be reported. An invalid value is recorded as a diagnostic instead of raised, so that one pass
+finds all problems.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from simkit.pose import IDENTITY, Pose
 
 T = TypeVar("T")
 LARGEST = 1e100
-"""Largest magnitude of a vector's component, a standard deviation and the like; a square of more may overflow."""
+"""Largest accepted magnitude of a vector's component or standard deviation; squares of larger numbers may overflow."""
 _FARTHEST = 1e15  # [m] largest coordinate of a pose; sums of larger poses would lose their precision
 _TRUE, _FALSE = {"true", "1"}, {"false", "0"}
 _NOT, _READ, _WHOLLY = range(3)  # element unread; read; read with all its children
@@ -52,7 +52,7 @@ class Params:
         self.attributes = dict(attributes or {})
         self.children = list(children)
         self.diagnostics = diagnostics if diagnostics is not None else Diagnostics()
-        # allocated on first use: most elements of a file have no children or attributes that are read
+        # created at first use, because most elements of a file have no children or attributes that are read
         self._asked: set[str] | None = None
         self._attributes_asked: set[str] | None = None
         self._read = _NOT
@@ -100,7 +100,7 @@ class Params:
         return None
 
     def child_or_self(self, name: str) -> Params:
-        """The first child of that name, or this element: where a message about the child points to."""
+        """Return the first child of that name, or this element, as the location for a message about the child."""
         return self.child(name) or self
 
     def block(self, name: str) -> Params:
@@ -216,7 +216,7 @@ class Params:
     def vector(
         self, name: str, size: int, default: Sequence[float] | None = None, required: bool = False
     ) -> tuple[float, ...]:
-        """Return `size` finite numbers that white space separates, each at most `LARGEST` in magnitude."""
+        """Return a vector of `size` finite numbers, separated by white space; their magnitude is at most `LARGEST`."""
 
         def parse(p: Params) -> tuple[float, ...]:
             parts = p.first_of(size)
@@ -299,15 +299,15 @@ class Params:
         self.diagnostics.error(code, message, self.where, hint)
 
     def warning(self, code: str, message: str, hint: str = "") -> None:
-        """Records a warning at this element's line."""
+        """Record a warning at this element's line."""
         self.diagnostics.warning(code, message, self.where, hint)
 
     def note(self, code: str, message: str, hint: str = "") -> None:
-        """Records a note at this element's line."""
+        """Record a note at this element's line."""
         self.diagnostics.note(code, message, self.where, hint)
 
     def unread(self) -> Iterator[tuple[Params, str]]:
-        """Yield each unread element with the closest requested name, or with the remark that it is a duplicate."""
+        """Yield each unread element with a hint: the closest requested name, or that the element is a duplicate."""
         for c in self.children:
             if ":" in c.name:
                 continue
@@ -318,7 +318,7 @@ class Params:
                 yield from c.unread()
 
     def unread_attributes(self) -> Iterator[tuple[Params, str]]:
-        """Yield each attribute that no reader requested, for the elements below that were read."""
+        """Yield each attribute that no reader requested, with its element, for all read elements below this element."""
         for c in self.children:
             if ":" in c.name or c._read in (_NOT, _WHOLLY):
                 continue

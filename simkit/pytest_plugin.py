@@ -45,8 +45,8 @@ class WorldOpener:
 
     Args:
         folder: folder of the test file; worlds are searched there first.
-        opened: list that receives every world, opened or refused, for the report of a failure.
-        stack: closes the worlds at the end of the test, the last one first.
+        opened: list that receives every world, with the diagnostics of a failed load, for the report of a failed test.
+        stack: closes the worlds at the end of the test, the last world first.
     """
 
     def __init__(self, folder: Path, opened: list[_Opened], stack: ExitStack) -> None:
@@ -57,7 +57,7 @@ class WorldOpener:
 
         Args:
             source: file (relative to the test's folder or to the working directory), bare name, or text of SDF or URDF.
-                A bare name is that of a world or model that is shipped with simkit.
+                A bare name selects a world or model that is shipped with simkit.
             options: options of `simkit.load`: `plugins`, `seed`, `plugin_paths`, `resource_paths`, `strict`, …
 
         Raises:
@@ -78,7 +78,7 @@ class WorldOpener:
         return sim
 
     def _resolve(self, source: str | os.PathLike[str]) -> str | os.PathLike[str]:
-        """Return the path of the file beside the test if it exists, else the source unchanged."""
+        """Return the path of the file in the test's folder if it exists, else the source unchanged."""
         if "<" in str(source):
             return source
         beside = self._folder / source
@@ -129,7 +129,7 @@ def sensor_regression(request: pytest.FixtureRequest) -> Iterator[SensorRegressi
     opened: list[_Opened] = request.node.stash.setdefault(_OPENED, [])
     options, file = request.config.option, request.path
     reason = (options.simkit_golden_reason or _REASON) if options.simkit_update_golden else None
-    # the name with its parameters; the class distinguishes methods of the same name
+    # the test's name with its parameters, and with its class, because two classes may have methods of one name
     name = request.node.name if request.cls is None else f"{request.cls.__qualname__}.{request.node.name}"
     location = GoldenLocation(
         file.parent / "golden" / file.stem,

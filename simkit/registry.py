@@ -1,6 +1,6 @@
 """Registries of classes from the modules of a package and from entry points.
 
-A new class needs only its own file; no list of classes is edited.
+A new class needs only a new file, because there is no list of classes to edit.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _OUTER = "\nclass ", "\ndef ", "\nasync def "
 def entry_points_of(group: str) -> list[EntryPoint]:
     """Return the entry points of a group.
 
-    Reading all entry points takes 20 ms. They are cached until a folder of `sys.path` changes.
+    Reading all entry points takes 20 ms, so they are cached until a folder of `sys.path` changes.
     """
     state = tuple((folder, _folder_time(Path(folder))) for folder in sys.path)
     return list(_all_entry_points(state).select(group=group))
@@ -48,18 +48,18 @@ def _folder_time(folder: Path) -> int:
 
 
 class Kinds(Mapping[str, type[T]], Generic[T]):
-    """Mapping from names to the classes under `packages` and in the entry points `group` that derive from `base`.
+    """Mapping from names to classes: subclasses of `base` in the packages and in the entry points of a group.
 
-    A lookup imports only the class with that name, because the names are read from the text of the modules. Iteration
-    and `len` import every module.
+    A lookup imports only the module of the class with that name, because the names are read from the text of the
+    modules. Iteration and `len` import every module.
 
     Args:
-        packages: dotted names of the packages whose modules (and sub-packages' modules) are read.
+        packages: dotted names of the packages whose modules are read, including modules of sub-packages.
         group: entry-point group.
         base: required base class; abstract and nameless classes are skipped.
         names: function that returns the names of a class.
         attributes: class attributes that `names` reads: tuples of texts.
-        spell: function that `names` applies to each text.
+        spell: function that converts a text of these attributes to a name, as `names` does.
 
     Raises:
         RuntimeError: two classes have the same name; raised when all classes are listed.
@@ -96,7 +96,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     @cached_property
     def written(self) -> Mapping[str, str]:
-        """Spelling of each name in the source of its class. Only modules that compute names are imported."""
+        """Text of each name as written in the source code of its class; imports only modules that compute names."""
         literal, computed = self._written
         modules = (importlib.import_module(module) for module in computed)
         classes = [*self._foreign, *(cls for module in modules for cls in self._classes(module))]
@@ -109,7 +109,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     @cached_property
     def _all(self) -> Mapping[str, type[T]]:
-        """All classes by name, sorted."""
+        """All classes by name, sorted by name."""
         classes: dict[type[T], None] = {}
         for module, _ in self._modules:
             classes.update(dict.fromkeys(self._classes(importlib.import_module(module))))
@@ -141,7 +141,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     @cached_property
     def _written(self) -> tuple[Mapping[str, tuple[str, Sequence[str]]], Sequence[str]]:
-        """Source spelling and modules of each literal name, and the modules that compute their names."""
+        """Written text and modules of each literal name, and names of the modules that compute names."""
         literal: dict[str, tuple[str, list[str]]] = {}
         computed = []
         for module, file in self._modules:
@@ -153,7 +153,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         return literal, computed
 
     def _texts(self, file: Path) -> list[str] | None:
-        """Read the texts that the classes of a file assign to the attributes; None for anything but literal texts."""
+        """Return the texts that a file's classes assign to the attributes; None if one is not a literal text."""
         try:
             content = file.read_bytes()
             if not any(name in content for name in map(str.encode, self._attributes)):
@@ -196,7 +196,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
 
 def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, Path]]:
-    """Yield the full names and files of the modules in a package's folders and below, without importing them."""
+    """Yield name and file of each module in a package and its sub-packages, without importing the modules."""
     for folder in folders:
         for info in pkgutil.iter_modules([folder]):
             name, path = f"{package}.{info.name}", Path(folder, info.name)
@@ -206,7 +206,7 @@ def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, 
 
 
 def _assigned_name_pattern(source: str, name: str) -> Iterator[int]:
-    """Yield the offset behind each `=` that assigns a class attribute of this name in a module's text."""
+    """Yield the offset after each `=` in a module's text that assigns a class attribute of this name."""
     at = source.find(f"\n    {name}")
     while at >= 0:
         line = source[at + 5 + len(name) : source.find("\n", at + 1)]

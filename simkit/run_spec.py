@@ -17,12 +17,12 @@ from typing import Any, Final, Literal, Protocol, TypedDict, cast
 FilePath = str | os.PathLike[str]
 JsonObject = dict[str, Any]
 JsonMapping = Mapping[str, Any]
-"""Content of JSON and YAML: texts, numbers, truth values, lists and further objects by name."""
+"""Object of JSON or YAML: texts, numbers, truth values, lists and objects by name."""
 PluginErrorPolicy = Literal["stop", "disable"]
 """Policy for a plugin that raises: end the run, or continue without the plugin."""
 
 NO_FILE_POSITION: Final = ""
-"""Position of an item that no file contains."""
+"""Position of an item that does not come from a file."""
 
 _MODEL_FILE_SUFFIXES: Final = frozenset((".config", ".sdf", ".urdf", ".xacro", ".xml"))
 """Suffixes of the files that make a folder a model."""
@@ -41,8 +41,8 @@ class Check:
     """One condition that a run must meet.
 
     Attributes:
-        kind: kind of the condition. `expression` belongs to goal, always and final, `models` to apart, `topic` and the
-            other fields to rate.
+        kind: kind of the condition. The kinds goal, always and final use `expression`, apart uses `models`, and rate
+            uses `topic`, `rate` and `tolerance`.
         name: name in a report.
         expression: expression in the language of `docs/conditions.md`.
         by: simulated time by which a goal must be reached [s]; None for the end of the run.
@@ -71,7 +71,7 @@ class Check:
 
     @property
     def title(self) -> str:
-        """Name of the check, or a text of its condition."""
+        """Name of the check, or its condition as text."""
         if self.name:
             return self.name
         if self.kind == "apart":
@@ -117,7 +117,7 @@ class SpawnRequest(Protocol):
 
     Attributes:
         source: file or bare name.
-        place: x, y [m], yaw [rad] and the further pose values that were given; None for the pose of the file.
+        place: pose in the order x, y [m], yaw [rad], then further pose values; None for the pose in the file.
         name: name of the model in the world; None for the name in the file.
     """
 
@@ -139,7 +139,7 @@ class SourceOptions(TypedDict, total=False):
 
 
 class LoadOptions(SourceOptions, total=False):
-    """Passed arguments of `simkit.load` that have no `RunSpec` field of their own."""
+    """Arguments of `simkit.load` that a run passes and that are not fields of `RunSpec`."""
 
     plugin_paths: Sequence[FilePath]
     params_files: FilePath | Sequence[FilePath | tuple[str, FilePath]]
@@ -186,22 +186,22 @@ class RunSpec:
         commands: commands to send during the run: mappings as in a `--script`, each with its file position under
             "where".
         plugins: plugins made in Python, as for `simkit.load`; from Python only.
-        topics: shell patterns of the topics to record or compare; empty for all but clocks.
+        topics: shell patterns of the topics to record or compare; empty for all topics except clocks.
         skip: shell patterns of topics to leave out.
-        tolerances: the first matching pattern counts, patterns of fields before patterns of topics.
+        tolerances: allowed differences; the first match applies, patterns of fields before patterns of topics.
         state: compare the physics state too.
-        model: count a changed meaning of the world as a difference even if no output shows it.
+        model: report a changed world as a difference even if all outputs are equal.
         picture: longest side of a stored image [px].
-        until: expression that ends the run; reaching it is a check of its own.
+        until: expression that ends the run when it becomes true; a run in which this never happens fails.
         timeout: simulated time [s] by which `until` must hold; None for the duration.
         wall_timeout: wall time [s] after which the run is aborted.
         checks: conditions that must hold.
         options: load options: resources and further arguments of `simkit.load`.
         folder: folder that relative paths start from.
         file: file of the specification; None if it was made in Python.
-        test: `FILE.py::NAME` of the test that can repeat the run, because it makes plugins or steps the simulation
-            itself.
-        bits: require equal bits on the same machine; otherwise tolerances apply there too. From Python only.
+        test: `FILE.py::NAME` of the only test that can repeat the run; for tests that create plugins or step the
+            simulation.
+        bits: require equal bits on the same machine; if false, tolerances also apply there. From Python only.
         play: bag whose commands are sent again at their ticks (relative to `folder`); empty for none.
         play_topics: `TOPIC` or `OLD:=NEW`, as for `--play-topic`; empty for all topics that the world subscribes to.
         velocity: `V,W` [m/s, rad/s] to send once, as for `--cmd-vel`; None for none.
@@ -258,7 +258,7 @@ class RunSpec:
         return cast(LoadArguments, {**arguments, **self.options})
 
     def source_options(self) -> SourceOptions:
-        """Return the options for reading the world's file that were passed."""
+        """Return those load options that are used for reading the world's file."""
         names = SourceOptions.__optional_keys__
         return cast(SourceOptions, {name: value for name, value in self.options.items() if name in names})
 
@@ -286,14 +286,14 @@ class RunSpec:
 
     @property
     def source(self) -> str:
-        """World argument of `simkit.load`: the path of the world's file beside the scenario, else `world`."""
+        """Argument `source` of `simkit.load`: the path of the world's file in `folder` if it exists, else `world`."""
         if "<" in self.world:
             return self.world
         return self.world if self.beside is None else str(self.beside)
 
     @property
     def beside(self) -> Path | None:
-        """File or folder of the world beside the scenario; None for a bare name or XML text."""
+        """File or folder of the world in `folder`; None for a bare name or XML text."""
         if "<" in self.world:
             return None
         path = self.folder / self.world

@@ -17,6 +17,6 @@ def allowed_folder(path: str) -> Path | None:
         roots = [Path.cwd(), *(Path(root) for root in os.environ.get(SAVE_PATH_VARIABLE, "").split(os.pathsep) if root)]
         if any(folder.is_relative_to(root.resolve()) for root in roots):
             return folder
-    except (OSError, RuntimeError, ValueError):  # invalid path: a loop of links, a name with a zero byte
+    except (OSError, RuntimeError, ValueError):  # invalid path, such as a loop of links or a name with a zero byte
         pass
     return None

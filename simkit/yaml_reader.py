@@ -1,4 +1,4 @@
-"""Reader for YAML of users: returns plain values, or raises with the reason why the text is invalid."""
+"""Reader for YAML files of users: returns plain values, or raises NotYaml with the reason."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class NotYaml(SimkitError):
     """Invalid YAML; the message has the reason.
 
     Attributes:
-        line: line of the text, counted from 1; None where unknown.
+        line: line of the text, counted from 1; None if it is unknown.
     """
 
     def __init__(self, why: str, line: int | None = None) -> None:
@@ -30,7 +30,7 @@ class NotYaml(SimkitError):
 def read_yaml(text: str) -> Any:
     """Return the values of a YAML text.
 
-    Numbers follow YAML 1.2 and ROS: `1e-3` is a number, although YAML 1.1 reads a text. `12:30` is a text, not 750.
+    Numbers follow YAML 1.2 and ROS: `1e-3` is a number (a text in YAML 1.1), and `12:30` is a text (750 in YAML 1.1).
 
     Raises:
         NotYaml: the text is not YAML, a value does not fit its tag, or a value contains itself.
@@ -124,7 +124,7 @@ def _yaml_error(error: Any) -> NotYaml:
 
 
 def _check_size(root: Any) -> None:
-    """Raise if a tree is too deep, which includes a value that contains itself, or too large."""
+    """Raise an error if a tree is too large or too deep; a value that contains itself is too deep."""
     count, left = 0, [(root, 0)]
     while left:
         value, depth = left.pop()

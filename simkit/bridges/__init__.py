@@ -1,5 +1,5 @@
-"""Bridges between a running simulation and the outside of its process: clients of other processes, and a viewer window.
+"""Connections of a running simulation to other processes (local clients) and to a viewer window.
 
-A bridge is polled between two steps. It passes commands on in the same way as a caller in the process would.
-A bridge never changes the physics by its presence. It opens no network port unless the user requests one.
+A bridge is polled between two steps. Its commands have the same effect as calls in the simulation's process. A bridge
+without commands never changes the physics. Network ports are opened only if the user requests them.
 """

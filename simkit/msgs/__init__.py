@@ -1,4 +1,4 @@
-"""ROS 2 messages: dataclasses of rosbags, built from plain values and serialised as CDR.
+"""ROS 2 messages: dataclasses from the package rosbags, built from plain values and serialised as CDR.
 
     msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
     msgs.type_of("sensor_msgs/msg/Imu")  # the class itself, for the fast path
@@ -66,7 +66,7 @@ def make(type_name: str, /, **fields: FieldValue) -> Message:
     """Build a message. Missing fields are zero (a quaternion's w is 1), dicts become messages, numbers become arrays.
 
     Raises:
-        MessageError: the type or a field is unknown (the message suggests the closest), or a value does not match.
+        MessageError: the type or a field is unknown (the message suggests the closest name), or a value does not match.
     """
     return _builder_of()(type_name).build(fields)
 
@@ -75,7 +75,7 @@ def from_dict(type_names: Sequence[str], values: Mapping[str, FieldValue]) -> Me
     """Build a message of the first type that the values match.
 
     Raises:
-        MessageError: the values match no type; with the error of the first type, and the names of the other types.
+        MessageError: the values match no type; the message has the error of the first type and the other types' names.
     """
     first: MessageError | None = None
     for name in type_names:
@@ -129,7 +129,7 @@ def header(time_ns: int, frame_id: str) -> Header:
 
 
 def headers(time_ns: int) -> Callable[[str], Header]:
-    """Return a function from frame to `header(time_ns, frame)`; faster than `header` for many frames."""
+    """Return a function that makes headers with one time for different frames; faster than `header`."""
     stamp, _, header_type = _stamp_types()
     seconds, rest = divmod(time_ns, _NS)
     return lambda frame_id: header_type(stamp(seconds, rest), frame_id)

@@ -1,4 +1,4 @@
-"""Interfaces as in `ros2 interface`: names of messages, services and actions, their definitions and prototypes."""
+"""Names, definitions and prototypes of messages, services and actions, as `ros2 interface` prints them."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def full_interface_name(name: str) -> str:
 def interface_text(
     type_name: str, *, comments: bool = True, all_comments: bool = False, store: Typestore | None = None
 ) -> str:
-    """Return the definition of a type, with those of its fields' types indented below, as `ros2 interface show` does.
+    """Return a type's definition, with the definitions of its fields' types indented, as `ros2 interface show` does.
 
     Raises:
         MessageError: the type is unknown.
@@ -73,7 +73,7 @@ def _lines(name: str, depth: int, comments: bool, below: bool, store: Typestore 
 
 
 def _text(name: str, store: Typestore | None) -> str:
-    """Return the text of a type's definition file, as far as it is known."""
+    """Return the text of a type's definition file, or a text made from the type store if there is no file."""
     if store is None and name in definition_files():
         return definition_text(name)
     found = (store or type_store()).generate_msgdef(name if store else full_name(name), ros_version=2)[0]

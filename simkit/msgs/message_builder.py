@@ -29,7 +29,7 @@ _Conversion = Callable[[FieldValue], FieldValue]
 
 
 class MessageBuilder:
-    """Builder of messages of one type.
+    """Builds messages of one type.
 
     Attributes:
         name: full name of the type.

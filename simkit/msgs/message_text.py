@@ -1,4 +1,4 @@
-"""Text formats of messages, as ROS 2's commands print them: YAML, CSV, Python and plain values; and fields by path.
+"""Text formats of messages as ROS 2's commands print them (YAML, CSV, Python, plain values), and access to fields.
 
 Every function accepts the type store of the message; the default is simkit's. A bag has its own type store.
 """

@@ -1,4 +1,4 @@
-"""Message types: those of ROS 2 Jazzy from rosbags, and those of `definitions/`, which are read at their first use.
+"""Message types: types of ROS 2 Jazzy from rosbags, and types in `definitions/`, which are read at first use.
 
 The definition of a simkit type is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
 with the published fields in the published order. Constants are part of a definition but not of its hash. Field names,
@@ -44,7 +44,7 @@ def definition_text(interface_name: str) -> str:
 
 @cache
 def _message_sources() -> dict[str, tuple[str, int]]:
-    """Return the interface of each message type in `definitions/`, and the index of its part in that file."""
+    """Return the interface of each message type in `definitions/`, and the index of the type's part in the file."""
     return {
         f"{interface}{part}": (interface, index)
         for interface in definition_files()
@@ -54,7 +54,7 @@ def _message_sources() -> dict[str, tuple[str, int]]:
 
 # Message of any type: an object of a dataclass that rosbags creates at run time.
 Message = Any
-# Value of a message's field: a number, a text, an array, a message or a list of such.
+# Value of a message's field: a number, a text, an array, a message or a list of these.
 FieldValue = Any
 # Type of a field in the type store: its kind (`BASE`, `NAME`, `ARRAY`, `SEQUENCE`) and the details of that kind.
 FieldNode = tuple[int, Any]
@@ -169,7 +169,7 @@ def types_of(*type_names: str) -> tuple[type[Message], ...]:
 
 @cache
 def definition(type_name: str) -> str:
-    """Return the `ros2msg` text of a type, with those of all types that it uses."""
+    """Return the definition of a type as `ros2msg` text, with the definitions of all types that it uses."""
     return type_store().generate_msgdef(full_name(type_name), ros_version=2)[0]
 
 

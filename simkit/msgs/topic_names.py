@@ -1,4 +1,4 @@
-"""Topic names."""
+"""Conversion of names to valid topic names."""
 
 from __future__ import annotations
 

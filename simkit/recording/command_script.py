@@ -50,7 +50,7 @@ class Command:
     where: str = ""
 
     def time(self, index: int) -> float | None:
-        """Return the time of the `index`-th sending [s]; None after the last one."""
+        """Return the time of the message number `index` [s], counted from 0; None after the last message."""
         if index == 0:
             return self.at
         if self.until is None:
@@ -69,7 +69,7 @@ class Commands:
 
     Args:
         sim: simulation that receives the commands.
-        commands: commands in any order; of two at one time, the earlier in the list is sent first.
+        commands: commands in any order; commands of the same time are sent in the order of the list.
     """
 
     def __init__(self, sim: Simulation, commands: Iterable[Command]) -> None:
@@ -81,7 +81,7 @@ class Commands:
 
     @property
     def next_tick(self) -> int | None:
-        """Tick of the next command; None after the last one."""
+        """Tick of the next command; None after the last command."""
         return self._queue[0][0] if self._queue else None
 
     def send_due(self) -> None:
@@ -201,7 +201,7 @@ def _validate_item(item_with_location: tuple[object, str]) -> JsonObject:
 
 
 def commands_of(items: Iterable[JsonMapping], topics: Mapping[str, str]) -> list[Command]:
-    """Convert mappings to commands: those of a script, each with its file and line under "where".
+    """Convert the mappings of a script to commands; each mapping has its file and line under "where".
 
     Raises:
         InputError: SK-CLI-011 with one line for each invalid command.

@@ -25,8 +25,7 @@ class TopicTaps:
 
     Args:
         sim: simulation to observe.
-        receiver_of: function from topic and type to the callback for its messages, or None for no tap; called once per
-            topic.
+        receiver_of: function that returns the callback for a topic and type, or None for no tap; called once per topic.
     """
 
     def __init__(self, sim: Simulation, receiver_of: Callable[[str, str], Receiver | None]) -> None:
@@ -62,8 +61,9 @@ class MessageQueue(Generic[_Label]):
 
     Args:
         deliver: callback with the label of a message, and the message.
-        freeze: function that copies a queued message, because its publisher may change it; every message is delivered
-            in this form. Without it, only images are queued: any message after an image waits for its rendering.
+        freeze: function that copies a message, because its publisher may change the message while it is queued; every
+            message is delivered as a copy. Without this function only images are queued: a message after an image then
+            waits until the image is rendered.
     """
 
     def __init__(

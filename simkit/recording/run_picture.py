@@ -90,7 +90,7 @@ def save_picture(sim: Simulation, path: Path, render: Render, driven: DrivenPath
                 _add_sphere(scene, point, _SCAN_RADIUS * size, _SCAN_COLOUR)
 
     eye, target = _viewpoint([*points, *_moving_bodies(sim)], driven)
-    # render with twice the resolution and shrink: smooth edges on every renderer
+    # twice the resolution gives smooth edges on every renderer
     width, height = _SIZE
     large = render(sim, _OVERSAMPLED * width, _OVERSAMPLED * height, eye=eye, target=target, decorate=decorate)
     colours = cv2.resize(large, _SIZE, interpolation=cv2.INTER_AREA)

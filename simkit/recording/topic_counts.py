@@ -23,7 +23,9 @@ class TopicCount:
     Attributes:
         counted: False for a topic that is not read; its numbers are unknown.
         count: number of messages after `since`.
-        since, second, last: simulated times [ns] of the start of counting, of the second message and of the newest.
+        since: simulated time [ns] at which counting started.
+        second: simulated time [ns] of the second message.
+        last: simulated time [ns] of the newest message.
     """
 
     topic: str
@@ -35,9 +37,9 @@ class TopicCount:
     last: int = 0
 
     def rate(self) -> float | None:
-        """Return the messages per simulated second [Hz] after the second message; None before the third.
+        """Return the messages per simulated second [Hz] after the second message; None before the third message.
 
-        The first message is left out, because it may lie off the sensor's time grid.
+        The first message is left out, because the time to the second message can differ from the sensor's period.
         """
         if self.count < 3 or self.last <= self.second:
             return None
@@ -45,12 +47,12 @@ class TopicCount:
 
 
 class TopicCounter:
-    """Counter of the messages of all topics, except topics in the bus's `aside` that nothing else reads.
+    """Counts the messages of all topics, except topics in the bus's `aside` that nothing else reads.
 
     Args:
         sim: simulation to observe.
         skip: types to list without reading them.
-        is_read: function that returns True for a topic that something else reads; it is counted regardless of its type.
+        is_read: function that returns True for a topic that something else reads; such topics are always counted.
     """
 
     def __init__(

@@ -121,13 +121,14 @@ class Client(ServerLink):
     def subscribe_all(self, topics: Iterable[str], depth: int = DEFAULT_DEPTH) -> list[LiveSubscription]:
         """Subscribe to several topics at once.
 
-        All requests are sent before the first answer is read: a simulation with slow steps answers once per step.
+        All requests are sent before the first answer is read, because a simulation with slow steps answers only once
+        per step.
         """
         opened, requests = [], []
         for topic in topics:
             number = self.next_number()
             subscription = LiveSubscription(self, number, topic if topic.startswith("/") else "/" + topic, depth)
-            self.subscriptions[number] = subscription.take  # its first messages may come with the answer
+            self.subscriptions[number] = subscription.take  # the first messages may arrive together with the answer
             opened.append(subscription)
             args = {"number": number, "topic": topic, "depth": depth}
             requests.append(self.send_request("subscribe", args))

@@ -49,7 +49,7 @@ class LiveSubscription:
     Attributes:
         topic: absolute name of the topic.
         waiting: messages that have arrived and were not read yet, the oldest first.
-        lost: number of messages that were dropped because more arrived than were read.
+        lost: number of messages that were dropped because the queue was full.
     """
 
     def __init__(self, link: ServerLink, number: int, topic: str, depth: int) -> None:

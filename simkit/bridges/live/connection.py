@@ -58,8 +58,8 @@ class ClientConnection:
     Attributes:
         node: name of the client in node lists.
         subscriptions, publishers, goals: open handles of the client, by the client's numbers.
-        is_held: True while nothing is read from the client, because more of its commands would be dropped.
-        why: reason for disconnecting the client, once it was sent to the client; None for a connection in use.
+        is_held: True while reading from the client is paused, because further commands would be dropped.
+        why: reason for disconnecting the client, after the client was informed; None for a connection in use.
     """
 
     def __init__(self, connection: socket.socket, number: int) -> None:
@@ -77,7 +77,7 @@ class ClientConnection:
         self._queue_bytes = 0
         self._next = 0
         self._types: dict[str, int] = {}
-        self._rest: memoryview | None = None  # unsent rest of a piece
+        self._rest: memoryview | None = None  # remaining bytes of a partly sent piece
         self._sent = time.monotonic()
 
     # ------------------------------------------------------------------ from the client
@@ -98,7 +98,7 @@ class ClientConnection:
 
     @property
     def is_clogged(self) -> bool:
-        """True while so many answers are queued that no more requests are read."""
+        """True while too many answers are queued; then no further requests are read."""
         return self._answer_bytes > _ANSWERS_FULL
 
     # ------------------------------------------------------------------ to the client

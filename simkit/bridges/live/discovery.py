@@ -58,7 +58,7 @@ def simulations() -> list[RunningSim]:
 
 
 def _read_greetings(callers: dict[Path, socket.socket]) -> dict[Path, tuple[int, str]]:
-    """Read the process number and the world from the greeting of each simulation, as far as it arrives in time."""
+    """Read process number and world from the greeting of each simulation; greetings that arrive late are left out."""
     readers = {caller: FrameReader(LARGEST_OUT, (TELL,)) for caller in callers.values()}
     paths = {caller: path for path, caller in callers.items()}
     found: dict[Path, tuple[int, str]] = {}
@@ -80,7 +80,7 @@ def _read_greetings(callers: dict[Path, socket.socket]) -> dict[Path, tuple[int,
 
 
 def find_socket(name: str | None = None) -> Path:
-    """Return the socket of a simulation: by name, else by the variable `SIMKIT_SIM`, else of the only one.
+    """Return the socket of the simulation `name`, else of the one in `SIMKIT_SIM`, else of the only running simulation.
 
     Raises:
         LiveError: SK-LIVE-001 no simulation runs; SK-LIVE-002 several simulations run; SK-LIVE-003 no simulation has

@@ -21,7 +21,7 @@ class LiveError(InputError):
 
 
 class LiveClosed(LiveError):
-    """Error for a simulation that has ended or has closed the connection; with the reason if it is known."""
+    """Error for a simulation that has ended or has closed the connection; the message has the reason if it is known."""
 
     def __init__(self, message: str, code: str = "SK-LIVE-005") -> None:
         super().__init__(message, code)

@@ -24,7 +24,7 @@ _NEW_TOPIC = re.compile(r"(/[A-Za-z0-9_.-]+)+")
 
 
 class RequestRefused(InputError):
-    """Error for a request that the server refuses; with the reason."""
+    """Error for a request that the server refuses; the message has the reason."""
 
     def __init__(self, message: str, code: str = "SK-LIVE-008") -> None:
         super().__init__(message, code)
@@ -36,7 +36,7 @@ class RequestHost(Protocol):
     Attributes:
         peers: connections of clients, by file descriptor.
         feeds: topics that clients subscribe to.
-        client_topics: topics that only clients had when they were opened.
+        client_topics: topics that a client created, because nothing in the simulation used them.
     """
 
     sim: Simulation
@@ -45,13 +45,13 @@ class RequestHost(Protocol):
     client_topics: set[str]
 
     def measured_rtf(self) -> float:
-        """Return the real-time factor of the last moments."""
+        """Return the real-time factor over about the last second of wall time."""
         ...
 
 
 @dataclass(frozen=True)
 class Request:
-    """Request of a client: its arguments, and the CDR after them."""
+    """Request of a client: its arguments, and the message (CDR) that follows them."""
 
     server: RequestHost
     peer: ClientConnection
@@ -199,7 +199,7 @@ def advertise(request: Request) -> object:
 
 
 def _count_new_topic(request: Request, topic: str) -> None:
-    """Count a topic that only clients have. Recordings and topic counts keep such a topic until the run ends."""
+    """Count a topic that a client creates. Their number is limited, because recordings keep topics until the end."""
     if not _NEW_TOPIC.fullmatch(topic):
         raise RequestRefused(f"{topic!r} is not a topic name; expected letters, digits and _ between slashes")
     names = request.server.client_topics

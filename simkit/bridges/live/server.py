@@ -1,7 +1,8 @@
-"""Server that `simkit run` opens for clients of other processes. The run polls the server between two slices.
+"""Server that `simkit run` opens for clients in other processes. The run polls the server between two slices.
 
-No code here runs beside the physics. Commands of clients follow the same path as calls in the process. The run's bits
-therefore depend only on the commands and on the ticks at which they arrived. Reading changes no bits.
+A slice is the group of steps between two polls. The server has no thread of its own. Commands of clients are processed
+like calls in the process. The run's bits therefore depend only on the commands and on the ticks at which they arrived.
+Reading changes no bits.
 """
 
 from __future__ import annotations
@@ -48,10 +49,10 @@ class Server:
         path: path of the socket.
         feeds: topics that clients subscribe to.
         peers: connections of clients, by file descriptor.
-        client_topics: topics that only clients had when they were opened, over the whole run.
+        client_topics: topics that clients created during the run, because nothing in the simulation used them.
 
     Raises:
-        NoSocketFolder: no folder can hold the socket; with the reason.
+        NoSocketFolder: no folder can contain the socket; the message has the reason.
     """
 
     def __init__(self, sim: Simulation, name: str | None = None) -> None:
@@ -117,7 +118,7 @@ class Server:
         return found
 
     def measured_rtf(self) -> float:
-        """Return the real-time factor of the last moments."""
+        """Return the real-time factor over about the last second of wall time."""
         now, tick = time.monotonic(), self.sim.tick
         began, first = self._pace[0]
         if now - self._pace[-1][0] > 0.5:
@@ -130,9 +131,12 @@ class Server:
         return self._listening.fileno() < 0
 
     def slices(self, *lengths: float) -> tuple[float, ...]:
-        """Return the lengths of the run's slices with clients, from their lengths without clients [s, wall time].
+        """Return the lengths of the run's slices [s, wall time], adapted to the connected clients.
 
-        Slices are shorter while clients are connected, and shorter still while their requests take all the time.
+        Slices are shorter while clients are connected, and even shorter while clients send many requests.
+
+        Args:
+            *lengths: lengths of slices without clients [s, wall time].
         """
         if not self.peers:
             return lengths
@@ -140,7 +144,7 @@ class Server:
         return tuple(length * factor for length in lengths)
 
     def _serve_busy_clients(self, until: float) -> None:
-        """Process frames until the time is over, a few of each client in turn."""
+        """Process a few frames of each client in turn, until the time `until` or until no client has frames."""
         busy = self._busy
         try:
             while busy:
@@ -309,7 +313,7 @@ class Server:
             self._disconnect(peer)
             return
         if not peer.is_clogged and peer.reader.is_in_frame and peer not in self._busy:
-            self._busy.append(peer)  # its requests may have waited until its answers were sent
+            self._busy.append(peer)  # requests of this client may have waited for its answers
         self._update_interest(peer)
 
     def _update_interest(self, peer: ClientConnection) -> None:

@@ -26,7 +26,7 @@ _LIVING = frozenset({errno.EAGAIN, errno.EINPROGRESS, errno.EACCES, errno.EPERM}
 
 
 class NoSocketFolder(Exception):
-    """Error for a socket that has no usable folder; with the reason."""
+    """Error for a socket that has no usable folder; the message has the reason."""
 
 
 def is_possible() -> bool:
@@ -61,15 +61,15 @@ def folder_fault(folder: Path) -> str:
 
 
 def file_name(name: str) -> str:
-    """Convert a name to one that every file system accepts."""
+    """Convert a name to a file name that every file system accepts."""
     return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip(".")[:_LONGEST_NAME] or "simulation"
 
 
 def bind(name: str) -> tuple[socket.socket, str, Path]:
-    """Open a listening socket under a name. If a living simulation has the name, `_2`, `_3`, … is added.
+    """Open a listening socket under a name. If a running simulation has the name, `_2`, `_3`, … is added.
 
     Raises:
-        NoSocketFolder: no folder can hold the socket.
+        NoSocketFolder: no folder can contain the socket.
     """
     if not is_possible():
         raise NoSocketFolder("this system's Python has no local sockets")
@@ -93,12 +93,12 @@ def _bind_in(folder: Path, requested: str) -> tuple[socket.socket, str, Path]:
     """Open a listening socket in one folder.
 
     Raises:
-        OSError: the folder cannot hold the socket.
+        OSError: the folder cannot contain the socket.
     """
     with _lock_folder(folder):
         for path in folder.glob("*" + SUFFIX):
             if not is_living(path):
-                with suppress(OSError):  # a file that cannot be deleted keeps its name
+                with suppress(OSError):  # a file that cannot be deleted occupies its name
                     path.unlink(missing_ok=True)  # socket of a process that has ended
         for number in range(1, 1000):
             free = requested if number == 1 else f"{requested}_{number}"

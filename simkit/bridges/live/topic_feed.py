@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.subscription import LazyMessage, Subscription
     from simkit.runtime.simulation import Simulation
 
-_MOST_WAITING = 100  # messages of a topic that wait for a picture to be rendered
+_MOST_WAITING = 100  # largest number of messages of a topic that wait until an image is rendered
 
 
 class TopicFeed:
@@ -23,7 +23,7 @@ class TopicFeed:
     def __init__(self, sim: Simulation, topic: str) -> None:
         self._sim, self.topic = sim, topic
         self._readers: list[ClientSubscription] = []
-        # a finished message is serialised at once, even behind a picture: its publisher may change it later
+        # a message is serialised at once, even if it waits for an image, because its publisher may change it later
         self._queue = MessageQueue(self._deliver, _serialise)
         self._tap: Subscription | None = None
 
@@ -71,7 +71,7 @@ class TopicFeed:
 
 
 def _serialise(message: object) -> tuple[str, bytes] | None:
-    """Return type and CDR; None for a message that cannot be serialised, because only its publisher can correct it."""
+    """Return type and CDR of a message, or None if it cannot be serialised; the feed drops an invalid message."""
     try:
         return msgs.type_name(message), msgs.serialize(message)
     except MessageError:

@@ -1,4 +1,4 @@
-"""Playback of the commands of a bag at their ticks, in the recorded world or in another one."""
+"""Playback of a bag's commands at their recorded ticks, in the recorded world or in another world."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _ROUNDING: Final = 1e-6  # [steps] tolerance between a time and its tick
 
 
 class Playback:
-    """Sender of a bag's messages, at the first tick at or after their time; a context manager.
+    """Sends a bag's messages to a simulation, each at the first tick at or after its time; a context manager.
 
     A message that simkit recorded is sent at its original tick. The run then repeats bit for bit if nothing else
-    differs. Calendar times of a ROS recording are counted from the start of the bag.
+    differs. Times of a ROS recording are calendar times, so they are counted from the start of the bag.
 
     Args:
         sim: simulation that receives the messages.
@@ -158,9 +158,10 @@ class Playback:
     # ------------------------------------------------------------------ types
 
     def _matching_input_type(self, topic: str, type_name: str) -> str:
-        """Return the type for sending messages of a topic.
+        """Return the message type in which the messages of a topic are sent.
 
-        This is their own type if the world accepts it. Velocities gain or lose a header if the world needs that.
+        The messages keep their type if the world accepts this type. Twist and TwistStamped are converted into each
+        other if the world needs the other type.
         """
         new = self.names[topic]
         types = self._input_types[new]

@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 LATEST_SIMULATED_TIME: Final = 100_000_000 * 1_000_000_000
-"""Highest time [ns] that counts as simulated time (March 1973 as a calendar time); later times are calendar times."""
+"""Highest time [ns] that is regarded as simulated time (1e17 ns, March 1973 as a calendar time).
+
+Later times are regarded as calendar times."""
 _UNREADABLE = "SK-CLI-035"
 _UNKNOWN_TYPE = "SK-CLI-036"
 
@@ -99,7 +101,7 @@ class BagReader:
 
     @property
     def time_origin(self) -> int:
-        """Time that counts as zero [ns]: the start of the simulation, else the start of the bag."""
+        """Time [ns] from which times are counted: 0 for simulated times, the bag's start for calendar times."""
         return 0 if self.start < LATEST_SIMULATED_TIME else self.start
 
     @property
@@ -144,7 +146,7 @@ class BagReader:
             raise InputError(text, _UNKNOWN_TYPE) from None
 
     def store_of(self, type_name: str) -> Typestore:
-        """Return the type store for a type: simkit's if the bag has the same definition or none, else the bag's.
+        """Return the type store for a type: the bag's store if its definition differs from simkit's, else simkit's.
 
         Raises:
             InputError: SK-CLI-036 the type is unknown to the bag and to simkit.
@@ -319,7 +321,7 @@ def _is_latched(connection: Any) -> bool:
 
 
 class _TruncatedBag:
-    """Bag whose end is missing. It is read record by record: once for its topics, and once for each use."""
+    """Bag whose end is missing. The file is read record by record, once for the topics and once for each use."""
 
     def __init__(self, path: Path, files: list[Path]) -> None:
         self._records = McapRecords(files)
@@ -356,7 +358,7 @@ class _TruncatedBag:
                 yield BagMessage(record.time_ns, record.topic, record.type_name, record.data)
 
     def close(self) -> None:
-        """Do nothing: no file is open between two uses."""
+        """Do nothing, because no file stays open between two uses."""
 
 
 class RecordedMessage(NamedTuple):
@@ -370,7 +372,7 @@ class RecordedMessage(NamedTuple):
 
 
 class McapRecords:
-    """Reader of MCAP files record by record, each up to its end or its damage.
+    """Reads MCAP files record by record; each file is read up to its end or to the first damaged record.
 
     Attributes:
         definitions: definitions of the types that were read so far.

@@ -184,7 +184,7 @@ class Recorder:
                 channel = bag.channel(topic, type_name, topic in self._sim.communication.bus.latched())
             bag.write_raw(channel, data, time_ns)
         except OSError as error:
-            # Not raised here, because the publisher that calls this function did not cause the error.
+            # The error is stored instead of raised, because the publisher that calls this function did not cause it.
             self._fail(error)
             self._queue.clear()
             self.close()

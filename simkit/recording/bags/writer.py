@@ -142,7 +142,7 @@ class Rosbag2Folder(McapBag):
     """Writer of messages to `folder/<name>_0.mcap`; `close()` writes `metadata.yaml`.
 
     Raises:
-        FileExistsError: the folder exists and `overwrite` is not set, or it is not a bag.
+        FileExistsError: the folder exists and `overwrite` is not set, or the folder is not a bag.
         OSError: the folder is not writable.
     """
 

@@ -1,4 +1,4 @@
-"""Axes and lines of charts: numbers to pixels, round ticks with labels, and lines thinned to the resolution."""
+"""Axes and lines of charts: conversion of numbers to pixels, round ticks with labels, and thinning of lines."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Axis:
     Attributes:
         low, high: numbers at both ends.
         start, end: pixels of both ends.
-        base: number that is subtracted from the labels.
+        base: number that is subtracted from all numbers in the labels, so that they stay short.
         is_log: True if the numbers are decimal logarithms.
     """
 
@@ -83,7 +83,7 @@ def axis_over(values: Sequence[Numbers], start: float, end: float, *, margin: fl
 
 
 def split_line(series: Series) -> list[tuple[Numbers, Numbers]]:
-    """Split a line at missing numbers, and where an angle wraps around after a full turn."""
+    """Split a line at missing numbers, and at each point where an angle wraps around after a full turn."""
     times, values = series.times, series.values
     finite = np.isfinite(values) & np.isfinite(times)
     breaks = np.flatnonzero(np.diff(finite.astype(np.int8))) + 1

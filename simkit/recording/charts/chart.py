@@ -20,13 +20,13 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 78, 24, 10, 46
 _LEGEND, _SIZE, _GAP = 19, 12.0, 12  # [px]
 _COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#17becf", "#8c564b", "#e377c2", "#7f7f7f")
 _DASHES: tuple[tuple[float, ...], ...] = ((), (7, 4), (2, 3), (9, 3, 2, 3))
-_DOTTED = 40  # up to this number of values, each value is also a dot
+_DOTTED = 40  # up to this number of values, each value is also drawn as a dot
 _MOST_PANELS = 12
 
 
 @dataclass(frozen=True)
 class Style:
-    """Style of a line: numbers of its colour and of its dash pattern."""
+    """Style of a line: index of its colour and index of its dash pattern."""
 
     colour: int = 0
     dash: int = 0

@@ -1,4 +1,4 @@
-"""Names of message fields, as on a command line, resolved to functions that read their numbers.
+"""Resolve names of message fields, as written on a command line, to functions that read the fields' numbers.
 
 Examples: `/odom.pose.pose.position.x`, `/scan.ranges[0]`, `/joint_states.position[left_wheel]`,
 `/odom.pose.pose.orientation.yaw`. Names are checked against the definitions of the types, so that a wrong name is
@@ -69,7 +69,15 @@ class Curve:
 
 @dataclass(frozen=True)
 class _PathStep:
-    """Step of a path: the type at its end and a function that reads it. `before` reads the message around it."""
+    """Resolved beginning of a field path.
+
+    Attributes:
+        node: type at the end of the path.
+        read: function that reads this value from a message of the topic.
+        path: path as text.
+        owner: type of the message that contains the value.
+        before: function that reads the message that contains the value.
+    """
 
     node: FieldNode
     read: Reader
@@ -113,7 +121,7 @@ def curves_of(
 
 
 def _split_topic(text: str, topics: Mapping[str, str], where: str) -> tuple[str, str]:
-    """Split a text into topic and field path; the longest matching topic counts."""
+    """Split a text into topic and field path; if several topics match, the longest topic is used."""
     name = text if text.startswith("/") else f"/{text}"
     fits = [t for t in topics if name == t or (name.startswith(t) and name[len(t)] in "./[")]
     if fits:
@@ -126,7 +134,7 @@ def _split_topic(text: str, topics: Mapping[str, str], where: str) -> tuple[str,
 
 
 class _FieldPath:
-    """Resolver of one path through the definitions of types."""
+    """Resolves one field path with the definitions of the types."""
 
     def __init__(self, store: Typestore, type_name: str, text: str) -> None:
         self._store, self._text = store, text
@@ -200,7 +208,7 @@ class _FieldPath:
         return _PathStep(inner, _compose(step.read, read_item), path, step.owner, step.read)
 
     def _named(self, step: _PathStep, name: str) -> _PathStep:
-        """Return the item with that name: messages by a name field, numbers by a sibling array of names."""
+        """Return the array item with a name: from the items' name field, or from a sibling array of names."""
         inner = step.node[1][0]
         if int(inner[0]) == NAME:
             fields = dict(field_nodes(inner[1], self._store))
@@ -217,7 +225,7 @@ class _FieldPath:
     # ------------------------------------------------------------------ numbers
 
     def _numbers(self, step: _PathStep) -> list[Curve]:
-        """Return the curves at the end of a path: one, or those of a small vector."""
+        """Return the curves of a path: one curve for a number, or one for each number of a small vector."""
         kind = int(step.node[0])
         if kind == BASE:
             if _is_text(step.node):
@@ -273,7 +281,7 @@ class _FieldPath:
         return int(node[0]) == NAME and [n for n, _ in field_nodes(node[1], self._store)] == ["x", "y", "z", "w"]
 
     def _orientation_field(self, step: _PathStep) -> str | None:
-        """Return the name of the quaternion field with the orientation."""
+        """Return the name of the message's quaternion field with its orientation; None if there is none."""
         for name, node in field_nodes(step.node[1], self._store):
             if name in ("orientation", "rotation") and self._is_quaternion(node):
                 return name

@@ -24,7 +24,7 @@ class PageChart:
     """Chart for a page.
 
     Attributes:
-        lines: series and the style class of each, the first at the bottom.
+        lines: each series with its CSS class; the first series is drawn at the bottom.
         title: title for screen readers.
         x_label, y_label: quantity and unit of each axis.
         height: height of the chart [px].
@@ -82,7 +82,7 @@ def _path(series: Series, x: Axis, y: Axis) -> str:
     last_column = -1.0
     for times, values in split_line(series):
         px = x.at(times)
-        if px[-1] < last_column + 1.0:  # several gaps within one pixel: one dot is enough for the column
+        if px[-1] < last_column + 1.0:  # several short pieces within one pixel need only one dot
             continue
         last_column = float(np.floor(px[-1]))
         with np.errstate(over="ignore"):

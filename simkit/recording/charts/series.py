@@ -123,7 +123,7 @@ class _SeriesCollector:
                 continue
             value = curve.read(message)
             if "[" in curve.path and math.isnan(value):
-                continue  # a message without that item, such as one of another /tf publisher, is not a gap
+                continue  # without this item, e.g. from another publisher of /tf
             times.append(time)
             values.append(value)
 
@@ -135,7 +135,7 @@ class _SeriesCollector:
 
 
 def series_over(series: Sequence[Series], base: Series) -> list[Series]:
-    """Return series over another series instead of time, with its newest value at or before each of their times.
+    """Return series over a base series instead of time; at each time, the base's newest value is used.
 
     Args:
         series: series for the vertical axis.

@@ -62,7 +62,7 @@ def _is_export(path: Path) -> bool:
 def export_folder(path: Path, *, overwrite: bool) -> Iterator[Path]:
     """Yield a temporary folder next to `path` that replaces `path` at the end.
 
-    Folders that killed exports left are removed first.
+    First, temporary folders of exports that were killed are removed.
 
     Raises:
         InputError: SK-BAG-013 the folder may not be replaced, or is not writable.
@@ -89,7 +89,7 @@ def export_folder(path: Path, *, overwrite: bool) -> Iterator[Path]:
 
 
 def _remove_abandoned(path: Path) -> None:
-    """Remove folders that killed exports left. An older export that was moved and not replaced is moved back."""
+    """Remove temporary folders of killed exports; move an older export back if it was moved and not replaced."""
     try:
         for left in abandoned_folders(path.parent, path.name):
             if not path.exists() and _is_export(left / _OLD):
@@ -129,7 +129,7 @@ class ExportOptions:
         format: format of the tables: csv, npz or parquet.
         images: format of the images: png, mp4, npz or none.
         clouds: format of the point clouds: npz, ply or none.
-        start, end: limits of the exported times [s]: simulated times, else from the start of the bag.
+        start, end: limits of the exported times [s]; calendar times are counted from the start of the bag.
         overwrite: True to replace an older export.
     """
 
@@ -149,7 +149,7 @@ class ExportedTopic:
 
     Attributes:
         file: table of the topic, relative to the folder.
-        beside: video of the topic, or the folder of its images or point clouds; empty without these.
+        beside: video, or folder of images or point clouds; empty if the topic has no images or point clouds.
         notes: missing or converted content.
     """
 

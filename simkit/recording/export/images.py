@@ -61,7 +61,7 @@ class NumberedFiles(MessageWriter):
         return f"{self._folder.name}/{target.name}"
 
     def _write(self, target: Path, message: Message) -> Path:
-        """Write a message to a file with that stem and the suffix of its format; return the file's path."""
+        """Write a message to a file; return its path, which is `target` with the suffix of the format."""
         raise NotImplementedError
 
 

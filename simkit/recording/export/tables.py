@@ -139,7 +139,7 @@ def _field_columns(
         yield Column(path, _DTYPES.get(inner[1][0], TEXT), True, read)
         return
     for column in _field_columns(inner, store, f"{path}[]", _identity, without):
-        if column.is_list:  # a list of lists: the length of each list, and the values of all
+        if column.is_list:  # a list of lists becomes two columns: the lengths of the lists, and all values
             yield Column(f"{column.path}.count", "i8", True, _lengths(read, column.read))
         yield Column(column.path, column.kind, True, _each_item(read, column))
 
@@ -168,7 +168,7 @@ _NS: Final = 1_000_000_000
 
 
 def write_csv(path: Path, times: Sequence[int], columns: Sequence[Column]) -> list[str]:
-    """Write one line per message. A list has a column for each item, with empty cells in messages with fewer items.
+    """Write one line per message. Each item of a list has a column; cells of missing items are empty.
 
     Args:
         path: file to write.
@@ -265,7 +265,7 @@ def check_parquet() -> None:
 
 
 def write_parquet(path: Path, times: Sequence[int], columns: Sequence[Column]) -> list[str]:
-    """Write one row per message. Lists stay lists; `time` is a time stamp in nanoseconds."""
+    """Write one row per message. A list is one cell; `time` is a time stamp in nanoseconds."""
     pa, pq = import_module("pyarrow"), import_module("pyarrow.parquet")
     arrays: dict[str, object] = {"time": pa.array(times, pa.timestamp("ns"))}
     for column in columns:
