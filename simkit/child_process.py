@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
-_KEPT_BYTES: Final = 1 << 16  # bytes of output that are kept
+_KEPT_BYTES: Final = 1 << 16  # largest number of stored bytes of output
 _CHUNK: Final = 1 << 16
-_MAX_LINE_LENGTH: Final = 500  # characters of a line that are kept
+_MAX_LINE_LENGTH: Final = 500  # largest number of characters of a returned line
 _OUTPUT_WAIT: Final = 2.0  # [s] longest wait for output; a grandchild process may still hold the pipe
 
 
@@ -77,7 +77,7 @@ class ChildProcesses:
                     module,
                     *arguments,
                 ],  # -P: no file of the working directory shadows a module
-                stdin=subprocess.PIPE,  # never written to: the child sees its end when this process ends
+                stdin=subprocess.PIPE,  # nothing is written; the pipe closes when this process ends
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 env=environment,

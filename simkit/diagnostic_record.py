@@ -13,7 +13,7 @@ class Where:
     """Position in an input file; `file` is None for XML that was passed as text.
 
     Attributes:
-        serial: number of the element in the file, counted from the top. It orders two elements on one line.
+        serial: number of the element in the file, counted from the top; needed to order elements on the same line.
     """
 
     file: str | None = None

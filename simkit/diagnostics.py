@@ -25,13 +25,13 @@ __all__ = [
 
 MOST_ERRORS = 1000
 LONGEST_MESSAGE = 4000  # characters
-_MOST_NAMES = 5000  # largest number of candidates; among more, the closest one is a coincidence
+_MOST_NAMES = 5000  # largest number of candidates; among more names, a similar name means nothing
 _LONGEST_NAME = 200
 _QUOTED = re.compile(r"'([^']+)'")
 
 
 class Diagnostics:
-    """Collection of diagnostics in order; identical ones are kept once.
+    """Collection of diagnostics in order; identical diagnostics are stored once.
 
     After `MOST_ERRORS` errors LoadError is raised, because a search for a hundred thousand errors would take minutes.
     """

@@ -88,7 +88,7 @@ def quat_to_matrix(q: VectorLike) -> Vector:
 
 
 class Pose:
-    """Immutable rigid pose. `a @ b` expresses the pose b, given in the frame of a, in the parent frame of a.
+    """Immutable rigid pose. If pose b is in the frame of a, `a @ b` is the same pose in the parent frame of a.
 
     Attributes:
         position: translation [m], shape (3,).

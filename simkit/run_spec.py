@@ -32,7 +32,7 @@ CheckKind = Literal["goal", "always", "final", "apart", "rate"]
 
 - "goal", "always", "final": an expression holds once, at all times, or at the end.
 - "apart": models never touch.
-- "rate": a topic keeps its rate.
+- "rate": a topic has the required rate.
 """
 
 
@@ -47,8 +47,8 @@ class Check:
         expression: expression in the language of `docs/conditions.md`.
         by: simulated time by which a goal must be reached [s]; None for the end of the run.
         after: simulated time from which "always" and "apart" are checked [s].
-        models: scoped names of models or links: one that may touch only the ground, or two that must not touch each
-            other.
+        models: scoped names of models or links: two names that must not touch each other, or one name that may touch
+            only the ground.
         rate: required rate [Hz] of simulated time; None for the rate that is set for the sensor or plugin.
         tolerance: allowed relative deviation of the rate.
         points: points for meeting the condition in an exercise.

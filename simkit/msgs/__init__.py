@@ -49,7 +49,7 @@ _NS = 1_000_000_000
 if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown classes
 
     def __getattr__(class_name: str) -> type[Message]:
-        # kept as a global of the module: each lookup through this function would take 2 µs
+        # stored as a global, because each lookup through this function would take 2 µs
         found = globals()[class_name] = message_class(class_name)
         return found
 

@@ -82,7 +82,7 @@ class MessageBuilder:
         return self.cls(*values)
 
     def convert(self, value: FieldValue) -> Message:
-        """Return a message unchanged; build one from a dict."""
+        """Return a message unchanged; build a message from a dict."""
         if type(value) is self.cls:
             return value
         if isinstance(value, Mapping):
@@ -104,7 +104,7 @@ def _short(value: object) -> str:
 
 
 def _default_and_conversion(node: FieldNode) -> tuple[_Default, _Conversion]:
-    """Return the default factory and the conversion of a field, from its node in the type store."""
+    """Return a factory for the default and a conversion function, for a field with this type."""
     kind, content = int(node[0]), node[1]
     if kind == NAME:
         builder = builder_of(content)

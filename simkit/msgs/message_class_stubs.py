@@ -53,7 +53,7 @@ def _class_lines(type_name: str, classes: dict[str, str]) -> Iterator[str]:
 
 
 def _annotation(node: FieldNode, classes: dict[str, str]) -> str:
-    """Return the annotation of a field from its node in the type store."""
+    """Return the annotation of a field with this type."""
     kind, content = node
     if kind == NAME:
         return classes[content]

@@ -1,6 +1,6 @@
 """Text formats of messages as ROS 2's commands print them (YAML, CSV, Python, plain values), and access to fields.
 
-Every function accepts the type store of the message; the default is simkit's. A bag has its own type store.
+Every function accepts the type store of the message; the default is simkit's type store. A bag has its own type store.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ FULL_TEXT = TextStyle()
 
 
 def field_nodes(type_name: str, store: Typestore | None = None) -> list[tuple[str, FieldNode]]:
-    """Return the name of each field of a type with its node in the type store; empty for a type without fields."""
+    """Return name and type of each field of a message type; empty for a type without fields."""
     found = (store or type_store()).fielddefs[type_name][1]
     return [(name, node) for name, node in found if name != _EMPTY]
 
@@ -187,7 +187,7 @@ def field_at_path(message: Message, path: str, store: Typestore | None = None) -
     """Return the value at a path such as `pose.pose.position.x`, `transforms[0].child_frame_id` or `ranges[0:9]`.
 
     Returns:
-        The value, and its node in the type store (None for an item of an array).
+        The value, and its type in the type store (None for an item of an array).
 
     Raises:
         MessageError: a field is unknown; the message suggests the closest name.

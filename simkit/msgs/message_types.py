@@ -1,9 +1,9 @@
 """Message types: types of ROS 2 Jazzy from rosbags, and types in `definitions/`, which are read at first use.
 
 The definition of a simkit type is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
-with the published fields in the published order. Constants are part of a definition but not of its hash. Field names,
-types and order are part of both. A service or action is several message types: `<package>/srv/<Name>_Request` and
-`…_Response`, `<package>/action/<Name>_Goal`, `…_Result` and `…_Feedback`, divided by `---` in its file.
+with the published fields in the published order. The hash of a definition depends on field names, types and order, and
+not on constants. A service or action is several message types, which `---` separates in the file:
+`<package>/srv/<Name>_Request` and `…_Response`, `<package>/action/<Name>_Goal`, `…_Result` and `…_Feedback`.
 """
 
 from __future__ import annotations
@@ -130,8 +130,8 @@ def type_of(type_name: str) -> type[Message]:
 def class_names() -> dict[str, str]:
     """Return the type name of each message class by the class's name in `simkit.msgs`.
 
-    A class has the last part of its type name: `LaserScan`. If several types share it, ROS's own type has the short
-    name. The other types have their full name: `gazebo_msgs__srv__SpawnEntity_Request`.
+    The name of a class is the last part of its type name: `LaserScan`. If several types have the same last part, ROS's
+    own type has the short name. The other types have their full name: `gazebo_msgs__srv__SpawnEntity_Request`.
     """
     names = message_type_names()
     candidates: dict[str, list[str]] = {}

@@ -1,4 +1,4 @@
-"""List the running simulations and find the socket of the requested one."""
+"""List the running simulations, and find the socket of the requested simulation."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def _read_greetings(callers: dict[Path, socket.socket]) -> dict[Path, tuple[int,
 
 
 def find_socket(name: str | None = None) -> Path:
-    """Return the socket of the simulation `name`, else of the one in `SIMKIT_SIM`, else of the only running simulation.
+    """Return the socket of a simulation: `name`, else the name in `SIMKIT_SIM`, else the only running simulation.
 
     Raises:
         LiveError: SK-LIVE-001 no simulation runs; SK-LIVE-002 several simulations run; SK-LIVE-003 no simulation has

@@ -20,8 +20,8 @@ Reader = Callable[[bytes, int], Message]
 def message_reader(type_name: str) -> Reader:
     """Return a function that decodes a message from CDR at an offset in some bytes.
 
-    The messages are the same as those of `simkit.msgs.deserialize`. The function may raise any exception if the bytes
-    are not a message of the type.
+    The function returns the same messages as `simkit.msgs.deserialize`. It may raise any exception if the bytes are not
+    a message of the type.
 
     Args:
         type_name: full name of a message type.
@@ -51,7 +51,7 @@ class _VariableSizeError(Exception):
     """Error for a type whose messages have no fixed size, or have arrays."""
 
 
-# Class of a message, and the same pair for each of its fields; None for a number.
+# Class of a message, with the classes of its fields in the same form; None for a number.
 Classes = tuple[type[Message], tuple[Any, ...]]
 
 

@@ -160,7 +160,7 @@ class Server:
                 self._disconnect(peer)
 
     def _serve(self, peer: ClientConnection) -> bool:
-        """Process a few frames of one client; return True if the client may have more."""
+        """Process a few frames of one client; return True if the client may have more frames."""
         try:
             take, publish = peer.reader.next, self._publish
             for _ in range(_REQUESTS_PER_TURN):
@@ -375,7 +375,7 @@ class Server:
 
 
 def serve(sim: Simulation, name: str | None = None) -> tuple[Server | None, str]:
-    """Return a server; or None and a one-line reason."""
+    """Return a server and an empty text, or None and the reason as a one-line text."""
     try:
         return Server(sim, name), ""
     except socket_files.NoSocketFolder as fault:

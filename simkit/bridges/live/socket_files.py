@@ -35,7 +35,7 @@ def is_possible() -> bool:
 
 
 def socket_folders() -> list[Path]:
-    """Return the folders that sockets may be in, the preferred one first."""
+    """Return the folders that sockets may be in, the preferred folder first."""
     if not is_possible():
         return []
     found = [Path(tempfile.gettempdir()) / f"simkit-{os.getuid()}"]

@@ -115,7 +115,7 @@ class TravelOdometry(abc.ABC):
         self._step = step
         self.reckoning, self.twist = DeadReckoning(), BodyTwist()
         self._at: Angles | None = None  # angles at the last integrated point
-        self._noted: list[Angles] = []  # angles that are not integrated yet, one entry a step
+        self._noted: list[Angles] = []  # angles that are not integrated yet, one entry per step
         self._recent: list[Angles] = []  # last integrated entries, for the mean twist
 
     @abc.abstractmethod
@@ -260,7 +260,7 @@ class TrueMotion(SharedByCopies):
         self._arm = (-there).tolist()
 
     def place(self) -> tuple[float, ...]:
-        """Return the world pose of the model's frame as x, y, z, qw, qx, qy, qz; cheap enough for every step."""
+        """Return the world pose of the model's frame as x, y, z, qw, qx, qy, qz; fast enough for every step."""
         if self._frame is self._link and (state := self._link.root_state()) is not None:
             return state
         pose = self._frame.pose

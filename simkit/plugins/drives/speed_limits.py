@@ -14,7 +14,7 @@ _QUANTITIES = ("velocity", "acceleration", "jerk")
 
 @dataclass(frozen=True, slots=True)
 class SpeedLimiter(SharedByCopies):
-    """Bounds of a commanded speed and its first two derivatives (SI units); infinite where unlimited."""
+    """Bounds of a commanded speed and its first two derivatives (SI units); infinite if there is no limit."""
 
     velocity: tuple[float, float] = (-math.inf, math.inf)
     acceleration: tuple[float, float] = (-math.inf, math.inf)

@@ -28,7 +28,7 @@ mm/s at a factor of 1 and 0.8 m/s²).
 """
 
 _CATCH_UP_TIME: Final = 0.05
-"""Time in which a velocity servo makes up for a position lag [s]."""
+"""Time constant with which a velocity servo corrects a position lag [s]."""
 
 _POSITION_REACH: Final = 2.0
 """Largest effort that a position servo requests, as a multiple of its effort limit.
@@ -98,8 +98,8 @@ class ActiveModes:
 
     Attributes:
         modes: modes that these values belong to.
-        zeros: array of zeros. Commands are multiplied by this array to find NaN and infinite ones, whose product is
-            not 0.
+        zeros: array of zeros. Commands are multiplied by this array to find NaN and infinite commands, because only
+            their product is not 0.
         kp, kv: gains of the actuators [N·m/rad or N/m, N·m·s/rad or N·s/m].
         servo_stiffness: kp of the servos; 0 for the other joints.
         lowest, highest: bounds of the effort [N·m or N].

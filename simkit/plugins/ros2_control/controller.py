@@ -118,7 +118,7 @@ class Controller(SharedByCopies, abc.ABC):
 
     @abc.abstractmethod
     def configure(self) -> None:
-        """Read `params` and open topics, services and actions; an error in `params` keeps it unconfigured."""
+        """Read `params`, and open topics, services and actions; an error in `params` prevents the configuration."""
 
     def command_interfaces(self) -> Sequence[str]:
         """List the command interfaces to claim, such as `arm_1_joint/position`; called after `configure`."""

@@ -203,7 +203,7 @@ class ControllerManager(SharedByCopies):
         loaded.controller.activate()
 
     def _update_active(self) -> None:
-        """Set the state interfaces to read: those of the active controllers."""
+        """Select the state interfaces of the active controllers for reading."""
         self._active_controllers = None
         active = (c.controller for c in self.controllers.values() if c.state == "active")
         self.hardware.set_read_interfaces(name for controller in active for name in controller.states.names)
@@ -222,7 +222,7 @@ class ControllerManager(SharedByCopies):
         Args:
             activate: names of controllers to activate.
             deactivate: names of controllers to deactivate.
-            strict: switch nothing if one of the controllers cannot be switched; otherwise skip that controller.
+            strict: true to switch no controller if one of them cannot be switched; false to skip only that controller.
 
         Returns:
             Description of the problem; empty if there is none.

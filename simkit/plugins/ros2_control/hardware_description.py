@@ -24,30 +24,30 @@ _GAINS: Final = ("kp", "ki", "kd", "max_integral_error")
 _JOINT_PARAMS: Final = ("mimic", "multiplier", "offset", *(f"{s}_{g}" for s in ("pos", "vel") for g in _GAINS))
 
 
-def report_unknown_elements(block: Params, found: Diagnostics) -> None:
+def report_unknown_elements(block: Params, diagnostics: Diagnostics) -> None:
     """Report unknown elements of `<ros2_control>`, and elements and parameters of joints that look misspelt."""
     owner = f"<ros2_control> {block.attribute('name')!r}"
     for child in block.children:
         if child.name not in _ELEMENTS and ":" not in child.name:
-            _report_unused(f"{owner}: <{child.name}>", child, did_you_mean(child.name, _ELEMENTS), found)
+            _report_unused(f"{owner}: <{child.name}>", child, did_you_mean(child.name, _ELEMENTS), diagnostics)
     for joint in block.all("joint"):
         what = f"{owner}, joint {joint.attribute('name')!r}"
         for child in joint.children:
             near = did_you_mean(child.name, _JOINT_ELEMENTS)
             if child.name not in _JOINT_ELEMENTS and near:
-                _report_unused(f"{what}: <{child.name}>", child, near, found)
+                _report_unused(f"{what}: <{child.name}>", child, near, diagnostics)
             name = child.attribute("name") if child.name == "param" else ""
             near = did_you_mean(name, _JOINT_PARAMS) if name else ""
             if name not in _JOINT_PARAMS and near:  # other unknown names may be parameters of a hardware driver
-                _report_unused(f"{what}: <param name={name!r}>", child, near, found)
+                _report_unused(f"{what}: <param name={name!r}>", child, near, diagnostics)
 
 
-def _report_unused(what: str, element: Params, near: str, found: Diagnostics) -> None:
-    found.warning("SK-CONTROL-008", f"{what} is not known and is ignored", element.where, near)
+def _report_unused(what: str, element: Params, near: str, diagnostics: Diagnostics) -> None:
+    diagnostics.warning("SK-CONTROL-008", f"{what} is not known and is ignored", element.where, near)
 
 
 def parse_number(
-    text: str, default: float, element: Params, found: Diagnostics, *, minimum: float = -_LARGEST_NUMBER
+    text: str, default: float, element: Params, diagnostics: Diagnostics, *, minimum: float = -_LARGEST_NUMBER
 ) -> float:
     """Parse a finite number; report an invalid one as an error and return the default."""
     try:
@@ -57,13 +57,13 @@ def parse_number(
     if minimum <= value <= _LARGEST_NUMBER:
         return value
     allowed = "a number" if math.isnan(value) else f"a number from {minimum:g} to {_LARGEST_NUMBER:g}"
-    found.error("SK-PARAM-002", f"found {text!r}; expected {allowed}", element.where)
+    diagnostics.error("SK-PARAM-002", f"found {text!r}; expected {allowed}", element.where)
     return default
 
 
-def parse_initial_position(text: str, joint: SceneJoint, element: Params, found: Diagnostics) -> float:
+def parse_initial_position(text: str, joint: SceneJoint, element: Params, diagnostics: Diagnostics) -> float:
     """Parse an initial position [rad or m] and clamp it to the joint's limits; return NaN for an empty text."""
-    value = parse_number(text, math.nan, element, found) if text else math.nan
+    value = parse_number(text, math.nan, element, diagnostics) if text else math.nan
     axis = joint.axes[0]
     if axis.lower <= value <= axis.upper or math.isnan(value):
         return value
@@ -71,7 +71,7 @@ def parse_initial_position(text: str, joint: SceneJoint, element: Params, found:
     message = (
         f"joint {joint.name!r}: the initial_value {value:g} is outside its limits [{axis.lower:g}, {axis.upper:g}]"
     )
-    found.warning("SK-CONTROL-008", f"{message}; the joint starts at {kept:g}", element.where)
+    diagnostics.warning("SK-CONTROL-008", f"{message}; the joint starts at {kept:g}", element.where)
     return kept
 
 
@@ -179,49 +179,51 @@ def _is_drivable(joint: SceneJoint) -> bool:
 # ------------------------------------------------------------------ <ros2_control>
 
 
-def _component(scene: SceneModel, block: Params, found: Diagnostics) -> ComponentDescription:
+def _component(scene: SceneModel, block: Params, diagnostics: Diagnostics) -> ComponentDescription:
     hardware = block.block("hardware")
     plugin = hardware.text("plugin", "")
     name = block.attribute("name") or "hardware"
     if plugin.rpartition("/")[2] not in _SIMULATION_PLUGINS:
         message = f"<ros2_control> {name!r}: the simulation replaces the hardware {plugin or '(none)'!r}"
-        found.note("SK-CONTROL-006", message, block.where)
+        diagnostics.note("SK-CONTROL-006", message, block.where)
     for unknown in (c for c in block.children if c.name == "gpio"):
         message = f"<ros2_control> {name!r}: <gpio> {unknown.attribute('name')!r} is not supported"
-        found.warning("SK-CONTROL-007", f"{message}; it is ignored", unknown.where)
-    joints = [_joint(scene, element, found) for element in block.all("joint")]
+        diagnostics.warning("SK-CONTROL-007", f"{message}; it is ignored", unknown.where)
+    joints = [_joint(scene, element, diagnostics) for element in block.all("joint")]
     sensors = [_sensor(element) for element in block.all("sensor")]
     kind = block.attribute("type") or "system"
     return ComponentDescription(name, kind, plugin, tuple(j for j in joints if j is not None), tuple(sensors))
 
 
-def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescription | None:
+def _joint(scene: SceneModel, element: Params, diagnostics: Diagnostics) -> JointDescription | None:
     name = element.attribute("name")
     joints = {joint.name: joint for joint in scene.all_joints()}
     if name not in joints:
         near = did_you_mean(name, joints)
         message = f"<ros2_control> names joint {name!r}, which model {scene.scoped!r} does not have; it is ignored"
-        found.warning("SK-CONTROL-008", message, element.where, near)
+        diagnostics.warning("SK-CONTROL-008", message, element.where, near)
         return None
     if len(joints[name].axes) != 1:
         message = f"<ros2_control> names joint {name!r}, a {joints[name].type} joint; the joint needs exactly one axis"
-        found.warning("SK-CONTROL-008", f"{message}; it is ignored", element.where)
+        diagnostics.warning("SK-CONTROL-008", f"{message}; it is ignored", element.where)
         return None
     texts = _param_texts(element)
     commands, states = element.all("command_interface"), element.all("state_interface")
-    initial = _initial_position([*commands, *states], joints[name], found)
+    initial = _initial_position([*commands, *states], joints[name], diagnostics)
     pids = {}
     for command in (element.attribute("name") for element in commands):
         plain = command.removesuffix("_pid")
         short = {"position": "pos", "velocity": "vel"}.get(plain, "")
         if short and (command != plain or f"{short}_kp" in texts):
-            pids[plain] = _gains_of_joint(texts, short, element, found)
-    known_commands = _known_interfaces(name, "command", commands, element, found)
-    known_states = _known_interfaces(name, "state", states, element, found)
+            pids[plain] = _gains_of_joint(texts, short, element, diagnostics)
+    known_commands = _known_interfaces(name, "command", commands, element, diagnostics)
+    known_states = _known_interfaces(name, "state", states, element, diagnostics)
     leader = texts.get("mimic", "")
     if leader and leader not in joints:
         message = f"joint {name!r} mimics {leader!r}, which model {scene.scoped!r} does not have"
-        found.warning("SK-CONTROL-008", f"{message}; the mimic is ignored", element.where, did_you_mean(leader, joints))
+        diagnostics.warning(
+            "SK-CONTROL-008", f"{message}; the mimic is ignored", element.where, did_you_mean(leader, joints)
+        )
         leader = ""
     return JointDescription(
         name,
@@ -230,14 +232,14 @@ def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescr
         element.where,
         pids,
         leader,
-        parse_number(texts.get("multiplier", "1"), 1.0, element, found),
-        parse_number(texts.get("offset", "0"), 0.0, element, found),
+        parse_number(texts.get("multiplier", "1"), 1.0, element, diagnostics),
+        parse_number(texts.get("offset", "0"), 0.0, element, diagnostics),
         initial,
     )
 
 
 def _known_interfaces(
-    joint: str, what: str, interfaces: Iterable[Params], element: Params, found: Diagnostics
+    joint: str, what: str, interfaces: Iterable[Params], element: Params, diagnostics: Diagnostics
 ) -> tuple[str, ...]:
     """Return the names of the supported interfaces of a joint, and report the others."""
     known = []
@@ -248,7 +250,7 @@ def _known_interfaces(
         message = f"joint {joint!r}: {what} interface {name!r} is not supported "
         message += f"(supported: {', '.join(MOTION_INTERFACES)})"
         near = did_you_mean(name, MOTION_INTERFACES)
-        found.warning("SK-CONTROL-009", f"{message}; it is ignored", element.where, near)
+        diagnostics.warning("SK-CONTROL-009", f"{message}; it is ignored", element.where, near)
     return tuple(known)
 
 
@@ -257,29 +259,29 @@ def _param_texts(element: Params) -> dict[str, str]:
     return {one.attribute("name"): one.value for one in element.all("param")}
 
 
-def _initial_position(interfaces: Iterable[Params], joint: SceneJoint, found: Diagnostics) -> float:
+def _initial_position(interfaces: Iterable[Params], joint: SceneJoint, diagnostics: Diagnostics) -> float:
     """Return the initial position of the interfaces, or NaN if there is none; also validate their unused bounds."""
     initial = []
     for one in interfaces:
         texts = _param_texts(one)
         for bound in (texts.get("min", ""), texts.get("max", "")):
             if bound.strip().lower() not in ("", "inf", "-inf"):
-                parse_number(bound, 0.0, one, found)
+                parse_number(bound, 0.0, one, diagnostics)
         if one.name == "state_interface" and one.attribute("name") == POSITION:  # Gazebo ignores others
             first = texts.get("initial_value", one.attribute("initial_value"))
-            initial.append(parse_initial_position(first, joint, one, found))
+            initial.append(parse_initial_position(first, joint, one, diagnostics))
     return initial[0] if initial else math.nan
 
 
-def _gains_of_joint(texts: dict[str, str], short: str, element: Params, found: Diagnostics) -> PidGains:
+def _gains_of_joint(texts: dict[str, str], short: str, element: Params, diagnostics: Diagnostics) -> PidGains:
     """Read gains from the `<param>`s of a joint: `pos_kp`, `pos_ki`, `pos_kd`, `pos_max_integral_error`."""
 
     def gain(name: str) -> float:
         text = texts.get(f"{short}_{name}", "")
-        return parse_number(text, 0.0, element, found) if text else 0.0
+        return parse_number(text, 0.0, element, diagnostics) if text else 0.0
 
     i, text = gain("ki"), texts.get(f"{short}_max_integral_error", "")
-    most = parse_number(text, math.inf, element, found, minimum=0.0) if text else math.inf
+    most = parse_number(text, math.inf, element, diagnostics, minimum=0.0) if text else math.inf
     limit = abs(i * most) if i else 0.0
     return PidGains(gain("kp"), i, gain("kd"), limit, -limit)
 
@@ -289,7 +291,9 @@ def _sensor(element: Params) -> SensorDescription:
     return SensorDescription(element.attribute("name"), names, element.where)
 
 
-def _remove_repeated_joints(components: list[ComponentDescription], found: Diagnostics) -> list[ComponentDescription]:
+def _remove_repeated_joints(
+    components: list[ComponentDescription], diagnostics: Diagnostics
+) -> list[ComponentDescription]:
     """Remove joints that an earlier block has already named."""
     seen: set[str] = set()
     kept = []
@@ -298,7 +302,7 @@ def _remove_repeated_joints(components: list[ComponentDescription], found: Diagn
         for joint in component.joints:
             if joint.name in seen:
                 message = f"<ros2_control> {component.name!r} names joint {joint.name!r} again; the first one is used"
-                found.warning("SK-CONTROL-004", message, joint.where)
+                diagnostics.warning("SK-CONTROL-004", message, joint.where)
                 continue
             seen.add(joint.name)
             joints.append(joint)
@@ -306,7 +310,9 @@ def _remove_repeated_joints(components: list[ComponentDescription], found: Diagn
     return kept
 
 
-def _remove_mimic_circles(components: list[ComponentDescription], found: Diagnostics) -> list[ComponentDescription]:
+def _remove_mimic_circles(
+    components: list[ComponentDescription], diagnostics: Diagnostics
+) -> list[ComponentDescription]:
     """Remove the leader of a joint that mimics itself, directly or through other joints."""
     leaders = {joint.name: joint.leader for component in components for joint in component.joints}
     kept = []
@@ -316,7 +322,7 @@ def _remove_mimic_circles(components: list[ComponentDescription], found: Diagnos
             circle = mimic_circle(joint.name, leaders)
             if circle:
                 message = f"joint {joint.name!r} mimics {' which mimics '.join(map(repr, [*circle[1:], joint.name]))}"
-                found.warning("SK-CONTROL-008", f"{message}; the mimic is ignored", joint.where)
+                diagnostics.warning("SK-CONTROL-008", f"{message}; the mimic is ignored", joint.where)
                 leaders[joint.name] = ""
             joints.append(replace(joint, leader="") if circle else joint)
         kept.append(replace(component, joints=tuple(joints)))
@@ -326,7 +332,7 @@ def _remove_mimic_circles(components: list[ComponentDescription], found: Diagnos
 # ------------------------------------------------------------------ <transmission>
 
 
-def _component_of_transmissions(scene: SceneModel, found: Diagnostics) -> ComponentDescription:
+def _component_of_transmissions(scene: SceneModel, diagnostics: Diagnostics) -> ComponentDescription:
     joints = {joint.name: joint for joint in scene.all_joints()}
     interfaces: dict[str, list[str]] = {}
     locations: dict[str, Where] = {}
@@ -335,7 +341,7 @@ def _component_of_transmissions(scene: SceneModel, found: Diagnostics) -> Compon
             if end.name not in joints or len(joints[end.name].axes) != 1:
                 continue  # the loader has reported a missing joint
             written = end.interfaces or tuple(i for a in transmission.actuators for i in a.interfaces)
-            names = _interfaces_of_ros_1(written, transmission.name, transmission.where, found)
+            names = _interfaces_of_ros_1(written, transmission.name, transmission.where, diagnostics)
             interfaces.setdefault(end.name, []).extend(names)
             locations.setdefault(end.name, transmission.where)
     return ComponentDescription(
@@ -349,7 +355,7 @@ def _component_of_transmissions(scene: SceneModel, found: Diagnostics) -> Compon
     )
 
 
-def _interfaces_of_ros_1(written: Sequence[str], owner: str, where: Where, found: Diagnostics) -> list[str]:
+def _interfaces_of_ros_1(written: Sequence[str], owner: str, where: Where, diagnostics: Diagnostics) -> list[str]:
     names = []
     for interface in written:
         plain = interface.rpartition("/")[2]
@@ -358,5 +364,5 @@ def _interfaces_of_ros_1(written: Sequence[str], owner: str, where: Where, found
         elif plain != "JointStateInterface":  # this interface only reads states, and every joint has state interfaces
             message = f"transmission {owner!r}: hardware interface {interface!r} is not supported "
             message += f"(supported: {', '.join(_ROS_1)})"
-            found.warning("SK-CONTROL-009", f"{message}; it is ignored", where, did_you_mean(plain, _ROS_1))
+            diagnostics.warning("SK-CONTROL-009", f"{message}; it is ignored", where, did_you_mean(plain, _ROS_1))
     return names

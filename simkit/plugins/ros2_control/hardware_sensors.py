@@ -59,7 +59,7 @@ def _field_getter(kind: str, interfaces: tuple[str, ...]) -> attrgetter[Any]:
     return attrgetter(*(SENSOR_INTERFACES[kind][interface] for interface in interfaces))
 
 
-def find_sensor(described: SensorDescription, scene: SceneModel, found: Diagnostics) -> HardwareSensor | None:
+def find_sensor(described: SensorDescription, scene: SceneModel, diagnostics: Diagnostics) -> HardwareSensor | None:
     """Find the sensor of the simulation for a `<sensor>` of `<ros2_control>`; return None after a warning.
 
     A sensor with the same name is used, else the model's only sensor that measures the same quantities.
@@ -68,23 +68,25 @@ def find_sensor(described: SensorDescription, scene: SceneModel, found: Diagnost
     if not kind:
         message = f"<ros2_control> sensor {described.name!r}: no sensor measures its interfaces"
         hint = "use the interfaces of an IMU (orientation.x, …), of a force-torque sensor (force.x, …), or range"
-        found.warning("SK-CONTROL-008", message, described.where, hint)
+        diagnostics.warning("SK-CONTROL-008", message, described.where, hint)
         return None
     candidates = [s for s in scene.all_sensors() if s.kind == kind]
     chosen = next((s for s in candidates if s.name == described.name), None)
     if chosen is None and len(candidates) == 1:
         chosen = candidates[0]
         message = f"<ros2_control> sensor {described.name!r} uses the model's only {kind} sensor, {chosen.name!r}"
-        found.note("SK-CONTROL-006", message, described.where)
+        diagnostics.note("SK-CONTROL-006", message, described.where)
     if chosen is None:
         near = did_you_mean(described.name, [s.name for s in candidates])
         message = f"<ros2_control> sensor {described.name!r}: the model has no {kind} sensor with this name"
         listed = ", ".join(repr(s.name) for s in candidates) or "none"
         hint = near or f"its {kind} sensors are: {listed}"
-        found.warning("SK-CONTROL-008", f"{message}; its interfaces stay NaN", described.where, hint)
+        diagnostics.warning("SK-CONTROL-008", f"{message}; its interfaces stay NaN", described.where, hint)
         return None
     for interface in described.interfaces:
         if interface not in SENSOR_INTERFACES[kind]:
             message = f"<ros2_control> sensor {described.name!r}: a {kind} sensor has no interface {interface!r}"
-            found.warning("SK-CONTROL-008", message, described.where, did_you_mean(interface, SENSOR_INTERFACES[kind]))
+            diagnostics.warning(
+                "SK-CONTROL-008", message, described.where, did_you_mean(interface, SENSOR_INTERFACES[kind])
+            )
     return HardwareSensor(described.name, chosen.scoped, kind)

@@ -185,7 +185,7 @@ def pixel_ray(camera_info: CameraInfo, u: float, v: float) -> Vector:
         v: row, 0 at the centre of the first pixel.
 
     Raises:
-        InputError: K is not the matrix of a camera.
+        InputError: K is not a valid camera matrix.
     """
     k = np.asarray(camera_info.k, dtype=float).reshape(3, 3)
     if not (np.isfinite(k).all() and k[0, 0] > 0.0 and k[1, 1] > 0.0):
@@ -193,7 +193,7 @@ def pixel_ray(camera_info: CameraInfo, u: float, v: float) -> Vector:
     distorted = np.array([(u - k[0, 2] - k[0, 1] * (v - k[1, 2]) / k[1, 1]) / k[0, 0], (v - k[1, 2]) / k[1, 1]])
     k1, k2, p1, p2, k3 = [*np.asarray(camera_info.d, dtype=float).tolist(), 0.0, 0.0, 0.0, 0.0, 0.0][:5]
     x, y = distorted
-    for _ in range(20):  # the distortion is small, so removing it repeatedly converges
+    for _ in range(20):  # converges, because the distortion is small
         r2 = x * x + y * y
         radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
         x = (distorted[0] - 2.0 * p1 * x * y - p2 * (r2 + 2.0 * x * x)) / radial
@@ -209,7 +209,7 @@ def pixel_goal(
     min_duration: float = 0.5,
     max_velocity: float = 1.0,
 ) -> dict[str, object]:
-    """Make the goal of a `control_msgs/action/PointHead` that moves the point at a pixel to the optical axis.
+    """Make a goal of `control_msgs/action/PointHead` that turns the camera towards the point at a pixel.
 
         info = sim.subscribe("/head_front_camera/rgb/camera_info")
         sim.run(0.1)
@@ -224,7 +224,7 @@ def pixel_goal(
         max_velocity: velocity limit of the head's joints [rad/s].
 
     Raises:
-        InputError: `camera_info` has no matrix of a camera.
+        InputError: K in `camera_info` is not a valid camera matrix.
     """
     x, y, z = (float(value) for value in pixel_ray(camera_info, *pixel) * distance)
     frame = camera_info.header.frame_id

@@ -5,9 +5,8 @@ is kp · reference + kv · velocity of the reference + the effort that balances 
 commanded effort. MuJoCo moves the reference at every step, also between two updates of the controllers, so that a
 hundred commands per second do not cause steps in the motion. A position command is the target for the end of the next
 period, and the reference moves from the last command to the new one. The reference of a velocity servo is the integral
-of the commanded velocities. The distance between this reference and the joint is limited to the distance at which the
-servo gives its full effort. A velocity servo therefore loses no distance under load, and it holds its position when it
-stops.
+of the commanded velocities, close enough to the joint that the servo does not wind up (see `velocity_references.py`). A
+velocity servo therefore loses no distance under load, and it holds its position when it stops.
 
 Joint damping and dry friction in a file represent losses inside the drive (40 N·m·s/rad on an arm whose motors give 43
 N·m at up to 1.95 rad/s). A servo compensates these losses, so its effort is the effort at the link. While a servo

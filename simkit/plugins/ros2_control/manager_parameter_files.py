@@ -86,39 +86,41 @@ def _report_ros_1_gains(own: Entry, given: ParameterFile, diagnostics: Diagnosti
 _CONTROLLER_PARAMETERS: Final = ("joint", "joints", "joint_name", "left_wheel", "left_wheel_names", "sensor_name")
 
 
-def report_unused_parameters(manager: ControllerManager, found: Diagnostics) -> None:
+def report_unused_parameters(manager: ControllerManager, diagnostics: Diagnostics) -> None:
     """Report every parameter in the files that has no effect, and suggest the closest known name.
 
     Args:
         manager: manager that uses the files; it has not loaded a controller yet.
-        found: diagnostics for the warnings.
+        diagnostics: diagnostics for the warnings.
     """
     declared, node = manager.declared(), manager.node
-    _report_misspelt_nodes(manager, declared, found)
+    _report_misspelt_nodes(manager, declared, diagnostics)
     if manager.is_ros_1:
         own = manager.files.of_node(node)
         for name, entry in (own.below or {}).items() if own is not None else ():
-            _report_in_ros_1(name, entry, declared, found)
+            _report_in_ros_1(name, entry, declared, diagnostics)
     nodes = [(pattern, entry) for file in manager.files.files for pattern, entry in file.nodes]
     for pattern, entry in nodes:
         # a pattern with * also matches other nodes, which may use these parameters
         if not pattern.endswith("*") and node_matches(pattern, node):
             for name, parameter in (entry.below or {}).items():
-                _report_in_manager(name, parameter, declared, manager.files.node_names(), found)
+                _report_in_manager(name, parameter, declared, manager.files.node_names(), diagnostics)
     if not declared:
-        _report_no_controllers(manager.files.files, node, found)
+        _report_no_controllers(manager.files.files, node, diagnostics)
 
 
-def report_high_rates(manager: ControllerManager, rate: float | None, found: Diagnostics) -> None:
+def report_high_rates(manager: ControllerManager, rate: float | None, diagnostics: Diagnostics) -> None:
     """Report controllers whose update rate is above the manager's `rate` [Hz]."""
     for name, loaded in manager.controllers.items():
         own = loaded.controller.update_rate
         if rate is not None and own > rate * (1.0 + 1e-9):
             message = f"controller {name!r} has an update rate of {own} Hz, above the manager's {rate:g} Hz"
-            found.warning("SK-CONTROL-017", f"{message}; the manager's rate applies", loaded.controller.params.where)
+            diagnostics.warning(
+                "SK-CONTROL-017", f"{message}; the manager's rate applies", loaded.controller.params.where
+            )
 
 
-def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, str], found: Diagnostics) -> None:
+def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, str], diagnostics: Diagnostics) -> None:
     """Report unknown node names in the files that are similar to the name of a controller."""
     known = {manager.name, manager.plugin.name, *declared, "**", "*"}
     for file in manager.files.files:
@@ -127,11 +129,11 @@ def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, st
             near = did_you_mean(name, declared)
             if name not in known and near:
                 message = f"{file.path.name} has parameters for {name!r}, which no controller manager declares"
-                found.warning("SK-CONTROL-019", message, entry.where, near)
+                diagnostics.warning("SK-CONTROL-019", message, entry.where, near)
 
 
 def _report_in_manager(
-    name: str, entry: Entry, declared: Mapping[str, str], nodes: Sequence[str], found: Diagnostics
+    name: str, entry: Entry, declared: Mapping[str, str], nodes: Sequence[str], diagnostics: Diagnostics
 ) -> None:
     """Report a parameter of the manager's node that is unknown, or is in the wrong place, in ROS 2's layout."""
     if name in declared:
@@ -139,27 +141,27 @@ def _report_in_manager(
             if key not in KNOWN_PARAMETERS["declaration"]:
                 message = f"{key!r} next to the type of {name!r} is ignored; set it in the controller's own node"
                 hint = f"{name}: {{ros__parameters: {{{key}: ...}}}}"
-                found.warning("SK-CONTROL-011", message, parameter.where, hint)
+                diagnostics.warning("SK-CONTROL-011", message, parameter.where, hint)
     elif name in KNOWN_PARAMETERS["manager"]:
         return
     elif entry.form in ("block", "nothing") or name in nodes:
-        _report_no_type(name, entry, found)
+        _report_no_type(name, entry, diagnostics)
     else:
         near = did_you_mean(name, KNOWN_PARAMETERS["manager"])
-        found.warning("SK-CONTROL-011", f"the controller manager ignores parameter <{name}>", entry.where, near)
+        diagnostics.warning("SK-CONTROL-011", f"the controller manager ignores parameter <{name}>", entry.where, near)
 
 
-def _report_in_ros_1(name: str, entry: Entry, declared: Mapping[str, str], found: Diagnostics) -> None:
+def _report_in_ros_1(name: str, entry: Entry, declared: Mapping[str, str], diagnostics: Diagnostics) -> None:
     """Report an entry in the robot's namespace that has a controller's parameters but no type.
 
     Other nodes may have parameters in this namespace too, so an entry without a controller's parameters is accepted.
     """
     below = entry.below or {}
     if name not in declared and any(key in below for key in _CONTROLLER_PARAMETERS):
-        _report_no_type(name, entry, found)
+        _report_no_type(name, entry, diagnostics)
 
 
-def _report_no_type(name: str, entry: Entry, found: Diagnostics) -> None:
+def _report_no_type(name: str, entry: Entry, diagnostics: Diagnostics) -> None:
     kind = (entry.below or {}).get("type")
     where = entry.where if kind is None else kind.where
     what = (
@@ -169,10 +171,10 @@ def _report_no_type(name: str, entry: Entry, found: Diagnostics) -> None:
     near = did_you_mean("type", [key for key in entry.below or {} if key != "type"])
     misspelt = near.removeprefix("did you mean ").rstrip("?")
     hint = f"rename {misspelt} to 'type'" if near else f"{name}: {{type: package/Class}}"
-    found.warning("SK-CONTROL-013", message, where, hint)
+    diagnostics.warning("SK-CONTROL-013", message, where, hint)
 
 
-def _report_no_controllers(files: Sequence[ParameterFile], node: str, found: Diagnostics) -> None:
+def _report_no_controllers(files: Sequence[ParameterFile], node: str, diagnostics: Diagnostics) -> None:
     """Report that no file declares a controller below the manager's node."""
     names = [pattern for file in files for pattern, _ in file.nodes]
     names += [f"/{name}" for file in files if file.root is not None for name in file.root.below or {}]
@@ -180,4 +182,6 @@ def _report_no_controllers(files: Sequence[ParameterFile], node: str, found: Dia
         file_names = ", ".join(file.path.name for file in files)
         message = f"{file_names} declares no controller for {node or '/'!r}: none is loaded"
         listed = "the files have parameters for: " + ", ".join(names[:20])
-        found.warning("SK-CONTROL-003", message, Where(str(files[0].path), 1), did_you_mean(node, names) or listed)
+        diagnostics.warning(
+            "SK-CONTROL-003", message, Where(str(files[0].path), 1), did_you_mean(node, names) or listed
+        )

@@ -32,7 +32,7 @@ _KINDS: Final = {
     "DifferentialTransmission": "differential",
     "FourBarLinkageTransmission": "four_bar_linkage",
 }
-_SMALLEST_REDUCTION: Final = 1e-12  # the largest reduction is its inverse
+_SMALLEST_REDUCTION: Final = 1e-12  # the largest allowed reduction is 1e12
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,8 @@ class TransmissionLaw:
 
     Attributes:
         actuators, joints: plain names.
-        motion: matrix from joint positions or velocities to those of the actuators, shape (actuators, joints).
+        motion: matrix from joint positions or velocities to actuator positions or velocities, shape (actuators,
+            joints).
         force: matrix from joint efforts to actuator efforts, shape (actuators, joints).
         offset: position offsets of the joints [rad or m].
     """
@@ -60,7 +61,7 @@ class TransmissionLaw:
 
 
 def transmission_laws(
-    transmissions: Iterable[Transmission], joints: Sequence[str], found: Diagnostics
+    transmissions: Iterable[Transmission], joints: Sequence[str], diagnostics: Diagnostics
 ) -> list[TransmissionLaw]:
     """Return the laws of all transmissions whose joints the hardware has; report the others."""
     laws = []
@@ -70,7 +71,7 @@ def transmission_laws(
             message = f"transmission {transmission.name!r} is of type {transmission.type or transmission.kind!r}"
             message += f", which is not known; use one of {', '.join(_KINDS)}; its actuators are ignored"
             near = did_you_mean(transmission.type.rpartition("/")[2], _KINDS)
-            found.warning("SK-CONTROL-008", message, transmission.where, near)
+            diagnostics.warning("SK-CONTROL-008", message, transmission.where, near)
             continue
         if law is None:
             counts = f"{len(transmission.joints)} joint(s) and {len(transmission.actuators)} actuator(s)"
@@ -79,12 +80,12 @@ def transmission_laws(
                 "a simple transmission needs 1 joint and 1 actuator, other types need 2 of each with different names; "
                 "no reduction may be near 0"
             )
-            found.warning("SK-CONTROL-008", f"{message}; its actuators are ignored", transmission.where, hint)
+            diagnostics.warning("SK-CONTROL-008", f"{message}; its actuators are ignored", transmission.where, hint)
             continue
         missing = [joint for joint in law.joints if joint not in joints]
         for joint in missing:
             message = f"transmission {transmission.name!r} names joint {joint!r}, which the hardware does not have"
-            found.warning(
+            diagnostics.warning(
                 "SK-CONTROL-008",
                 f"{message}; its actuators are ignored",
                 transmission.where,

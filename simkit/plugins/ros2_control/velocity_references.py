@@ -1,12 +1,13 @@
 """References of velocity servos: position targets that move at the commanded velocities.
 
 If a joint cannot follow, the distance between reference and joint would grow without limit (windup). The reference
-therefore stays within the distance at which the servo gives its full effort. The wheels of one controller move
-together: if one wheel is too weak for a moment, for example under a load on its side of the base, the other wheels wait
-for it. The base is then late, but it does not leave its path. A wheel that is commanded to stop holds the position
-where it comes to rest. The wheel does not move on to the position where it should have stopped, so it does not push
-against a wall. Only the lag across the commanded motion is corrected, that is, the lag by which the wheels of one
-controller differ.
+therefore stays within the distance at which the servo gives its full effort, plus a margin. The wheels of one
+controller move together: if one wheel is too weak for a moment, for example under a load on its side of the base, the
+other wheels wait for it. The base is then late, but it does not leave its path.
+
+A wheel that is commanded to stop holds the position where it comes to rest. The wheel does not return to the position
+where it should have stopped, and it does not push on against a wall. Only differences between the lags of one
+controller's wheels are corrected, because such differences change the direction of the base.
 """
 
 from __future__ import annotations
@@ -100,7 +101,7 @@ def _reduce_to_slowest(
 
 
 def _lags_across_motion(lags: Sequence[float], previous_speeds: Sequence[float], groups: Sequence[int]) -> list[float]:
-    """Return each lag without its part along the previous motion of the controller's joints; 0 for a single joint."""
+    """Return the lags minus the common delay of each controller's joints (delay · speed); 0 for a single joint."""
     sums: dict[int, tuple[float, float]] = {}
     for lag, previous, group in zip(lags, previous_speeds, groups, strict=True):
         product, square = sums.get(group, (0.0, 0.0))

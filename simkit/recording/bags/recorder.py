@@ -34,7 +34,7 @@ class RecordError(SimkitError):
 
 
 def is_single_file(path: Path) -> bool:
-    """Check whether a path means one MCAP file (`x.mcap`) instead of a rosbag2 folder."""
+    """Check whether a path names one MCAP file (`x.mcap`) instead of a rosbag2 folder."""
     return path.suffix.lower() == ".mcap"
 
 
@@ -94,8 +94,8 @@ class Recorder:
         sim: simulation to record; every recorded sensor measures because of the recording.
         path: `x.mcap` for one file, else a rosbag2 folder.
         overwrite: True to replace an existing bag.
-        topics: shell patterns of the topics to record; empty for all except those in the bus's `aside` (`/stats` and
-            other topics about the whole world).
+        topics: shell patterns of the topics to record; empty for all topics except those in the bus's `aside` (`/stats`
+            and other topics about the whole world).
         skip: shell patterns of topics to leave out.
         choose: function that returns True for a topic to record; replaces `topics`.
 

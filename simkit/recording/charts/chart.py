@@ -1,4 +1,4 @@
-"""Chart files of numbers over time, with one panel for each unit, one above the other."""
+"""Chart files of numbers over time; each unit has a panel, and the panels are stacked vertically."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from simkit.recording.charts.canvas import Canvas, PngCanvas, SvgCanvas, text_wi
 from simkit.recording.charts.series import Series
 
 SUFFIXES: Final = (".svg", ".png")
-_WIDTH, _SINGLE_PANEL, _PANEL = 960, 420, 210  # [px] width, and height of a single panel or of one of several
+_WIDTH, _SINGLE_PANEL, _PANEL = 960, 420, 210  # [px] width, height of a single panel, height if several
 _LEFT, _RIGHT, _TOP, _BOTTOM = 78, 24, 10, 46
 _LEGEND, _SIZE, _GAP = 19, 12.0, 12  # [px]
 _COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#17becf", "#8c564b", "#e377c2", "#7f7f7f")

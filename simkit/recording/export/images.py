@@ -166,7 +166,7 @@ class NpzFile(NumberedFiles):
 class VideoFile(MessageWriter):
     """Writer of one MP4 video.
 
-    Each image is repeated until the time of the next one, so that the video keeps the bag's times.
+    Each image is repeated until the time of the next image, so that the video has the same timing as the bag.
     """
 
     def __init__(self, path: Path) -> None:

@@ -167,7 +167,7 @@ class GripperActionController(Controller):
 
 
 class EffortGripperActionController(GripperActionController):
-    """Moves the joint by effort: a PID (`gains.<joint>`) on its position, limited to the goal's `max_effort`."""
+    """Moves the joint by effort: a PID position controller (`gains.<joint>`), limited to the goal's `max_effort`."""
 
     types = ("effort_controllers/GripperActionController",)
     interface = "effort"

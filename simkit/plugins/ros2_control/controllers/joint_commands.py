@@ -31,8 +31,8 @@ STATE: Final = "control_msgs/msg/JointControllerState"
 class ForwardCommandController(Controller):
     """Forwards commands to the command interfaces of joints; a parameter names the interface.
 
-    Commands come on `~/commands` (ROS 1: `~/command`). Before the first command, and after deactivation, positions are
-    held and velocities and efforts are 0.
+    Commands arrive on `~/commands` (ROS 1: `~/command`). Before the first command, and after deactivation, positions
+    are held and velocities and efforts are 0.
 
     Attributes:
         interface: command interface; None if `interface_name` sets it.

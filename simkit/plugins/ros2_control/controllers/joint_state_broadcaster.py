@@ -38,7 +38,7 @@ class JointStateBroadcaster(Controller):
         self._states = self._chosen_joints(read_names(params, "joints"), read_names(params, "interfaces"))
         mapping = params.block("map_interface_to_joint_state")
         fields = {(mapping.text(field, field) or field): field for field in _FIELDS}
-        params.child("use_urdf_to_filter")  # only joints of the hardware are published anyway
+        params.child("use_urdf_to_filter")  # no effect: only joints of the hardware are published
         params.child("publish_dynamic_joint_states")
         owners = [(owner, interface) for owner, _, interface in (name.rpartition("/") for name in self._states)]
         joints = list(dict.fromkeys(owner for owner, interface in owners if interface in fields))
