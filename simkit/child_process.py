@@ -70,13 +70,8 @@ class ChildProcesses:
             if self._is_over:
                 return ProcessResult(-signal.SIGTERM, "")
             process = subprocess.Popen(
-                [
-                    sys.executable,
-                    "-P",
-                    "-m",
-                    module,
-                    *arguments,
-                ],  # -P: no file of the working directory shadows a module
+                # -P: no file of the working directory shadows a module
+                [sys.executable, "-P", "-m", module, *arguments],
                 stdin=subprocess.PIPE,  # nothing is written; the pipe closes when this process ends
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,

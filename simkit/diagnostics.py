@@ -104,7 +104,7 @@ class Diagnostics:
             raise LoadError(tuple(self._items))
 
 
-def follows_from(found: Diagnostic, earlier: Iterable[Diagnostic]) -> bool:
+def follows_from(diagnostic: Diagnostic, earlier: Iterable[Diagnostic]) -> bool:
     """Check whether an error is a consequence of an earlier error.
 
     Messages begin with the faulty object (`joint 'elbow' has type ...`). Their first clause ends with the missing
@@ -112,8 +112,8 @@ def follows_from(found: Diagnostic, earlier: Iterable[Diagnostic]) -> bool:
     faulty object of an earlier error.
     """
     faulty = {name.group(1) for d in earlier if d.severity == "error" and (name := _QUOTED.search(d.message))}
-    missed = _QUOTED.findall(found.message.split(";")[0])
-    return found.severity == "error" and bool(missed) and missed[-1] in faulty
+    missed = _QUOTED.findall(diagnostic.message.split(";")[0])
+    return diagnostic.severity == "error" and bool(missed) and missed[-1] in faulty
 
 
 def closest(name: str, allowed: Iterable[str], least: float = 0.6) -> str | None:

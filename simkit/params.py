@@ -120,8 +120,8 @@ class Params:
 
         Example: `[b.number("gain") for b in p.each("gain")]`.
         """
-        alone = ((c,) for c in self.all(name))
-        return [Params(self.name, children=c, where=c[0].where, diagnostics=self.diagnostics) for c in alone]
+        single = ((c,) for c in self.all(name))
+        return [Params(self.name, children=c, where=c[0].where, diagnostics=self.diagnostics) for c in single]
 
     def has(self, name: str) -> bool:
         """Check whether a child of that name exists, without marking it as read."""
@@ -145,8 +145,8 @@ class Params:
 
     def copied(self) -> Params:
         """Return an unread copy of the tree that can be changed independently."""
-        same = [c.copied() for c in self.children]
-        return Params(self.name, self.value, self.attributes, same, self.where, self.diagnostics)
+        children = [c.copied() for c in self.children]
+        return Params(self.name, self.value, self.attributes, children, self.where, self.diagnostics)
 
     def mark_all_read(self) -> None:
         """Mark this whole block as read, because another reader handles it."""
@@ -351,12 +351,11 @@ class Params:
         return f"<{name}>{value}</{name}>"
 
     def _near(self, name: str) -> str:
-        return did_you_mean(
-            name, [c.name for c in self.children if not c.was_read]
-        )  # a child that was read is not misspelled
+        # a child that was read is not misspelled
+        return did_you_mean(name, [c.name for c in self.children if not c.was_read])
 
-    def _bad(self, found: str, allowed: str, where: Where) -> None:
-        shown = found if len(found) <= 200 else found[:200] + "..."
+    def _bad(self, text: str, allowed: str, where: Where) -> None:
+        shown = text if len(text) <= 200 else text[:200] + "..."
         self.diagnostics.error("SK-PARAM-002", f"found {shown}; expected {allowed}", where)
 
 

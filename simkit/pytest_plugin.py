@@ -200,5 +200,5 @@ def _label(source: str | os.PathLike[str]) -> str:
     return shorten(text, _LONGEST) if "<" in text else text
 
 
-def _lines(found: Iterable[Diagnostic]) -> str:
-    return "\n".join(map(str, found))
+def _lines(diagnostics: Iterable[Diagnostic]) -> str:
+    return "\n".join(map(str, diagnostics))

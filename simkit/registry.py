@@ -141,7 +141,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     @cached_property
     def _written(self) -> tuple[Mapping[str, tuple[str, Sequence[str]]], Sequence[str]]:
-        """Written text and modules of each literal name, and names of the modules that compute names."""
+        """Names that are literal texts in the source code, with text and modules; and modules that compute names."""
         literal: dict[str, tuple[str, list[str]]] = {}
         computed = []
         for module, file in self._modules:

@@ -40,14 +40,14 @@ def is_gone(pid: int) -> bool:
     return False
 
 
-def test_of_megabytes_the_last_lines_are_kept_and_nobody_waits(tmp_path: Path) -> None:
+def test_the_last_lines_of_a_long_output_are_stored_and_the_process_does_not_block(tmp_path: Path) -> None:
     found = ended(tmp_path, "print('x' * 5_000_000)\nprint('last', sys.stdin.read())\nsys.exit(3)")
     assert found.code == 3 and found.last_lines(1) == ["last "] and len(found.output) <= 1 << 16
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are looked at in /proc")
 @pytest.mark.parametrize("body", ["time.sleep(60)", "exit_immediately(0)"], ids=["at its limit", "at its end"])
-def test_what_it_began_ends_with_it(body: str, tmp_path: Path) -> None:
+def test_processes_of_the_child_end_with_the_child(body: str, tmp_path: Path) -> None:
     found = ended(tmp_path, SLEEPER + body, limit=1.0)
     assert found.is_late == ("60" in body)
     assert is_gone(int(found.output.split()[0]))
@@ -55,7 +55,7 @@ def test_what_it_began_ends_with_it(body: str, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are looked at in /proc")
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
-def test_it_ends_with_whoever_began_it_however_that_goes(how: signal.Signals, tmp_path: Path) -> None:
+def test_a_child_ends_with_its_parent_for_any_reason(how: signal.Signals, tmp_path: Path) -> None:
     file = tmp_path / "pid"
     (tmp_path / "part.py").write_text(
         f"{HEAD}open({str(file) + '.part'!r}, 'w').write(str(os.getpid()))\n"

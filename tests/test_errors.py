@@ -23,7 +23,7 @@ FOUND = Diagnostic("SK-XML-001", "error", "no end", "a.sdf", 3)
     ],
     ids=lambda error: type(error).__name__,
 )
-def test_an_error_is_the_same_after_a_journey(error: SimkitError) -> None:
+def test_an_error_is_the_same_after_pickling(error: SimkitError) -> None:
     arrived = pickle.loads(pickle.dumps(error))
     assert type(arrived) is type(error)
     assert (str(arrived), arrived.code, vars(arrived)) == (str(error), error.code, vars(error))

@@ -35,13 +35,13 @@ def test_values_are_read_with_their_types_and_defaults():
 
 
 @pytest.mark.parametrize("text", ["x", "nan", "1_0", "inf", ""])
-def test_what_is_no_number_is_an_error_and_gives_the_default(text):
+def test_an_invalid_number_is_an_error_and_returns_the_default(text):
     p = block(f"<a>{text}</a>")
     assert p.number("a", 4.0) == 4.0
     assert problems(p) == [("SK-PARAM-002", "")]
 
 
-def test_a_number_out_of_range_says_the_range():
+def test_the_error_for_a_number_out_of_range_has_the_range():
     p = block("\n<a>-1</a>")
     p.number("a", minimum=0, maximum=2)
     (error,) = p.diagnostics
@@ -54,14 +54,14 @@ def test_a_required_element_that_is_missing_names_the_closest():
     assert problems(p) == [("SK-PARAM-001", "did you mean 'lef_joint'?")]
 
 
-def test_what_nobody_read_is_reported_except_foreign_prefixes():
+def test_unread_elements_are_reported_except_foreign_prefixes():
     p = block("<a>1</a><raduis>2</raduis><gz:x/><sub><y/></sub>")
     p.number("a"), p.number("radius", 1.0), p.block("sub").text("z", "")
     p.report_unread("SK-PARAM-003", "plugin 'q'")
     assert problems(p) == [("SK-PARAM-003", "did you mean 'radius'?"), ("SK-PARAM-003", "")]
 
 
-def test_of_an_element_that_comes_twice_the_second_is_reported():
+def test_the_second_of_two_equal_elements_is_reported():
     p = block("<max>1</max><max>2</max>")
     assert p.number("max") == 1.0
     p.report_unread("SK-PARAM-003", "sonar")
@@ -82,7 +82,7 @@ def test_a_block_made_in_python_reads_like_one_from_a_file():
     assert p.boolean("on") and p.vector3("size") == (1, 2, 3) and p.block("inner").number("k") == 4
 
 
-def test_numbers_that_are_too_many_are_passed_over_with_a_warning():
+def test_surplus_numbers_are_ignored_with_a_warning():
     p = block("<a>1 2</a><e>1 2 3 4</e><f>1 2 x 4</f>")
     assert (p.number("a"), p.vector3("e")) == (1.0, (1.0, 2.0, 3.0))
     assert [(d.code, d.severity) for d in p.diagnostics] == [("SK-PARAM-006", "warning")] * 2
@@ -90,7 +90,7 @@ def test_numbers_that_are_too_many_are_passed_over_with_a_warning():
     assert problems(p)[-1][0] == "SK-PARAM-002"
 
 
-def test_an_element_that_is_missing_is_not_taken_for_one_that_has_been_read() -> None:
+def test_an_element_that_was_read_is_not_suggested_for_a_missing_element() -> None:
     diagnostics = Diagnostics()
     params = Params.from_dict({"front_left_joint": "a", "frnt_right_joint": "b"}, "plugin", diagnostics)
     params.text("front_left_joint", required=True)

@@ -69,7 +69,7 @@ def animals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kinds[A
 
 
 @pytest.mark.parametrize("kinds", KINDS)
-def test_every_class_is_found_by_the_names_that_its_file_writes_down(kinds: Callable[[], Any]) -> None:
+def test_every_class_is_found_by_the_names_in_its_file(kinds: Callable[[], Any]) -> None:
     full = kinds()
     fresh = Kinds(full._packages, full._group, full._base, full._names, full._attributes, full._spell)
     for name in list(full):
@@ -84,19 +84,21 @@ def test_only_the_module_of_a_class_is_imported_to_find_it(animals: Kinds[Any]) 
     assert "animals.feathered.birds" not in sys.modules
 
 
-def test_names_that_are_computed_are_found_too(animals: Kinds[Any]) -> None:
+def test_computed_names_are_found(animals: Kinds[Any]) -> None:
     assert animals["bird 1"].__name__ == "Bird"
     assert animals.written == {"dog": "Dog", "hound": "Hound", "cat": "Cat", "bird 0": "bird 0", "bird 1": "bird 1"}
 
 
 @pytest.mark.parametrize("name", ["wolf", "nobody", "not a class's", ""])
-def test_what_no_class_writes_down_is_not_there(animals: Kinds[Any], name: str) -> None:
+def test_a_name_without_a_class_is_not_found(animals: Kinds[Any], name: str) -> None:
     assert name not in animals
     with pytest.raises(KeyError):
         animals[name]
 
 
-def test_two_classes_of_one_name_are_told_when_all_are_gone_through(animals: Kinds[Any], tmp_path: Path) -> None:
+def test_two_classes_with_one_name_are_reported_when_all_classes_are_listed(
+    animals: Kinds[Any], tmp_path: Path
+) -> None:
     (tmp_path / "animals" / "broken.py").write_text(DOG)
     with pytest.raises(RuntimeError, match=r"'dog' is claimed by animals\.\w+ and by animals\.\w+"):
         len(animals)

@@ -25,7 +25,7 @@ def world(tmp_path: Path) -> Path:
     return path
 
 
-def test_it_is_frozen_and_survives_a_pickle(world: Path) -> None:
+def test_a_run_spec_is_frozen_and_can_be_pickled(world: Path) -> None:
     spec = RunSpec(
         str(world), 0.2, 3, overrides=("ball::l.inertial.mass=2",), checks=(Check("final", expression="time == 0.2"),),
         options={"base": "fixed", "xacro_args": {"a": "1"}}, recording=Recording(Path("x.mcap")), velocity="1,0",
@@ -35,7 +35,7 @@ def test_it_is_frozen_and_survives_a_pickle(world: Path) -> None:
         spec.seed = 4  # type: ignore[misc]
 
 
-def test_a_simulation_has_the_one_that_it_was_loaded_from(world: Path) -> None:
+def test_a_simulation_has_the_run_spec_that_it_was_loaded_from(world: Path) -> None:
     spec = RunSpec(str(world), seed=3, overrides=("ball::l.inertial.mass=2",), options={"sleep": False})
     with open_scenario(spec) as sim:
         assert sim.run_spec is not None
@@ -45,7 +45,7 @@ def test_a_simulation_has_the_one_that_it_was_loaded_from(world: Path) -> None:
             assert again.link("ball::l").mass == 2.0
 
 
-def test_options_of_a_command_go_over_those_of_a_scenario_file(world: Path) -> None:
+def test_command_line_options_override_a_scenario_file(world: Path) -> None:
     file = world.with_name("fall.yaml")
     file.write_text("world: ball.sdf\nduration: 0.3\nseed: 5\nset: [ball::l.inertial.mass=2]\nbase: fixed\n")
     found = scenario_spec(str(file), load_options((), (), (), "auto"))

@@ -10,12 +10,12 @@ from simkit.yaml_reader import NotYaml, finite_number, read_yaml
 @pytest.mark.parametrize(
     ("text", "value"), [("1e-3", 0.001), ("-1E6", -1e6), (".5e1", 5.0), ("1.e2", 100.0), ("+2e+0", 2.0), ("1.5", 1.5)]
 )
-def test_a_number_with_an_exponent_is_one(text: str, value: float) -> None:
+def test_a_number_with_an_exponent_is_a_number(text: str, value: float) -> None:
     assert read_yaml(f"{{x: {text}, y: [{text}]}}") == {"x": value, "y": [value]}
 
 
 @pytest.mark.parametrize("text", ["e3", "1e", "1e3x", "'1e3'", "v1e3"])
-def test_what_is_no_number_stays_a_text(text: str) -> None:
+def test_a_text_that_is_not_a_number_stays_a_text(text: str) -> None:
     assert read_yaml(text) == text.strip("'")
 
 
@@ -37,18 +37,18 @@ def test_what_is_no_number_stays_a_text(text: str) -> None:
         ("\0", "special characters are not allowed"),
     ],
 )
-def test_what_cannot_be_read_is_told_and_no_more(text: str, why: str) -> None:
+def test_an_invalid_text_is_reported_with_a_short_reason(text: str, why: str) -> None:
     with pytest.raises(NotYaml, match=why):
         read_yaml(text)
 
 
-def test_much_out_of_little_is_refused() -> None:
+def test_a_short_text_that_expands_too_much_is_refused() -> None:
     text = "a0: &a0 [1, 1]\n" + "".join(f"a{i}: &a{i} [*a{i - 1}, *a{i - 1}]\n" for i in range(1, 40))
     with pytest.raises(NotYaml, match="expands to more than"):
         read_yaml(text)
 
 
-def test_much_out_of_little_by_merging_is_refused_too() -> None:
+def test_a_text_that_expands_too_much_by_merging_is_refused() -> None:
     text = "a0: &a0 {x: 1}\n" + "".join(f"a{i}: &a{i} {{<<: [{f'*a{i - 1}, ' * 9}]}}\n" for i in range(1, 20))
     with pytest.raises(NotYaml, match="expands to more than") as caught:
         read_yaml(text)
@@ -56,12 +56,12 @@ def test_much_out_of_little_by_merging_is_refused_too() -> None:
 
 
 @pytest.mark.parametrize("text", ["12:30", "-1:30:00", "1:30.5"])
-def test_a_time_of_day_is_no_number_of_minutes(text: str) -> None:
+def test_a_time_of_day_is_a_text(text: str) -> None:
     assert read_yaml(f"x: {text}") == {"x": text}
 
 
 @pytest.mark.parametrize("value", [10**400, -(10**400), float("nan"), float("inf"), True, "1", None, [1]])
-def test_what_is_no_finite_number_is_none(value: object) -> None:
+def test_finite_number_returns_none_for_other_values(value: object) -> None:
     assert finite_number(value) is None and finite_number(10**20) == 1e20
 
 

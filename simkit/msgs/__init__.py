@@ -1,7 +1,7 @@
 """ROS 2 messages: dataclasses from the package rosbags, built from plain values and serialised as CDR.
 
     msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
-    msgs.type_of("sensor_msgs/msg/Imu")  # the class itself, for the fast path
+    msgs.type_of("sensor_msgs/msg/Imu")  # the class itself; calling it is faster than `make`
     msgs.header(sim.time_ns, "imu_link")
 
 This package builds, encodes and decodes messages, and formats messages and definitions as text. It does not depend on

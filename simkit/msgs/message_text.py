@@ -220,12 +220,12 @@ def _step_into_field(value: FieldValue, name: str, walked: str, store: Typestore
     return field_value(value, name), fields[name]
 
 
-def _step_into_item(value: FieldValue, found: re.Match[str], node: FieldNode | None, walked: str) -> _TypedValue:
+def _step_into_item(value: FieldValue, item: re.Match[str], node: FieldNode | None, walked: str) -> _TypedValue:
     if not isinstance(value, (list, tuple, np.ndarray)):
-        raise MessageError(f"{walked!r} is not an array and has no item {found[0]}")
-    if found[3]:
-        return value[int(found[2]) if found[2] else None : int(found[4]) if found[4] else None], node
+        raise MessageError(f"{walked!r} is not an array and has no item {item[0]}")
+    if item[3]:
+        return value[int(item[2]) if item[2] else None : int(item[4]) if item[4] else None], node
     try:
-        return value[int(found[2])], None
+        return value[int(item[2])], None
     except (IndexError, ValueError):
-        raise MessageError(f"{walked!r} has {len(value)} items, found {found[0]}") from None
+        raise MessageError(f"{walked!r} has {len(value)} items, found {item[0]}") from None

@@ -122,7 +122,7 @@ def full_name(type_name: str) -> str:
 
 @cache
 def type_of(type_name: str) -> type[Message]:
-    """Return the dataclass of a message type. Construct it directly in code that must be fast."""
+    """Return the dataclass of a message type. In code that must be fast, call the class directly."""
     return type_store().types[full_name(type_name)]
 
 

@@ -73,7 +73,7 @@ class MessageQueue(Generic[_Label]):
         self._waiting: deque[tuple[_Label, Message | LazyMessage]] = deque()
 
     def add(self, label: _Label, message: Message | LazyMessage) -> None:
-        """Deliver a message that was just published, or queue it after earlier messages."""
+        """Deliver a message that was just published, or queue the message if an image before it is not rendered yet."""
         is_lazy = type(message) is LazyMessage
         if self._waiting or (is_lazy and not message.is_ready):
             if is_lazy or self._freeze is not None:

@@ -141,12 +141,12 @@ def _moving_bodies(sim: Simulation) -> list[Points]:
 
 def _viewpoint(points: list[Points], driven: DrivenPath | None) -> tuple[Points, Points] | tuple[None, None]:
     """Return eye and target [m] of a view from obliquely above that shows all moving models and scan points."""
-    seen = [cloud for cloud in points if len(cloud)]
+    visible = [cloud for cloud in points if len(cloud)]
     if driven is not None:
-        seen += [np.array(track) for track in driven.tracks.values()]
-    if not seen:
+        visible += [np.array(track) for track in driven.tracks.values()]
+    if not visible:
         return None, None
-    cloud = np.concatenate(seen)
+    cloud = np.concatenate(visible)
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     target = (low + high) / 2
     radius = max(float(np.linalg.norm(high - low)) / 2, 0.6)

@@ -61,7 +61,7 @@ def test_a_class_is_imported_by_the_last_part_of_its_types_name() -> None:
         ("action_msgs__msg__GoalStatus", "action_msgs/msg/GoalStatus"),
     ],
 )
-def test_a_name_that_types_share_is_ros_own_or_written_in_full(class_name: str, type_name: str) -> None:
+def test_a_shared_class_name_belongs_to_ros_and_other_types_have_full_names(class_name: str, type_name: str) -> None:
     assert class_names()[class_name] == type_name
 
 

@@ -30,7 +30,7 @@ def test_yaml_keeps_the_order_of_fields_and_writes_numbers_as_yaml_does() -> Non
     )
 
 
-def test_python_is_that_of_rclpy() -> None:
+def test_the_python_format_equals_rclpys() -> None:
     assert to_python(STATE) == (
         "sensor_msgs.msg.JointState(header=std_msgs.msg.Header(stamp=builtin_interfaces.msg.Time(sec=0, nanosec=0), "
         "frame_id=''), name=['left', 'right'], position=[1.0, -0.5], velocity=[], effort=[1e-05])"
@@ -42,7 +42,7 @@ def test_python_is_that_of_rclpy() -> None:
     )
 
 
-def test_csv_is_flat() -> None:
+def test_csv_has_all_nested_values_on_one_line() -> None:
     assert message_to_csv(STATE) == "0,0,,left,right,1.0,-0.5,1e-05"
     assert message_to_csv(STATE, TextStyle(no_arr=True)).startswith("0,0,,<sequence type: string, length: 2>,")
 
@@ -55,7 +55,7 @@ def test_long_arrays_and_strings_are_truncated() -> None:
     assert message_to_dict(scan, TextStyle(no_str=True))["header"]["frame_id"] == "<string length: <9>>"
 
 
-def test_a_part_is_found_by_its_path() -> None:
+def test_a_field_is_found_by_its_path() -> None:
     tree = msgs.make("tf2_msgs/msg/TFMessage", transforms=[{"child_frame_id": "a"}, {"child_frame_id": "b"}])
     assert field_at_path(tree, "transforms[1].child_frame_id")[0] == "b"
     assert field_text(*field_at_path(STATE, "position")) == "array('d', [1.0, -0.5])"

@@ -132,7 +132,7 @@ def test_an_unknown_type_names_the_closest() -> None:
         msgs.type_of("sensor_msgs/msg/LaserScn")
 
 
-def test_a_dict_becomes_the_first_type_that_it_fits() -> None:
+def test_a_dict_becomes_a_message_of_the_first_matching_type() -> None:
     types = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
     assert msgs.type_name(msgs.from_dict(types, {"angular": {"z": 1}})) == types[0]
     assert msgs.type_name(msgs.from_dict(types, {"twist": {"angular": {"z": 1}}})) == types[1]
@@ -147,14 +147,14 @@ def test_times_are_exact(ns: int) -> None:
     assert msgs.stamp_ns(msgs.header(ns, "").stamp) == ns
 
 
-def test_the_definition_brings_the_types_it_uses() -> None:
+def test_the_definition_contains_the_types_of_its_fields() -> None:
     text = msgs.definition("ros_gz_interfaces/msg/Contacts")
     assert text.startswith("std_msgs/Header header\nros_gz_interfaces/Contact[] contacts\n")
     assert "MSG: ros_gz_interfaces/Entity" in text
     assert "uint8 COLLISION=5" in text
 
 
-def test_an_object_that_is_no_message_is_refused() -> None:
+def test_an_object_that_is_not_a_message_is_refused() -> None:
     with pytest.raises(MessageError, match="dict is not a message"):
         msgs.type_name({})
 

@@ -29,7 +29,7 @@ def sent(commands: list[Command], seconds: float, chunk: int) -> list[tuple[int,
 
 
 @pytest.mark.parametrize("chunk", [1, 7, 1000])
-def test_commands_arrive_before_the_step_of_their_tick_however_the_loop_is_cut(chunk: int) -> None:
+def test_commands_arrive_before_the_step_of_their_tick_for_any_length_of_runs(chunk: int) -> None:
     commands = [
         Command(0.0, "/level", {"data": 1.0}),
         Command(0.0335, "/level", {"data": 2.0}),
@@ -38,19 +38,19 @@ def test_commands_arrive_before_the_step_of_their_tick_however_the_loop_is_cut(c
     assert sent(commands, 0.1, chunk) == [(0, 1.0), (20, 3.0), (30, 3.0), (34, 2.0), (40, 3.0)]
 
 
-def test_of_two_at_one_time_the_earlier_in_the_list_goes_first() -> None:
+def test_commands_of_the_same_time_are_sent_in_the_order_of_the_list() -> None:
     commands = [Command(0.01, "/level", {"data": float(i)}) for i in range(5)]
     assert [value for _, value in sent(commands, 0.02, 1000)] == [0.0, 1.0, 2.0, 3.0, 4.0]
 
 
 @pytest.mark.parametrize("text", ["0.2,0.3", "0.2 0.3", " 0.2 , 0.3 "])
-def test_a_steady_velocity_goes_to_cmd_vel(text: str) -> None:
+def test_a_constant_velocity_is_sent_on_cmd_vel(text: str) -> None:
     command = steady_velocity(text, TOPICS)
     assert (command.topic, command.at) == ("/cmd_vel", 0.0)
     assert command.message == {"linear": {"x": 0.2}, "angular": {"z": 0.3}}
 
 
-def test_a_steady_velocity_goes_to_the_only_topic_that_takes_one() -> None:
+def test_a_constant_velocity_is_sent_on_the_only_twist_topic() -> None:
     command = steady_velocity(
         "1,0", {"/model/a/cmd_vel": "geometry_msgs/msg/TwistStamped", "/imu": "sensor_msgs/msg/Imu"}
     )
@@ -120,7 +120,7 @@ def test_a_mismatched_message_is_reported_with_its_line() -> None:
 
 
 @pytest.mark.parametrize("text", ["\0", "[" * 3000])
-def test_a_script_that_no_yaml_reader_takes_is_a_message(text: str, tmp_path: Path) -> None:
+def test_a_script_that_is_not_yaml_is_reported(text: str, tmp_path: Path) -> None:
     script = tmp_path / "odd.yaml"
     script.write_text(text)
     with pytest.raises(InputError, match="SK-CLI-011"):

@@ -18,7 +18,7 @@ WORLD = """
 """
 
 
-def test_rates_are_those_of_simulated_time() -> None:
+def test_rates_are_in_simulated_time() -> None:
     with simkit.load(WORLD) as sim:
         counter = TopicCounter(sim)
         sim.run(2.0)
@@ -40,7 +40,7 @@ def test_a_skipped_type_is_listed_and_not_read() -> None:
         assert not sim.communication.bus.wanted("/imu")
 
 
-def test_a_topic_that_comes_later_is_counted_from_then_on() -> None:
+def test_a_topic_that_is_advertised_later_is_counted_from_then_on() -> None:
     with simkit.load(WORLD) as sim:
         counter = TopicCounter(sim)
         sim.run(1.0)

@@ -160,7 +160,7 @@ class LiveGoal:
 
     @property
     def is_accepted(self) -> bool:
-        """True if the action accepted the goal, even if the goal has ended since."""
+        """True if the action accepted the goal; stays True after the end of the goal."""
         return self.status.name not in ("UNKNOWN", "REJECTED")
 
     def wait(self, timeout: float | None = None) -> bool:

@@ -41,7 +41,8 @@ class PosedEntity(SharedByCopies):
         place: Constant pose in the parent; None if the entity can move.
         handle: Link or model of the entity; None if it cannot move.
         within: Model or link that contains the entity; None for the world.
-        moves: True if Gazebo publishes this pose on the topic for moving entities. Another topic has static entities.
+        moves: True if Gazebo publishes this pose on the topic of moving entities, in a setup where static entities have
+            a separate topic.
     """
 
     frame: str
@@ -122,13 +123,13 @@ class EntityPoses(SharedByCopies):
             if not is_body or 0.0 in pose:
                 pose = _compose_poses(pose, offset)
             if base >= 0:
-                there = backs[base]
-                if there is None:
-                    there = _invert_pose(world[base])
-                    if not is_base or 0.0 in there:
-                        there = _compose_poses(back, there)
-                    backs[base] = there
-                pose = _compose_poses(there, pose)
+                inverse_base = backs[base]
+                if inverse_base is None:
+                    inverse_base = _invert_pose(world[base])
+                    if not is_base or 0.0 in inverse_base:
+                        inverse_base = _compose_poses(back, inverse_base)
+                    backs[base] = inverse_base
+                pose = _compose_poses(inverse_base, pose)
             placed.append((frame, child, pose))
         return placed
 
@@ -138,13 +139,13 @@ class EntityPoses(SharedByCopies):
         if entity.place is not None:
             return _CompiledEntity(entity.frame, entity.child, pose_numbers(entity.place))
         assert entity.handle is not None
-        body, offset = self._spot(entity.handle)
+        body, offset = self._body_and_offset(entity.handle)
         if entity.within is None:
             place = pose_numbers(offset)
             if body == 0:
                 return _CompiledEntity(entity.frame, entity.child, place)
             return _CompiledEntity(entity.frame, entity.child, None, self._row(body), place, is_body=place == _IDENTITY)
-        base, its_offset = self._spot(entity.within)
+        base, its_offset = self._body_and_offset(entity.within)
         if body == base:
             return _CompiledEntity(entity.frame, entity.child, pose_numbers(its_offset.inverse() @ offset))
         weld = self._sim.mj_model.body_weldid
@@ -156,7 +157,7 @@ class EntityPoses(SharedByCopies):
         are_bodies = own == _IDENTITY, back == _IDENTITY
         return _CompiledEntity(entity.frame, entity.child, None, rows[0], own, rows[1], back, *are_bodies)
 
-    def _spot(self, handle: Any) -> tuple[int, Pose]:
+    def _body_and_offset(self, handle: Any) -> tuple[int, Pose]:
         """Return MuJoCo's body of a link or model, and the pose of the link or model in the body's frame."""
         names, scene = self._sim.engine.names, handle.scene
         if handle.scoped in names.links:

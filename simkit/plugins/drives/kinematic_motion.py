@@ -120,13 +120,13 @@ class KinematicMover(SharedByCopies):
         gravity, step = sim.mj_model.opt.gravity, sim.timestep
         for index, move in enumerate(moves):
             falls = move.falls and index not in touched
-            place, axes = move.frame.position, move.frame.matrix
+            origin, axes = move.frame.position, move.frame.matrix
             shift, turn = _screw(move.linear, move.angular, step)
-            turn, target = axes @ turn @ axes.T, place + axes @ shift
+            turn, target = axes @ turn @ axes.T, origin + axes @ shift
             turning = axes @ move.angular
             for dof, qpos, body in move.motion.addresses:
                 root = data.qpos[qpos : qpos + 3]
-                velocity = (target + turn @ (root - place) - root) / step
+                velocity = (target + turn @ (root - origin) - root) / step
                 lacking = -data.qacc_smooth[dof : dof + 6]
                 if falls:
                     lacking[2] += gravity[2]
@@ -154,8 +154,8 @@ class KinematicMover(SharedByCopies):
         """
         contacts = data.contact
         first, second = self._owners[contacts.geom.T]
-        least, most = np.minimum(first, second), np.maximum(first, second)
-        sliding = np.flatnonzero((most >= 0) & ((least == _STATIC) | (least == most)))
+        lower, higher = np.minimum(first, second), np.maximum(first, second)
+        sliding = np.flatnonzero((higher >= 0) & ((lower == _STATIC) | (lower == higher)))
         if len(sliding) and self._is_pyramidal:  # the constraint rows contain pyramidal friction, so they are rebuilt
             contacts.dim[sliding] = 1
             model = self._sim.mj_model

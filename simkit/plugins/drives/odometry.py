@@ -218,10 +218,10 @@ class WheelOdometry(TravelOdometry):
     def __deepcopy__(self, memo: dict[int, object]) -> WheelOdometry:
         """Return an independent copy for a snapshot."""
         self.catch_up()
-        made = WheelOdometry(self._radius, self._separation, self._step)
-        made.reckoning, made.twist, made._at = copy.copy(self.reckoning), self.twist, self._at
-        made._noted, made._recent = list(self._noted), list(self._recent)
-        return made
+        duplicate = WheelOdometry(self._radius, self._separation, self._step)
+        duplicate.reckoning, duplicate.twist, duplicate._at = copy.copy(self.reckoning), self.twist, self._at
+        duplicate._noted, duplicate._recent = list(self._noted), list(self._recent)
+        return duplicate
 
 
 def wheel_angles(left: Joint, right: Joint) -> tuple[float, float]:
@@ -313,12 +313,12 @@ def odometry_message(
     # copies: a subscriber may keep or change the arrays of a message
     first = np.zeros(36) if covariance is None else covariance.copy()
     second = first.copy() if twist_covariance is None else twist_covariance.copy()
-    place = types["Pose"](point(*pose.position.tolist()), quaternion(x, y, z, w))
+    pose_message = types["Pose"](point(*pose.position.tolist()), quaternion(x, y, z, w))
     motion = types["Twist"](vector(*map(float, twist.linear)), vector(*map(float, twist.angular)))
     message: msgs.Odometry = types["Odometry"](
         msgs.header(time_ns, frame),
         child,
-        types["PoseWithCovariance"](place, first),
+        types["PoseWithCovariance"](pose_message, first),
         types["TwistWithCovariance"](motion, second),
     )
     return message
@@ -328,8 +328,8 @@ def transform(time_ns: int, frame: str, child: str, pose: Pose) -> msgs.Transfor
     """Return a `geometry_msgs/msg/TransformStamped` with the pose of `child` in `frame`."""
     types = message_types()
     w, x, y, z = pose.quaternion.tolist()
-    place = types["Transform"](types["Vector3"](*pose.position.tolist()), types["Quaternion"](x, y, z, w))
-    message: msgs.TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, place)
+    transform_message = types["Transform"](types["Vector3"](*pose.position.tolist()), types["Quaternion"](x, y, z, w))
+    message: msgs.TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, transform_message)
     return message
 
 

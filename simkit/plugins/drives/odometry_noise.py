@@ -121,13 +121,13 @@ class NoisyOdometry:
         counted = tuple(self._count(angle) for angle in (left, right))
         rolled = [(b - a) * r for a, b, r in zip(self._counted, counted, self._radii, strict=True)]
         self._counted = counted
-        variances = np.array([self.noise.wheel_variance * abs(way) for way in rolled])
+        variances = np.array([self.noise.wheel_variance * abs(distance) for distance in rolled])
         if self.noise.wheel_variance > 0:
             errors = np.sqrt(variances) * self._stream.normal(self._index)
-            rolled = [way + float(error) for way, error in zip(rolled, errors, strict=True)]
-        self._spread(rolled, variances)
-        left_way, right_way = rolled
-        self.reckoning.advance(left_way, right_way, self._separation, sideways)
+            rolled = [distance + float(error) for distance, error in zip(rolled, errors, strict=True)]
+        self._propagate_covariance(rolled, variances)
+        left_distance, right_distance = rolled
+        self.reckoning.advance(left_distance, right_distance, self._separation, sideways)
         if elapsed > 0:
             self._update_twist(rolled, variances, elapsed, sideways)
 
@@ -147,12 +147,12 @@ class NoisyOdometry:
         step = self.noise.resolution
         return math.floor(angle / step + 0.5) * step if step > 0 else angle
 
-    def _spread(self, rolled: list[float], variances: Vector) -> None:
+    def _propagate_covariance(self, rolled: list[float], variances: Vector) -> None:
         """Propagate the covariance of the pose over one motion, and add the covariance of the motion (equation 5.9)."""
-        way, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / self._separation
+        distance, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / self._separation
         middle = self.reckoning.yaw + turn / 2
-        cos, sin, arm = math.cos(middle), math.sin(middle), way / (2 * self._separation)
-        along = np.array([[1, 0, -way * sin], [0, 1, way * cos], [0, 0, 1]])
+        cos, sin, arm = math.cos(middle), math.sin(middle), distance / (2 * self._separation)
+        along = np.array([[1, 0, -distance * sin], [0, 1, distance * cos], [0, 0, 1]])
         # columns: derivatives by the travel of the left and of the right wheel
         by_wheel = np.array(
             [

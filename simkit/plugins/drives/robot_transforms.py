@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 def frame_names(sim: Simulation) -> dict[str, str]:
     """Return the frame name of every link by scoped link name; see `StaticTransforms` for the rule."""
     frames: dict[str, str] = {}
-    taken: set[str] = set()
+    used_names: set[str] = set()
     for scene in _moving_models_first(sim):
         links = {link.scoped: link.name for link in scene.all_links()}
-        clash = any(name in taken for name in links.values())
-        mine = {scoped: f"{scene.name}/{name}" if clash else name for scoped, name in links.items()}
-        frames.update(mine)
-        taken.update(mine.values())
+        clash = any(name in used_names for name in links.values())
+        own_names = {scoped: f"{scene.name}/{name}" if clash else name for scoped, name in links.items()}
+        frames.update(own_names)
+        used_names.update(own_names.values())
     return frames
 
 

@@ -79,9 +79,9 @@ class LimiterOptions(Options):
 def speed_limits(options: SpeedLimitOptions) -> tuple[SpeedLimiter, SpeedLimiter]:
     """Return the limiters of the linear and the angular speed."""
     linear, angular = (
-        SpeedLimiter(*((bounds[f"min_{way}_{q}"], bounds[f"max_{way}_{q}"]) for q in _QUANTITIES))
+        SpeedLimiter(*((bounds[f"min_{axis}_{q}"], bounds[f"max_{axis}_{q}"]) for q in _QUANTITIES))
         for bounds in [{name: getattr(options, name) for name in SpeedLimitOptions.fields()}]
-        for way in ("linear", "angular")
+        for axis in ("linear", "angular")
     )
     return linear, angular
 

@@ -123,8 +123,8 @@ class WheelSlipBase(ModelPlugin):
             self.sim.engine.friction.add_wheels(self, [wheel.contact for wheel in self.wheels], self.slips)
 
     def _declare_compliance(self, name: str, wheel: Wheel, value: float) -> Parameter[float]:
-        way = "along" if name == LATERAL else "across"
-        text = f"slip compliance of wheel {wheel.name} {way} its axle, at a normal force of {wheel.force:g} N"
+        direction = "along" if name == LATERAL else "across"
+        text = f"slip compliance of wheel {wheel.name} {direction} its axle, at a normal force of {wheel.force:g} N"
         return self.declare(f"{name}/{wheel.name}", value, minimum=0.0, maximum=_MOST, description=text)
 
     def slips(self) -> list[tuple[float, float]]:

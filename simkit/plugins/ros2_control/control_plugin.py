@@ -95,10 +95,10 @@ class ControlPlugin(ModelPlugin):
     # ------------------------------------------------------------------ the plugin's element and its files
 
     def mark_ignored_elements(self, params: Params) -> None:
-        """Mark elements that have an effect only in Gazebo as read, so that they are not reported as unknown."""
-        for name in ("robot_param", "robot_param_node", "position_proportional_gain"):
+        """Mark elements that only Gazebo uses as read, so that they are not reported as unknown."""
+        for name in ("robot_param", "robot_param_node", "position_proportional_gain", "robotNamespace"):
             params.child(name)
-        for name in ("controller_manager_prefix_node_name", "controller_manager_node_name", "robotNamespace"):
+        for name in ("controller_manager_prefix_node_name", "controller_manager_node_name"):
             params.child(name)
 
     def read_rate(self, params: Params, builder: SpecBuilder) -> float | None:
@@ -166,10 +166,9 @@ class ControlPlugin(ModelPlugin):
 
     def _adapted_run_files(self, run_files: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
         """Adapt the parameter files of the run to the node names that this manager expects."""
-        if run_files:
-            for file in run_files:
-                namespace, name = self.ros.namespace, self._manager_name
-                yield adapt_to_manager(file, namespace, name, params.diagnostics, is_ros_1=self.is_ros_1)
+        for file in run_files:
+            namespace, name = self.ros.namespace, self._manager_name
+            yield adapt_to_manager(file, namespace, name, params.diagnostics, is_ros_1=self.is_ros_1)
 
     def _read_files(self, params: Params, builder: SpecBuilder, *, has_run_files: bool) -> Iterator[ParameterFile]:
         elements = params.all("parameters")

@@ -133,8 +133,8 @@ class ControllerManager(SharedByCopies):
         found, entry = Diagnostics(), self.files.of_node(f"{self.namespace}/{name}")
         if entry is None:
             return Params(name, where=self.plugin.where, diagnostics=found)
-        made = entry.params(name, found)
-        return made[0] if made else Params(name, where=entry.where, diagnostics=found)
+        created = entry.params(name, found)
+        return created[0] if created else Params(name, where=entry.where, diagnostics=found)
 
     def configure(self, name: str) -> str:
         """Let a controller read its parameters; return the problem, or an empty text."""

@@ -111,8 +111,8 @@ def _component(manager: ControllerManager, component: ComponentDescription) -> d
     hardware = manager.hardware
 
     def own(names: tuple[str, ...], *, is_command: bool) -> list[dict[str, object]]:
-        mine = (name for name in names if name.rpartition("/")[0] in owners)
-        return [_interface(manager, name, is_command=is_command) for name in mine]
+        own_names = (name for name in names if name.rpartition("/")[0] in owners)
+        return [_interface(manager, name, is_command=is_command) for name in own_names]
 
     return {
         "name": component.name,
@@ -137,8 +137,7 @@ def _set_component(manager: ControllerManager, request: SetHardwareComponentStat
     target = _LIFE_CYCLE.get(int(request.target_state.id), "") or str(request.target_state.label)
     if target != "active":
         _report_problem(
-            manager,
-            f"the hardware '{request.name}' is simulated and always active; it cannot be {target or 'unknown'}",
+            manager, f"the hardware '{request.name}' is simulated and always active; it cannot be {target or 'unknown'}"
         )
         return {"ok": False, "state": active}
     return {"ok": True, "state": active}

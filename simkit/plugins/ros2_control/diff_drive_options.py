@@ -73,25 +73,25 @@ class RateLimits(SharedByCopies):
         return min(max(speed, self.least), self.most)
 
 
-def _read_bounds(block: Params, what: str) -> tuple[float, float]:
-    """Read the bounds `min_<what>` and `max_<what>`; both are infinite if the limits do not apply."""
-    has_switch = block.has(f"has_{what}_limits")
-    is_enabled = block.boolean(f"has_{what}_limits", False)
-    least, most = _read_bound(block, f"min_{what}", None, 0.0), _read_bound(block, f"max_{what}", 0.0, None)
+def _read_bounds(block: Params, quantity: str) -> tuple[float, float]:
+    """Read the bounds `min_<quantity>` and `max_<quantity>`; both are infinite if the limits do not apply."""
+    has_switch = block.has(f"has_{quantity}_limits")
+    is_enabled = block.boolean(f"has_{quantity}_limits", False)
+    least, most = _read_bound(block, f"min_{quantity}", None, 0.0), _read_bound(block, f"max_{quantity}", 0.0, None)
     if has_switch and not is_enabled:
         return -_INFINITY, _INFINITY
     if most is None:
         if is_enabled or least is not None:
             # a lower bound alone has no effect, so it is reported instead of ignored
-            _report_missing_maximum(block, what)
+            _report_missing_maximum(block, quantity)
         return -_INFINITY, _INFINITY
     return -most if least is None else least, most
 
 
-def _report_missing_maximum(block: Params, what: str) -> None:
-    setting = f"has_{what}_limits is true" if block.has(f"has_{what}_limits") else f"min_{what} is set"
-    hint = f"add max_{what}; min_{what} defaults to -max_{what}"
-    block.error("SK-CONTROL-042", f"{setting}, but max_{what} [{_UNITS[what]}] is missing", hint)
+def _report_missing_maximum(block: Params, quantity: str) -> None:
+    setting = f"has_{quantity}_limits is true" if block.has(f"has_{quantity}_limits") else f"min_{quantity} is set"
+    hint = f"add max_{quantity}; min_{quantity} defaults to -max_{quantity}"
+    block.error("SK-CONTROL-042", f"{setting}, but max_{quantity} [{_UNITS[quantity]}] is missing", hint)
 
 
 _UNITS = {"velocity": "m/s or rad/s", "acceleration": "m/s² or rad/s²", "jerk": "m/s³ or rad/s³"}

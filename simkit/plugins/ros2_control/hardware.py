@@ -144,7 +144,7 @@ class Hardware(SharedByCopies):
 
     def release(self, owner: str) -> None:
         """Release the interfaces of a controller; its joints then hold their position or move freely."""
-        self.owners = {name: other for name, other in self.owners.items() if other != owner}
+        self.owners = {name: claimant for name, claimant in self.owners.items() if claimant != owner}
         self._switch_modes()
 
     def _switch_modes(self) -> None:
@@ -234,9 +234,8 @@ class Hardware(SharedByCopies):
         indices = np.array([driven.get(joint, -1) for joint in joints], np.intp)
         if (indices >= 0).all():
             return lambda: self.actuated.efforts()[indices]
-        return lambda: np.append(self.actuated.efforts(), 0.0)[
-            indices
-        ]  # the index -1 of a joint without actuator selects the appended 0
+        # the index -1 of a joint without actuator selects the appended 0
+        return lambda: np.append(self.actuated.efforts(), 0.0)[indices]
 
     def write(self, period: float) -> None:
         """Write the commands to the actuators.

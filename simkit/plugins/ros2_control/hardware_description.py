@@ -67,12 +67,12 @@ def parse_initial_position(text: str, joint: SceneJoint, element: Params, diagno
     axis = joint.axes[0]
     if axis.lower <= value <= axis.upper or math.isnan(value):
         return value
-    kept = min(max(value, axis.lower), axis.upper)
+    clamped = min(max(value, axis.lower), axis.upper)
     message = (
         f"joint {joint.name!r}: the initial_value {value:g} is outside its limits [{axis.lower:g}, {axis.upper:g}]"
     )
-    diagnostics.warning("SK-CONTROL-008", f"{message}; the joint starts at {kept:g}", element.where)
-    return kept
+    diagnostics.warning("SK-CONTROL-008", f"{message}; the joint starts at {clamped:g}", element.where)
+    return clamped
 
 
 def mimic_circle(name: str, leaders: Mapping[str, str]) -> Sequence[str]:
@@ -239,15 +239,15 @@ def _joint(scene: SceneModel, element: Params, diagnostics: Diagnostics) -> Join
 
 
 def _known_interfaces(
-    joint: str, what: str, interfaces: Iterable[Params], element: Params, diagnostics: Diagnostics
+    joint: str, kind: str, interfaces: Iterable[Params], element: Params, diagnostics: Diagnostics
 ) -> tuple[str, ...]:
     """Return the names of the supported interfaces of a joint, and report the others."""
     known = []
-    for name in (one.attribute("name") for one in interfaces):
-        if name in MOTION_INTERFACES or (what == "command" and name.removesuffix("_pid") in MOTION_INTERFACES):
+    for name in (interface.attribute("name") for interface in interfaces):
+        if name in MOTION_INTERFACES or (kind == "command" and name.removesuffix("_pid") in MOTION_INTERFACES):
             known.append(name)
             continue
-        message = f"joint {joint!r}: {what} interface {name!r} is not supported "
+        message = f"joint {joint!r}: {kind} interface {name!r} is not supported "
         message += f"(supported: {', '.join(MOTION_INTERFACES)})"
         near = did_you_mean(name, MOTION_INTERFACES)
         diagnostics.warning("SK-CONTROL-009", f"{message}; it is ignored", element.where, near)
@@ -256,20 +256,20 @@ def _known_interfaces(
 
 def _param_texts(element: Params) -> dict[str, str]:
     """Return the texts of an element's `<param name="…">` by name."""
-    return {one.attribute("name"): one.value for one in element.all("param")}
+    return {param.attribute("name"): param.value for param in element.all("param")}
 
 
 def _initial_position(interfaces: Iterable[Params], joint: SceneJoint, diagnostics: Diagnostics) -> float:
     """Return the initial position of the interfaces, or NaN if there is none; also validate their unused bounds."""
     initial = []
-    for one in interfaces:
-        texts = _param_texts(one)
+    for interface in interfaces:
+        texts = _param_texts(interface)
         for bound in (texts.get("min", ""), texts.get("max", "")):
             if bound.strip().lower() not in ("", "inf", "-inf"):
-                parse_number(bound, 0.0, one, diagnostics)
-        if one.name == "state_interface" and one.attribute("name") == POSITION:  # Gazebo ignores others
-            first = texts.get("initial_value", one.attribute("initial_value"))
-            initial.append(parse_initial_position(first, joint, one, diagnostics))
+                parse_number(bound, 0.0, interface, diagnostics)
+        if interface.name == "state_interface" and interface.attribute("name") == POSITION:  # Gazebo ignores others
+            first = texts.get("initial_value", interface.attribute("initial_value"))
+            initial.append(parse_initial_position(first, joint, interface, diagnostics))
     return initial[0] if initial else math.nan
 
 
@@ -287,7 +287,7 @@ def _gains_of_joint(texts: dict[str, str], short: str, element: Params, diagnost
 
 
 def _sensor(element: Params) -> SensorDescription:
-    names = tuple(one.attribute("name") for one in element.all("state_interface"))
+    names = tuple(interface.attribute("name") for interface in element.all("state_interface"))
     return SensorDescription(element.attribute("name"), names, element.where)
 
 
@@ -296,7 +296,7 @@ def _remove_repeated_joints(
 ) -> list[ComponentDescription]:
     """Remove joints that an earlier block has already named."""
     seen: set[str] = set()
-    kept = []
+    cleaned = []
     for component in components:
         joints = []
         for joint in component.joints:
@@ -306,8 +306,8 @@ def _remove_repeated_joints(
                 continue
             seen.add(joint.name)
             joints.append(joint)
-        kept.append(replace(component, joints=tuple(joints)))
-    return kept
+        cleaned.append(replace(component, joints=tuple(joints)))
+    return cleaned
 
 
 def _remove_mimic_circles(
@@ -315,7 +315,7 @@ def _remove_mimic_circles(
 ) -> list[ComponentDescription]:
     """Remove the leader of a joint that mimics itself, directly or through other joints."""
     leaders = {joint.name: joint.leader for component in components for joint in component.joints}
-    kept = []
+    cleaned = []
     for component in components:
         joints = []
         for joint in component.joints:
@@ -325,8 +325,8 @@ def _remove_mimic_circles(
                 diagnostics.warning("SK-CONTROL-008", f"{message}; the mimic is ignored", joint.where)
                 leaders[joint.name] = ""
             joints.append(replace(joint, leader="") if circle else joint)
-        kept.append(replace(component, joints=tuple(joints)))
-    return kept
+        cleaned.append(replace(component, joints=tuple(joints)))
+    return cleaned
 
 
 # ------------------------------------------------------------------ <transmission>

@@ -167,8 +167,10 @@ class JointActuators(SharedByCopies):
             losses[self._dofs] = np.where(now.is_compensated, 0.0, sim.engine.original(loss)[self._dofs])
         self._limit_efforts(now)
         # hold the joint against gravity until its controller writes the first effort
-        held = now.kp * self.targets + np.maximum(now.compensation, now.effort_share) * self._gravity.efforts()
-        data.act[self._states[changed]] = held[changed]
+        holding_states = (
+            now.kp * self.targets + np.maximum(now.compensation, now.effort_share) * self._gravity.efforts()
+        )
+        data.act[self._states[changed]] = holding_states[changed]
         data.ctrl[self._ids[changed]] = 0.0
         sim.engine.physics.changed(CONTROL)
 

@@ -25,7 +25,7 @@ class JointPids:
         feedforward: command per desired velocity.
         tracking: time constant of back-calculation [s]; 0 for the time constant that control_toolbox recommends.
         deadband: largest error that does not change the integral part.
-        strategy: change of the integral part while the command is at a bound: "none" changes nothing,
+        strategy: rule for the integral part while the command is at a bound: "none" continues to integrate,
             "back_calculation" reduces the integral part by the excess of the command over its bound, and
             "conditional_integration" stops integration towards the bound.
         integral: current integral part of the command.

@@ -14,7 +14,7 @@ _ROS_1_LOOPS: Final = "gazebo_ros_control"
 
 
 def adapt_to_manager(
-    given: ParameterFile, namespace: str, manager: str, diagnostics: Diagnostics, *, is_ros_1: bool
+    file: ParameterFile, namespace: str, manager: str, diagnostics: Diagnostics, *, is_ros_1: bool
 ) -> ParameterFile:
     """Return a file with the node names that the manager expects, as if a launch file had loaded the parameters.
 
@@ -23,32 +23,32 @@ def adapt_to_manager(
     are copied to the node of the manager for ROS 2, and to the robot's namespace for ROS 1.
 
     Args:
-        given: parameter file.
+        file: parameter file.
         namespace: namespace of the robot with a leading slash; empty if it has none.
         manager: name of the manager's node.
         diagnostics: diagnostics for parameters without effect.
         is_ros_1: true for the plugin of ROS 1.
     """
     parts = [part for part in namespace.split("/") if part]
-    if given.root is not None:
-        root = given.root if _nested_entry(given.root, parts) is not None else _wrap_in_namespace(given.root, parts)
+    if file.root is not None:
+        root = file.root if _nested_entry(file.root, parts) is not None else _wrap_in_namespace(file.root, parts)
         if is_ros_1:
-            return replace(given, root=root)
+            return replace(file, root=root)
         own = _nested_entry(root, parts) or root
-        _report_ros_1_gains(own, given, diagnostics)
+        _report_ros_1_gains(own, file, diagnostics)
         declared = list(_declared_controllers(own, only_type=True))
         nodes = [(f"{namespace}/{manager}", Entry(root.where, below=dict(declared)))] if declared else []
-        return replace(given, root=root, nodes=nodes)
+        return replace(file, root=root, nodes=nodes)
     if not is_ros_1:
-        return given
-    inside = any(pattern.strip("/").split("/")[: len(parts)] == parts for pattern, _ in given.nodes)
-    nodes = given.nodes
+        return file
+    inside = any(pattern.strip("/").split("/")[: len(parts)] == parts for pattern, _ in file.nodes)
+    nodes = file.nodes
     if not inside:
         nodes = [(p if p.startswith("/**") else f"{namespace}/{p.strip('/')}", entry) for p, entry in nodes]
     for entry in [entry for p, entry in nodes if p.rpartition("/")[2] == manager]:
         below = dict(_declared_controllers(entry, only_type=False))
         nodes = [*nodes, (namespace or "/", Entry(entry.where, below=below))]
-    return replace(given, nodes=nodes)
+    return replace(file, nodes=nodes)
 
 
 def _declared_controllers(entry: Entry, *, only_type: bool) -> Iterator[tuple[str, Entry]]:
@@ -73,11 +73,11 @@ def _wrap_in_namespace(entry: Entry, parts: Sequence[str]) -> Entry:
     return entry
 
 
-def _report_ros_1_gains(own: Entry, given: ParameterFile, diagnostics: Diagnostics) -> None:
+def _report_ros_1_gains(own: Entry, file: ParameterFile, diagnostics: Diagnostics) -> None:
     below = own.below or {}
     if _ROS_1_LOOPS in below:
         message = (
-            f"{given.path.name}: {_ROS_1_LOOPS} has gains for the plugin of ROS 1; this robot's plugin is for ROS 2"
+            f"{file.path.name}: {_ROS_1_LOOPS} has gains for the plugin of ROS 1; this robot's plugin is for ROS 2"
         )
         hint = "move them to the plugin's own node: pid_gains: {position: {JOINT: {kp: ..., kd: ...}}}"
         diagnostics.warning("SK-CONTROL-011", message, below[_ROS_1_LOOPS].where, hint)

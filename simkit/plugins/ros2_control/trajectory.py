@@ -215,18 +215,18 @@ def integrate_points(start: TrajectoryPoint, points: Sequence[TrajectoryPoint]) 
     return integrated
 
 
-def whole_turn_offset(here: Vector, first: Vector, turning: Vector) -> Vector:
+def whole_turn_offset(current: Vector, first: Vector, turning: Vector) -> Vector:
     """Return full turns to add to a trajectory, so that continuous joints reach its first point the shortest way.
 
     Args:
-        here: current positions [rad].
+        current: current positions [rad].
         first: positions of the first point [rad].
         turning: mask of the joints that rotate without limits.
 
     Returns:
         Multiples of 2π [rad], shape (n,); 0 for joints with limits.
     """
-    turns: Vector = np.where(turning, np.round((here - first) / _TURN) * _TURN, 0.0)
+    turns: Vector = np.where(turning, np.round((current - first) / _TURN) * _TURN, 0.0)
     return turns
 
 
@@ -280,7 +280,7 @@ def _hermite_piece(a: TrajectoryPoint, b: TrajectoryPoint) -> Vector:
 
 
 def _with_derivatives(pieces: Sequence[Vector]) -> Vector:
-    """Return coefficients (powers, pieces, 3 n) of pieces (6, n) and of their first and second derivatives."""
+    """Return the coefficients of pieces (6, n) and of their first two derivatives, shape (powers, pieces, 3 n)."""
     if not len(pieces):
         return np.zeros((1, 0, 0))
     stacked, degrees = np.stack(pieces, 1), np.arange(6.0)[:, None, None]

@@ -106,13 +106,13 @@ class TrajectoryRules:
         return ""
 
 
-def read_points(message: JointTrajectory, joints: Sequence[str], here: Vector) -> list[TrajectoryPoint]:
+def read_points(message: JointTrajectory, joints: Sequence[str], current: Vector) -> list[TrajectoryPoint]:
     """Convert a valid trajectory to points in the order of the controller's joints.
 
     Args:
         message: `trajectory_msgs/msg/JointTrajectory` to convert.
         joints: joints of the controller.
-        here: positions of joints that the trajectory does not name.
+        current: positions of joints that the trajectory does not name.
     """
     names = [str(name) for name in message.joint_names]
     indices = np.array([joints.index(name) for name in names], dtype=np.intp)
@@ -128,7 +128,7 @@ def read_points(message: JointTrajectory, joints: Sequence[str], here: Vector) -
     return [
         TrajectoryPoint(
             stamp_ns(point.time_from_start),
-            field(point.positions, here),
+            field(point.positions, current),
             field(point.velocities, rest),
             field(point.accelerations, rest),
             field(point.effort, rest),
@@ -203,18 +203,18 @@ class Tolerances:
         return changed, ""
 
 
-def describe_violation(off: Vector, tolerances: Vector, joints: Sequence[str]) -> str:
+def describe_violation(errors: Vector, tolerances: Vector, joints: Sequence[str]) -> str:
     """Describe the joint that exceeds its tolerance most, worded as in ros2_control.
 
     Args:
-        off: absolute error of each joint, shape (3, n): position, velocity, acceleration [rad or m, per s, per s²].
+        errors: absolute error of each joint, shape (3, n): position, velocity, acceleration [rad or m, per s, per s²].
         tolerances: tolerances in the same shape.
         joints: names of the joints.
     """
-    excess = np.where(np.isfinite(tolerances), off - tolerances, -np.inf)
+    excess = np.where(np.isfinite(tolerances), errors - tolerances, -np.inf)
     row, j = np.unravel_index(int(np.argmax(excess)), excess.shape)
     field = ("Position", "Velocity", "Acceleration")[row]
-    return f"{joints[int(j)]}: {field} Error: {off[row, j]:f}, {field} Tolerance: {tolerances[row, j]:f}"
+    return f"{joints[int(j)]}: {field} Error: {errors[row, j]:f}, {field} Tolerance: {tolerances[row, j]:f}"
 
 
 def _infinite_if_zero(tolerances: Sequence[float]) -> Vector:

@@ -84,13 +84,15 @@ def read_timeout(params: Params, goal_time: float) -> float:
     return 0.0
 
 
-def read_pids(controller: Controller, joints: tuple[str, ...], find: Callable[[], JointPids | None]) -> JointPids:
+def read_pids(
+    controller: Controller, joints: tuple[str, ...], current_pids: Callable[[], JointPids | None]
+) -> JointPids:
     """Read the PIDs in `gains`, and declare their gains as live parameters.
 
     Args:
         controller: controller that has the parameters.
         joints: joints of the PIDs.
-        find: function that returns the current PIDs; it is called at each change of a gain, because restoring a
+        current_pids: function that returns the current PIDs; it is called at each change of a gain, because restoring a
             snapshot replaces the PIDs.
     """
     params = controller.params
@@ -101,7 +103,7 @@ def read_pids(controller: Controller, joints: tuple[str, ...], find: Callable[[]
         for name, attribute in _GAINS.items():
 
             def set_gain(value: float, attribute: str = attribute, k: int = k) -> None:
-                current = find()
+                current = current_pids()
                 if current is not None:
                     getattr(current, attribute)[k] = value
 

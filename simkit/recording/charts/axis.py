@@ -111,11 +111,11 @@ def thin_line(points: Points, columns_per_pixel: float) -> Points:
     starts = np.flatnonzero(np.diff(columns, prepend=columns[:1] - 1))
     if len(points) <= 4 * len(starts):
         return points
-    kept: list[int] = []
+    indices: list[int] = []
     for start, end in zip(starts.tolist(), [*starts[1:].tolist(), len(points)], strict=True):
-        part = points[start:end, 1]
-        kept += sorted({start, start + int(part.argmin()), start + int(part.argmax()), end - 1})
-    return points[kept]
+        column = points[start:end, 1]
+        indices += sorted({start, start + int(column.argmin()), start + int(column.argmax()), end - 1})
+    return points[indices]
 
 
 def _round_step(step: float) -> float:

@@ -163,9 +163,9 @@ class _FieldPath:
         self._count(curves)
         return curves
 
-    def _count(self, found: Sequence[object]) -> None:
-        if len(found) > MOST_CURVES:
-            raise self._path_error(f"means {len(found)} numbers; the limit is {MOST_CURVES}")
+    def _count(self, numbers: Sequence[object]) -> None:
+        if len(numbers) > MOST_CURVES:
+            raise self._path_error(f"means {len(numbers)} numbers; the limit is {MOST_CURVES}")
 
     # ------------------------------------------------------------------ one step
 

@@ -85,23 +85,25 @@ class CloudFiles(NumberedFiles):
         return target
 
 
-def _ply_bytes(found: PointArray) -> bytes:
+def _ply_bytes(points: PointArray) -> bytes:
     """Return the finite points as binary PLY."""
-    names = found.dtype.names or ()
+    names = points.dtype.names or ()
     if {"x", "y", "z"} <= set(names):
-        found = found[np.isfinite(found["x"]) & np.isfinite(found["y"]) & np.isfinite(found["z"])]
+        points = points[np.isfinite(points["x"]) & np.isfinite(points["y"]) & np.isfinite(points["z"])]
     parts: list[tuple[str, str, npt.NDArray[np.generic]]] = []
     for name in names:
-        values = found[name]
+        values = points[name]
         if name in ("rgb", "rgba") and values.dtype.itemsize == 4:
             packed = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("=")).view(np.uint32)
             for colour, shift in (("red", 16), ("green", 8), ("blue", 0)):
                 parts.append((colour, "u1", (packed >> shift) & 255))
         else:
             parts.append((name, values.dtype.str[1:], values))
-    packed_points = np.empty(len(found), dtype=[(name, "<" + kind) for name, kind, _ in parts])
+    packed_points = np.empty(len(points), dtype=[(name, "<" + kind) for name, kind, _ in parts])
     for name, _, values in parts:
         packed_points[name] = values
     lines = [f"property {_PLY[kind]} {name}" for name, kind, _ in parts]
-    header = "\n".join(("ply", "format binary_little_endian 1.0", f"element vertex {len(found)}", *lines, "end_header"))
+    header = "\n".join(
+        ("ply", "format binary_little_endian 1.0", f"element vertex {len(points)}", *lines, "end_header")
+    )
     return header.encode() + b"\n" + packed_points.tobytes()

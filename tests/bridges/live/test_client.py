@@ -43,7 +43,7 @@ def test_two_simulations_of_one_world_have_different_names(
     assert simulations() == []
 
 
-def test_a_command_moves_the_robot_and_its_sensors_are_heard(client: Client) -> None:
+def test_a_command_moves_the_robot_and_sensor_messages_arrive(client: Client) -> None:
     imu = client.subscribe("imu")
     publisher = client.advertise("/cmd_vel")
     assert publisher.type_name == "geometry_msgs/msg/Twist"
@@ -116,7 +116,7 @@ def test_a_late_subscriber_gets_the_last_message_of_a_latched_topic(
             assert received is not None and received.message.data == "hall"
 
 
-def test_of_more_messages_than_may_wait_the_newest_are_kept_and_the_others_counted(
+def test_a_full_queue_keeps_the_newest_messages_and_counts_the_dropped_ones(
     court: simkit.Simulation, run: Callable[..., Any]
 ) -> None:
     talker = court.communication.bus.advertise("/count", "std_msgs/msg/Int32")
@@ -144,7 +144,7 @@ def test_services_answer_and_report_errors(client: Client) -> None:
     assert caught.value.code == "SK-MSG-001"
 
 
-def test_it_is_paused_stepped_and_paced(client: Client) -> None:
+def test_a_simulation_is_paused_stepped_and_slowed_down(client: Client) -> None:
     before = client.control("pause")
     assert before["paused"]
     assert client.control("step", 3)["tick"] == before["tick"]

@@ -274,7 +274,7 @@ def test_the_run_has_the_same_bits_and_the_same_bag(
     assert bag == undisturbed[1]
 
 
-def test_a_slow_client_holds_no_more_memory_than_it_may(court: simkit.Simulation) -> None:
+def test_a_slow_client_does_not_exceed_its_memory_limit(court: simkit.Simulation) -> None:
     talker = court.communication.bus.advertise("/picture", "std_msgs/msg/UInt8MultiArray")
     big = msgs.make("std_msgs/msg/UInt8MultiArray", data=bytes(1 << 20))
     with Server(court) as server:
@@ -290,7 +290,7 @@ def test_a_slow_client_holds_no_more_memory_than_it_may(court: simkit.Simulation
         caller.socket.close()
 
 
-def test_pictures_that_are_still_being_drawn_come_in_their_order(court: simkit.Simulation) -> None:
+def test_images_that_are_still_being_rendered_arrive_in_order(court: simkit.Simulation) -> None:
     class Work:
         is_done = False
 
@@ -355,7 +355,7 @@ def test_clients_take_turns(court: simkit.Simulation) -> None:
             caller.socket.close()
 
 
-def test_no_command_is_dropped_while_the_run_goes_on(court: simkit.Simulation) -> None:
+def test_no_command_is_dropped_during_a_run(court: simkit.Simulation) -> None:
     heard: list[Any] = []
     court.communication.bus.listen("/numbers", ["std_msgs/msg/Int32"], heard.append, depth=10)
     with Server(court) as server:

@@ -37,7 +37,7 @@ OTHERS = ["geometry_msgs/msg/TwistStamped", "std_msgs/msg/String", "geometry_msg
 
 @pytest.mark.parametrize("is_little", [True, False])
 @pytest.mark.parametrize("type_name", FIXED)
-def test_numbers_are_those_that_rosbags_reads(type_name: str, is_little: bool) -> None:
+def test_the_reader_returns_the_same_numbers_as_rosbags(type_name: str, is_little: bool) -> None:
     store, source = msgs.type_store(), random.Random(type_name)
     size = len(msgs.serialize(msgs.make(type_name))) - 4
     for _ in range(20):
@@ -50,7 +50,7 @@ def test_numbers_are_those_that_rosbags_reads(type_name: str, is_little: bool) -
 
 
 @pytest.mark.parametrize("type_name", OTHERS)
-def test_messages_of_other_sizes_are_read_too(type_name: str) -> None:
+def test_messages_of_variable_size_are_read(type_name: str) -> None:
     data = msgs.serialize(msgs.make(type_name))
     assert repr(message_reader(type_name)(b"1234" + data, 4)) == repr(msgs.deserialize(data, type_name))
 

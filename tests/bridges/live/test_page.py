@@ -15,12 +15,12 @@ from simkit.live import connect
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "live.md").read_text(encoding="utf-8")
 
 
-def test_the_page_has_every_question() -> None:
+def test_the_page_has_every_request() -> None:
     table = PAGE[PAGE.index("| question |") :]
     assert set(requests.REQUESTS) == set(re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M))))
 
 
-def test_a_run_of_another_process_is_talked_to_and_ends_as_it_would_without(court_text: str, tmp_path: Path) -> None:
+def test_a_client_of_another_process_does_not_change_the_end_of_a_run(court_text: str, tmp_path: Path) -> None:
     world = tmp_path / "court.sdf"
     world.write_text(court_text, encoding="utf-8")
     command = [sys.executable, "-m", "simkit", "run", str(world), "--duration", "2", "--quiet"]
@@ -42,7 +42,7 @@ def test_a_run_of_another_process_is_talked_to_and_ends_as_it_would_without(cour
         paused.communicate()
 
 
-def test_a_bare_model_is_found_by_the_name_that_was_typed() -> None:
+def test_a_single_model_is_found_by_the_name_in_the_command() -> None:
     command = [sys.executable, "-m", "simkit", "run", "turtlebot3_burger", "--paused", "--duration", "1"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:

@@ -16,7 +16,7 @@ from simkit.bridges.live.discovery import find_socket, simulations
 from simkit.bridges.live.server import Server, serve
 
 
-def test_folder_and_socket_are_open_to_their_user_alone(court: simkit.Simulation, sockets: Path) -> None:
+def test_folder_and_socket_are_accessible_only_to_their_user(court: simkit.Simulation, sockets: Path) -> None:
     with Server(court) as server:
         assert server.path == sockets / "court.sock"
         assert stat.S_IMODE(os.lstat(sockets).st_mode) == 0o700
@@ -25,7 +25,7 @@ def test_folder_and_socket_are_open_to_their_user_alone(court: simkit.Simulation
     assert not server.path.exists()
 
 
-def test_a_folder_that_others_may_enter_is_not_used(court: simkit.Simulation, sockets: Path) -> None:
+def test_a_folder_that_other_users_may_enter_is_not_used(court: simkit.Simulation, sockets: Path) -> None:
     sockets.mkdir(mode=0o700)
     sockets.chmod(0o755)
     with Server(court) as server:
@@ -64,11 +64,11 @@ def test_the_socket_of_a_dead_process_is_replaced(court: simkit.Simulation, sock
     ("name", "file"),
     [("lab/../x y", "lab_.._x_y"), ("Büro", "B_ro"), ("..", "simulation"), ("", "simulation"), ("a" * 99, "a" * 48)],
 )
-def test_any_name_becomes_one_of_a_file(name: str, file: str) -> None:
+def test_any_name_becomes_a_valid_file_name(name: str, file: str) -> None:
     assert socket_files.file_name(name) == file
 
 
-def test_where_the_path_is_too_long_the_temporary_files_are_the_place(
+def test_a_path_that_is_too_long_is_replaced_by_the_temporary_folder(
     court: simkit.Simulation, sockets: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     deep = sockets.parent / ("d" * 90)
@@ -82,9 +82,7 @@ def test_where_the_path_is_too_long_the_temporary_files_are_the_place(
     assert none is None and note.startswith("note SK-LIVE-009: other terminals cannot reach this run: ")
 
 
-def test_where_there_are_no_local_sockets_the_run_goes_on_without(
-    court: simkit.Simulation, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_continues_without_local_sockets(court: simkit.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(socket, "AF_UNIX")
     assert serve(court)[0] is None
     assert simulations() == []
@@ -115,6 +113,6 @@ def test_a_lock_that_is_never_released_does_not_prevent_a_run(
 
 
 @pytest.mark.parametrize("name", ["Büro 7", "a/b", "n" * 300])
-def test_a_run_is_found_by_the_name_that_it_was_given(court: simkit.Simulation, name: str) -> None:
+def test_a_run_is_found_by_its_name(court: simkit.Simulation, name: str) -> None:
     with Server(court, name) as server:
         assert find_socket(name) == server.path

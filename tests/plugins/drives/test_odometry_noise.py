@@ -53,7 +53,7 @@ def test_the_covariance_agrees_with_two_hundred_runs(left: float, right: float) 
     np.testing.assert_allclose(np.diag(np.cov(errors.T)), predicted, rtol=0.45, atol=1e-7)
 
 
-def test_on_a_straight_line_the_covariance_is_that_of_the_book() -> None:
+def test_on_a_straight_line_the_covariance_matches_the_textbook() -> None:
     """The variance of yaw is 2ks/b², that of the distance ks/2, and that of y, the integral of yaw, 2ks³/(3b²)."""
     noise = OdometryNoise(wheel_variance=1e-4)
     covariance = np.mean([drive(noise, s, 1000, 0.002, 0.002).covariance for s in range(5)], axis=0)

@@ -59,7 +59,7 @@ def test_the_attributes_of_a_controller_are_its_state(tmp_path: Path) -> None:
         assert not hasattr(made, "extra")
 
 
-def test_an_attribute_that_cannot_be_copied_is_reported_once_and_kept(tmp_path: Path) -> None:
+def test_an_attribute_that_cannot_be_copied_is_reported_once_and_not_changed(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         made = tuned(sim)
         made.lock = threading.Lock()

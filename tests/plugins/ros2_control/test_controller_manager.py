@@ -62,7 +62,7 @@ def test_every_spelling_of_the_plugin_is_known(tmp_path: Path, library: str) -> 
         assert states(sim)["arm_controller"] == "active"
 
 
-def test_a_namespace_is_that_of_manager_controllers_and_topics(tmp_path: Path) -> None:
+def test_manager_controllers_and_topics_are_in_the_namespace(tmp_path: Path) -> None:
     plugin = "<ros><namespace>/r1</namespace></ros><parameters>arm.yaml</parameters>"
     yaml = "/r1:\n" + "".join(f"  {line}\n" for line in POSITIONS.splitlines())
     with opened(tmp_path, arm(plugin=plugin), yaml) as sim:

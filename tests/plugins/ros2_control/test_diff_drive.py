@@ -259,7 +259,7 @@ def test_odometry_uses_the_wheels_and_in_open_loop_the_limited_commands() -> Non
         assert odom.latest.pose.pose.position.x == pytest.approx(expected)
 
 
-def test_odometry_from_wheel_speeds_equals_that_from_angles() -> None:
+def test_odometry_from_wheel_speeds_equals_odometry_from_angles() -> None:
     sim, host = drive({"position_feedback": False, "cmd_vel_timeout": 9})
     assert list(host.controller.state_interfaces()) == ["left/velocity", "right/velocity"]
     odom = sim.subscribe(ODOM)
@@ -299,7 +299,7 @@ def test_multipliers_correct_the_separation_and_the_radii() -> None:
     np.testing.assert_allclose(host.written[-1], [(0.6 - half) / 0.05, (0.6 + half) / 0.2])
 
 
-def test_multipliers_may_be_set_while_it_runs() -> None:
+def test_multipliers_can_be_set_during_the_run() -> None:
     sim, host = drive({"cmd_vel_timeout": 9})
     sim.publish(CMD, twist(0.6))
     sim.run(0.02)
@@ -318,7 +318,7 @@ def test_several_wheels_on_a_side_turn_alike_and_odometry_uses_their_mean() -> N
     assert odom.latest.pose.pose.position.x == pytest.approx(0.5 * math.sin(1.0))
 
 
-def test_a_restored_drive_goes_on_to_the_same_bits() -> None:
+def test_a_restored_drive_continues_with_the_same_bits() -> None:
     sim, host = drive({"cmd_vel_timeout": 1, "linear": {"x": {"max_acceleration": 1.0}}})
     sim.publish(CMD, twist(0.5, 0.3))
     sim.run(0.2)

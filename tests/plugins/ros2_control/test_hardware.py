@@ -118,7 +118,7 @@ def test_gains_in_the_parameter_file_replace_the_servo(tmp_path: Path, words: st
         assert position(sim, "slide") == pytest.approx([1.0 - 9.8 / 100], abs=2e-3)
 
 
-def test_a_position_beyond_the_limit_ends_at_it(tmp_path: Path) -> None:
+def test_a_position_beyond_the_limit_stops_at_the_limit(tmp_path: Path) -> None:
     with opened(tmp_path) as sim:
         command(sim, "arm_controller", 5.0, 0.0)
         sim.run(4.0)

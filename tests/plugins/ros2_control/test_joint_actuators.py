@@ -86,7 +86,7 @@ def test_a_command_far_away_is_approached_at_the_velocity_limit(tmp_path: Path) 
     assert joint.position == pytest.approx(1.8, abs=1e-4)
 
 
-def test_a_commanded_position_beyond_the_limits_ends_at_them(tmp_path: Path) -> None:
+def test_a_commanded_position_beyond_the_limits_stops_at_the_limits(tmp_path: Path) -> None:
     sim = world(files(tmp_path, arm()), 0.001)
     command(sim, "arm_controller", 0.0, 5.0)
     sim.run(2.0)
@@ -144,7 +144,7 @@ def test_a_joint_without_command_holds_and_does_not_jump_at_a_reset(tmp_path: Pa
     assert sim.joint("arm::j1").position == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_restored_motion_goes_on_with_the_same_bits(tmp_path: Path) -> None:
+def test_a_restored_motion_continues_with_the_same_bits(tmp_path: Path) -> None:
     sim = world(files(tmp_path, arm()), 0.001)
     command(sim, "arm_controller", 1.0, 0.5)
     sim.run(0.1234)

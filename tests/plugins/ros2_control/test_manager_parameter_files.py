@@ -51,7 +51,7 @@ def test_a_misspelt_parameter_of_the_manager_is_a_warning(tmp_path: Path) -> Non
         assert "the controller manager ignores parameter <updat_rate>" in reported_messages(sim, "SK-CONTROL-011")[0]
 
 
-def test_parameters_beside_the_type_of_a_controller_are_a_warning(tmp_path: Path) -> None:
+def test_parameters_next_to_the_type_of_a_controller_are_a_warning(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS.replace(TYPE, TYPE + "      joints: [j1]\n")) as sim:
         assert (
             "'joints' next to the type of 'arm_controller' is ignored; set it in the controller's own node"

@@ -178,7 +178,7 @@ def test_an_invalid_goal_is_rejected_with_the_reason(sim: Any, goal: dict[str, A
     assert handle.reason.startswith(reason)
 
 
-def test_the_aim_of_two_crossing_axes_is_that_of_the_formula() -> None:
+def test_the_angles_for_two_crossing_axes_match_the_formula() -> None:
     neck = HeadJoints(
         np.zeros((2, 3)),
         np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),

@@ -100,7 +100,7 @@ def test_gains_of_the_simulation_drive_its_position_joints(tmp_path: Path) -> No
         assert 0.5 < position(sim, "j1")[0] < 0.5 + 1.3 * held / 100
 
 
-def test_the_namespace_is_the_models_name_where_none_is_given(tmp_path: Path) -> None:
+def test_the_default_namespace_is_the_models_name(tmp_path: Path) -> None:
     text = yaml("position_controllers/JointPositionController", "").replace("rrbot:", "arm:")
     with opened(tmp_path, robot("PositionJointInterface", ""), text) as sim:
         assert states(sim, "/arm/controller_manager")["one"] == "running"

@@ -97,7 +97,7 @@ def test_a_ros_1_file_works_for_a_ros_2_robot_except_its_gains(tmp_path: Path) -
         assert position(sim, "j1", "j2") == pytest.approx([0.4, -0.2], abs=1e-3)
 
 
-def test_a_file_may_be_for_one_model_and_for_one_that_comes_later(tmp_path: Path) -> None:
+def test_a_file_can_be_limited_to_a_model_that_is_spawned_later(tmp_path: Path) -> None:
     path, robot = saved(tmp_path, OF_ROS_1), tmp_path / "r.urdf"
     robot.write_text(robot_of_ros_1(""), encoding="utf-8")  # the namespace is the model's name
     spawn = [f"{robot}:0,0,0:one", f"{robot}:0,3,0:two"]
@@ -121,7 +121,7 @@ def test_an_unused_file_is_a_warning(tmp_path: Path) -> None:
         assert "--params-file" in next(d.hint for d in sim.diagnostics if d.code == "SK-CONTROL-018")
 
 
-def test_a_wrong_value_is_reported_as_written_and_the_file_counts_as_read(tmp_path: Path) -> None:
+def test_a_wrong_value_is_reported_with_its_text_and_the_file_counts_as_used(tmp_path: Path) -> None:
     path = saved(tmp_path, "controller_manager: {ros__parameters: {update_rate: fast}}\n")
     with pytest.raises(LoadError) as caught:
         simkit.load("empty", spawn=["tiago:0,0,0"], params_files=[path])

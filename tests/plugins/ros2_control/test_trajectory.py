@@ -34,7 +34,7 @@ def test_positions_alone_are_joined_by_straight_lines() -> None:
     np.testing.assert_allclose(at(spline, 9.0).motion, [[1.0, 4.0], [0.0, 0.0], [0.0, 0.0]])
 
 
-def test_velocities_at_both_ends_make_it_the_cubic_of_hermite() -> None:
+def test_velocities_give_the_cubic_hermite_polynomial() -> None:
     spline = Spline.through(START, [point(2.0, [1.0, 0.0], [0.5, 0.0]), point(4.0, [2.0, 0.0], [0.0, 0.0])])
     s = 0.75 / 2.0  # the cubic of a rise of 1 in 2 s that begins at rest and ends at 0.5
     expected = 1.0 * (3 * s**2 - 2 * s**3) + 0.5 * 2.0 * (s**3 - s**2)
@@ -44,7 +44,7 @@ def test_velocities_at_both_ends_make_it_the_cubic_of_hermite() -> None:
         assert at(spline, time).motion[1, 0] == pytest.approx(wanted, abs=1e-7)
 
 
-def test_accelerations_too_make_it_the_quintic() -> None:
+def test_velocities_and_accelerations_give_the_quintic_hermite_polynomial() -> None:
     ends = [point(1.0, [1.0], [0.2], [-0.4]), point(3.0, [0.0], [0.0], [0.0])]
     spline = Spline.through(point(0.0, [0.0], [0.0], [0.3]), ends)
     for time, motion in ((0.0, [0.0, 0.0, 0.3]), (1.0, [1.0, 0.2, -0.4])):
@@ -53,14 +53,14 @@ def test_accelerations_too_make_it_the_quintic() -> None:
     np.testing.assert_allclose(before, [1.0, 0.2, -0.4], atol=1e-4)
 
 
-def test_a_measured_state_without_accelerations_begins_a_quintic_with_none() -> None:
+def test_a_quintic_starts_with_zero_acceleration_if_the_state_has_none() -> None:
     spline = Spline.through(point(0.0, [0.0], [0.1]), [point(1.0, [1.0], [0.0], [0.0])])
     s = 0.5
     expected = 10 * s**3 - 15 * s**4 + 6 * s**5 + 0.1 * (s - 6 * s**3 + 8 * s**4 - 3 * s**5)
     assert at(spline, 0.5).motion[0, 0] == pytest.approx(expected, abs=1e-12)
 
 
-def test_one_piece_without_velocities_is_straight_though_the_others_are_cubic() -> None:
+def test_a_piece_without_velocities_is_straight_between_cubic_pieces() -> None:
     points = [point(1.0, [1.0, 1.0], [0.0, 0.0]), point(2.0, [2.0, 1.0]), point(3.0, [3.0, 1.0], [0.0, 0.0])]
     spline = Spline.through(START, points)
     assert at(spline, 1.25).motion[0, 0] == pytest.approx(1.25)

@@ -102,7 +102,7 @@ def test_a_cancelled_goal_leaves_the_arm_where_it_is(tmp_path: Path) -> None:
     assert positions(sim) == pytest.approx(held, abs=1e-4)
 
 
-def test_a_goal_outside_the_limits_ends_at_them(tmp_path: Path) -> None:
+def test_a_goal_outside_the_limits_stops_at_the_limits(tmp_path: Path) -> None:
     sim = arm(tmp_path)
     goal = sim.send_goal(FOLLOW, {"trajectory": trajectory(JOINTS, (2.0, [1.7, 0.0], [0.0, 0.0]))})
     sim.run(3.0)

@@ -51,7 +51,7 @@ def test_the_controller_holds_before_the_first_trajectory_and_is_idle() -> None:
     assert plugin.controller._is_idle
 
 
-def test_a_stamp_in_the_future_is_when_the_first_segment_ends_its_wait() -> None:
+def test_a_trajectory_with_a_stamp_in_the_future_starts_at_the_stamp() -> None:
     sim, plugin = arm()
     send(sim, (1.0, [1.0, 0.5]), stamp=1.0)
     sim.run(1.0)
@@ -144,7 +144,7 @@ def test_without_a_goal_time_a_goal_waits_for_ever() -> None:
     assert goal.status is GoalStatus.SUCCEEDED
 
 
-def test_a_goal_brings_its_own_tolerances() -> None:
+def test_tolerances_of_a_goal_replace_those_of_the_file() -> None:
     sim, _ = arm(most={"a": 0.005})
     loose = {"path_tolerance": [{"name": "a", "position": -1.0}], "goal_time_tolerance": {"sec": 3}}
     goal = send(sim, (1.0, [1.0, 0.5]), **loose)
@@ -288,7 +288,7 @@ def test_a_goal_outside_the_limits_ends_there_with_the_goal_tolerance_violated()
     assert "moves joint 'a' to 1.5, but its limits are -1 and 1" in said.message
 
 
-def test_an_unknown_joint_among_the_tolerances_leaves_them_as_they_are() -> None:
+def test_tolerances_with_an_unknown_joint_are_ignored() -> None:
     sim, _ = arm(most={"a": 0.005})
     goal = send(sim, (1.0, [1.0, 0.5]), path_tolerance=[{"name": "z", "position": -1.0}])
     sim.run(1.0)

@@ -96,7 +96,7 @@ def test_a_bag_of_ros_2_is_played_from_its_beginning(storage: Any, mode: Any, tm
         assert [m.linear.x for m in heard.messages] == [0.0, 0.1, 0.2]
 
 
-def test_a_velocity_loses_the_header_that_the_world_has_no_use_for(tmp_path: Path) -> None:
+def test_a_stamped_velocity_is_converted_if_the_world_needs_no_header(tmp_path: Path) -> None:
     by_ros(tmp_path / "ros", StoragePlugin.SQLITE3, "geometry_msgs/msg/TwistStamped")
     heard: list[Any] = []
     with simkit.load(CART.replace("/cmd_vel", "/other")) as sim:
@@ -143,7 +143,7 @@ def test_sensor_readings_of_the_world_are_not_played_back(tmp_path: Path) -> Non
         assert played.names == {"/cmd_vel": "/cmd_vel"}
 
 
-def test_a_bag_that_was_cut_off_is_played_as_far_as_it_goes(tmp_path: Path) -> None:
+def test_a_truncated_bag_is_played_up_to_its_end(tmp_path: Path) -> None:
     with simkit.load(CART) as sim, Recorder(sim, tmp_path / "a.mcap"):
         driven(sim, Commands(sim, DRIVE), 800)
     data = (tmp_path / "a.mcap").read_bytes()
@@ -154,7 +154,7 @@ def test_a_bag_that_was_cut_off_is_played_as_far_as_it_goes(tmp_path: Path) -> N
         assert played.sent > 3
 
 
-def test_a_definition_of_the_bags_own_is_understood_by_its_names(tmp_path: Path) -> None:
+def test_a_message_with_the_bags_own_definition_is_converted_by_field_names(tmp_path: Path) -> None:
     """A Twist with its parts the other way round, as another distribution could have it."""
     store = get_typestore(Stores.EMPTY)
     text = (

@@ -60,7 +60,7 @@ def test_a_bag_of_simkit_is_read_back(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("storage", [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
-def test_a_bag_of_ros_2_with_types_of_its_own_is_read_by_its_own_definitions(storage: Any, tmp_path: Path) -> None:
+def test_a_ros_2_bag_with_custom_types_is_read_with_the_bags_definitions(storage: Any, tmp_path: Path) -> None:
     _foreign(tmp_path / "lab", storage)
     with open_bag_to_read(tmp_path / "lab") as bag:
         assert bag.storage == ("sqlite3" if storage is StoragePlugin.SQLITE3 else "mcap")
@@ -76,7 +76,7 @@ def test_a_database_alone_is_a_bag(tmp_path: Path) -> None:
         assert bag.storage == "sqlite3" and bag.count == 2
 
 
-def test_one_that_was_cut_off_is_read_as_far_as_it_goes(tmp_path: Path) -> None:
+def test_a_truncated_bag_is_read_up_to_its_end(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     bag = McapBag(path)
     _numbers(bag, 20)
@@ -100,7 +100,7 @@ def test_a_path_that_is_not_a_bag_is_reported(tmp_path: Path) -> None:
             open_bag_to_read(tmp_path / name)
 
 
-def test_the_summary_is_that_of_ros_2(tmp_path: Path) -> None:
+def test_the_summary_equals_ros2_bag_info(tmp_path: Path) -> None:
     bag = Rosbag2Folder(tmp_path / "run")
     _numbers(bag)
     bag.close()
@@ -119,7 +119,7 @@ def test_the_summary_is_that_of_ros_2(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("metadata", [None, "", "5", "a: 2024-13-45", "[" * 300, "rosbag2_bagfile_information: 5"])
-def test_a_folder_that_lacks_its_end_is_read_by_its_files(tmp_path: Path, metadata: str | None) -> None:
+def test_a_folder_without_metadata_is_read_from_its_files(tmp_path: Path, metadata: str | None) -> None:
     folder = tmp_path / "drive"
     bag = Rosbag2Folder(folder)
     _numbers(bag)
@@ -140,7 +140,7 @@ def test_a_special_file_is_not_opened(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("size", [100, 35, 12])
-def test_a_recording_that_was_cut_off_before_its_first_second_is_one_of_nothing(tmp_path: Path, size: int) -> None:
+def test_a_recording_truncated_in_its_first_second_is_empty(tmp_path: Path, size: int) -> None:
     bag = McapBag(tmp_path / "run.mcap")
     _numbers(bag, 1)
     begun = (tmp_path / "run.mcap").read_bytes()

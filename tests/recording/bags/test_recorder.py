@@ -56,7 +56,7 @@ def test_rosbags_opens_a_recording_and_finds_every_message(tmp_path: Path, name:
     assert times == [1_000_000, *(k * 10_000_000 for k in range(1, 251))]
 
 
-def test_mcap_opens_a_recording_without_help_of_rosbags(tmp_path: Path) -> None:
+def test_the_mcap_package_opens_a_recording_without_rosbags(tmp_path: Path) -> None:
     path = record(tmp_path / "run.mcap")
     with path.open("rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
@@ -70,7 +70,7 @@ def test_mcap_opens_a_recording_without_help_of_rosbags(tmp_path: Path) -> None:
     assert all(s.encoding == "ros2msg" for s in summary.schemas.values())
 
 
-def test_a_recording_holds_the_messages_of_subscribers(tmp_path: Path) -> None:
+def test_a_recording_has_the_messages_that_subscribers_receive(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, Recorder(sim, tmp_path / "run.mcap"):
         live = sim.subscribe("/imu")
         sim.run(0.5)
@@ -131,7 +131,7 @@ def test_only_selected_topics_are_recorded(tmp_path: Path) -> None:
         assert {c.topic for c in reader.connections} == {"/imu"}
 
 
-def test_an_existing_recording_is_kept(tmp_path: Path) -> None:
+def test_an_existing_recording_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     path.write_bytes(b"precious")
     with simkit.load(WORLD) as sim, pytest.raises(InputError, match="--force") as error:
@@ -141,7 +141,7 @@ def test_an_existing_recording_is_kept(tmp_path: Path) -> None:
     assert record(path, overwrite=True).stat().st_size > 1000
 
 
-def test_a_folder_that_is_no_bag_is_not_replaced_even_by_force(tmp_path: Path) -> None:
+def test_a_folder_that_is_not_a_bag_is_not_replaced_even_with_overwrite(tmp_path: Path) -> None:
     (tmp_path / "notes").mkdir()
     (tmp_path / "notes" / "diary.txt").write_text("dear diary")
     with simkit.load(WORLD) as sim, pytest.raises(InputError, match="is not a bag"):
@@ -239,7 +239,7 @@ def _readable(path: Path) -> list[int]:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
-def test_after_a_kill_everything_up_to_the_last_second_is_readable_and_can_be_mended(tmp_path: Path) -> None:
+def test_after_a_kill_all_messages_up_to_the_last_second_can_be_recovered(tmp_path: Path) -> None:
     torn = _killed_recording(tmp_path, "torn.mcap")
     times = _readable(torn)
     assert max(times) >= 4_900_000_000
@@ -252,14 +252,14 @@ def test_after_a_kill_everything_up_to_the_last_second_is_readable_and_can_be_me
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
-def test_a_killed_folder_is_mended_into_a_folder(tmp_path: Path) -> None:
+def test_a_folder_of_a_killed_run_is_recovered_into_a_folder(tmp_path: Path) -> None:
     torn = _killed_recording(tmp_path, "torn")
     found = recover_bag(torn, tmp_path / "whole")
     with AnyReader([tmp_path / "whole"]) as reader:
         assert reader.message_count == found.messages
 
 
-def test_mending_a_whole_recording_gives_the_same_messages(tmp_path: Path) -> None:
+def test_recovering_a_complete_recording_gives_the_same_messages(tmp_path: Path) -> None:
     path = record(tmp_path / "run.mcap")
     found = recover_bag(path, tmp_path / "again.mcap")
     assert found.complete

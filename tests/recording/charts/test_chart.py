@@ -33,7 +33,7 @@ def points(path: str) -> np.ndarray:
     return np.array([[float(n) for n in pair.split()] for pair in re.split("[ML]", path)[1:]])
 
 
-def test_the_line_goes_through_the_numbers() -> None:
+def test_the_line_passes_through_the_values() -> None:
     found = points(paths(render_chart(Chart([series("a", [0.0, 1.0, 0.5])]), ".svg"))[0])
     assert len(found) == 3
     assert found[1, 0] - found[0, 0] == pytest.approx(found[2, 0] - found[1, 0], abs=0.11)
@@ -50,7 +50,7 @@ def test_a_peak_among_a_million_numbers_is_seen_in_a_small_file() -> None:
     assert found[:, 1].min() < found[0, 1] - 300
 
 
-def test_a_line_is_broken_where_a_number_is_missing_and_where_an_angle_comes_round() -> None:
+def test_a_line_is_split_at_missing_numbers_and_at_the_wrap_of_an_angle() -> None:
     assert len(paths(render_chart(Chart([series("a", [0, 1, np.nan, 1, 2, np.inf, 3, 4])]), ".svg"))) == 3
     turning = [3.0, 3.1, -3.1, -3.0]
     assert len(paths(render_chart(Chart([series("yaw", turning, "rad", is_angle=True)]), ".svg"))) == 2
@@ -63,13 +63,13 @@ def test_numbers_of_any_size_are_drawn(values: list[float]) -> None:
         assert render_chart(Chart([series("a", values)]), ending)
 
 
-def test_names_are_no_markup() -> None:
+def test_names_are_escaped() -> None:
     svg = render_chart(Chart([series("</svg><script>alert(1)</script>\0\x1b&", [0, 1])], title="<b>\ud800"), ".svg")
     root = ElementTree.fromstring(svg)
     assert not list(root.iter(f"{SVG}script")) and not list(root.iter("script"))
 
 
-def test_units_have_panels_of_their_own_over_one_time() -> None:
+def test_each_unit_has_a_panel_and_all_panels_share_the_time_axis() -> None:
     svg = render_chart(Chart([series("a", [0, 1]), series("b", [0, 9], "rad"), series("c", [0, 2])]), ".svg").decode()
     assert svg.count(">[m]<") == 1 and svg.count(">[rad]<") == 1 and svg.count("time [s]") == 1
 
@@ -83,14 +83,14 @@ def test_the_same_numbers_make_the_same_bytes() -> None:
     assert len(picture.convert("RGB").getcolors(1 << 20)) > 10
 
 
-def test_one_number_is_drawn_over_the_newest_of_another() -> None:
+def test_a_number_is_drawn_over_the_newest_value_of_another_number() -> None:
     y = series("y", [10.0, 20.0, 30.0], step=0.1)
     x = Series("x", "m", times=np.array([0.05, 0.2]), values=np.array([1.0, 2.0]))
     (found,) = series_over([y], x)
     assert found.times.tolist() == [1.0, 2.0] and found.values.tolist() == [20.0, 30.0]
 
 
-def test_other_endings_are_refused() -> None:
+def test_other_file_suffixes_are_refused() -> None:
     check_suffix("a.SVG")
     for name in ("a.pdf", "a", ""):
         with pytest.raises(InputError, match="SK-BAG-012"):

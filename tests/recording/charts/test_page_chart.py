@@ -46,13 +46,13 @@ def test_a_thinned_line_keeps_the_highest_and_the_lowest_of_each_pixel() -> None
         ([np.nan, np.inf], "0.5"),
     ],
 )
-def test_labels_tell_values_apart_at_any_size(values: list[float], expected: str) -> None:
+def test_labels_of_different_values_differ_at_any_magnitude(values: list[float], expected: str) -> None:
     found = labels(svg_of(np.array(values)))
     assert any(label.startswith(expected.rstrip("0")) for label in found), found
     assert len(set(found)) >= len(found) - 4  # of two axes, labels may be alike; of one they are not
 
 
-def test_a_gap_is_a_gap_and_a_single_value_is_a_dot() -> None:
+def test_missing_values_interrupt_the_line_and_a_single_value_is_a_dot() -> None:
     svg = svg_of(np.array([1.0, 2.0, np.nan, 3.0, np.inf, 4.0, 5.0]))
     path = next(p for p in svg.iter(SVG + "path") if "run" in (p.get("class") or ""))
     d = path.get("d") or ""
@@ -60,7 +60,7 @@ def test_a_gap_is_a_gap_and_a_single_value_is_a_dot() -> None:
     assert d.count("h.01") == 1
 
 
-def test_a_logarithmic_chart_has_powers_of_ten_and_leaves_out_what_has_no_logarithm() -> None:
+def test_a_logarithmic_chart_has_powers_of_ten_and_omits_values_without_logarithm() -> None:
     series = Series("", times=np.array([1.0, 10.0, 100.0, 1000.0]), values=np.array([1.0, 0.0, 10.0, 100.0]))
     svg = etree.fromstring(page_chart_svg(PageChart([(series, "run")], "t", "x", "y", is_log=True)))
     assert {"1e0", "1e1", "1e2", "1e3"} <= set(labels(svg))

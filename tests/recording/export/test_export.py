@@ -70,7 +70,7 @@ FRAMES = [
 ]  # fmt: skip
 
 
-def test_a_table_has_a_line_a_message_and_the_bits_of_each_number(tmp_path: Path) -> None:
+def test_a_table_has_one_line_per_message_and_exact_numbers(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS, *FRAMES)
     export_bag(bag, tmp_path / "out", ExportOptions())
     first, second = table(tmp_path / "out" / "scan.csv")
@@ -86,7 +86,7 @@ def test_a_table_has_a_line_a_message_and_the_bits_of_each_number(tmp_path: Path
     ]
 
 
-def test_arrays_are_those_of_the_messages_and_lists_of_other_lengths_have_offsets(tmp_path: Path) -> None:
+def test_arrays_equal_the_messages_and_lists_of_different_length_have_offsets(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS, *FRAMES)
     export_bag(bag, tmp_path / "out", ExportOptions(format="npz"))
     scan = np.load(tmp_path / "out" / "scan.npz", allow_pickle=False)
@@ -140,7 +140,7 @@ COLOURS = np.arange(5 * 4 * 3, dtype=np.uint8).reshape(5, 4, 3)
     ],
 )
 @pytest.mark.parametrize(("pad", "big"), [(0, False), (3, True)])
-def test_a_picture_has_the_values_that_were_recorded(
+def test_an_exported_image_has_the_recorded_values(
     values: Any, encoding: str, wanted: Any, pad: int, big: bool, tmp_path: Path
 ) -> None:
     import cv2
@@ -156,7 +156,7 @@ def test_a_picture_has_the_values_that_were_recorded(
     assert np.array_equal(raw, values, equal_nan=raw.dtype.kind == "f")
 
 
-def test_a_compressed_picture_is_the_file_that_it_was(tmp_path: Path) -> None:
+def test_a_compressed_image_is_copied_unchanged(tmp_path: Path) -> None:
     import cv2
 
     data = cv2.imencode(".jpg", COLOURS)[1].ravel()
@@ -165,7 +165,7 @@ def test_a_compressed_picture_is_the_file_that_it_was(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "image" / "000000.jpg").read_bytes() == data.tobytes()
 
 
-def test_a_film_goes_by_the_times_of_the_bag(tmp_path: Path) -> None:
+def test_a_video_has_the_timing_of_the_bag(tmp_path: Path) -> None:
     import cv2
 
     frames = [image(np.full((48, 64, 3), 20 * k, np.uint8), "rgb8") for k in range(12)]
@@ -230,7 +230,7 @@ def test_two_exports_of_one_bag_are_equal(tmp_path: Path) -> None:
         assert trees[0] == trees[1] and len(trees[0]) == 6
 
 
-def test_topics_whose_names_would_be_one_file_have_two(tmp_path: Path) -> None:
+def test_topics_whose_file_names_are_equal_get_different_files(tmp_path: Path) -> None:
     text = msgs.make("std_msgs/msg/String", data='a,\n"b"')
     bag = written(tmp_path / "a.mcap", *((0.0, t, text) for t in ("/a/b", "/a_b", "/A_b", "/index", "/../../x")))
     found = export_bag(bag, tmp_path / "out", ExportOptions())
@@ -277,7 +277,7 @@ def test_an_export_replaces_only_an_export_and_only_with_overwrite(tmp_path: Pat
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no such signals there")
-def test_an_export_that_is_killed_leaves_nothing_half_and_the_next_one_tidies_up(tmp_path: Path) -> None:
+def test_a_killed_export_leaves_no_partial_folder_and_the_next_export_cleans_up(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *((float(t), "/image", image(COLOURS, "rgb8")) for t in range(30)))
     program = (
         "import os, signal, sys\nfrom pathlib import Path\n"
@@ -296,7 +296,7 @@ def test_an_export_that_is_killed_leaves_nothing_half_and_the_next_one_tidies_up
 
 
 @pytest.mark.skipif(os.name == "nt", reason="who is over cannot be asked there")
-def test_a_kill_between_the_old_and_the_new_export_keeps_the_old_one(tmp_path: Path) -> None:
+def test_an_export_killed_during_the_replacement_keeps_the_old_export(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS)
     export_bag(bag, tmp_path / "out", ExportOptions())
     over = subprocess.Popen([sys.executable, "-c", ""])

@@ -256,9 +256,9 @@ class JointTrajectoryController(Controller):
             return False
         self._elapsed, self._last = elapsed, now
         step = round(self._period_ns * scaling)
-        then = elapsed + step
-        self._command = command = spline.at(then, step if passed == step else 0)
-        self._ahead = then, command
+        target_time = elapsed + step
+        self._command = command = spline.at(target_time, step if passed == step else 0)
+        self._ahead = target_time, command
         self.commands.values = command.motion[0][self._group.span]
         return True
 
@@ -301,18 +301,18 @@ class JointTrajectoryController(Controller):
         desired = self._ahead[1] if self._ahead is not None and self._ahead[0] == self._elapsed else None
         desired = spline.at(self._elapsed) if desired is None else desired
         step = round(self._period_ns * self._scaling)
-        then = self._elapsed + step
-        command = spline.at(then, step if round(period * SECOND) == self._period_ns else 0)
-        self._ahead = then, command
+        target_time = self._elapsed + step
+        command = spline.at(target_time, step if round(period * SECOND) == self._period_ns else 0)
+        self._ahead = target_time, command
         errors = self._errors(desired.motion, state)
         is_over, late = self._elapsed >= spline.end, (self._elapsed - spline.end) / SECOND
-        off = np.abs(errors)
+        absolute = np.abs(errors)
         is_watched = self._watches_path and not self._is_holding and (not is_over or self._is_first)
-        strays = is_watched and bool((off > tolerances.path).any())
-        misses = not self._is_holding and is_over and bool((off > tolerances.goal).any())
-        is_late = misses and 0.0 < tolerances.goal_time < late
+        violates_path = is_watched and bool((absolute > tolerances.path).any())
+        misses_goal = not self._is_holding and is_over and bool((absolute > tolerances.goal).any())
+        is_late = misses_goal and 0.0 < tolerances.goal_time < late
         self._is_first = False
-        if not strays and not is_late:
+        if not violates_path and not is_late:
             values = self._group.command(command, errors, period, self._pids)
             self.commands.values = np.append(values, self._scaling) if self._scaling_command else values
             self._command = command
@@ -321,16 +321,16 @@ class JointTrajectoryController(Controller):
             goal.publish_feedback(self._messages.feedback(now, desired.motion, state, errors))
         if self._is_state_due(now):
             self._publish(now, desired.motion, state, errors)
-        if strays:
-            what = describe_violation(off, tolerances.path, self._group.joints)
+        if violates_path:
+            what = describe_violation(absolute, tolerances.path, self._group.joints)
             self._abort_and_hold(PATH_VIOLATED, "Aborted due to path tolerance violation", what)
         elif is_late:
-            what = describe_violation(off, tolerances.goal, self._group.joints)
+            what = describe_violation(absolute, tolerances.goal, self._group.joints)
             self._abort_and_hold(
                 GOAL_VIOLATED, f"Aborted due to goal_time_tolerance exceeding by {late:f} seconds", what
             )
         elif is_over and not self._is_holding:
-            self._handle_arrival(misses, late)
+            self._handle_arrival(misses_goal, late)
         elif is_over and self._is_holding:
             self._is_idle = not self._group.is_closed_loop
 
