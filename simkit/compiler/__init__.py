@@ -2,7 +2,7 @@
 
 - Input: a scene, and the elements that sensors and plugins add through `SpecBuilder`.
 - Output: an `MjModel` with its first state and the name map.
-- Not known here: stepping, and kinds of sensors and plugins. Only this package creates an `MjSpec`.
+- Limits: this package steps no model and knows no kinds of sensors or plugins. No other package creates an `MjSpec`.
 """
 
 from simkit.mujoco_import import mujoco  # noqa: F401, I001  (before any module imports MuJoCo by itself)

@@ -1,4 +1,7 @@
-"""Meshes, textures and materials of a spec, named by their content so that equal ones are shared; colours of geoms."""
+"""Meshes, textures and materials of a spec, and the colours of geoms.
+
+The name of an asset contains a hash of its content, so that geoms share equal assets.
+"""
 
 from __future__ import annotations
 
@@ -48,9 +51,9 @@ class Assets:
         return name
 
     def part(self, part: MeshPart, has_uv: bool) -> str:
-        """Add the triangles of a part and return their name.
+        """Add the triangles of a part as a mesh and return the name of the mesh.
 
-        The name is cached, because every load returns the same parts.
+        The name is computed once for each part, because every load of a file returns the same `MeshPart` objects.
         """
         uv = part.uv if has_uv else None
         names = _names.setdefault(part, {})
@@ -63,7 +66,8 @@ class Assets:
     def _add_mesh(self, name: str, content: bytes) -> None:
         """Add a mesh as a file in memory: MuJoCo caches the conversion of a file and does not repeat it.
 
-        Its shell inertia is never used (masses are given), costs little, and exists for open and flat meshes too.
+        The inertia type "shell" is fast to compute and valid for open and flat meshes too. MuJoCo never uses the
+        result, because every body has an explicit mass.
         """
         mesh = self.spec.add_mesh(name=name)
         mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
@@ -71,7 +75,7 @@ class Assets:
         self.spec.assets[mesh.file] = content
 
     def picture(self, file: Path) -> Pixels:
-        """Return the image of a texture file, read once.
+        """Return the image of a texture file. Each file is read only once.
 
         Raises:
             MeshFileError: the file cannot be used.
@@ -91,13 +95,13 @@ class Assets:
         return name
 
     def material(self, emission: float, look: GeomColours, texture: str, repeat: tuple[float, float]) -> str:
-        """Add the reflection properties of a geom and return their name; the colour stays with the geom.
+        """Add a material with the reflection properties of a geom and return its name. The geom itself has the colour.
 
         Args:
             emission: emission under the scene's ambient light.
             look: reflection properties of the material.
             texture: name of the texture; empty for none.
-            repeat: repetitions of the image, across and up, on shapes without texture coordinates of their own.
+            repeat: repetitions of the image, across and up; for shapes that have no texture coordinates.
         """
         values = (round(emission, 4), round(look.specular, 4), round(look.shininess, 4))
         name = _material_name(*values, texture, *repeat)
@@ -118,7 +122,7 @@ class Assets:
         return material.endswith("#textured")
 
     def heights(self, rows: npt.NDArray[np.float64], size: tuple[float, float, float]) -> str:
-        """Add a height field over `size` (x, y, highest); rows from -y to +y, values from 0 to 1."""
+        """Add a height field over `size` (x, y, highest); rows are ordered from -y to +y, values are from 0 to 1."""
         name = "heights#" + _digest(rows, size)
         if self._is_new("hfield", name):
             field = self.spec.add_hfield(name=name)
@@ -128,7 +132,7 @@ class Assets:
         return name
 
     def drop(self, keys: set[AssetKey]) -> None:
-        """Delete unused assets; materials before the textures they use."""
+        """Delete unused assets. Materials are deleted first, because they refer to textures."""
         order = {"material": 0, "mesh": 1, "hfield": 2, "texture": 3}
         for kind, name in sorted(keys & self.known, key=lambda k: (order[k[0]], k[1])):
             self.spec.delete(getattr(self.spec, kind)(name))
@@ -146,7 +150,7 @@ def mesh_bytes(vertices: Floats, faces: Ints, uv: Floats | None = None) -> bytes
 
     The format has counts, then vertices and texture coordinates in single precision, then faces.
     """
-    if len(vertices) < 4:  # MuJoCo needs four vertices; the added ones are in no face
+    if len(vertices) < 4:  # MuJoCo needs four vertices; no face uses the added vertices
         vertices = np.vstack([vertices, np.repeat(vertices[:1], 4 - len(vertices), axis=0)])
         uv = None if uv is None else np.vstack([uv, np.repeat(uv[:1], len(vertices) - len(uv), axis=0)])
     counts = np.array([len(vertices), 0, 0 if uv is None else len(uv), len(faces)], "<i4")
@@ -163,14 +167,16 @@ def _material_name(*values: object) -> str:
     return "material#" + _digest(*values) + ("#textured" if texture else "")
 
 
-_written = lru_cache(maxsize=64)(str)  # cached, because NumPy needs ten times as long to format a type as to hash it
+_text_of_type = lru_cache(maxsize=64)(
+    str
+)  # cached, because NumPy needs ten times as long to format a type as to hash it
 
 
 def _digest(*values: object) -> str:
     digest = hashlib.sha1(usedforsecurity=False)
     for value in values:
         if isinstance(value, np.ndarray):
-            digest.update(f"{_written(value.dtype)}{value.shape}".encode())
+            digest.update(f"{_text_of_type(value.dtype)}{value.shape}".encode())
             digest.update(np.ascontiguousarray(value).data)
         else:
             digest.update(repr(value).encode())
@@ -184,12 +190,13 @@ _SHININESS: Final = 0.3
 
 @dataclass(frozen=True, slots=True)
 class GeomColours:
-    """Colour of a geom, and fractions from 0 to 1 of its material: how much light it reflects and emits.
+    """Colour of a geom, and the reflection and emission of its material as fractions from 0 to 1.
 
-    The renderer computes diffuse + specular + emission in the style of OpenGL. It has no separate ambient colour; the
-    diffuse one counts. If a file's ambient colour is darker or brighter, emission compensates for it under the scene's
-    ambient light (it may be negative), as in Gazebo Classic. A different hue is not possible. PBR's roughness sets the
-    size of highlights; metalness and further maps have no counterpart.
+    The renderer computes diffuse + specular + emission in the style of OpenGL. It has no separate ambient colour and
+    uses the diffuse colour instead. If the ambient colour of a file is darker or brighter than its diffuse colour, the
+    emission compensates for the difference, as in Gazebo Classic. This emission may be negative. An ambient colour with
+    a different hue is not supported. The roughness of a PBR material sets the size of highlights. MuJoCo has no
+    equivalent of metalness and of further texture maps.
 
     Attributes:
         ambient: brightness of the ambient colour relative to that of the diffuse colour.
@@ -209,13 +216,13 @@ class GeomColours:
 def geom_colours(visual: SceneVisual, part: MeshPart | None) -> GeomColours:
     """Return the colours of a visual or of one part of its mesh.
 
-    The file's material has priority over the mesh's own.
+    The material of the `<visual>` has priority over the material in the mesh file.
     """
     material = visual.material
     emission, specular, shininess, ambient = 0.0, 0.0, _SHININESS, 1.0
     if material is not None:
-        colour, emission = _glowing(material)
-        specular, ambient = max(material.specular[:3]), _ambient_share(material)
+        colour, emission = _colour_and_emission(material)
+        specular, ambient = max(material.specular[:3]), _relative_ambient(material)
         if material.shininess is not None:
             shininess = min(1.0, material.shininess / 128.0)
         elif material.roughness is not None:
@@ -232,8 +239,8 @@ def geom_colours(visual: SceneVisual, part: MeshPart | None) -> GeomColours:
     return GeomColours((r, g, b, a), min(1.0, emission), min(1.0, specular), shininess, ambient)
 
 
-def _ambient_share(material: Material) -> float:
-    """Return the brightness of the ambient colour relative to the diffuse one.
+def _relative_ambient(material: Material) -> float:
+    """Return the brightness of the ambient colour relative to the diffuse colour.
 
     The result is 1 for a black or mostly emissive material.
     """
@@ -243,8 +250,8 @@ def _ambient_share(material: Material) -> float:
     return brightness(material.ambient) / own
 
 
-def _glowing(material: Material) -> tuple[Colour, float]:
-    """Return colour and emission.
+def _colour_and_emission(material: Material) -> tuple[Colour, float]:
+    """Return the colour of a geom and its emission from 0 to 1.
 
     MuJoCo emits in the surface's own colour, so a mostly emissive material uses its emissive colour.
     """

@@ -18,7 +18,7 @@ KINEMATIC_ARMATURE: Final = 1e9
 """Armature [kg and kg·m²] of a free kinematic link; it adds to the inertia, not to the weight."""
 
 SPLIT_MASS_SHARE: Final = 0.1
-"""Fraction of a link's mass that the twin of a loop joint receives.
+"""Fraction of a link's mass that its twin receives if a joint closes a loop.
 
 A lighter twin makes the loop softer: under a load the weld yields in proportion to 1 / mass.
 """
@@ -34,7 +34,7 @@ def add_body(
         link: link of the file.
         pose: pose of the link in the parent body's frame.
         written: mass and inertia (`simkit.compiler.refused_inertias.plan_inertials`); None for a link without mass.
-        needs_mass: True if the link moves by itself. A link without mass that does not move by itself is a frame.
+        needs_mass: True if a link without mass gets the least mass, because the link can move relative to other links.
     """
     body = parent.add_body(name=link.scoped, pos=pose.position, quat=pose.quaternion)
     body.explicitinertial = True
@@ -44,7 +44,7 @@ def add_body(
         return body
     body.mass, body.ipos = written.mass, written.com
     if written.exact is not None:
-        body.simple = 0  # its axes are rotated after the compile, which is invalid for a body marked as simple
+        body.simple = 0  # the inertia axes are rotated after the compile, which is invalid for a body marked as simple
     if any(written.inertia):
         body.fullinertia = written.inertia
     else:
@@ -62,7 +62,7 @@ def is_massless(inertial: Inertial) -> bool:
 def add_split_body(
     spec: mujoco.MjSpec, name: str, body: str, under: str, pose: Pose, has_motion: bool
 ) -> mujoco.MjsBody:
-    """Add a twin body for a link under another body; the twin receives a fraction of the link's mass.
+    """Add a twin of a link's body as a child of another body; the twin receives a fraction of the link's mass.
 
     Args:
         spec: MuJoCo's specification.
@@ -70,7 +70,7 @@ def add_split_body(
         body: MuJoCo body of the link.
         under: parent body of the twin.
         pose: pose of the link's body in the frame of `under`.
-        has_motion: True if joints will move the twin; a twin fixed to `under` needs no mass.
+        has_motion: True if joints move the twin; a twin that is fixed to `under` needs no mass.
     """
     twin = spec.body(under).add_body(name=name, pos=pose.position, quat=pose.quaternion)
     twin.explicitinertial = True

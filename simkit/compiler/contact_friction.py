@@ -1,8 +1,9 @@
 """Contact properties of a surface: friction by priority, softness, bounce, masks.
 
-Gazebo's engines use the smaller friction coefficient of two surfaces. MuJoCo uses the larger one, unless their
-`priority` differs: then it uses that of the higher priority. Therefore the priority rises as the coefficient falls. It
-is a fixed function of the coefficient, so that a spawned model changes no other model.
+Gazebo's engines use the smaller friction coefficient of two surfaces. MuJoCo uses the larger coefficient if both
+surfaces have the same `priority`, else the coefficient of the higher priority. Therefore simkit gives a surface a
+higher priority if its coefficient is smaller. The priority depends only on the coefficient, so that a spawned model
+does not change the contacts of other models.
 """
 
 from __future__ import annotations
@@ -18,20 +19,20 @@ from simkit.diagnostics import Diagnostics
 from simkit.scene import Surface
 
 MU_MOST: Final = 2.0
-"""Largest friction coefficient; larger ones (often 100000 for "never slips") are reduced to it.
+"""Largest friction coefficient; larger values in files (often 100000 for "never slips") are reduced to this value.
 
-With a pyramidal cone a larger coefficient couples into the normal force: wheels bounce and slip (2.7 % at 10, 0.04 % at
-2).
+With a pyramidal cone a larger coefficient couples into the normal force: wheels bounce and slip (slip of 2.7 % with a
+coefficient of 10, of 0.04 % with 2).
 """
 
 STIFF_KP: Final = 1e5
 """Stiffness [N/m] from which a contact counts as rigid and uses the world-wide softness."""
 
 BOUNCE_SOLIMP: Final = (0.9995, 0.9995, 0.001, 0.5, 2.0)
-"""Impedance of a contact that rebounds: it loses 0.05 % of the velocity change, where 0.95 loses 5 %."""
+"""Impedance of a contact that rebounds. It loses 0.05 % of the velocity change; an impedance of 0.95 loses 5 %."""
 
 _ALL_BITS: Final = 0xFFFF
-_DECIDING_IMPEDANCE: Final = 1e6  # weight of the surface in the engine's mean of both surfaces
+_DECIDING_IMPEDANCE: Final = 1e6  # weight in the engine's mean of the impedances of two surfaces
 _TORSION, _ROLL, _LEAST = 0.005, 0.0001, 1e-5
 
 
@@ -50,7 +51,11 @@ class ContactProperties(NamedTuple):
 
 @lru_cache(maxsize=1024)
 def friction_priority(mu: float) -> int:
-    """Return a priority that rises strictly as `mu` [0, 10] falls, from the order of the bits of float32 numbers."""
+    """Return a priority that rises strictly as `mu` falls from `MU_MOST` to 0; a larger `mu` counts as `MU_MOST`.
+
+    The priority is computed from the bits of `mu` as float32: read as integers, they have the same order as the
+    numbers.
+    """
     return int(np.float32(MU_MOST).view(np.int32)) - int(np.float32(max(0.0, min(mu, MU_MOST))).view(np.int32))
 
 
@@ -60,7 +65,7 @@ def contact_properties(surface: Surface, timestep: float, mass: float, diagnosti
     Args:
         surface: surface of the collision.
         timestep: length of a step [s].
-        mass: mass of the moving tree that carries the collision [kg]; 0 for a static one.
+        mass: mass of the kinematic tree that contains the collision [kg]; 0 for a static collision.
         diagnostics: collection for a note about each property that MuJoCo does not support.
     """
     mu = _sliding_friction(surface, diagnostics)
@@ -117,7 +122,7 @@ def directional_friction(surface: Surface, *, has_one: bool | None = None) -> tu
 def directional_slip(surface: Surface) -> tuple[float, float]:
     """Return the slip of a surface per force [m/s/N], along and across its direction.
 
-    The slip is zero if it differs along and across and the surface has no direction.
+    If the two values differ, but the surface has no direction, both are ignored and the slip is zero.
     """
     slips = max(0.0, surface.slip1), max(0.0, surface.slip2)
     return slips if slips[0] == slips[1] or any(surface.fdir1) else (0.0, 0.0)
@@ -126,7 +131,8 @@ def directional_slip(surface: Surface) -> tuple[float, float]:
 def _sliding_friction(surface: Surface, diagnostics: Diagnostics) -> float:
     """Return the sliding friction of a surface.
 
-    For a directional surface it is the larger one, because its contacts get both coefficients during the run.
+    If the friction has a direction, the result is the larger coefficient. The runtime then sets both coefficients at
+    each contact.
     """
     most = max((m if math.isfinite(m) else MU_MOST for m in (surface.mu, surface.mu2)), default=0.0)
     if most > MU_MOST:
@@ -144,7 +150,7 @@ def _sliding_friction(surface: Surface, diagnostics: Diagnostics) -> float:
 
 
 def _turning_friction(surface: Surface, diagnostics: Diagnostics) -> tuple[float, float]:
-    """Return torque per normal force [m] against spinning on the spot and against rolling; 0 if the file has none.
+    """Return torsional and rolling friction as torque per normal force [m]; 0 if the file has no such friction.
 
     A patch of radius a under Hertz pressure resists spinning with 3π/16 · a · coefficient · N, as in Gazebo.
     """
@@ -167,7 +173,7 @@ def _turning_friction(surface: Surface, diagnostics: Diagnostics) -> tuple[float
 def _impedance(
     restitution: float, solref: tuple[float, float], timestep: float
 ) -> tuple[tuple[float, float, float, float, float], float]:
-    """Return impedance and its weight: of two surfaces, the one that rebounds or is soft decides."""
+    """Return the impedance and its weight. A surface that rebounds or is soft has a dominant weight in a contact."""
     if restitution > 0.0:
         return BOUNCE_SOLIMP, _DECIDING_IMPEDANCE
     if solref[0] > rigid_time_constant(timestep):
@@ -207,10 +213,11 @@ def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagn
 def bounce_solref(restitution: float, timestep: float) -> tuple[float, float]:
     """Return direct stiffness and damping (negative solref) of a contact that rebounds within one step.
 
-    MuJoCo requests the acceleration −b v − k r of a contact. With b = (1 + e) / dt, the velocity v at the beginning of
-    a step becomes −e v in that step, at any speed, mass and number of contact points. MuJoCo divides b by the
-    impedance. The spring only lets the body come to rest. Its part of one rebound is at most a quarter of the loss by
-    the impedance, so that the energy of a single contact never rises.
+    MuJoCo drives a contact with penetration r and velocity v towards the acceleration −b v − k r. With b = (1 + e) /
+    dt, the velocity v at the beginning of a step becomes −e v in that step, at any speed, mass and number of contact
+    points. MuJoCo divides b by the impedance. The stiffness k only lets the body come to rest. In one rebound, the
+    spring adds at most a quarter of the energy that the impedance removes. The energy of a single contact therefore
+    never rises.
     """
     impedance = BOUNCE_SOLIMP[1]
     rate = (1.0 + min(restitution, 1.0)) / timestep

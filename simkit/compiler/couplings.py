@@ -19,9 +19,9 @@ STIFF_SOLIMP: Final = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 LOOP_DAMPING: Final = 0.5
 """Damping ratio of the weld that closes a loop.
 
-With a time constant of two steps the weld corrects a gap within one step. The engine's step follows a chord of the
-path. The chord opens a joint on a circle of radius R at speed omega by omega² R · step · time constant · damping
-ratio².
+With a time constant of two steps the weld corrects a gap within one step. A step of the engine moves a body along a
+chord of its circular path. On a circle of radius R at the angular velocity omega, this opens the joint by omega² R ·
+step · time constant · damping ratio².
 """
 
 _ONE_NUMBER: Final = ("revolute", "continuous", "prismatic", "universal", "revolute2", "screw", "planar")
@@ -29,7 +29,7 @@ _ALONG: Final = 1.0 - 1e-6
 
 
 class Couplings:
-    """Writer of equality constraints, which it adds to the record of their model."""
+    """Writer of equality constraints. The record of the model receives their names."""
 
     def __init__(self, spec: mujoco.MjSpec, record: ModelRecord, timestep: float, diagnostics: Diagnostics) -> None:
         self.spec, self.record, self.timestep, self.diagnostics = spec, record, timestep, diagnostics
@@ -47,7 +47,7 @@ class Couplings:
         """Hold two MuJoCo bodies at their relative pose in the specification, with a damping ratio."""
         equality = self._equality(name, mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY, body, other)
         data = np.zeros(len(equality.data))
-        # with a relative pose of zeros, MuJoCo uses that of the specification
+        # if the relative pose is all zeros, MuJoCo uses the relative pose of the specification
         data[:3] = anchor_in_other
         data[10] = 1.0
         equality.data = data
@@ -112,7 +112,7 @@ class Couplings:
     # ------------------------------------------------------------------ mimics
 
     def mimics(self, joints: list[SceneJoint]) -> None:
-        """Couple every axis with a `<mimic>` to the axis at the head of its chain of leaders."""
+        """Couple every axis with a `<mimic>` to the axis at the end of its chain of leaders."""
         mimics = {(j.scoped, i): (j, a.mimic) for j in joints for i, a in enumerate(j.axes) if a.mimic is not None}
         for (scoped, axis), (joint, _) in mimics.items():
             law = self._first_leader(joint, axis, mimics)
@@ -124,7 +124,10 @@ class Couplings:
             self._add_follower(leader, Follower(follower, ratio, offset=offset, axis=leader_axis))
 
     def tie(self, follower: str, leader: str, ratio: float, offset: float) -> None:
-        """Make one joint of one axis follow another, by their scoped names: follower = offset + ratio · leader."""
+        """Make the first axis of a joint follow the first axis of another joint: follower = offset + ratio · leader.
+
+        Both joints are scoped names.
+        """
         binding, follower_name = self.record.joints[leader], self.record.joints[follower].joint_names[0]
         self.couple(f"{follower}#mimic0", follower_name, binding.joint_names[0], offset, ratio)
         self._add_follower(binding, Follower(follower_name, ratio, offset=offset))
@@ -132,9 +135,9 @@ class Couplings:
     def _first_leader(
         self, joint: SceneJoint, axis: int, mimics: dict[tuple[str, int], tuple[SceneJoint, Mimic]]
     ) -> tuple[JointBinding, int, float, float] | None:
-        """Return the last leader of a mimic chain, its axis, and ratio and offset of the chain.
+        """Return the leader at the end of a mimic chain, its axis, and the ratio and the offset of the whole chain.
 
-        The result is None, with a report, if a chain has no valid leader.
+        Return None and report an error or a warning if the chain has no valid leader.
         """
         ratio, offset = 1.0, 0.0
         at, seen = (joint.scoped, axis), {(joint.scoped, axis)}
@@ -165,7 +168,7 @@ class Couplings:
         if own is not None and leader is not None and _has_axis(own, axis) and _has_axis(leader, law.axis):
             return leader
         hint = did_you_mean(law.joint, [j.name for j in (b.scene for b in known.values())]) if leader is None else ""
-        message = f"joint {joint.scoped} mimics a missing joint or axis of {law.joint}; the mimic is ignored"
+        message = f"joint {joint.scoped}: its mimic of {law.joint} is ignored: the joint or its axis does not exist"
         self.diagnostics.warning("SK-PHYS-022", message, joint.where, hint)
         return None
 

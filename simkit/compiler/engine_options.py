@@ -16,8 +16,8 @@ CONTACT_SOLIMP: Final = (0.9, 0.999, 0.0005, 0.5, 2.0)
 """Impedance of rigid contacts: 0.9 at the surface, 0.999 from a penetration of 0.5 mm on.
 
 A body rests on the ground with a penetration of 4 to 10 µm at any mass, where the impedance is still 0.9. A higher
-impedance there settles no better and makes a robot rock longer on its casters. Only a heavy body on a light one reaches
-0.999: 1 kg carries 10⁴ kg with 0.8 mm of penetration, where an impedance of 0.95 gives 36 mm.
+impedance there settles no better and makes a robot rock longer on its casters. Only a heavy body on a light body
+reaches 0.999: a body of 1 kg carries 10⁴ kg with 0.8 mm of penetration, instead of 36 mm with an impedance of 0.95.
 """
 
 SOFT_SOLIMP: Final = (0.9, 0.95, 0.001, 0.5, 2.0)
@@ -40,7 +40,8 @@ _MEMORY_MOST: Final = 4 << 30
 def contact_time_constant(timestep: float) -> float:
     """Return the time constant [s] of the world-wide contact softness.
 
-    A shorter one oscillates at steps of 2 ms and more; with a longer one a gripped object creeps.
+    With a shorter time constant, contacts oscillate at steps of 2 ms and more; with a longer one, gripped objects
+    creep.
     """
     return max(0.004, 2.0 * timestep)
 
@@ -48,7 +49,8 @@ def contact_time_constant(timestep: float) -> float:
 def rigid_time_constant(timestep: float) -> float:
     """Return the time constant [s] that gives a rigid contact the stiffness and damping of the world-wide softness.
 
-    The engine divides both by the largest impedance, which is higher for rigid contacts; it needs at least two steps.
+    The engine divides stiffness and damping by the largest impedance, which is higher for rigid contacts. The time
+    constant must be at least two steps.
     """
     return max(contact_time_constant(timestep) * SOFT_SOLIMP[1] / CONTACT_SOLIMP[1], 2.0 * timestep)
 
@@ -65,7 +67,7 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     option.gravity = world.gravity
     option.magnetic = world.magnetic_field
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    # a pyramid has 0.7 of the friction on its diagonals; with 100, a gripped object creeps 100 times less than with 1
+    # a pyramidal cone has only 0.7 of the friction in diagonal directions; an `impratio` of 100 instead of 1 makes a
     option.cone, option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 100.0
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     if world.physics.contact_law != "simkit":
@@ -91,7 +93,7 @@ def has_engine_contacts(model: mujoco.MjModel) -> bool:
 
 
 def apply_size(spec: mujoco.MjSpec, colliding_geoms: int) -> None:
-    """Set the arena memory for contacts by the number of colliding geoms; only used memory is ever touched."""
+    """Set the arena memory for contacts by the number of colliding geoms. Memory that is never used costs nothing."""
     memory = min(_MEMORY_MOST, _MEMORY_BASE + _MEMORY_PER_GEOM * colliding_geoms)
     if int(spec.memory) < memory:
         spec.memory = memory
@@ -100,7 +102,8 @@ def apply_size(spec: mujoco.MjSpec, colliding_geoms: int) -> None:
 def choose_islands(spec: mujoco.MjSpec, trees: int) -> None:
     """Enable constraint islands for several moving trees.
 
-    Islands cost a single robot 8 % and pay only with several trees; without islands nothing sleeps.
+    Islands make a world with a single robot 8 % slower; they make it faster only with several trees. Without islands,
+    no body can sleep.
     """
     flag = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     if trees < 2:
@@ -110,9 +113,9 @@ def choose_islands(spec: mujoco.MjSpec, trees: int) -> None:
 
 
 def set_extent(model: mujoco.MjModel) -> None:
-    """Set centre and size of the scene from its bounded geoms alone; planes, far lights and outliers do not count.
+    """Set centre and size of the scene from its bounded geoms; planes, distant lights and outliers are ignored.
 
-    Both scale the clip planes and the shadow map of renderers that use MuJoCo's defaults.
+    Renderers with MuJoCo's defaults scale their clip planes and their shadow map by this size.
     """
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)

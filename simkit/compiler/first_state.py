@@ -7,7 +7,7 @@ import numpy as np
 
 
 def first_state(model: mujoco.MjModel) -> mujoco.MjData:
-    """Return the state with all poses at the start."""
+    """Return the state at the start, with the poses of all bodies computed."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
@@ -15,7 +15,7 @@ def first_state(model: mujoco.MjModel) -> mujoco.MjData:
 
 
 def first_mass_matrix(model: mujoco.MjModel) -> mujoco.MjData:
-    """Return the first state with the mass matrix M and its factors."""
+    """Return the first state with the mass matrix M and its factorisation."""
     data = first_state(model)
     mujoco.mj_makeM(model, data)
     mujoco.mj_factorM(model, data)

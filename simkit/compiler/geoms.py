@@ -40,7 +40,7 @@ class GeomParent:
         offset: link frame in the body's frame.
         fixed: True if only the user moves the body (world geoms and mocap bodies).
         mass: mass of the moving tree [kg]; 0 if fixed.
-        axis: axis about which the link turns freely; None without one.
+        axis: axis about which the link turns without limits; None if there is no such axis.
     """
 
     body: mujoco.MjsBody
@@ -56,7 +56,7 @@ GeomSettings = dict[str, Any]
 
 
 class GeomWriter:
-    """Writer of the geoms of one top-level model, which it adds to the record with their owners.
+    """Writer of the geoms of one top-level model. The record receives each geom's name with its owner.
 
     Args:
         assets: assets of the spec.
@@ -112,7 +112,7 @@ class GeomWriter:
     def _outlines(
         self, place: GeomParent, owner: GeomOwner, collision: SceneCollision, shape: Polyline, solid: GeomSettings
     ) -> None:
-        """Add extruded outlines, which consist of exact convex pieces."""
+        """Add the exact convex pieces of extruded outlines."""
         try:
             pieces = shape_geometry.polyline_pieces(shape)
         except ValueError as problem:
@@ -166,7 +166,7 @@ class GeomWriter:
             return
         owner = GeomOwner(place.link, visual.scoped, True)
         pixels = self._pixels(visual.material, visual.where)
-        # the engine's own shapes, except planes, have no inner side
+        # the engine does not draw its own shapes, except planes, from the inside
         has_inner_side = visual.material is not None and visual.material.double_sided and not isinstance(shape, Plane)
         textured = shape_geometry.textured_triangles(shape) if pixels is not None or has_inner_side else None
         primitive = shape_geometry.primitive_of(shape, True) if textured is None else None
@@ -189,7 +189,7 @@ class GeomWriter:
     def _add_visual_part(
         self, place: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Pixels | None
     ) -> None:
-        """Add triangles of one material; the file's material has priority over the mesh's own."""
+        """Add the triangles of one material; the material of the `<visual>` has priority over that of the mesh file."""
         if not has_area(part, LEAST_AREA):
             name = f" ({part.name})" if part.name else ""
             text = f"{_collision_title(visual.geometry)}: a part{name} whose triangles have no area is not drawn"
@@ -200,7 +200,10 @@ class GeomWriter:
         self._add(place, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, **look)
 
     def _surface_mesh(self, visual: SceneVisual, part: MeshPart, is_textured: bool) -> str:
-        """Return the name of a part's triangles with the visual's texture scale and sides."""
+        """Add the mesh of a part and return its name.
+
+        The mesh has the texture scale of the visual's material, and an inner side if the material is double-sided.
+        """
         if visual.material is None or not (is_textured or visual.material.double_sided):
             return self.assets.part(part, is_textured)
         vertices, faces, uv = part.vertices, part.faces, part.uv if is_textured else None
@@ -212,7 +215,7 @@ class GeomWriter:
         return self.assets.surface(vertices, faces, uv)
 
     def _visual_settings(self, visual: SceneVisual, part: MeshPart | None, pixels: Pixels | None) -> GeomSettings:
-        """Return the settings of a drawn geom; `pixels` is the file's texture if the geom can have one."""
+        """Return the settings of a drawn geom; `pixels` is the texture of the `<visual>`, or None."""
         look = geom_colours(visual, part)
         if visual.material is None and part is not None:
             pixels = part.texture
@@ -225,13 +228,13 @@ class GeomWriter:
             "material": self.assets.material(emission, look, texture, repeat),
             "contype": 0,
             "conaffinity": 0,
-            # a scripted model touches nothing; lidars that see collisions see its drawn shape
+            # a scripted model never collides; lidars that see collisions see its visuals instead
             "group": VISUAL if self.record.scene.moved_by is None else DRAWN_COLLISION,
             "castshadow": visual.cast_shadows,
         }
 
     def _pixels(self, material: Material | None, where: Where) -> Pixels | None:
-        """Return the texture that the file names for a visual; None without one or if it cannot be read."""
+        """Return the texture that the file names for a visual; None if there is none or if the image cannot be read."""
         if material is None or material.texture is None:
             return None
         try:
@@ -240,7 +243,7 @@ class GeomWriter:
             report_once(self.diagnostics, "warning", "SK-MESH-008", f"texture {material.texture} {problem}", where)
             return None
 
-    # ------------------------------------------------------------------ shared
+    # ------------------------------------------------------------------ collisions and visuals
 
     def _has_size(self, shape: Geometry, where: Where) -> bool:
         if all(0.0 < s < math.inf for s in shape_geometry.shape_sizes(shape)):

@@ -24,7 +24,7 @@ _RIGID: Final = 1e8
 
 
 def is_valid_axis(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) -> bool:
-    """Check whether an axis can be simulated; report errors and values with an unexpected effect."""
+    """Check whether an axis can be simulated. Report errors, and values whose effect may surprise the user."""
     numbers = (axis.damping, axis.friction, axis.stiffness, axis.spring_ref)
     limits = (axis.lower, axis.upper, axis.effort, axis.velocity)
     if not all(map(math.isfinite, (*axis.xyz_world, *numbers))) or any(map(math.isnan, limits)):
@@ -96,7 +96,7 @@ class JointWriter:
     """Writer of the joints of one top-level model, which it adds to the record.
 
     Attributes:
-        links: links that joints may name, by scoped name.
+        links: links that joints may refer to, by scoped name.
         carriers: heaviest link of each rigid group, by the scoped names of the group's links.
     """
 
@@ -109,7 +109,7 @@ class JointWriter:
     # ------------------------------------------------------------------ in the tree
 
     def add_tree_joint(self, body: mujoco.MjsBody, link: SceneLink, edge: TreeEdge) -> None:
-        """Add the joint that connects `link` to its parent in the tree to the link's body."""
+        """Add to a link's body the joint that connects the link to its parent in the tree."""
         joint = edge.joint
         names, followers = self._add_motions(body, joint, link.pose_world, edge.is_reversed)
         self._bind(
@@ -124,9 +124,9 @@ class JointWriter:
         )
 
     def bind_floating(self, joint: SceneJoint) -> None:
-        """Bind a floating joint, which constrains nothing.
+        """Record a floating joint, which constrains nothing.
 
-        The joint reads and sets the pose of its child relative to its parent.
+        Its position is the pose of its child link relative to its parent link.
         """
         child, parent = (self.record.links.get(n) for n in (joint.child_link, joint.parent_link))
         is_reversed = not (child and child.free_joint) and bool(parent and parent.free_joint)
@@ -135,7 +135,7 @@ class JointWriter:
             binding = replace(self._binding(joint), joint_names=(free.free_joint,), free=free.scoped)
             self._bind(replace(binding, is_reversed=is_reversed))
             return
-        message = f"floating joint {joint.scoped} can be read but not set: another joint holds {joint.child_link}"
+        message = f"floating joint {joint.scoped} can be read but not set: another joint constrains {joint.child_link}"
         self.diagnostics.warning("SK-JOINT-005", message, joint.where)
         self._bind(self._binding(joint))
 
@@ -154,8 +154,8 @@ class JointWriter:
     ) -> tuple[tuple[str, ...], tuple[Follower, ...]]:
         """Add the motions of a joint to a body at the world pose `at`.
 
-        If the joint is reversed, the body is the file's parent: the same motions are added in opposite order and
-        direction.
+        If the joint is reversed, the body is the parent link of the file. The same motions are then added in opposite
+        order and direction.
 
         Returns:
             Names of the MuJoCo joints in the order of the file's axes, and the hidden followers.
@@ -238,10 +238,10 @@ class JointWriter:
     # ------------------------------------------------------------------ loops
 
     def add_loop_joint(self, joint: SceneJoint) -> None:
-        """Add a joint that closes a loop: it moves a twin of its child link, and a weld holds the twin on the link.
+        """Add a joint that closes a loop.
 
-        The joint thus has a coordinate, limits, dynamics and drives like any other. The twin receives a fraction of the
-        link's mass.
+        The joint moves a twin of its child link, and a weld fixes the twin to the link. The joint therefore has a
+        coordinate, limits, dynamics and drives like any other joint. The twin receives a fraction of the link's mass.
         """
         is_reversed = self._body_name(joint.child_link) == WORLD
         moved, under = (joint.parent_link, joint.child_link) if is_reversed else (joint.child_link, joint.parent_link)
@@ -285,7 +285,7 @@ class JointWriter:
     # ------------------------------------------------------------------ bindings
 
     def _body_pose(self, link: str) -> Pose:
-        """Return the world pose, in the file, of the body that carries a link."""
+        """Return the world pose in the file of the body that represents a link."""
         binding = self.record.links.get(link)
         return self.links[link].pose_world @ binding.offset.inverse() if binding else IDENTITY
 
@@ -309,7 +309,7 @@ class JointWriter:
 
 
 def _plane_axes(joint: SceneJoint, at: Pose) -> list[Vector]:
-    """Return x, y and normal of a plane whose normal alone is given.
+    """Return the x axis, the y axis and the normal of a planar joint, for which the file has only the normal.
 
     x and y are as near to the axes of the joint frame as possible.
     """

@@ -14,9 +14,9 @@ _CONSTRAINTS: Final = {"gearbox"}
 
 @dataclass(frozen=True, slots=True)
 class TreeEdge:
-    """Connection of a link to its parent in the tree by `joint`; `parent` is `world` for the world or a static link.
+    """Connection of a link to its parent in the tree by `joint`; `parent` is `world` also for a static link.
 
-    `is_reversed`: the file's child is the tree's parent.
+    `is_reversed` is True if the child link of the file is the parent in the tree.
     """
 
     parent: str
@@ -31,12 +31,12 @@ class KinematicTree:
     Attributes:
         loops: joints that close a loop.
         constraints: joints that couple others (gearboxes).
-        floating: joints that constrain nothing; they only give the relative pose of two links.
-        roots: root link of the tree of each link.
-        rigid: first link of the rigid group of each link (links joined by fixed joints).
-        carriers: heaviest link of the rigid group of each link.
+        floating: joints that constrain nothing and only measure the relative pose of two links.
+        roots: root link of the tree, by link.
+        rigid: first link of the rigid group (links connected by fixed joints), by link.
+        carriers: heaviest link of the rigid group, by link.
         masses: mass of the whole tree by its root [kg].
-        carried: mass of each link and all links below it [kg].
+        carried: mass of a link and of all links below it [kg], by link.
         deepest: link at the end of the longest chain; `depth` is the number of links of the chain.
     """
 
@@ -81,14 +81,14 @@ class _ConnectedLinks:
 def plan_tree(links: Iterable[SceneLink], joints: Iterable[SceneJoint], static: Iterable[str] = ()) -> KinematicTree:
     """Choose the tree joint of every link.
 
-    A joint to the world has priority over others. A joint whose child already has a tree joint is reversed if its
-    parent has none. Every type can be reversed exactly: its motions in opposite order and direction. All other joints
-    close a loop.
+    A joint to the world has priority over others. If the child of a joint already has a tree joint, but the parent has
+    none, the joint is reversed. Every type can be reversed exactly: its motions in opposite order and direction. All
+    other joints close a loop.
 
     Args:
         links: moving links.
         joints: joints between them, the world and static links.
-        static: scoped names of links that belong to the world.
+        static: scoped names of static links, which belong to the world.
     """
     by_name = {link.scoped: link for link in links}
     fixed = {WORLD, *static}

@@ -17,23 +17,23 @@ FARTHEST: Final = 100.0
 """Largest distance [m] from which directional lights are drawn: their position only frames the shadow map."""
 
 MOST_LIGHTS: Final = 7
-"""Largest number of lights in an image besides the ambient light: OpenGL has eight."""
+"""Largest number of lights in an image, without the ambient light. OpenGL has eight lights in total."""
 
-_MOST_LEFT: Final = 0.1  # fraction of a lamp's light at its range; SDF's own defaults leave 9 %
+_MOST_LEFT: Final = 0.1  # fraction of the light that is left at the range; with SDF's defaults 9 % are left
 _FARTHEST_LAMP: Final = 1e4
-_MOST_FADING: Final = 1e9  # largest range and attenuation, which the engine stores in single precision
+_MOST_FADING: Final = 1e9  # largest range [m] and attenuation; the engine stores them in single precision
 _EVERYWHERE: Final = 180.0  # [degrees] cutoff at which OpenGL's spot is a point light
-_FINEST, _COARSEST, _SQUARES = 0.1, 1.0, 200  # squares of a plane: size [m], size [m], number
-_MOST_QUADS: Final = 20_000  # of all boxes together
-_LEAST_SLICES, _MOST_SLICES = 4, 16  # along an edge of a box; the renderer's default is 4
+_FINEST, _COARSEST, _SQUARES = 0.1, 1.0, 200  # squares of a plane: least and largest size [m], number along an edge
+_MOST_QUADS: Final = 20_000  # largest number in all boxes together
+_LEAST_SLICES, _MOST_SLICES = 4, 16  # divisions of an edge of a box; the renderer's default is 4
 _DRAWN_FIELDS: Final = ("diffuse", "specular", "attenuation", "range", "cutoff", "exponent", "castshadow")
-_SPOT: Final = (math.radians(30.0), math.radians(40.0))  # default cone of the renderers
+_SPOT: Final = (math.radians(30.0), math.radians(40.0))  # [rad] inner and outer angle of the renderers' default cone
 
 
 def drawn_position(light: SceneLight, position: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Return the position from which MuJoCo draws a light: a distant light is moved towards the origin.
 
-    Suns at 256e9 m, which worlds have, overflow the renderer's matrices.
+    Some worlds have a sun at 256e9 m, which overflows the renderer's matrices.
     """
     place = np.asarray(position, float)
     most = FARTHEST if light.type == "directional" else _FARTHEST_LAMP
@@ -50,7 +50,7 @@ def add_light(body: mujoco.MjsBody, light: SceneLight, pose: Pose, shadows: bool
     made.pos = drawn_position(light, pose.position)
     made.dir = pose.rotate(light.direction)
     made.active = light.on
-    # the renderer's shadow map is one cone, which would omit most of the light of a point light
+    # the renderer's shadow map covers one cone only; most of a point light would be missing
     made.castshadow = bool(shadows and light.cast_shadows and light.type != "point")
     made.ambient = (0.0, 0.0, 0.0)
     made.diffuse = np.clip(np.asarray(light.diffuse[:3]) * light.intensity, 0.0, 10.0)
@@ -66,7 +66,7 @@ def add_light(body: mujoco.MjsBody, light: SceneLight, pose: Pose, shadows: bool
 
 
 def drawn_fields(light: SceneLight, shadows: bool) -> dict[str, npt.NDArray[np.float64]]:
-    """Return the fields of MuJoCo's light that a description decides, without position, direction and state."""
+    """Return the fields of MuJoCo's light without its position, its direction and its on/off state."""
     spec = mujoco.MjSpec()
     add_light(spec.worldbody, light, IDENTITY, shadows)
     drawn = spec.worldbody.lights[0]
@@ -74,29 +74,30 @@ def drawn_fields(light: SceneLight, shadows: bool) -> dict[str, npt.NDArray[np.f
 
 
 def report_light(light: SceneLight, world: SceneWorld, diagnostics: Diagnostics) -> None:
-    """Report the parts of a light that are not drawn: the end of its range, and shadows of a point light."""
+    """Report the properties of a light that images do not show: the end of its range, and shadows of a point light."""
     if light.type == "directional":
         return
     reach, constant, linear, quadratic = light.attenuation
     left = 1.0 / max(constant + reach * (linear + reach * quadratic), 1e-9) if math.isfinite(reach) else 0.0
     if left > _MOST_LEFT:
         message = (
-            f"light {light.scoped!r} still has {100.0 * min(left, 1.0):.0f} % at its range of {reach:g} m; "
-            "in images it does not end at its range"
+            f"light {light.scoped!r} still has {100.0 * min(left, 1.0):.0f} % of its brightness at its range of "
+            f"{reach:g} m; images show the light beyond its range"
         )
-        diagnostics.note("SK-RENDER-013", message, light.where, "raise <linear> or <quadratic> until it fades there")
+        hint = "raise <linear> or <quadratic>, so that the light fades within its range"
+        diagnostics.note("SK-RENDER-013", message, light.where, hint)
     if light.type == "point" and light.cast_shadows and world.surroundings.shadows and world.quality != "fast":
         message = f"the point light {light.scoped!r} casts no shadows; only directional lights and spots do"
         diagnostics.note("SK-RENDER-014", message, light.where)
 
 
 def report_lights(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where) -> None:
-    """Report more lights than an image can have."""
+    """Report a world with more lights than an image can have."""
     shining = int(np.count_nonzero(model.light_active))
     if shining > MOST_LIGHTS:
         message = (
-            f"{shining} lights shine; an image has only the {MOST_LIGHTS} that are brightest for its camera, "
-            "directional ones first"
+            f"{shining} lights are on; an image shows only {MOST_LIGHTS}: directional lights first, "
+            "then the lights that are brightest for its camera"
         )
         diagnostics.note("SK-RENDER-012", message, where)
 
@@ -104,9 +105,9 @@ def report_lights(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where)
 def spot_parameters(light: SceneLight) -> tuple[float, float]:
     """Return cutoff [degrees, half of the cone] and exponent of a spot.
 
-    Gazebo's light falls from full at half the inner angle to zero at half the outer one, as a straight line to the
-    power of `falloff`. OpenGL's light is the cosine to the power of `exponent`. They agree half-way between the two
-    angles.
+    In Gazebo, the light falls from 1 at half the inner angle to 0 at half the outer angle, as a straight line to the
+    power of `falloff`. In OpenGL, the light is the cosine to the power of `exponent`. Both are equal half-way between
+    the two angles.
     """
     inner, outer, falloff = _cone(light)
     cutoff = min(90.0, max(1.0, math.degrees(outer) / 2))
@@ -119,8 +120,8 @@ def spot_parameters(light: SceneLight) -> tuple[float, float]:
 def spot_share(light: SceneLight, angle: float) -> float:
     """Return the fraction of a spot's light at an angle [rad] from its axis, as in Gazebo.
 
-    The fraction is 1 within half the inner angle and 0 beyond half the outer one. Between them it is a straight line to
-    the power of `falloff`.
+    The fraction is 1 within half the inner angle and 0 beyond half the outer one. Between these angles the fraction is
+    a straight line to the power of `falloff`.
     """
     inner, outer, falloff = _cone(light)
     if angle <= inner / 2:
@@ -131,7 +132,7 @@ def spot_share(light: SceneLight, angle: float) -> float:
 
 
 def _cone(light: SceneLight) -> tuple[float, float, float]:
-    """Return the inner and outer angle [rad], in order, and the falloff of a spot."""
+    """Return the inner angle [rad], the larger outer angle [rad] and the falloff of a spot."""
     inner, outer, falloff = light.spot
     if outer <= 0.0:
         inner, outer = _SPOT
@@ -139,10 +140,10 @@ def _cone(light: SceneLight) -> tuple[float, float, float]:
 
 
 def refine_for_lamps(model: mujoco.MjModel) -> None:
-    """Divide planes and boxes more finely in worlds with lamps.
+    """Divide planes and boxes more finely in worlds with point lights or spots.
 
-    The renderer lights corners and interpolates between them. A spot between the corners of 1 m squares would be
-    invisible.
+    The renderer computes the light at the corners of squares and interpolates between them. With squares of 1 m, a spot
+    that lights only the middle of a square would be invisible.
     """
     lamps = np.asarray(model.light_type) != int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
     if not lamps.any():

@@ -1,7 +1,8 @@
 """Changes to a file in MuJoCo's own format when it becomes part of another world.
 
-The world's engine settings count. The geoms get the friction priorities of all other geoms, so that the smaller
-coefficient of two surfaces counts. A static model has no joints. A base is fixed or free, as the caller requires.
+The engine settings of the world replace those of the file. The geoms get friction priorities like all other geoms, so
+that the smaller coefficient of two surfaces is used. A static model loses its joints. A base becomes fixed or free, as
+the caller requires.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ _REPORTED_OPTIONS: Final = frozenset(
 """Options that change the meaning of a model; the others only set accuracy and speed."""
 
 _FIRST: Final = friction_priority(0.0) + 1
-"""Priority above that of every friction coefficient, for geoms whose file gives them priority."""
+"""Priority above the priorities of all friction coefficients, for geoms with a `priority` in their file."""
 
 
 def copy_settings(source: mujoco.MjSpec, target: mujoco.MjSpec) -> None:
@@ -50,7 +51,7 @@ def copy_settings(source: mujoco.MjSpec, target: mujoco.MjSpec) -> None:
 
 
 def match_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec) -> None:
-    """Make the settings of both specifications equal to the world's, so that attaching merges nothing."""
+    """Give a file's specification the settings of the world, so that attaching has no settings to merge."""
     for name in OPTIONS:
         setattr(child.option, name, getattr(spec.option, name))
     copy_settings(spec, child)
@@ -59,7 +60,7 @@ def match_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec) -> None:
 
 
 def _write_inferred_limits(child: mujoco.MjSpec) -> None:
-    """Write inferred limits explicitly, because a written world has one rule for all its parts."""
+    """Write inferred limits explicitly, because an exported world has one `autolimits` setting for all models."""
     switches = {
         "joints": (("limited", "range"), ("actfrclimited", "actfrcrange")),
         "tendons": (("limited", "range"), ("actfrclimited", "actfrcrange")),
@@ -116,7 +117,10 @@ def _text(name: str, value: Any) -> str:
 
 
 def rank_friction(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
-    """Give each geom a priority by its friction, like all others in the world; a priority in the file stays higher."""
+    """Give each geom a priority by its friction, like all other geoms of the world.
+
+    Geoms with a priority in the file get a priority above all of these.
+    """
     first = 0
     for geom in child.geoms:
         if int(geom.priority) > 0:
@@ -126,12 +130,12 @@ def rank_friction(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnost
             slides = float(geom.friction[0]) if int(geom.condim) > 1 else 0.0
             geom.priority = friction_priority(min(slides, MU_MOST))
     if first:
-        message = f"model {model.scoped}: {first} geoms have a priority, so their friction always counts"
+        message = f"model {model.scoped}: {first} geoms have a priority in the file, so their friction is always used"
         diagnostics.note("SK-MJCF-013", message, model.where)
 
 
 def write_masses(child: mujoco.MjSpec, source: MjcfSource) -> None:
-    """Write the masses that follow from the file's geoms, bounds and total."""
+    """Write the masses explicitly that the file only implies by its geoms, its bounds or its total mass."""
     for name, (mass, centre, axes, moments) in source.masses.items():
         body = child.body(name)
         body.explicitinertial = True
@@ -154,7 +158,7 @@ def drop_lights(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostic
 
 
 def rename_lights(child: mujoco.MjSpec, source: MjcfSource, prefix: str = "") -> None:
-    """Rename lights on bodies to the names that users know."""
+    """Rename the lights on bodies to their scoped names."""
     for scoped, (name, link) in source.lights.items():
         if link:
             child.light(name).name = scoped.removeprefix(prefix)
@@ -179,7 +183,7 @@ def make_static(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostic
 
 
 def set_base(child: mujoco.MjSpec, source: MjcfSource, fixed: bool) -> None:
-    """Remove the free joints, or add missing ones."""
+    """Remove the free joints of a fixed base, or add the missing free joints of a floating base."""
     for root in source.roots if fixed or source.base == "fixed" else ():
         for joint in list(child.body(root).joints):
             if joint.type == mujoco.mjtJoint.mjJNT_FREE:
@@ -194,7 +198,7 @@ def set_base(child: mujoco.MjSpec, source: MjcfSource, fixed: bool) -> None:
 
 
 def _shorten_keys(child: mujoco.MjSpec, joint: str) -> None:
-    """Remove a joint's numbers from the keyframes."""
+    """Remove the positions and velocities of a joint from the keyframes."""
     q = v = 0
     for other in child.joints:
         wide = JOINT_WIDTHS.get(int(other.type), (1, 1))

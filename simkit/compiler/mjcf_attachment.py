@@ -1,7 +1,7 @@
 """Models in MuJoCo's own format: the file's specification is attached unchanged, with a prefix for its names.
 
-Tendons, actuators, equalities, sensors, keyframes, contact pairs and other elements without a scene type are thus kept.
-`mjcf_adaptation` makes the changes that another world needs.
+The model therefore keeps tendons, actuators, equalities, sensors, keyframes, contact pairs and other elements without a
+scene type. `mjcf_adaptation` makes the changes that another world needs.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def adopt_settings(spec: mujoco.MjSpec, world: SceneWorld) -> None:
     for name in adaptation.OPTIONS:
         setattr(option, name, getattr(source.option, name))
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
-    option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # the runtime decides about sleep
+    option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # the runtime decides whether bodies may sleep
     option.timestep, option.gravity, option.magnetic = (
         world.physics.max_step_size,
         world.gravity,
@@ -60,7 +60,7 @@ def models_of_own_file(world: SceneWorld) -> list[SceneModel]:
 
 
 def attach_world(spec: mujoco.MjSpec, records: Iterable[ModelRecord]) -> None:
-    """Attach the file of the world itself, once for all its models; its names stay unchanged."""
+    """Attach the file of the world itself, once for all its models, without a prefix for its names."""
     records = list(records)
     child = _mjcf_source(records[0].scene).document()
     for record in records:
@@ -79,17 +79,17 @@ def attach_world(spec: mujoco.MjSpec, records: Iterable[ModelRecord]) -> None:
 def attach_model(
     spec: mujoco.MjSpec, record: ModelRecord, model: SceneModel, diagnostics: Diagnostics, joints: Iterable[SceneJoint]
 ) -> list[SceneJoint]:
-    """Attach one model at its pose, or under the link that a fixed joint connects it to.
+    """Attach one model at its pose, or as a child of the link to which a fixed joint connects the model.
 
     Args:
         spec: MuJoCo's specification.
         record: record of the top-level model.
         model: model to attach.
         diagnostics: collection for problems.
-        joints: joints of outer models, some of which may end in this one.
+        joints: joints of outer models, some of which may connect this model.
 
     Returns:
-        Joints that the attachment itself has realised.
+        Joints that need no constraint any more, because the attachment fixes their links to each other.
     """
     source = _mjcf_source(model)
     child = source.document()
@@ -129,7 +129,7 @@ def _mjcf_source(model: SceneModel) -> MjcfSource:
 def _holding_joint(
     record: ModelRecord, model: SceneModel, source: MjcfSource, joints: Iterable[SceneJoint]
 ) -> SceneJoint | None:
-    """Return the fixed joint that connects a model with one free root to a present link; None without one."""
+    """Return the fixed joint that connects the only, free root of a model to a recorded link; None if there is none."""
     roots = [scoped for scoped, body in source.bodies.items() if body in source.roots]
     held = {j.child_link for j in model.joints if source.joints.get(j.scoped)}
     if len(roots) != 1 or roots[0] in held or WORLD in source.bodies.values():
@@ -142,7 +142,7 @@ def _holding_joint(
 def _attachment_frame(
     spec: mujoco.MjSpec, record: ModelRecord, source: MjcfSource, prefix: str, wrapper: str, holder: SceneJoint | None
 ) -> mujoco.MjsFrame:
-    """Return the frame for the file's world: in the world, in a movable body, or in a link's body."""
+    """Return the frame that represents the file's world: in the world body, in a movable body, or in a link's body."""
     pose, body = source.place, spec.worldbody
     if wrapper:
         body = spec.worldbody.add_body(name=wrapper, pos=pose.position, quat=pose.quaternion, mocap=True)
@@ -195,7 +195,7 @@ def _bind_elements(record: ModelRecord, model: SceneModel, prefix: str, wrapper:
         model: attached model.
         prefix: prefix of its names.
         wrapper: body that represents the file's world body; empty for the world itself.
-        free: True if the file's free joints are kept.
+        free: True if the model keeps the free joints of its file.
     """
     source = _mjcf_source(model)
     record.attached[model.scoped] = prefix

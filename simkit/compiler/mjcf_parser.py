@@ -87,12 +87,12 @@ class MjcfParser:
         return str(mujoco.mj_printSchema(False, False))
 
     def compile(self, file: MjcfText, diagnostics: Diagnostics, in_axes_of_file: bool = False) -> CompiledFile | None:
-        """Compile a file; return its specification and model, or None with an error recorded."""
+        """Compile a file. Return its specification and model, or record an error and return None."""
         with _collect_warnings() as engine_warnings:
             try:
                 spec = open_specification(file)
                 ranges: LengthRanges | None = None
-                if _wants_ranges(spec):
+                if _needs_length_ranges(spec):
                     names = [actuator.name for actuator in spec.actuators]
                     ranges = measure_length_ranges(file, names, file.root.where, diagnostics)
                     if ranges is None:
@@ -118,9 +118,9 @@ def open_specification(
 
     Args:
         file: the file.
-        ranges: length ranges of actuators, so that compiling need not measure them.
-        in_axes_of_file: keep the file's frame of bodies with a free joint, even if the file aligns them with their
-            inertia.
+        ranges: known length ranges of actuators, so that the compiler does not measure them.
+        in_axes_of_file: True to keep the file's frame of a body with a free joint, even if the file asks MuJoCo to
+            align the frame with the inertia.
 
     Raises:
         ValueError: MuJoCo refuses the file.
@@ -140,8 +140,8 @@ def open_specification(
     return spec
 
 
-def _wants_ranges(spec: mujoco.MjSpec) -> bool:
-    """Check whether compiling would measure the length of an actuator (a muscle, or as the file's mode requires)."""
+def _needs_length_ranges(spec: mujoco.MjSpec) -> bool:
+    """Check whether the compiler would measure length ranges of muscles or of actuators that the file selects."""
     mode, gain, bias = int(spec.compiler.LRopt.mode), mujoco.mjtGain, mujoco.mjtBias
     gains, biases = [gain.mjGAIN_MUSCLE], [bias.mjBIAS_MUSCLE]
     if mode == int(mujoco.mjtLRMode.mjLRMODE_MUSCLEUSER):
@@ -159,7 +159,7 @@ def measure_length_ranges(
 ) -> LengthRanges | None:
     """Return the length ranges of a file's actuators by name; None, with an error recorded, if they cannot be measured.
 
-    A file that does not compile for another reason has no ranges; compiling it here reports the reason.
+    The error contains the reason, also if the file does not compile for a reason without relation to length ranges.
     """
     files = {"models": file.models, "assets": file.assets}
     texts = {kind: {k: base64.b64encode(v).decode() for k, v in held.items()} for kind, held in files.items()}
@@ -213,7 +213,7 @@ def _report_refusal(text: str, file: MjcfText, diagnostics: Diagnostics) -> None
 
 
 def _locate_message(text: str, file: MjcfText) -> tuple[str, Where]:
-    """Return a message of the engine in one line, without its line number, and the file position of that number."""
+    """Return a message of the engine as one line without its line number, and that line number as a file position."""
     text = text.strip().removeprefix("XML Error: ").removeprefix("Error: ")
     where = file.root.where
     place = _MESSAGE_PLACE.search(text)

@@ -19,10 +19,10 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.scene import SceneWorld
 
 _NO_INERTIA: Final = 1e-9
-"""Least effective inertia of a joint [kg·m² or kg] that counts as moving something; a frame gets ten times less."""
+"""Least effective inertia [kg·m² or kg] of a joint that moves a mass; massless frames have a tenth of it."""
 
 IDLE_ROTARY: Final = 1e-4
-"""Armature [kg·m²] of a hinge that moves no mass: that of a finger, so that 1 ms steps and contacts are stable."""
+"""Armature [kg·m²] of a hinge that moves no mass, as of a finger joint. Steps of 1 ms and contacts are then stable."""
 
 IDLE_LINEAR: Final = 1e-2
 """Armature [kg] of a slider that moves no mass."""
@@ -31,7 +31,8 @@ IDLE_LINEAR: Final = 1e-2
 def apply_velocity_decay(model: mujoco.MjModel, records: Iterable[ModelRecord]) -> None:
     """Set the damping of free joints for `velocity_decay`.
 
-    The damping is mass, or moment about each axis of the link, times the rate.
+    The damping is the decay rate times the mass for linear motion, and times the moment of inertia about each axis of
+    the link for rotation.
     """
     for record in records:
         for name, (linear, angular) in record.damped.items():
@@ -50,8 +51,8 @@ def add_idle_armature(
 ) -> None:
     """Give an armature to each joint that moves only links without mass, in the model and in the spec.
 
-    Such a joint has no mass below it, or no effective inertia with all other joints fixed: 1 / (M⁻¹)_jj ≈ 0. Its links
-    then move without a reaction on the rest. A free link without mass is an error.
+    Such a joint has no mass below it, or no effective inertia while all other joints are free to move: 1 / (M⁻¹)_jj ≈
+    0. A free link without effective inertia is an error.
     """
     suspects = [(r, link, joint) for r in records for link, joint in r.massless.items()]
     if not suspects:
@@ -66,7 +67,7 @@ def add_idle_armature(
         if link not in record.unladen and all(_joint_inertia(model, data, dof) >= _NO_INERTIA for dof in dofs):
             continue
         if not joint:
-            text = f"link {link} moves freely and has no mass; the links that it carries do not load it"
+            text = f"link {link} moves freely without mass, and the links on its joints do not give it any inertia"
             diagnostics.error("SK-JOINT-010", text, binding.scene.where, "give the link an <inertial>, or fix it")
             continue
         armature = _give_armature(spec, model, body)
@@ -109,7 +110,7 @@ def _joint_inertia(model: mujoco.MjModel, data: mujoco.MjData, dof: int) -> floa
 
 
 def place_followers(data: mujoco.MjData, joints: Iterable[JointBinding]) -> None:
-    """Set the initial positions of followers with an offset, so that nothing jerks."""
+    """Set the initial positions of followers with an offset, so that their constraints start without an error."""
     for joint in joints:
         for follower in joint.followers:
             if follower.offset and follower.qpos >= 0:
@@ -117,13 +118,13 @@ def place_followers(data: mujoco.MjData, joints: Iterable[JointBinding]) -> None
 
 
 REPORTED_DEPTH: Final = 0.005
-"""Depth [m] up to which initial overlaps are common; contact separates them gently."""
+"""Depth [m] up to which initial overlaps are common and not reported; the contact separates the bodies gently."""
 
 _REPORTED_MOST: Final = 20
 
 
 def report_overlaps(model: mujoco.MjModel, names: NameMap, diagnostics: Diagnostics, where: Where) -> None:
-    """Warn of each pair of collisions that overlap deeply in the first state; the deepest contact of a pair counts."""
+    """Warn of each pair of collisions that overlap deeply in the first state, with the depth of the overlap."""
     data = first_state(model)
     mujoco.mj_collision(model, data)
     deepest: dict[tuple[str, str], float] = {}
@@ -136,7 +137,7 @@ def report_overlaps(model: mujoco.MjModel, names: NameMap, diagnostics: Diagnost
     for (first, second), depth in sorted(deepest.items(), key=lambda item: -item[1])[:_REPORTED_MOST]:
         diagnostics.warning(
             "SK-PHYS-024",
-            f"{second} starts {depth * 1e3:.0f} mm inside {first}: contact moves them apart, slowly",
+            f"{second} starts {depth * 1e3:.0f} mm inside {first}: the contact separates them slowly",
             names.link(names.geom_owner_link(second)).scene.where if names.geom_owner_link(second) else where,
             "move one of them in the file",
         )
@@ -156,8 +157,8 @@ _DERIVED: Final[tuple[tuple[str, Callable[[mujoco.MjModel, int], str]], ...]] = 
 def check_derived_numbers(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where) -> None:
     """Raise LoadError (SK-PHYS-028) if masses, inertias or distances differ so much that sums overflow.
 
-    Each number of the file is valid by itself. But a mass matrix of 1e-9 kg on a lever of 1e8 m has no inverse in
-    double precision, and the engine would compute NaN.
+    Each number of the file may be valid by itself. But the mass matrix for 1e-9 kg on a lever of 1e8 m has no inverse
+    in double precision, and the engine would compute NaN.
     """
     for name, owner in _DERIVED:
         values = np.asarray(getattr(model, name), float)

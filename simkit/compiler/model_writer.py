@@ -38,7 +38,7 @@ class ModelWriter:
         self.joints = JointWriter(spec, record, step, diagnostics)
 
     def write(self, joints: list[SceneJoint]) -> None:
-        """Add the whole model with `joints` (its own and those to the world)."""
+        """Add the whole model with `joints` (its own joints and its joints to the world)."""
         model = self.record.scene
         links = list(_links(model, False))
         static = {link.scoped for link, is_static in links if is_static}
@@ -159,9 +159,9 @@ class ModelWriter:
             self.joints.bind_floating(joint)
 
     def _inertials(self, tree: KinematicTree, free: set[str]) -> dict[str, BodyInertia]:
-        """Return the mass and inertia of every link that has any, as the compiler accepts them.
+        """Return a mass and an inertia that the compiler accepts for every link that has a mass or an inertia.
 
-        Exact tensors that the compiler refuses go to the record.
+        The record stores the file's tensors that the compiler refuses.
         """
         rigid: dict[str, str] = {}
         still = set()
@@ -184,7 +184,7 @@ class ModelWriter:
         name = f"{link.scoped}#free"
         joint = body.add_freejoint(name=name)
         if link.kinematic:
-            # so large that only a set velocity moves the link
+            # so large that no force moves the link, only a velocity that the user sets
             joint.armature = KINEMATIC_ARMATURE
         if any(link.velocity_decay):
             step = float(self.spec.option.timestep)
@@ -208,9 +208,9 @@ class ModelWriter:
             self.diagnostics.warning("SK-PHYS-027", text, link.where, "use <dynamics><damping> of the joint")
 
     def _report_depth(self, tree: KinematicTree) -> None:
-        """Report an error instead of writing a model.
+        """Report that a chain of links is too long; the model is not written.
 
-        Its links and joints are recorded, so that later look-ups succeed.
+        Its links and joints are recorded, so that later look-ups by name succeed.
         """
         last = self.joints.links[tree.deepest]
         message = f"link {last.scoped} is at the end of a chain of {tree.depth} links; at most {DEEPEST} are supported"
@@ -223,10 +223,10 @@ class ModelWriter:
             self.joints.bind_static(joint)
 
     def _needs_mass(self, link: SceneLink, tree: KinematicTree, is_free: bool) -> bool:
-        """Check whether a link needs mass: it moves by itself, and no link of its rigid group has mass.
+        """Check whether a link's body needs a mass: a joint moves the link, and no link that is fixed to it has a mass.
 
-        Without any mass below, no effort could move the link. This is an error for a free link; a joint gets an
-        armature (`model_compilation.add_idle_armature`).
+        If no link below has a mass either, an effort cannot move the link. This is an error for a free link; the joint
+        of any other link gets an armature (`model_compilation.add_idle_armature`).
         """
         edge = tree.edges.get(link.scoped)
         moves = is_free or (edge is not None and edge.joint.type != "fixed")
@@ -250,7 +250,7 @@ class ModelWriter:
         return False
 
     def _has_rigid_mass(self, link: str, tree: KinematicTree) -> bool:
-        """Check whether a link below, connected by fixed joints alone, has mass; the engine requires no more."""
+        """Check whether a link below that only fixed joints connect to this link has mass. The engine needs no more."""
         stack = list(tree.children.get(link, ()))
         while stack:
             name = stack.pop()
@@ -283,10 +283,10 @@ def _links(model: SceneModel, in_static: bool) -> Iterator[tuple[SceneLink, bool
 
 
 FIRST_OWN_BIT: Final = 16
-"""First bit for models; the masks of files have 16 bits."""
+"""First collision bit that is assigned to models; the bit masks of files have 16 bits."""
 
 PAIRS_MOST: Final = 2000
-"""Number of link pairs from which a model uses a bit instead of a list of pairs."""
+"""Number of link pairs above which a model excludes contacts by a collision bit instead of a list of pairs."""
 
 _ALL_BITS: Final = 0xFFFF
 _ALL_OWN: Final = 0x7FFF0000
@@ -295,12 +295,15 @@ _ALL_OWN: Final = 0x7FFF0000
 def exclude_self_collisions(
     spec: mujoco.MjSpec, record: ModelRecord, moving: list[SceneLink], joints: list[SceneJoint]
 ) -> None:
-    """Exclude contacts between the links of one model, unless one of them has self-collision, and across joints.
+    """Exclude contacts between the links of one model.
 
-    A nested model without joints to the rest is treated as another model, as in Gazebo: their links touch.
+    Two links still touch if one of them has self-collision and no joint connects them.
 
-    Usually each pair of bodies gets an exclude. A model with very many links, no self-collision and default masks uses
-    a bit of its own instead: geoms with the bit collide with everything except each other.
+    A nested model without joints to the rest is treated as another model, as in Gazebo: its links and the other links
+    touch.
+
+    Usually each pair of bodies gets an `<exclude>`. A model with very many links, no self-collision and default bit
+    masks uses a collision bit of its own instead: geoms with the bit collide with everything except each other.
     """
     model = record.scene
     joined = {frozenset((j.parent_link, j.child_link)) for j in joints}

@@ -24,7 +24,7 @@ class LinkBinding:
     Attributes:
         body_name: MuJoCo body, `world` for a static link.
         body: id of the body; 0 for a static link; -1 before the compile.
-        offset: link frame in the body frame (identity for links that are bodies).
+        offset: link frame in the body frame; the identity for a link with a body of its own.
         model: scoped name of the top-level model.
         mocap: index among the mocap bodies, or -1.
         free_joint: name of the free joint of the link's own body, or empty.
@@ -55,7 +55,8 @@ class LinkBinding:
 class Follower:
     """Degree of freedom that an equality couples to an axis of a joint: value = offset + ratio · leader.
 
-    Code that sets the leader's state must set the follower too, so that the equality starts without an error.
+    Code that sets the state of the leader must also set the state of the follower, or the constraint would start with
+    an error.
 
     Attributes:
         name: MuJoCo joint.
@@ -83,16 +84,18 @@ class JointBinding:
         child_body: body id of the file's child link (0: world).
         pose_child: joint frame in the file's child link frame at load.
         pose_parent: joint frame in the file's parent link frame at load (in the world for `world`).
-        is_reversed: the tree has the parent link below the child; positions and axes keep the file's meaning.
-        is_loop: the joint closes a loop: it moves a twin of its child link, which a weld holds on the link itself.
+        is_reversed: True if the file's parent link is below its child link in the tree. Positions and axes keep the
+            meaning that they have in the file.
+        is_loop: True if the joint closes a loop. Then it moves a twin of its child link, and a weld fixes the twin to
+            the link.
         equalities: names of the joint's equality constraints.
         twin: name of the twin body; empty if the joint is part of the tree.
         carried: scoped name of the link whose body (or twin) the joint moves in the tree. The link is in the rigid
             group of the file's child link, or of its parent link if the joint is reversed.
-        moved_body: id of the body that the joint moves (the twin's for a loop); 0 without one.
-        pose_moved: joint frame in that body's frame.
-        free: for a floating joint the scoped name of the link whose free joint it reads and sets; empty if none is
-            free.
+        moved_body: id of the body that the joint moves (the twin if the joint closes a loop); 0 if it moves no body.
+        pose_moved: joint frame in the frame of the moved body.
+        free: for a floating joint, the scoped name of the link whose free joint stores its position; empty if neither
+            link has a free joint.
     """
 
     scoped: str
@@ -120,7 +123,7 @@ class JointBinding:
 
 @dataclass(frozen=True, slots=True)
 class LightBinding:
-    """Light in the MuJoCo model, under the file's scoped name; `id` is -1 before the compile or if it is off."""
+    """Light in the MuJoCo model, with the file's scoped name; `id` is -1 before the compile, or if the light is off."""
 
     scoped: str
     scene: SceneLight
@@ -131,7 +134,7 @@ class LightBinding:
 
 @dataclass(frozen=True, slots=True)
 class ActuatorRef:
-    """Actuator that a plugin requested; the reference stays valid over every change of the structure.
+    """Actuator that a plugin requested; the reference stays valid when models are spawned or removed.
 
     Attributes:
         name: MuJoCo's name.
@@ -139,8 +142,8 @@ class ActuatorRef:
         joint: scoped name of the joint.
         axis: index of the joint's axis.
         max_effort: effort limit [N or N·m].
-        kp: requested position gain; None for the servo rule.
-        kv: requested velocity gain; None for the servo rule.
+        kp: requested position gain; None for the largest stable gain.
+        kv: requested velocity gain; None for the largest stable gain.
     """
 
     name: str
@@ -171,9 +174,10 @@ class ModelRecord:
 
     Attributes:
         damped: decay rates [1/s] of linear and angular velocity by free joint.
-        exact: written mass [kg] and final tensor [kg·m²] of the compiled model, by link.
-        massless: scoped name of the joint of each link without mass on a moving joint.
-        unladen: links of `massless` that carry no mass either.
+        exact: mass [kg] in the specification and the file's inertia tensor [kg·m²], which is set after the compile, by
+            link.
+        massless: scoped name of the joint that moves a link without mass, by link; empty for a free link.
+        unladen: links in `massless` with no mass below them.
         own_bit: collision bit of the model's links; 0 if excludes are used instead.
         attached: prefix of the elements of each model in MuJoCo's own format, by scoped name.
     """
@@ -200,7 +204,7 @@ class ModelRecord:
     attached: dict[str, str] = field(default_factory=dict)
 
     def copy(self) -> ModelRecord:
-        """Return an independent record; its immutable bindings are shared."""
+        """Return an independent record. Both records share the bindings, which are immutable."""
         same = replace(self)
         for name in (item.name for item in fields(self)):
             content = getattr(self, name)
@@ -230,7 +234,7 @@ class NameMap:
         self._shared: dict[str, Any] = {}
 
     def shared(self, key: str, make: Callable[[], T]) -> T:
-        """Return a value that many sensors derive from the compiled model; it is computed once."""
+        """Return a value that sensors derive from the compiled model; `make` computes it once for each key."""
         if key not in self._shared:
             self._shared[key] = make()
         value: T = self._shared[key]
@@ -282,9 +286,9 @@ class NameMap:
         return found
 
     def model_frame(self, model: SceneModel) -> tuple[int, Pose]:
-        """Return the body that moves with a model's frame, and the frame in it.
+        """Return the body that moves with the frame of a model, and the pose of the frame in the frame of the body.
 
-        The body is the world for a model without links.
+        For a model without links, the body is the world body.
         """
         canonical = self.links.get(model.canonical_link)
         if canonical is None:

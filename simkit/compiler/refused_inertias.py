@@ -1,17 +1,18 @@
 """Inertias that MuJoCo's compiler refuses: substitutes, limited repairs, and reports about both.
 
 A rigid body's principal moments are positive and A + B >= C (the largest). Files violate this by rounding, by wrong
-units, or because their authors never needed it. The sum of all links of a rigid group (joined by fixed joints) about
-their common centre of mass counts:
+units, or because their authors never needed it. What counts is the sum of all links of a rigid group (links connected
+by fixed joints) about their common centre of mass:
 
-* The sum is valid: nothing is lost and nothing is reported. A link with a refused tensor passes it to the heaviest of
-  the others, so that the sum stays exact.
+* The sum is valid: nothing is reported. The refused tensor of a link is added to the heaviest link of the group, so
+  that the sum stays exact.
 * The moments are positive but A + B < C: the engine's equations are valid for such a tensor too, only its compiler
   refuses it. The compiler gets the nearest valid tensor, and after the compile the file's own tensor is restored. The
-  motion is therefore that of the file. Reported as a note up to `SLIGHT_VIOLATION` of C, else as a warning.
-* A moment is zero, or negative by at most `REPAIRABLE_VIOLATION` of the largest: it is raised to that of the smallest
-  body of that mass, and the largest is kept. Reported with old and new numbers.
-* Anything beyond is an error with the moments.
+  motion is therefore that of the file. A shortfall up to `SLIGHT_VIOLATION` of C is reported as a note, else as a
+  warning.
+* A moment is zero, or negative by at most `REPAIRABLE_VIOLATION` of the largest: the moment is raised to that of the
+  smallest body of the same mass (`LEAST_RADIUS`), and the largest moment stays. A warning contains old and new numbers.
+* Any larger violation is an error that contains the moments.
 """
 
 from __future__ import annotations
@@ -35,12 +36,12 @@ SLIGHT_VIOLATION: Final = 0.01
 """Largest shortfall of A + B, as a fraction of C, that counts as rounding in the file: a note."""
 
 REPAIRABLE_VIOLATION: Final = 0.01
-"""Largest negative moment, as a fraction of the largest moment, that is repaired; beyond it is an error."""
+"""Largest negative moment, as a fraction of the largest moment, that is repaired; a larger one is an error."""
 
 LEAST_RADIUS: Final = 1e-4
 """Radius of gyration [m] of the smallest body that a moment is raised to.
 
-A robot of point masses keeps its dynamics to a millionth.
+The dynamics of a robot of point masses then change by less than a millionth.
 """
 
 LEAST_MASS: Final = 1e-9
@@ -62,7 +63,7 @@ class InertiaRepair:
         verdict: "sound"; "unbalanced": A + B < C; "mended": a moment was raised; "beyond": outside the limits.
         old: original principal moments in rising order [kg·m²].
         new: accepted principal moments in rising order [kg·m²].
-        lack: shortfall of A + B as a fraction of C; 0 without one.
+        lack: shortfall of A + B as a fraction of C; 0 if A + B >= C.
     """
 
     inertial: Inertial
@@ -87,7 +88,7 @@ class BodyInertia:
     """Mass and inertia of a link's body.
 
     Attributes:
-        inertia: tensor for MuJoCo's compiler; all zeros for a link that passes its tensor to another.
+        inertia: tensor for MuJoCo's compiler; all zeros if the tensor was added to another link.
         exact: tensor to set after the compile, in link axes; None if the compiler accepted it.
     """
 
@@ -100,8 +101,9 @@ class BodyInertia:
 def repair_inertia(inertial: Inertial, slack: float = 2 * _ROUNDING) -> InertiaRepair:
     """Check a mass and tensor, and return the nearest valid ones.
 
-    The nearest tensor with A + B >= C moves each moment by a third of the shortfall (least squares). If a moment is not
-    positive, the small ones are raised to `LEAST_RADIUS`² · mass and balanced against the largest, which stays.
+    The nearest tensor with A + B >= C changes each moment by a third of the shortfall (least squares). If a moment is
+    not positive, small moments are raised to `LEAST_RADIUS`² · mass and further until A + B >= C. The largest moment
+    stays.
 
     Args:
         inertial: mass and tensor.
@@ -133,13 +135,15 @@ def repair_inertia(inertial: Inertial, slack: float = 2 * _ROUNDING) -> InertiaR
 def plan_inertials(
     links: Sequence[SceneLink], rigid: Mapping[str, str], still: frozenset[str], diagnostics: Diagnostics
 ) -> dict[str, BodyInertia]:
-    """Return the mass and inertia of each link's body that MuJoCo accepts and that keep every moving sum of the file.
+    """Return a mass and an inertia for each link's body that MuJoCo accepts.
+
+    The sum of each rigid group that moves stays that of the file.
 
     Args:
         links: moving links.
-        rigid: scoped name of the first link of the rigid group, by scoped name of each link.
-        still: first links of groups that nothing moves.
-        diagnostics: collection for one line about each invalid sum.
+        rigid: scoped name of the first link of the rigid group, by scoped name of the link.
+        still: scoped names of the first links of rigid groups that cannot move.
+        diagnostics: collection for one message about each invalid sum.
     """
     groups: dict[str, list[SceneLink]] = {}
     for link in links:
@@ -159,7 +163,7 @@ def plan_inertials(
 
 
 def _rigid_groups(members: list[SceneLink], moves: bool, diagnostics: Diagnostics) -> dict[str, BodyInertia]:
-    """Return the inertias of one rigid group; its first link comes first."""
+    """Return the inertias of one rigid group; the first link of the group is first in `members`."""
     if moves and sum(m.inertial.mass for m in members) < LEAST_MASS:
         return _with_some_mass(members, diagnostics)
     judged = {link.scoped: repair_inertia(link.inertial) for link in members}
@@ -174,11 +178,11 @@ def _rigid_groups(members: list[SceneLink], moves: bool, diagnostics: Diagnostic
             return handed
     if not moves:
         return {m.scoped: _file_inertia(judged[m.scoped].inertial if m in refused else m.inertial) for m in members}
-    return _report_stand_ins(members, judged, diagnostics)
+    return _substitute_inertias(members, judged, diagnostics)
 
 
 def _with_some_mass(members: list[SceneLink], diagnostics: Diagnostics) -> dict[str, BodyInertia]:
-    """Return the inertias of links without mass but with an inertia: the first link gets the least movable mass."""
+    """Return the inertias of links with an inertia but without mass; the first link gets the least mass."""
     foot = members[0]
     message = f"link {foot.scoped}: {foot.inertial.mass:g} kg is too light to move; {LEAST_MASS:g} kg are used"
     diagnostics.warning("SK-PHYS-011", message, foot.where)
@@ -190,21 +194,21 @@ def _with_some_mass(members: list[SceneLink], diagnostics: Diagnostics) -> dict[
 
 def _move_to_heaviest(members: list[SceneLink], refused: list[SceneLink]) -> dict[str, BodyInertia] | None:
     """Add the refused tensors to that of the heaviest member; None if the sum is refused as well."""
-    taker = max(members, key=lambda m: (m.inertial.mass, m is members[0]))
-    givers = [m for m in refused if m is not taker]
-    inertia = inertia_matrix(taker.inertial.inertia)
-    for giver in givers:
-        inertia = inertia + _rotate_tensor(taker, giver, inertia_matrix(giver.inertial.inertia))
-    total = repair_inertia(_replace_inertials(taker.inertial, inertia))
+    target = max(members, key=lambda m: (m.inertial.mass, m is members[0]))
+    sources = [m for m in refused if m is not target]
+    inertia = inertia_matrix(target.inertial.inertia)
+    for source in sources:
+        inertia = inertia + _rotate_tensor(target, source, inertia_matrix(source.inertial.inertia))
+    total = repair_inertia(_replace_inertials(target.inertial, inertia))
     if total.verdict != "sound":
         return None
     written = {m.scoped: _file_inertia(m.inertial) for m in members}
-    written |= {m.scoped: BodyInertia(m.inertial.mass, m.inertial.com, _NONE) for m in givers}
-    written[taker.scoped] = _file_inertia(total.inertial)
+    written |= {m.scoped: BodyInertia(m.inertial.mass, m.inertial.com, _NONE) for m in sources}
+    written[target.scoped] = _file_inertia(total.inertial)
     return written
 
 
-def _report_stand_ins(
+def _substitute_inertias(
     members: list[SceneLink], judged: Mapping[str, InertiaRepair], diagnostics: Diagnostics
 ) -> dict[str, BodyInertia]:
     """Return substitutes for the compiler and the file's own tensors for the engine; report an invalid sum."""
@@ -220,7 +224,7 @@ def _report_stand_ins(
     owner = f"link {foot.scoped}" + (f" (with {', '.join(others)}, fixed to it)" if others else "")
     hint = "simkit check --fix-inertia prints valid numbers"
     if mass <= 0:
-        return written  # the writer of the joints reports links without mass
+        return written  # `ModelWriter` reports links without mass
     if total.verdict == "unbalanced":
         report = diagnostics.note if total.lack <= SLIGHT_VIOLATION else diagnostics.warning
         text = f"{owner}: {total.why}; no rigid body has such moments, they are simulated as written"
@@ -239,7 +243,7 @@ def _report_stand_ins(
 
 
 def _likely_cause(inertial: Inertial, found: InertiaRepair) -> str:
-    """Return the most frequent cause of such numbers."""
+    """Return the most frequent cause of such numbers as a hint in the message."""
     i = inertial.inertia
     if min(i[:3]) > 0 and found.old[0] < 0:
         return "; the products of inertia (ixy, ixz, iyz) are too large: check their signs and units"
@@ -253,8 +257,8 @@ def restore_file_inertias(model: mujoco.MjModel, exact: Mapping[str, tuple[float
 
     Args:
         model: MuJoCo's model.
-        exact: written mass [kg] and tensor [kg·m², link axes] by body. The tensor is scaled if a twin has received a
-            fraction of the body's mass.
+        exact: mass [kg] in the specification and tensor [kg·m², link axes] of the file, by body. The tensor is scaled
+            if a twin has received a fraction of the body's mass.
     """
     if not exact:
         return
@@ -289,17 +293,17 @@ def rigid_sum(links: Sequence[SceneLink]) -> tuple[float, Matrix]:
 
 
 def inertia_matrix(v: Sequence[float]) -> Matrix:
-    """Return ixx, iyy, izz, ixy, ixz, iyz as a symmetric matrix."""
+    """Return the symmetric matrix with the elements ixx, iyy, izz, ixy, ixz, iyz."""
     return np.array(((v[0], v[3], v[4]), (v[3], v[1], v[5]), (v[4], v[5], v[2])))
 
 
 def inertia_moments(m: Matrix) -> Six:
-    """Return a symmetric matrix as ixx, iyy, izz, ixy, ixz, iyz."""
+    """Return the elements ixx, iyy, izz, ixy, ixz, iyz of a symmetric matrix."""
     return float(m[0, 0]), float(m[1, 1]), float(m[2, 2]), float(m[0, 1]), float(m[0, 2]), float(m[1, 2])
 
 
 def format_moments(values: Sequence[float]) -> str:
-    """Return moments as `(1.8e-05, 0.000223, 0.000244)`."""
+    """Format moments as `(1.8e-05, 0.000223, 0.000244)`."""
     return "(" + ", ".join(f"{v:.4g}" for v in values) + ")"
 
 
@@ -307,9 +311,9 @@ def _file_inertia(inertial: Inertial) -> BodyInertia:
     return BodyInertia(inertial.mass, inertial.com, inertial.inertia)
 
 
-def _rotate_tensor(taker: SceneLink, giver: SceneLink, tensor: Matrix) -> Matrix:
+def _rotate_tensor(target: SceneLink, source: SceneLink, tensor: Matrix) -> Matrix:
     """Rotate a tensor from the axes of one link to those of another."""
-    turn = taker.pose_world.matrix.T @ giver.pose_world.matrix
+    turn = target.pose_world.matrix.T @ source.pose_world.matrix
     return turn @ tensor @ turn.T
 
 

@@ -23,7 +23,7 @@ FULL_EFFORT_ERROR_LINEAR: Final = 0.001
 """Position error [m] at which a drive on a slider gives its full effort."""
 
 RISE_TIME: Final = 0.01
-"""Least time [s] from rest to the velocity limit at the effort limit."""
+"""Least time [s] that a drive at its effort limit needs from rest to its velocity limit."""
 
 DRIVE_ARMATURE_ROTARY: Final = 2e-3
 """Least armature of a drive on a hinge [kg·m²]."""
@@ -32,7 +32,10 @@ DRIVE_ARMATURE_LINEAR: Final = 2e-2
 """Least armature of a drive on a slider [kg]."""
 
 DRIVE_ARMATURE_LINEAR_MAX: Final = 1.0
-"""Largest armature of a drive on a slider [kg]; a slow slider with much force (a lift) is heavy anyway."""
+"""Largest armature of a drive on a slider [kg].
+
+A slow slider with a large force, such as a lift, moves a heavy load anyway and needs no large armature.
+"""
 
 _POSES: Final = 16
 _STRIDES: Final = np.sqrt(np.array((2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53), float))
@@ -82,10 +85,11 @@ def drive_gains(
     return kp, np.minimum(2.0 * np.sqrt(kp * most), stable_kv)
 
 
-def felt_inertias(model: mujoco.MjModel, joints: npt.ArrayLike) -> tuple[Vector, Vector]:
+def effective_inertias(model: mujoco.MjModel, joints: npt.ArrayLike) -> tuple[Vector, Vector]:
     """Return the smallest and largest effective inertia of one-axis joints, over poses in the joints' ranges.
 
-    The smallest is that with all other joints free, 1 / (M⁻¹)_jj; the largest that with all others fixed, M_jj.
+    The inertia is smallest with all other joints free to move, 1 / (M⁻¹)_jj. It is largest with all other joints fixed,
+    M_jj.
     """
     joints = np.asarray(joints, np.intp)
     data = mujoco.MjData(model)
@@ -102,7 +106,7 @@ def felt_inertias(model: mujoco.MjModel, joints: npt.ArrayLike) -> tuple[Vector,
     for pose in range(_POSES):
         share = (0.5 + pose * strides) % 1.0
         data.qpos[:] = model.qpos0
-        if pose:  # the first pose is that of the file
+        if pose:  # the first pose is the pose in the file
             data.qpos[places] = low + share * (high - low)
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -178,10 +182,10 @@ def tune_servos(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[Actua
     refs = [r for r in refs if r.kind in ("position", "velocity")]
     if not refs:
         return
-    inertia = _felt_inertia(model, refs)
+    inertias = _servo_inertias(model, refs)
     step = float(model.opt.timestep)
-    for ref, felt in zip(refs, inertia, strict=True):
-        kp, kv = servo_gains(ref, felt, step)
+    for ref, inertia in zip(refs, inertias, strict=True):
+        kp, kv = servo_gains(ref, inertia, step)
         i = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name)
         actuator = spec.actuator(ref.name)
         gain, bias = (kv, (0.0, 0.0, -kv)) if ref.kind == "velocity" else (kp, (0.0, -kp, -kv))
@@ -195,7 +199,7 @@ def servo_gains(ref: ActuatorRef, inertia: float, timestep: float) -> tuple[floa
     """Return (kp, kv) of a servo: the requested gains, limited to stable ones.
 
     Args:
-        ref: the servo.
+        ref: actuator of the servo.
         inertia: effective inertia of the joint [kg·m² or kg], including armature.
         timestep: length of a step [s].
     """
@@ -210,16 +214,16 @@ def servo_gains(ref: ActuatorRef, inertia: float, timestep: float) -> tuple[floa
 def servo_traits(
     model: mujoco.MjModel, refs: Sequence[ActuatorRef], compiled: Mapping[str, npt.NDArray[np.float64]] | None = None
 ) -> list[ServoTraits]:
-    """Return the traits of the velocity servos of a model, in its first pose.
+    """Return the constants of the velocity servos of a model, computed in its first pose.
 
-    A wheel on the ground moves the robot's mass at its radius, shared with the robot's other servos. The largest load
-    is twice the robot's weight at that radius: no tyre transmits more. On a fixed base it is ten times the weight of
-    the links that the joint moves.
+    A wheel on the ground moves the mass of the robot at the radius of the wheel. All servos of the robot share this
+    mass. The largest load is twice the weight of the robot at that radius, because a tyre cannot transmit more. On a
+    fixed base it is ten times the weight of the links that the joint moves.
 
     Args:
         model: MuJoCo's model.
-        refs: the servos.
-        compiled: compiled values of the model fields that were written to, by name.
+        refs: actuators of the servos.
+        compiled: compiled values of the model fields that were changed after the compile, by name.
     """
     names = "actuator_gainprm", "actuator_forcerange", "actuator_forcelimited"
     strengths, ranges, limited = ((compiled or {}).get(name, getattr(model, name)) for name in names)
@@ -244,7 +248,7 @@ def servo_traits(
 
 
 def _joint_reach(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> float:
-    """Return the largest distance of the links that a hinge moves from its axis [m]: the radius of a wheel."""
+    """Return the largest distance [m] of the moved links from the axis of a hinge: the radius of a wheel."""
     first, axis = int(model.jnt_bodyid[joint]), data.xaxis[joint]
     moved = {first}
     for body in range(first + 1, model.nbody):
@@ -258,11 +262,11 @@ def _joint_reach(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> floa
     return float((np.linalg.norm(np.cross(arms, axis), axis=1) + model.geom_rbound[geoms]).max())
 
 
-def _felt_inertia(model: mujoco.MjModel, refs: list[ActuatorRef]) -> list[float]:
-    """Return the inertia at each driven degree of freedom with all others free: 1 / (M⁻¹)_jj at the start."""
-    data, felt = first_mass_matrix(model), []
+def _servo_inertias(model: mujoco.MjModel, refs: list[ActuatorRef]) -> list[float]:
+    """Return the inertia at each driven degree of freedom in the first state, with all others free: 1 / (M⁻¹)_jj."""
+    data, inertias = first_mass_matrix(model), []
     for ref in refs:
         i = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name)
         dof = int(model.jnt_dofadr[model.actuator_trnid[i, 0]])
-        felt.append(1.0 / max(inverse_inertia(model, data, dof), 1e-300))
-    return felt
+        inertias.append(1.0 / max(inverse_inertia(model, data, dof), 1e-300))
+    return inertias

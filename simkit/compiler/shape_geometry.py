@@ -126,7 +126,7 @@ def polyline_pieces(shape: Polyline) -> list[Floats]:
 
 
 def _outline_areas(shape: Polyline) -> list[tuple[Floats, Ints]]:
-    """Return plane triangles of each outline that is not a hole, without its holes."""
+    """Return plane triangles of each outline that is not a hole; the areas of its holes are left out."""
     rings = [np.asarray(outline, float) for outline in shape.outlines]
     rings = [r[:-1] if len(r) > 1 and np.array_equal(r[0], r[-1]) else r for r in rings]
     rings = [r for r in rings if len(r) >= 3 and abs(_signed_area(r)) > 0.0]
@@ -207,7 +207,7 @@ _SEGMENTS_UP: Final = 48
 
 
 def textured_triangles(shape: Geometry) -> MeshPart | None:
-    """Return the shape as triangles with texture coordinates; None for other shapes."""
+    """Return a box or a round shape as triangles with texture coordinates; None for all other shapes."""
     match shape:
         case Box(size=size):
             return MeshPart("box", *_textured_box(np.asarray(size, float) / 2))
@@ -244,7 +244,7 @@ def _textured_box(half: Floats) -> tuple[Floats, Ints, Floats]:
 
 
 def _unit_circle() -> tuple[Floats, Floats]:
-    """Return angles of a full turn and the points there; the last point is the first."""
+    """Return the angles of a full turn and the points on the unit circle; the last point equals the first."""
     turn = np.linspace(0.0, 2.0 * np.pi, _SEGMENTS_AROUND + 1)
     points = np.column_stack([np.cos(turn), np.sin(turn)])
     points[-1] = points[0]
@@ -263,13 +263,16 @@ def _grid_triangles(rows: int, columns: int) -> Ints:
 
 
 def _textured_ellipsoid(radii: Floats, length: float) -> tuple[Floats, Ints, Floats]:
-    """Return an ellipsoid whose halves are `length` apart; the image is wrapped around it once, from pole to pole."""
+    """Return an ellipsoid that is cut at its equator into halves, which are `length` apart (a capsule).
+
+    The image is wrapped around it once, from pole to pole.
+    """
     turn, circle = _unit_circle()
     rise = np.linspace(-np.pi / 2, np.pi / 2, _SEGMENTS_UP + 1)
     height = radii[2] * np.sin(rise) + np.sign(rise) * length / 2
     ring = np.cos(rise)
     ring[[0, -1]] = 0.0
-    if length > 0.0:  # the equator twice
+    if length > 0.0:  # two equators, one for each half
         middle = _SEGMENTS_UP // 2
         ring = np.insert(ring, middle, ring[middle])
         height = np.insert(height, middle, -length / 2)

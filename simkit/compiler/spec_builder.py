@@ -30,7 +30,7 @@ FileFinder = Callable[[str, Path | None], Path | None]
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """Compiled model with its state, the names bound to its ids, and its builder."""
+    """Compiled model with its state, its names with their ids, and its builder."""
 
     model: mujoco.MjModel
     data: mujoco.MjData
@@ -52,11 +52,11 @@ class SpecBuilder:
         diagnostics: collection for approximations and errors.
 
     Attributes:
-        spec: MuJoCo's specification. Handles into it become invalid with `copy`; look elements up by name.
+        spec: MuJoCo's specification. `copy` makes its element handles invalid, so look elements up by name.
         records: elements of each top-level model, by scoped name; those of the world under the empty name.
         find_file: function that returns the file of a URI, relative to a folder; None for a missing one.
         files_read: files that plugins have read.
-        parameter_files: parameter files of the run, which only the control plugins interpret.
+        parameter_files: parameter files of the run; only the control plugins read them.
     """
 
     def __init__(self, world: SceneWorld, diagnostics: Diagnostics) -> None:
@@ -89,7 +89,12 @@ class SpecBuilder:
     # ------------------------------------------------------------------ models
 
     def add_model(self, model: SceneModel, *, movable: bool = False) -> None:
-        """Add a top-level model at its poses; `movable` makes a static model movable during the run."""
+        """Add a top-level model at its poses.
+
+        Args:
+            model: model to add.
+            movable: True to make the links of a static model mocap bodies, which the user can move during the run.
+        """
         movable = movable or model.moved_by is not None
         record = ModelRecord(model, movable)
         if model.scoped in self.records:
@@ -101,9 +106,7 @@ class SpecBuilder:
             mjcf_attachment.attach_model(self.spec, record, model, self.diagnostics, ())
         else:
             links = len(list(model.all_links()))
-            if (
-                links * (links - 1) // 2 > PAIRS_MOST
-            ):  # only then, because a world may have thousands of models and few bits
+            if links * (links - 1) // 2 > PAIRS_MOST:  # only large models, because there are only 15 bits
                 record.own_bit = self._free_bit()
             self._write_model(record)
         if movable:
@@ -159,13 +162,13 @@ class SpecBuilder:
         self._names = None
 
     def _joints_of(self, model: SceneModel) -> list[SceneJoint]:
-        """Return the model's joints, and the joints of the world between the model and the world."""
+        """Return the joints of a model, and the joints of the world file that connect the model to the world."""
         own = {link.scoped for link in model.all_links()} | {WORLD}
         ends = ((joint, {joint.parent_link, joint.child_link}) for joint in self.world.joints)
         return [*model.all_joints(), *(joint for joint, links in ends if links <= own and links != {WORLD})]
 
     def _join_models(self, only: set[str] | None = None) -> None:
-        """Add the joints of the world between two models as constraints; `only` selects some by name."""
+        """Add the joints of the world file that connect two models as constraints; `only` limits them to some names."""
         record = self.records[""]
         done = {name for r in self.records.values() for name in r.joints}
         rest = [j for j in self.world.joints if j.scoped not in done and (only is None or j.scoped in only)]
@@ -174,7 +177,7 @@ class SpecBuilder:
             self._names = None
 
     def _rejoin_model(self, model: SceneModel) -> None:
-        """Connect a rewritten model to the others as before."""
+        """Connect a model that was removed and added again to the other models as before."""
         own = {link.scoped for link in model.all_links()}
         cut, self._cut = self._cut, []
         self._join_models({joint.scoped for joint, _ in cut})
@@ -216,7 +219,7 @@ class SpecBuilder:
         return self._names
 
     def add_site(self, link_scoped: str, pose_link: Pose, name: str) -> str:
-        """Add a frame to a link, on a static link to the world body; raise KeyError for an unknown link."""
+        """Add a site to a link; raise KeyError for an unknown link. For a static link, the world body gets the site."""
         link = self.names.link(link_scoped)
         record = self.records[link.model]
         pose = link.offset @ pose_link
@@ -236,8 +239,8 @@ class SpecBuilder:
             axis: index of the axis.
             max_effort: effort limit [N·m or N]; the joint's own effort limit counts too.
             owner: name of the driver; part of the actuator's name.
-            kv: requested gain, with which a load slows the joint down. None uses the highest stable gain and integral
-                action, which compensates a constant load.
+            kv: requested gain. A load then slows the joint down. None uses the highest stable gain and integral action,
+                which compensates a constant load.
 
         Raises:
             KeyError: no such joint or axis.
@@ -254,7 +257,10 @@ class SpecBuilder:
         kp: float | None = None,
         kv: float | None = None,
     ) -> ActuatorRef:
-        """Add a servo whose control is a position [rad or m], with unstable gains limited; raise KeyError."""
+        """Add a servo whose control is a position [rad or m]; raise KeyError for an unknown joint or axis.
+
+        Gains that would be unstable are limited.
+        """
         return self._add_actuator("position", joint_scoped, axis, max_effort, owner, kp, kv)
 
     def add_drive(
@@ -321,7 +327,10 @@ class SpecBuilder:
         return ref
 
     def add_weld(self, name: str, parent_link: str, child_link: str, *, active: bool = True) -> str:
-        """Weld two links at their poses in the file, `active` or not at first; raise KeyError for unknown links."""
+        """Weld two links at their poses in the file; raise KeyError for unknown links.
+
+        `active` is the state of the weld at the start.
+        """
         parent, child = self.names.link(parent_link), self.names.link(child_link)
         record = self.records[parent.model if parent.model == child.model else ""]
         links = {n: b for r in self.records.values() for n, b in r.links.items()}
@@ -351,11 +360,13 @@ class SpecBuilder:
         return Compiled(model, data, names, self)
 
     def recompile(self, compiled: Compiled, data: mujoco.MjData) -> Compiled:
-        """Compile the model after a change; kept elements keep their state bit for bit, in new model and data objects.
+        """Compile the model after a change, into new model and data objects.
+
+        Elements that exist before and after the change keep their state bit for bit.
 
         Args:
-            compiled: previous result of this specification, or of the one it was copied from.
-            data: state to keep; it stays unchanged.
+            compiled: previous result of this builder, or of the builder from which it was copied.
+            data: state to copy; this object stays unchanged.
 
         Raises:
             LoadError: MuJoCo refuses the changed model.

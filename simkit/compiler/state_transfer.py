@@ -1,4 +1,4 @@
-"""Transfer of state and changed fields between compiled models: common elements keep their bits."""
+"""Transfer of state and changed fields between compiled models; common elements keep exactly the same bits."""
 
 from __future__ import annotations
 
@@ -77,13 +77,16 @@ def copy_fields_by_name(old: mujoco.MjModel, new: mujoco.MjModel, fields: Iterab
 
 
 def restore_compiled_fields(model: mujoco.MjModel, originals: Mapping[str, npt.NDArray[np.float64]]) -> None:
-    """Restore the compiled values of a model that is no longer used; a later restore sets the changes again."""
+    """Restore the compiled values of a model that is not used at present.
+
+    If a snapshot makes the model the present one again, the snapshot writes its changed values again.
+    """
     for field, original in originals.items():
         getattr(model, field)[:] = original
 
 
 def _pair_by_name(prefix: str, count: int, old: mujoco.MjModel, new: mujoco.MjModel) -> list[tuple[int, int]]:
-    """Return (id in the old model, id in the new one) of all elements of a kind that both models have."""
+    """Return (id in the old model, id in the new model) of each named element of a kind that is in both models."""
     kind, found = _KINDS[prefix], []
     for i in range(count):
         name = mujoco.mj_id2name(old, kind, i)

@@ -1,9 +1,9 @@
 """Cylinders for the collision meshes of wheels.
 
 A mesh of a wheel is a prism of many sides, which the engine rolls over its edges. The loads on the wheels of a vehicle
-then jump at every edge. Skid steering on the spot reaches 0.55 instead of 0.61 of the yaw rate of the wheels (48 sides,
-wheels 0.5 m apart and 0.4 m behind each other, friction coefficient 1). The cylinder that such a mesh approximates
-rolls evenly, so the engine gets the cylinder.
+then jump at every edge. Skid steering on the spot reaches 0.55 instead of 0.61 of the yaw rate that the wheel speeds
+would give (48 sides, wheels 0.5 m apart and 0.4 m behind each other, friction coefficient 1). The cylinder that such a
+mesh approximates rolls evenly, so the engine gets the cylinder.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ _ALIGNED: Final = math.cos(math.radians(1.0))
 """Least cosine of the angle between the normals of a wheel's end faces and the axis of its joint."""
 
 _CENTRED: Final = 0.01
-"""Largest distance of a wheel's centre from the axis of its joint, in radii."""
+"""Largest distance of a wheel's centre from the axis of its joint, relative to the wheel's radius."""
 
 _INSIDE: Final = 1.01
-"""Largest extent of other pieces of the mesh, such as a rim, in units of the radius and of the half width."""
+"""Largest extent of the other pieces of the mesh, such as a rim, relative to the wheel's radius and half width."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class RoundMesh:
 
 
 def turning_axis(link: SceneLink, tree: KinematicTree) -> TurningAxis | None:
-    """Return the axis of the unlimited joint of a link or of its rigid group; None without one."""
+    """Return the axis of the joint without limits that moves a link or its rigid group; None if there is none."""
     edge = tree.edges.get(tree.rigid[link.scoped])
     if edge is None or edge.joint.type not in ("revolute", "continuous") or len(edge.joint.axes) != 1:
         return None
@@ -95,7 +95,7 @@ def round_mesh(shapes: Sequence[tuple[Floats, Ints]], pose: Pose, axis: TurningA
 
 
 def _cylinder(vertices: Floats, faces: Ints, point: Floats, direction: Floats) -> RoundMesh | None:
-    """Return the cylinder that a convex shape approximates about a line; None without one.
+    """Return the cylinder that a convex shape approximates about a line; None if the shape is not round.
 
     All values are in the frame of the vertices.
     """

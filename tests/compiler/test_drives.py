@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from simkit.compiler.servo_gains import add_drive_armature, drive_gains, felt_inertias
+from simkit.compiler.servo_gains import add_drive_armature, drive_gains, effective_inertias
 from simkit.diagnostics import NOWHERE, Diagnostics
 
 TWO_LINKS = """
@@ -21,7 +21,7 @@ TWO_LINKS = """
 
 def test_inertias_range_from_the_folded_to_the_stretched_arm() -> None:
     model = mujoco.MjModel.from_xml_string(TWO_LINKS)
-    least, most = felt_inertias(model, [0, 1, 2])
+    least, most = effective_inertias(model, [0, 1, 2])
     assert most[0] == pytest.approx(1 * 0.25 + 0.01 + 1 * 2.25 + 0.01, rel=1e-6)  # stretched, which is how it starts
     assert least[0] < 0.5
     assert most[1] == pytest.approx(0.26)

@@ -1,7 +1,7 @@
 """Lint of a compiled world: reports probable problems before the first step.
 
-A scene and its compiled model enter, diagnostics leave; nothing is stepped or changed. Every finding contains its
-numbers. Only `simkit check` uses it: a load simulates a world as written.
+The input is a scene and its compiled model, the output is diagnostics; nothing is stepped or changed. Every message
+contains the numbers that caused it. Only `simkit check` uses the lint; loading a world does not.
 """
 
 from __future__ import annotations

@@ -15,16 +15,24 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.params import Params
 from simkit.scene import SceneWorld
 
-_GAIN_LIMIT: Final = 1.5  # as in simkit.compiler.servo_gains: gains beyond this are capped
+_GAIN_LIMIT: Final = 1.5  # as in simkit.compiler.servo_gains, which reduces larger gains
 _RINGING_DAMPING: Final = 2.0  # largest d·dt/I for a force that is computed once a step
 _RINGING_STIFFNESS: Final = 4.0  # largest k·dt²/I for a force that is computed once a step
 LARGEST_LOAD_RATIO: Final = 1e4
-"""Ratio of the mass on a moving body to its own, beyond which it sinks in by more than 1 mm."""
+"""Ratio of the mass on a moving body to the body's own mass, above which the contact penetrates by more than 1 mm."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointGains:
-    """Gains that a plugin of the file requests for one joint: per error [N·m/rad or N/m] and per its rate."""
+    """Gains that a plugin of the file requests for one joint.
+
+    Attributes:
+        plugin: name of the plugin.
+        joint: name of the joint, as the file has it.
+        p: effort per position error [N·m/rad or N/m].
+        d: effort per rate of the position error [N·m·s/rad or N·s/m].
+        where: file position of the plugin.
+    """
 
     plugin: str
     joint: str
@@ -34,7 +42,7 @@ class JointGains:
 
 
 def check_joints(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
-    """Report unstable gains, springs too stiff for the step, ranges of no width, and heavy loads on light links."""
+    """Report unstable gains, springs too stiff for the step, empty joint ranges, and heavy loads on light links."""
     inertias = _JointInertia(compiled.model)
     step = world.physics.max_step_size
     for joint in compiled.names.joints.values():
@@ -50,7 +58,7 @@ def check_joints(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> N
 
 
 class _JointInertia:
-    """Inertia [kg·m² or kg] at a degree of freedom with all others free: 1 / (M⁻¹)_jj at the start."""
+    """Inertia [kg·m² or kg] at a degree of freedom in the first state, with all others free: 1 / (M⁻¹)_jj."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
@@ -88,7 +96,7 @@ def _check_spring(joint: JointBinding, inertias: _JointInertia, step: float, fou
 
 
 def _check_servos(compiled: Compiled, inertias: _JointInertia, step: float, found: Diagnostics) -> None:
-    """Report gains that a plugin requested and that its servo does not get."""
+    """Report gains that are larger than a servo can use at this step."""
     for record in compiled.builder.records.values():
         for ref in record.actuators:
             joint = compiled.names.joints.get(ref.joint)
@@ -110,7 +118,7 @@ def controller_gains(params: Params, name: str, where: Where) -> Iterator[JointG
     p = _numbers(params, "p_gain") or _numbers(params, "position_p_gain")
     d = _numbers(params, "d_gain") or _numbers(params, "position_d_gain")
     if any(c.name in ("use_force_commands", "velocity_p_gain") for c in params.children):
-        return  # those gains act on a velocity
+        return  # with these parameters the gains act on a velocity error
     for i, joint in enumerate(joints):
         yield JointGains(name, joint, _item_or_last(p, i), _item_or_last(d, i), where)
 
@@ -156,7 +164,7 @@ def _check_gains(
 
 
 def _check_loads(compiled: Compiled, found: Diagnostics) -> None:
-    """Report contacts of the first state between bodies of very different mass."""
+    """Report contacts in the first state where a heavy body stands on a much lighter one."""
     model = compiled.model
     data = first_state(model)
     mujoco.mj_collision(model, data)
@@ -174,8 +182,8 @@ def _check_loads(compiled: Compiled, found: Diagnostics) -> None:
             seen.add(key)
             found.warning(
                 "SK-LINT-006",
-                f"{owners[heavy]} ({masses[heavy]:.4g} kg) stands on {owners[light]} ({masses[light]:.4g} kg): a ratio "
-                f"of {masses[heavy] / masses[light]:.0f}; above {LARGEST_LOAD_RATIO:g} it sinks in by more than 1 mm",
+                f"{owners[heavy]} ({masses[heavy]:.4g} kg) stands on {owners[light]} ({masses[light]:.4g} kg): a mass "
+                f"ratio of {masses[heavy] / masses[light]:.0f}; above {LARGEST_LOAD_RATIO:g} it sinks in by over 1 mm",
                 compiled.names.link(owners[light]).scene.where,
                 "give the lower link more mass",
             )

@@ -31,7 +31,10 @@ LARGEST_COLLISION_RATIO: Final = 5.0
 
 LEAST_VOLUME: Final = 1e-9
 LEAST_EXTENT: Final = 1e-9
-"""Least extent [m]; ratios to a smaller one are only rounding. Likewise `LEAST_VOLUME` [m³] for densities."""
+"""Least distance [m] that a ratio is computed with; a ratio to a smaller one would show rounding errors only.
+
+`LEAST_VOLUME` [m³] is the corresponding limit for densities.
+"""
 
 
 def check_links(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
@@ -51,7 +54,7 @@ def check_links(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> No
 
 
 def _check_default_masses(top: SceneModel, found: Diagnostics) -> None:
-    """Report masses that no file contains: SDF gives 1 kg to a link without `<inertial>`."""
+    """Report masses that are missing in the file: SDF gives 1 kg to a link without `<inertial>`."""
     links = [] if top.static else [link for m in top.all_models() if not m.static for link in m.links]
     default = [link for link in links if not link.inertial.given and link.inertial.mass > 0]
     if not default or len(default) == len(links):
@@ -110,7 +113,10 @@ def _check_collision_size(model: mujoco.MjModel, state: mujoco.MjData, link: Lin
 
 
 def _total_inertia(model: mujoco.MjModel, data: mujoco.MjData, bodies: Iterable[int]) -> tuple[float, Floats, Floats]:
-    """Return mass, centre of mass and tensor of bodies in world axes, about that centre."""
+    """Return the mass, the centre of mass and the inertia tensor of some bodies.
+
+    The tensor is about the centre of mass, in world axes.
+    """
     ids = list(bodies)
     masses = np.array([model.body_mass[b] for b in ids])
     if masses.sum() <= 0:
@@ -125,7 +131,7 @@ def _total_inertia(model: mujoco.MjModel, data: mujoco.MjData, bodies: Iterable[
 
 
 def _corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]) -> Floats | None:
-    """Return the corners of the bounding boxes of geoms in the first state; None without any.
+    """Return the corners of the bounding boxes of geoms in the first state; None if all geoms are unbounded.
 
     Returns:
         Corners in the world frame, shape (8 n, 3).

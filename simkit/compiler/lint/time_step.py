@@ -15,19 +15,19 @@ LONGEST_STEP: Final = 0.005
 
 
 def check_time_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
-    """Report a step too long for contacts, and rates that the step cannot keep."""
+    """Report a step too long for contacts, and sensor rates whose period is not a whole number of steps."""
     step = world.physics.max_step_size
     _check_step(world, compiled, found)
     for model in world.models:
         for sensor in model.all_sensors():
             text = rate_pattern(sensor.rate, step)
-            if text and sensor.rate * step <= 1:  # a load reports higher rates
+            if text and sensor.rate * step <= 1:  # loading the world already reports a rate above the step rate
                 found.note("SK-LINT-002", f"sensor {sensor.scoped!r}: {text}", sensor.where, _rate_hint(sensor.rate))
 
 
 def _check_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
     step = world.physics.max_step_size
-    weld = compiled.model.body_weldid  # 0 where a body cannot move
+    weld = compiled.model.body_weldid  # 0 for a body that cannot move
     moving = [b for b in compiled.names.links.values() if not b.static and b.geoms and weld[b.body] != 0]
     if step > LONGEST_STEP and moving:
         found.warning(
@@ -40,23 +40,23 @@ def _check_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> No
 
 
 def rate_pattern(rate: float, step: float) -> str:
-    """Describe the stamps of a rate [Hz] at a step [s]; empty if the period is a whole number of steps.
+    """Describe the time stamps of a rate [Hz] at a step [s]; empty if the period is a whole number of steps.
 
-    A sample lies on the first step at or after k / rate.
+    Sample k is taken at the first step at or after k / rate.
     """
     if rate <= 0 or step <= 0 or not math.isfinite(rate):
         return ""
     each = Fraction(rate).limit_denominator(10**6) * Fraction(step).limit_denominator(10**9)
-    if each == 0:  # once in weeks, or at steps of less than a nanosecond
+    if each == 0:  # the rate is less than one sample in a week, or the step is shorter than a nanosecond
         return ""
     steps = 1 / each
     if steps.denominator == 1:
         return ""
     if steps < 1:
-        return f"{rate:g} Hz is more than the {1 / step:g} steps a second: it gives {1 / step:g} Hz"
+        return f"{rate:g} Hz is more than the {1 / step:g} steps per second: samples come at {1 / step:g} Hz"
     low, high = math.floor(steps), math.ceil(steps)
     return f"{rate:g} Hz at a step of {step * 1e3:g} ms: stamps every {low * step * 1e3:g} or {high * step * 1e3:g} ms"
 
 
 def _rate_hint(rate: float) -> str:
-    return f"the mean rate is {rate:g} Hz all the same; an even pattern needs a step that divides {1e3 / rate:.6g} ms"
+    return f"the mean rate is still {rate:g} Hz; equal intervals need a step that divides {1e3 / rate:.6g} ms"

@@ -1,5 +1,5 @@
 """Mesh files: reading triangles, making convex collision bodies, and caching both.
 
-A mesh file and its companion files enter; `MeshPart`s in metres and convex bodies leave. Files may be hostile, so
-sizes, depths and references are limited. MuJoCo is not used here.
+The input is a mesh file with its companion files; the output is `MeshPart`s in metres and convex bodies. Files may be
+hostile, so sizes, nesting depths and references are limited. This package does not use MuJoCo.
 """

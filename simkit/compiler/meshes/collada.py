@@ -1,4 +1,4 @@
-"""Reader for COLLADA (`.dae`) with Gazebo's rules: the unit counts, the up axis does not.
+"""Reader for COLLADA (`.dae`) with Gazebo's rules: the unit is applied, the up axis is ignored.
 
 The result has one part for each node and material.
 """
@@ -28,7 +28,7 @@ from simkit.compiler.meshes.mesh_part import (
     unique_rows,
 )
 
-_DEEPEST: Final = 500  # levels of elements; a node takes one, its geometry a few
+_DEEPEST: Final = 500  # levels of XML elements; a node has one level, its geometry has a few
 _PRIMITIVES: Final = ("triangles", "polylist", "polygons", "tristrips", "trifans")
 
 
@@ -44,7 +44,7 @@ def read_collada(content: bytes, companions: Companions) -> list[MeshPart]:
 def read_root(content: bytes) -> XmlElement:
     """Return the root element of a document without entities.
 
-    Nothing outside the file is read, and nothing in the file expands.
+    No other file is read, and no entity is expanded.
     """
     from lxml import etree
 
@@ -66,15 +66,15 @@ def read_root(content: bytes) -> XmlElement:
     if root is None or not isinstance(root.tag, str):
         raise MeshFileError("is not readable XML")
     if etree.QName(root).localname != "COLLADA":
-        raise MeshFileError(f"begins with <{etree.QName(root).localname}>, a COLLADA file with <COLLADA>")
+        raise MeshFileError(f"begins with <{etree.QName(root).localname}>; a COLLADA file begins with <COLLADA>")
     return root
 
 
 class _BoundedTreeBuilder:
-    """Parser target that stores nothing and refuses documents with entities or with elements nested too deeply.
+    """Parser target that stores nothing and refuses documents with entities or with too deeply nested elements.
 
-    lxml's own limits depend on the libxml2 that a process loads first. An old one, which comes with some GL libraries,
-    has no limit for levels, and walking through a million levels takes hours.
+    lxml's own limits depend on the libxml2 that a process loads first. Some GL libraries load an old version without a
+    limit for levels. Reading a million levels then takes hours.
     """
 
     def __init__(self) -> None:
@@ -154,7 +154,7 @@ class ColladaFile:
             self._place(self._skinned(self._target(instance)), instance, node, name, matrix)
 
     def _skinned(self, controller: XmlElement | None) -> XmlElement:
-        """Return the geometry under skins and morphs, in its bind pose."""
+        """Return the geometry that skins and morphs deform, in its bind pose."""
         for _ in range(8):
             if controller is None or not controller.tag.endswith("controller"):
                 return controller
@@ -165,7 +165,7 @@ class ColladaFile:
 
     def _place(self, geometry: XmlElement, instance: XmlElement, node: XmlElement, name: str, matrix: Floats) -> None:
         if geometry is None:
-            self.companions.note(f"places {instance.get('url', '')[:80]!r}, which it does not have")
+            self.companions.note(f"refers to {instance.get('url', '')[:80]!r}; it has no such element")
             return
         bound = {
             e.get("symbol", ""): e.get("target", "").lstrip("#")
@@ -250,7 +250,7 @@ class ColladaFile:
     def _source(self, source: XmlElement) -> Floats:
         """Return the rows of a `<source>`, as its accessor defines them."""
         if source is None:
-            raise MeshFileError("names a source that it does not have")
+            raise MeshFileError("refers to a source that it does not have")
         if source not in self.arrays:
             array = source.find("{*}float_array")
             if array is None:
@@ -267,7 +267,7 @@ class ColladaFile:
 
 
 def _corners(element: XmlElement, width: int) -> tuple[Indices, Indices]:
-    """Return the indices of all corners, shape (c, width), and triangles as positions in that list."""
+    """Return the indices of all corners, shape (c, width), and triangles as row numbers of these corners."""
     kind = _local(element)
     lists = [integers_of(p.text or "", "faces") for p in element.iterfind("{*}p")]
     lists += [integers_of(p.text or "", "faces") for p in element.iterfind("{*}ph/{*}p")]
@@ -302,7 +302,7 @@ def strip_triangles(counts: npt.ArrayLike) -> Indices:
 
 
 def node_transform(node: XmlElement) -> Floats:
-    """Return a node's transform with Gazebo's rules: its matrix alone, else translation, rotation, scale."""
+    """Return a node's transform by Gazebo's rules: its matrix, or else translation, rotation and scale."""
     found = node.find("{*}matrix")
     if found is not None:
         return _exact_count(found, 16).reshape(4, 4)

@@ -80,8 +80,9 @@ class ColladaMaterials:
     def _opacity(self, shader: XmlElement, alpha: float) -> float:
         """Return the opacity of an effect.
 
-        A_ONE (the default) uses the alpha of `transparent`, RGB_ZERO its inverse brightness. Exporters differ in the
-        direction of these values. A result that is (nearly) invisible is drawn opaque.
+        In the mode A_ONE (the default) it is the alpha of `transparent`, in the mode RGB_ZERO one minus its brightness.
+        Some exporters write transparency instead of opacity. Therefore a result that is (nearly) invisible is drawn
+        opaque.
         """
         transparent, amount = shader.find("{*}transparent"), shader.find("{*}transparency/{*}float")
         if transparent is None and amount is None:

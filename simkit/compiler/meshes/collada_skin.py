@@ -1,7 +1,7 @@
-"""Skins of COLLADA files: the faces that each bone of a skeleton carries, and the motion of the bones.
+"""Skins of COLLADA files: the faces that move with each bone of a skeleton, and the motion of the bones.
 
-A vertex moves with the bone that has its largest weight. A face is carried by every bone of its corners, so that no
-gaps open at a bent joint. A bone with almost no faces (of a finger) passes them to its parent bone.
+A vertex moves with the bone that has the largest weight at this vertex. A face moves with every bone of its corners, so
+that no gaps open at a bent joint. A bone with almost no faces (of a finger) passes them to its parent bone.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from simkit.compiler.meshes.mesh_part import (
 )
 from simkit.input_file import read_input
 
-_LEAST_SHARE: Final = 0.012
+_LEAST_FRACTION: Final = 0.012
 """Least fraction of all vertices for a bone; a smaller bone passes its vertices to its parent bone."""
 
 _MOST_FRAMES: Final = 20_000
@@ -40,7 +40,7 @@ class Bone:
 
     Attributes:
         name: name of the node.
-        words: all names of the node in the file.
+        words: name, sid and id of the node, as far as the file has them.
         parent: index of the parent in the list of bones, or -1.
         rest: transform in the parent's frame, shape (4, 4), in the file's unit.
     """
@@ -61,7 +61,7 @@ class Skin:
         times: times of the animation's frames [s], shape (f,); empty without animation.
         frames: transforms of the moving bones, each of shape (f, 4, 4), by index in `bones`.
         unit: length of the file's unit [m].
-        notes: texts about parts that could not be read.
+        notes: one sentence for each part that cannot be read.
     """
 
     bones: tuple[Bone, ...]
@@ -93,7 +93,7 @@ def bone_parts(file: Path, bone: str) -> list[MeshPart]:
     """Return the mesh parts of one bone, in its own frame and in the file's unit.
 
     Raises:
-        MeshFileError: the file cannot be used, or the bone carries nothing.
+        MeshFileError: the file cannot be used, or no face moves with the bone.
     """
     skin = read_skin(file)
     for place, parts in skin.pieces.items():
@@ -131,7 +131,7 @@ class _SkinFile(ColladaFile):
     def _skeleton(self, node: XmlElement, above: Floats, parent: int, depth: int) -> None:
         self.nodes += 1
         if depth > DEEPEST_NODE or self.nodes > MOST_NODES:
-            raise MeshFileError("has too many nodes, or nested too deep")
+            raise MeshFileError("has too many nodes, or nodes nested too deeply")
         matrix = node_transform(node)
         if node.get("type") == "JOINT":
             words = [w for w in (node.get("name"), node.get("sid"), node.get("id")) if w]
@@ -153,12 +153,12 @@ class _SkinFile(ColladaFile):
             geometry = None if skin is None else self._target(skin, "source")
             if geometry is not None and geometry.tag.endswith("geometry"):
                 self._bind_geometry(skin, geometry, instance, found)
-        return {place: tuple(parts) for place, parts in found.items()}
+        return {bone: tuple(parts) for bone, parts in found.items()}
 
     def _bind_geometry(
         self, skin: XmlElement, geometry: XmlElement, instance: XmlElement, found: dict[int, list[MeshPart]]
     ) -> None:
-        places, inverses, held = self._vertex_bones(skin)
+        bones, inverses, vertex_joints = self._vertex_bones(skin)
         shape = skin.find("{*}bind_shape_matrix")
         bind = np.eye(4) if shape is None else np.array([float(v) for v in shape.text.split()]).reshape(4, 4)
         bound = {
@@ -170,10 +170,10 @@ class _SkinFile(ColladaFile):
         at = {row.tobytes(): i for i, row in reversed(list(enumerate(np.ascontiguousarray(vertices))))}
         for part, symbol in self._geometry(geometry):
             of = np.array([at[row.tobytes()] for row in np.ascontiguousarray(part.vertices)])
-            holder = held[of]
+            joint_of_vertex = vertex_joints[of]
             look = self.looks.of(bound.get(symbol, symbol))
-            for local in sorted(set(holder.tolist())):
-                mine = (holder[part.faces] == local).any(axis=1)
+            for local in sorted(set(joint_of_vertex.tolist())):
+                mine = (joint_of_vertex[part.faces] == local).any(axis=1)
                 used, faces = np.unique(part.faces[mine], return_inverse=True)
                 matrix = inverses[local] @ bind
                 points = part.vertices[used] @ matrix[:3, :3].T + matrix[:3, 3]
@@ -182,18 +182,18 @@ class _SkinFile(ColladaFile):
                     part.name, points, faces.reshape(-1, 3).astype(np.int32), uv, look.colour,
                     look.texture if uv is not None else None, look.specular, look.emission,
                 )  # fmt: skip
-                found.setdefault(places[local], []).append(piece)
+                found.setdefault(bones[local], []).append(piece)
 
     def _vertex_bones(self, skin: XmlElement) -> tuple[list[int], Floats, Indices]:
-        """Return bone indices of the skin's joints, their inverse bind matrices, and the joint of each vertex."""
+        """Return the bone index and the inverse bind matrix of each joint of the skin, and the joint of each vertex."""
         inputs = {e.get("semantic"): self._target(e, "source") for e in skin.iterfind("{*}joints/{*}input")}
         names = next(iter(inputs["JOINT"].iterfind("{*}Name_array")), None)
         names = inputs["JOINT"].find("{*}IDREF_array") if names is None else names
         by_word = {word: i for i, bone in reversed(list(enumerate(self.bones))) for word in bone.words}
         unknown = [n for n in names.text.split() if n not in by_word]
         if unknown:
-            raise MeshFileError(f"has a skin that hangs on {unknown[0]!r}, which is not a bone of its skeleton")
-        places = [by_word[n] for n in names.text.split()]
+            raise MeshFileError(f"has a skin with the joint {unknown[0]!r}, which is not a bone of its skeleton")
+        bones = [by_word[n] for n in names.text.split()]
         inverses = self._source(inputs["INV_BIND_MATRIX"]).reshape(-1, 4, 4)
         element = skin.find("{*}vertex_weights")
         offsets = {e.get("semantic"): int(e.get("offset", 0)) for e in element.iterfind("{*}input")}
@@ -202,31 +202,31 @@ class _SkinFile(ColladaFile):
         counts = integers_of(element.find("{*}vcount").text or "", "weights")
         rows = integers_of(element.find("{*}v").text or "", "weights").reshape(-1, 1 + max(offsets.values()))
         joint, strong = rows[:, offsets["JOINT"]], weight[rows[:, offsets["WEIGHT"]]]
-        held, start = np.zeros(len(counts), np.int64), 0
+        vertex_joints, start = np.zeros(len(counts), np.int64), 0
         for i, count in enumerate(counts.tolist()):
             if count:
-                held[i] = max(0, joint[start + int(np.argmax(strong[start : start + count]))])
+                vertex_joints[i] = max(0, joint[start + int(np.argmax(strong[start : start + count]))])
             start += count
-        return places, inverses, self._merge_light_bones(places, held)
+        return bones, inverses, self._merge_light_bones(bones, vertex_joints)
 
-    def _merge_light_bones(self, places: list[int], held: Indices) -> Indices:
-        """Move the vertices of bones with almost none to the nearest ancestor in the skin."""
-        share = np.bincount(held, minlength=len(places)) / max(1, len(held))
-        local = {place: i for i, place in enumerate(places)}
-        for i in sorted(range(len(places)), key=lambda k: -places[k]):
-            above = self.bones[places[i]].parent
+    def _merge_light_bones(self, bones: list[int], vertex_joints: Indices) -> Indices:
+        """Give the vertices of bones with almost no vertices to the nearest ancestor bone of the skin."""
+        fractions = np.bincount(vertex_joints, minlength=len(bones)) / max(1, len(vertex_joints))
+        local = {bone: i for i, bone in enumerate(bones)}
+        for i in sorted(range(len(bones)), key=lambda k: -bones[k]):
+            above = self.bones[bones[i]].parent
             while above >= 0 and above not in local:
                 above = self.bones[above].parent
-            if 0.0 < share[i] < _LEAST_SHARE and above >= 0:
-                held = np.where(held == i, local[above], held)
-                share[local[above]] += share[i]
-        return held
+            if 0.0 < fractions[i] < _LEAST_FRACTION and above >= 0:
+                vertex_joints = np.where(vertex_joints == i, local[above], vertex_joints)
+                fractions[local[above]] += fractions[i]
+        return vertex_joints
 
     # ------------------------------------------------------------------ animation
 
     def _animation(self) -> tuple[Floats, dict[int, Floats]]:
-        """Return the frames of every moving bone, at the union of all times."""
-        by_id = {node.get("id"): place for node, place in self.of_node.items() if node.get("id")}
+        """Return all times of the animation [s], and the transforms of every moving bone at these times."""
+        by_id = {node.get("id"): bone for node, bone in self.of_node.items() if node.get("id")}
         found: dict[int, tuple[Floats, Floats]] = {}
         for channel in self.root.iterfind(".//{*}library_animations//{*}channel"):
             target = channel.get("target", "").partition("/")[0]
@@ -236,16 +236,16 @@ class _SkinFile(ColladaFile):
             inputs = {e.get("semantic"): self._target(e, "source") for e in sampler.iterfind("{*}input")}
             times, values = self._source(inputs["INPUT"])[:, 0], self._source(inputs["OUTPUT"])
             if values.shape[1] != 16 or len(times) != len(values) or not 0 < len(times) <= _MOST_FRAMES:
-                text = f"moves {channel.get('target', '')[:80]!r} by other than matrices, which is left out"
+                text = f"animates {channel.get('target', '')[:80]!r} without matrices; this animation is ignored"
                 self.companions.note(text)
                 continue
             found[by_id[target]] = times, values.reshape(-1, 4, 4)
         if not found:
             return np.zeros(0), {}
         times = np.unique(np.concatenate([t for t, _ in found.values()]))
-        # the previous frame is enough, because bones of one file share their times
+        # no interpolation: the bones of a file usually have the same times
         frames = {
-            place: matrices[np.clip(np.searchsorted(own, times + 1e-9, side="right") - 1, 0, len(own) - 1)]
-            for place, (own, matrices) in found.items()
+            bone: matrices[np.clip(np.searchsorted(own, times + 1e-9, side="right") - 1, 0, len(own) - 1)]
+            for bone, (own, matrices) in found.items()
         }
         return times, frames

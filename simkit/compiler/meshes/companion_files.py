@@ -1,4 +1,4 @@
-"""Companion files of a mesh: materials, buffers, images. Only files beside the mesh or in its model are read."""
+"""Companion files of a mesh: materials, buffers, images. Only files in the mesh's folder or model are read."""
 
 from __future__ import annotations
 
@@ -48,17 +48,17 @@ class Companions:
 
     @cached_property
     def _roots(self) -> tuple[Path, Path, Path]:
-        """Folders of the file's model: as written, resolved, and that of the resolved file."""
+        """Folder of the file's model as written, with links resolved, and the model folder of the resolved file."""
         written = model_folder(_normal(self.file))
         return written, Path(os.path.realpath(written)), model_folder(Path(os.path.realpath(self.file)))
 
     def note(self, text: str) -> None:
-        """Record an omitted element once."""
+        """Record a note about an omitted element; equal notes are recorded once."""
         if text not in self.notes and len(self.notes) < MOST_NOTES:
             self.notes.append(text)
 
     def find(self, name: str) -> Path | None:
-        """Return the path of a companion; None if it is missing or outside the mesh's model."""
+        """Return the path of a companion file; None if it is missing or outside the model of the mesh."""
         name = name.strip().replace("\\", "/")
         if not name or "\0" in name or len(name) > 1000:
             return None
@@ -104,7 +104,7 @@ class Companions:
         return any(_holds(r, place) for r in self._roots) and any(_holds(r, real) for r in self._roots[1:])
 
     def content(self, name: str) -> bytes | None:
-        """Return a companion's bytes; None, with a note, if they cannot be read."""
+        """Return the content of a companion file; record a note and return None if the file cannot be read."""
         place = self.find(name)
         if place is None:
             return None
@@ -115,14 +115,14 @@ class Companions:
             return None
 
     def picture(self, name: str) -> Pixels | None:
-        """Return a texture by its name; None, with a note, if it cannot be used."""
+        """Return a texture by its file name; record a note and return None if the image cannot be used."""
         if name not in self._pictures:
             content = self.content(name)
             self._pictures[name] = None if content is None else self.picture_in(content, name)
         return self._pictures[name]
 
     def picture_in(self, content: bytes, name: str) -> Pixels | None:
-        """Return the texture in some bytes; None, with a note, if it cannot be used."""
+        """Decode the bytes of a texture; record a note and return None if the image cannot be used."""
         try:
             return read_pixels(content)
         except MeshFileError as problem:
@@ -131,7 +131,7 @@ class Companions:
 
 
 def model_folder(file: Path) -> Path:
-    """Return the outermost model or package of a file, else the parent of its folder."""
+    """Return the folder of the outermost model or package of a file, else the parent of the file's folder."""
     found = file.parent.parent if len(file.parent.parts) > 2 else file.parent
     for ancestor in (file.parent, *list(file.parents)[1:6]):
         if any((ancestor / name).is_file() for name in _MANIFESTS):

@@ -1,8 +1,8 @@
 """Convex collision bodies of a mesh, computed once for each content and cached.
 
-MuJoCo collides a mesh as its convex hull, which is exact for a convex mesh. A moving non-convex mesh becomes the hulls
-of its connected pieces, or its convex decomposition if the file requests it. A static mesh keeps its true surface.
-CoACD (the extra `decompose`) computes the decomposition; the same mesh and settings give the same pieces.
+MuJoCo collides a mesh as its convex hull, which is exact for a convex mesh. A moving non-convex mesh is replaced by the
+hulls of its connected pieces, or by a convex decomposition if the file requests one. A static mesh keeps its exact
+surface. CoACD (the extra `decompose`) computes the decomposition; the same mesh and settings give the same pieces.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 
 THRESHOLD: Final = 0.05
-"""CoACD's concavity below which a piece counts as convex, relative to the mesh's size."""
+"""Concavity of CoACD, relative to the size of the mesh, below which a piece counts as convex."""
 
 MOST_HULLS: Final = 256
 _SEED: Final = 0
@@ -100,12 +100,14 @@ def _run(source: Path, target: Path) -> None:
 
 
 LARGEST_RATIO: Final = 1.1
-"""Largest ratio of the hulls' volume to the mesh's volume for a note; a larger one is a warning."""
+"""Largest ratio of the hulls' volume to the mesh's volume that is reported as a note; a larger one is a warning."""
 
 LARGEST_ESTIMATE: Final = 1.25
-"""Largest ratio for meshes that are not closed, whose volume is an estimate."""
+"""The same limit for meshes that are not closed, whose volume is an estimate."""
 
-_REPORTS: Final = 2  # version of the findings, which are cached with the bodies
+_REPORTS: Final = (
+    3  # version of the texts of the findings, which are cached with the bodies: raise it with every change of a text
+)
 _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
 _KEPT: Final = 128
 _memory: OrderedDict[str, ConvexBodies] = OrderedDict()
@@ -120,8 +122,8 @@ class ConvexBodies:
 
     Attributes:
         shapes: vertices, shape (n, 3) [m], and faces of each body; no faces if MuJoCo has to compute them.
-        is_exact: True if rays may hit the bodies; otherwise rays need the mesh itself.
-        findings: diagnostics for the user.
+        is_exact: True if rays can use the bodies; else rays need a copy of the mesh itself.
+        findings: diagnostics about the conversion.
     """
 
     shapes: tuple[tuple[Floats, Ints], ...]
@@ -137,7 +139,7 @@ def convex_bodies(
     Args:
         vertices: vertices with equal ones merged, shape (n, 3) [m].
         faces: vertex indices, shape (m, 3).
-        fixed: True if only the user moves the mesh.
+        fixed: True if the mesh is static, or if only the user moves it.
         optimization: "", "convex_hull" or "convex_decomposition", as in SDF's `<mesh>`.
         most: largest number of pieces of a decomposition.
     """
@@ -154,7 +156,7 @@ def convex_bodies(
 def _compute_bodies(vertices: Floats, faces: Ints, fixed: bool, optimization: str, most: int) -> ConvexBodies:
     if not len(faces):
         return ConvexBodies(
-            (), True, (("warning", "SK-MESH-003", "has no triangle with area; nothing collides for it", ""),)
+            (), True, (("warning", "SK-MESH-003", "has no triangle with an area; it never collides", ""),)
         )
     whole = hull_volume(vertices)
     if whole <= 1e-9 * float(np.ptp(vertices, axis=0).max()) ** 3:
@@ -207,7 +209,7 @@ def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
     coarse = vertices, faces
     if len(faces) > PRISMS_MOST:
         coarse = thin_mesh(vertices, faces, PRISMS_MOST)
-        text = f"for contacts its {len(faces)} triangles become {len(coarse[1])}"
+        text = f"is simplified for contacts from {len(faces)} to {len(coarse[1])} triangles"
         findings.append(("warning", "SK-MESH-005", text, "give the collision a coarser mesh"))
     pieces = convex_pieces(*coarse)
     thin = sum(not p.exact for p in pieces)
@@ -232,7 +234,7 @@ def convex_hull(points: Floats) -> tuple[Floats, Ints] | None:
     """Return vertices and outward faces of the convex hull; None for a degenerate hull without contacts."""
     from scipy.spatial import ConvexHull, QhullError
 
-    if _is_stout_prism(points):
+    if _is_thick_prism(points):
         return points, np.zeros((0, 3), np.int32)
     try:
         hull = ConvexHull(points)
@@ -248,8 +250,8 @@ def convex_hull(points: Floats) -> tuple[Floats, Ints] | None:
     return vertices, faces.astype(np.int32)
 
 
-def _is_stout_prism(points: Floats) -> bool:
-    """Check whether six points are a triangle and its shifted copy, far from flat: a fast test of the usual case."""
+def _is_thick_prism(points: Floats) -> bool:
+    """Check quickly whether six points are a triangle and its shifted copy and are far from flat: the usual case."""
     if len(points) != 6:
         return False
     shift = points[3:] - points[:3]

@@ -20,7 +20,7 @@ _THINNEST: Final = 0.002
 
 @dataclass(frozen=True, eq=False)
 class ConvexPiece:
-    """Convex body: points, shape (n, 3) [m], and True in `exact` for an exact closed piece of the mesh."""
+    """Convex body: points, shape (n, 3) [m]; `exact` is True if the body equals a closed piece of the mesh."""
 
     points: Floats
     exact: bool
@@ -72,7 +72,7 @@ def piece_hulls(vertices: Floats, faces: Ints) -> list[Floats]:
 
 
 def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
-    """Return convex bodies that together have the surface of a static mesh."""
+    """Return convex bodies that together cover the surface of a static mesh."""
     pieces: list[ConvexPiece] = []
     parts = connected_pieces(vertices, faces)
     low, high = (np.array([end(v, axis=0) for v, _ in parts]) for end in (np.min, np.max))
@@ -87,13 +87,17 @@ def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
 
 
 def is_inside_out(vertices: Floats, faces: Ints) -> bool:
-    """Check whether a closed piece has inward faces: the walls of a room or of a cavity, not a body."""
+    """Check whether the faces of a closed piece point inwards, as for the walls of a room or of a cavity."""
     a, b, c = (np.asarray(vertices, float)[np.asarray(faces)[:, i]] for i in range(3))
     return float(np.einsum("ij,ij->", a, np.cross(b, c))) < 0.0  # six times the volume
 
 
 def thin_mesh(vertices: Floats, faces: Ints, most: int) -> tuple[Floats, Ints]:
-    """Simplify a mesh to at most `most` faces: all vertices in one cell of an ever coarser grid become their mean."""
+    """Simplify a mesh to at most `most` faces.
+
+    The vertices in each cell of a grid are replaced by their mean; the grid gets coarser until the mesh is small
+    enough.
+    """
     low, size = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
     cells = 1024.0
     while True:
@@ -118,7 +122,7 @@ def surface_prisms(vertices: Floats, faces: Ints) -> list[Floats]:
     normals = np.array([n for _, n in patches])
     inset = [p.mean(axis=0) + 0.9 * (p - p.mean(axis=0)) for p, _ in patches]
     probes = [np.vstack([p.mean(axis=0), p]) for p in inset]
-    room = _room_inwards(mesh, probes, normals)
+    room = _inward_distances(mesh, probes, normals)
     size = float(np.ptp(vertices, axis=0).max())
     most = min(THICKNESS, 0.1 * size)
     least = min(_THINNEST, most)
@@ -149,7 +153,7 @@ def _fills_its_hull(mesh: Trimesh, facet: Patch, boundary: Patch) -> bool:
     from scipy.spatial import ConvexHull, QhullError
 
     points = mesh.vertices[np.unique(boundary)]
-    if len(points) < 3:  # coincident faces have no outline
+    if len(points) < 3:  # faces that coincide have no outline
         return False
     u, v, normal = _patch_axes(mesh.face_normals[facet[0]])
     if np.ptp(points @ normal) > 1e-6 * max(1.0, float(mesh.scale)):
@@ -174,7 +178,7 @@ def _patch_axes(normal: Floats) -> tuple[Floats, Floats, Floats]:
     return u, np.cross(normal, u), np.asarray(normal, float)
 
 
-def _room_inwards(mesh: Trimesh, probes: list[Floats], normals: Floats) -> Floats:
+def _inward_distances(mesh: Trimesh, probes: list[Floats], normals: Floats) -> Floats:
     """Return the distance [m] from each patch, along its inward normal, to the next surface; inf without one."""
     counts = [len(p) for p in probes]
     inward = -np.repeat(normals, counts, axis=0)
@@ -190,7 +194,7 @@ def _room_inwards(mesh: Trimesh, probes: list[Floats], normals: Floats) -> Float
     return np.minimum.reduceat(distance, np.cumsum([0, *counts[:-1]]))
 
 
-_CELLS: Final = 24  # along each axis
+_CELLS: Final = 24  # number of cells along each axis
 _SAMPLES: Final = 80_000
 
 
@@ -207,10 +211,10 @@ def mesh_volume(vertices: Floats, faces: Ints) -> float:
 
 
 def filled_ratio(vertices: Floats, faces: Ints, sets: list[Floats]) -> float:
-    """Return the estimated ratio of the hulls' volume to the volume that a mesh encloses, at least 1.
+    """Estimate the ratio of the volume of hulls to the volume that a mesh encloses, at least 1.
 
-    The mesh may be open. A point is enclosed if triangles lie on both of its sides along each axis. Hulls are measured
-    in the same way, so that the coarseness of the cells does not count.
+    The mesh may be open. A point is enclosed if triangles lie on both of its sides along each axis. The volume of the
+    hulls is estimated in the same way, so that the error of the cell size has no effect.
 
     Args:
         vertices: vertices of the mesh [m], shape (n, 3).

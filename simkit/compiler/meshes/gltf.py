@@ -1,4 +1,4 @@
-"""Reader for glTF 2.0 (`.gltf`, `.glb`) with Gazebo's rules: node transforms count, the file's axes stay.
+"""Reader for glTF 2.0 (`.gltf`, `.glb`) with Gazebo's rules: node transforms are applied, the file's axes stay.
 
 Gazebo passes the file to assimp, which does not rotate glTF's y axis to z, and keeps the root node's transform. A model
 made for Gazebo therefore has `<pose>0 0 0 1.5708 0 0</pose>`. An additional rotation here would be wrong.
@@ -123,7 +123,7 @@ class _Gltf:
             if self.faces > LARGEST_FACES:
                 raise MeshFileError(f"has more than {LARGEST_FACES} faces")
             colour, texture, specular, emission = self._look(material)
-            uv = self._turned_uv(part.uv, material)
+            uv = self._flipped_uv(part.uv, material)
             self.out.append(
                 MeshPart(
                     name or part.name,
@@ -230,7 +230,7 @@ class _Gltf:
             self.companions.note("has a data URI that is not base64")
             return None
 
-    # ------------------------------------------------------------------ looks
+    # ------------------------------------------------------------------ materials and textures
 
     def _material(self, index: object) -> JsonObject:
         return {} if index is None else _entry(self.tree.get("materials") or [], index)
@@ -276,8 +276,8 @@ class _Gltf:
             return None if content is None else self.companions.picture_in(content, name)
         return self.companions.picture(uri)
 
-    def _turned_uv(self, uv: Floats | None, material: object) -> Floats | None:
-        """Return coordinates with v upwards (in glTF v points down), with KHR_texture_transform applied."""
+    def _flipped_uv(self, uv: Floats | None, material: object) -> Floats | None:
+        """Return texture coordinates with v upwards, with KHR_texture_transform applied. In glTF, v points down."""
         if uv is None:
             return None
         change = (self._base_texture(material).get("extensions") or {}).get("KHR_texture_transform")
@@ -296,7 +296,7 @@ def _entry(items: object, index: object) -> JsonObject:
         or not isinstance(index, int)
         or not 0 <= index < len(items)
     ):
-        raise MeshFileError(f"refers to an entry {str(index)[:20]} that it does not have")
+        raise MeshFileError(f"refers to an entry {str(index)[:20]}, which is missing")
     entry = items[index]
     if not isinstance(entry, dict):
         raise MeshFileError("has an entry that is not an object")

@@ -1,8 +1,9 @@
-"""Disk cache of converted meshes, keyed by content. A failure to read or write only costs time.
+"""Disk cache of converted meshes, keyed by content.
 
-A file is written under a temporary name and then renamed, so that no process reads half a file. A broken file or one of
-another version is converted again. A conversion that read companion files (materials, textures) lists them with size
-and time. It is repeated when one of them has changed.
+If the cache cannot be read or written, meshes are converted again, which only costs time. A cache file is written under
+a temporary name and then renamed, so that no process reads half a file. If the cache file is broken or has another
+version, the mesh is converted again. A conversion that reads companion files (materials, textures) stores their sizes
+and times. The conversion is repeated if one of them has changed.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ import numpy as np
 from simkit.compiler.meshes.mesh_part import MeshPart
 
 FORMAT: Final = "simkit mesh 4"
-"""Version of the conversions: change it whenever a reader gives other numbers than before."""
+"""Version of the conversions; change it whenever a reader returns different numbers for the same file."""
 
 _SELF_CONTAINED: Final = {".stl", ".glb", ".ply"}
 _MAGIC: Final = b"simkit\x004"
@@ -73,7 +74,7 @@ def mesh_key(file: Path, content: bytes) -> str:
 
 
 def load_converted(key: str) -> ConvertedMesh | None:
-    """Return the conversion stored under `key`; None without a complete and current one."""
+    """Return the conversion stored under `key`; None if it is missing, incomplete or out of date."""
     stored = load_arrays("meshes", key)
     if stored is None:
         return None
@@ -166,7 +167,7 @@ def _file_of(kind: str, key: str) -> Path:
 
 def _stat(path: str) -> tuple[int, int] | None:
     try:
-        stat = os.stat(path)  # noqa: PTH116 -- thousands of them
+        stat = os.stat(path)  # noqa: PTH116 -- faster for thousands of files
     except (OSError, ValueError):
         return None
     return stat.st_size, stat.st_mtime_ns

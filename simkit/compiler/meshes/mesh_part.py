@@ -21,7 +21,7 @@ _areas: WeakKeyDictionary[MeshPart, dict[float, bool]] = WeakKeyDictionary()
 
 
 class MeshFileError(Exception):
-    """Unusable mesh file; the text has the reason."""
+    """Error for a mesh file that cannot be used; the text is the reason."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,7 @@ def join_parts(parts: list[MeshPart]) -> tuple[Floats, Ints]:
     """Return vertices and faces of all parts as one mesh; equal vertices are merged, faces without area are dropped."""
     if len(parts) != 1:
         return _compute_joined(parts)
-    if parts[0] not in _joined_parts:  # every load returns the same parts of the cache
+    if parts[0] not in _joined_parts:  # every load of a file returns the same part objects
         _joined_parts[parts[0]] = _compute_joined(parts)
         for values in _joined_parts[parts[0]]:
             values.flags.writeable = False
@@ -88,9 +88,9 @@ def _compute_joined(parts: list[MeshPart]) -> tuple[Floats, Ints]:
 
 
 def _unique_rows(rows: Indices) -> tuple[Indices, Indices]:
-    """Return the index of the first occurrence of each different row, sorted by row, and the number of every row.
+    """Return the index of each distinct row, in sorted order of the rows, and for every row the position in that list.
 
-    The result is that of `np.unique(axis=0)`, in a third of its time.
+    The result equals that of `np.unique(axis=0)` and takes a third of the time.
     """
     order = np.lexsort(rows.T[::-1])
     in_order = rows[order]
@@ -105,7 +105,7 @@ _FIRST_FACES = 64
 
 
 def has_area(part: MeshPart, least: float) -> bool:
-    """Check whether the triangles have more than `least` [m²] in total; the first few nearly always suffice."""
+    """Check whether the triangles have more than `least` [m²] in total; usually the first triangles are enough."""
     known = _areas.setdefault(part, {})
     if least not in known:
         known[least] = _has_area(part, least)
@@ -169,7 +169,7 @@ def fan_triangles(counts: npt.ArrayLike) -> Indices:
         counts: number of corners of each polygon, shape (p,).
 
     Returns:
-        Positions in the list of all corners, shape (t, 3); each polygon is a fan around its first corner.
+        Indices in the list of all corners, shape (t, 3); each polygon becomes a fan around its first corner.
     """
     counts = np.asarray(counts, np.int64)
     start = np.concatenate([[0], np.cumsum(counts)[:-1]]) if len(counts) else counts
@@ -180,7 +180,7 @@ def fan_triangles(counts: npt.ArrayLike) -> Indices:
 
 
 def unique_rows(rows: Indices) -> tuple[Indices, Ints]:
-    """Return the different rows of an integer array in order of appearance, and the number of every row."""
+    """Return the distinct rows of an integer array in order of appearance, and the index in them for every row."""
     _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
     rank = np.empty_like(order)

@@ -1,7 +1,7 @@
 """Reader for mesh files as triangles in metres, with Gazebo's rules.
 
-COLLADA: the file's unit counts, its up axis does not (Gazebo ignores it, and models are made for that). glTF: the
-file's axes stay (y up), as in Gazebo. All other formats are in metres and have no axes of their own.
+COLLADA: the file's unit is applied, but its up axis is ignored, because Gazebo ignores it and models are made for
+Gazebo. glTF: the file's axes stay (y up), as in Gazebo. All other formats are in metres and define no axes.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def report_once(diagnostics: Diagnostics, severity: Any, code: str, message: str
 
 
 def load_file(file: Path, submesh: str = "") -> list[MeshPart]:
-    """Return all triangles of a file by material, in metres.
+    """Return all triangles of a file in metres, one part for each material.
 
     Raises:
         MeshFileError: the file cannot be used.
@@ -192,9 +192,9 @@ _VERTEX: Final = re.compile(rb"vertex[ \t]+([^\r\n]*)", re.IGNORECASE)
 def read_stl(content: bytes, companions: Companions) -> list[MeshPart]:
     """Read the triangles of a binary or ASCII STL file, which has no names, units or colours.
 
-    A binary file is recognised by its length, because exporters write `solid` at the beginning of binary files as well.
-    trimesh's reader does not limit hostile files. It reads a truncated file as an empty scene without an error, and its
-    errors name arrays instead of the problem.
+    A binary file is recognised by its length, because some exporters write `solid` at the beginning of binary files
+    too. trimesh's reader is not used, because it does not limit hostile files. It reads a truncated file as an empty
+    scene without an error, and its error messages contain names of arrays instead of the problem.
 
     Raises:
         MeshFileError: the file cannot be used.
@@ -207,7 +207,7 @@ def read_stl(content: bytes, companions: Companions) -> list[MeshPart]:
     elif is_text and (b"facet" in content[:4096].lower() or b"endsolid" in content[-512:].lower()):
         corners = _ascii(content)
     elif 0 < declared <= present:
-        companions.note(f"has {len(content) - _HEADER - declared * _RECORD.itemsize} bytes behind its last triangle")
+        companions.note(f"has {len(content) - _HEADER - declared * _RECORD.itemsize} bytes after its last triangle")
         corners = _binary(content, declared)
     elif declared > 0:
         raise MeshFileError(f"is truncated: its header declares {declared} triangles, it has {max(0, present)}")

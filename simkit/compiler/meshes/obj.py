@@ -1,7 +1,7 @@
-"""Reader for Wavefront OBJ with MTL materials: one part for each group (`o`, `g`) and material.
+"""Reader for Wavefront OBJ files with MTL materials; it returns one part for each group (`o`, `g`) and material.
 
-trimesh's reader does not limit hostile files: it accepts vertices of two numbers, raises IndexError for a missing
-vertex, and limits neither the faces nor the named files.
+trimesh's reader is not used, because it does not limit hostile files. It accepts vertices of two numbers and raises
+IndexError for a missing vertex. It does not limit the number of faces and of referenced files.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from simkit.compiler.meshes.mesh_part import (
 
 @dataclass
 class _MtlMaterial:
-    """MTL material; `given` is True if the file specifies the colour."""
+    """MTL material; `has_colour` is True if the file specifies the diffuse colour."""
 
     diffuse: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    given: bool = False
+    has_colour: bool = False
     opacity: float = 1.0
     specular: float = 0.0
     emission: float = 0.0
@@ -63,7 +63,7 @@ def read_obj(content: bytes, companions: Companions) -> list[MeshPart]:
     group, material, faces = "", "", 0
     block: _FaceGroup | None = None
     for line in content.splitlines():
-        if line.startswith(b"v "):  # fast path: the most frequent line
+        if line.startswith(b"v "):  # fast path: most lines are vertices
             positions.append(line[2:])
             continue
         word, _, rest = line.strip().partition(b" ")
@@ -143,7 +143,7 @@ def _part(
     if look is not None and look.texture:
         pixels = companions.picture(look.texture) if uv is not None else None
     colour: Colour | None = None
-    if look is not None and (look.given or look.opacity < 1.0 or pixels is not None):
+    if look is not None and (look.has_colour or look.opacity < 1.0 or pixels is not None):
         colour = (*look.diffuse, look.opacity)
     return MeshPart(
         block.group,
@@ -158,7 +158,10 @@ def _part(
 
 
 def _indices(block: _FaceGroup, counts: npt.NDArray[np.int64]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Return zero-based vertex and texture indices of each corner; the latter are empty unless each corner has one."""
+    """Return the zero-based vertex indices and texture indices of all corners.
+
+    The texture indices are empty if a corner has none.
+    """
     plain = b" ".join(block.corners)
     slashes = block.corners[0].count(b"/") if block.corners else 0
     if not slashes and b"/" not in plain:
@@ -203,7 +206,7 @@ def _read_mtl(content: bytes, looks: dict[str, _MtlMaterial], companions: Compan
             if colour is None:
                 companions.note(f"has a material with {word.capitalize()} {rest[:40]!r}, which is not a colour")
             elif word == "kd":
-                look.diffuse, look.given = colour, True
+                look.diffuse, look.has_colour = colour, True
             elif word == "ks":
                 look.specular = max(colour)
             else:
@@ -219,7 +222,10 @@ def _read_mtl(content: bytes, looks: dict[str, _MtlMaterial], companions: Compan
 
 
 def _numbers(text: str, count: int) -> Any:
-    """Return the first numbers of a text, each clamped to 0..1; None for anything else."""
+    """Return `count` numbers of a text, each clamped to 0..1; None if they are not numbers.
+
+    If the text has fewer numbers, the last number is repeated.
+    """
     try:
         numbers = [float(v) for v in text.split()[:count]]
     except ValueError:
@@ -231,7 +237,7 @@ def _numbers(text: str, count: int) -> Any:
 
 
 def _file_behind_options(text: str) -> str:
-    """Return the file name of a `map_` line, which follows options such as `-s 1 1 1`."""
+    """Return the file name at the end of a `map_` line, after options such as `-s 1 1 1`."""
     words = text.split()
     while words and words[0].startswith("-") and len(words) > 1:
         words.pop(0)

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.servo_gains import drive_gains, felt_inertias
+from simkit.compiler.servo_gains import drive_gains, effective_inertias
 from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY, Indices
 from simkit.pose import Vector
 
@@ -69,7 +69,7 @@ class ControlLoops:
         self.bounds = np.repeat(np.stack((-limits, limits), 1)[:, None], 5, 1)
         if not count:
             return
-        least, most = felt_inertias(model, ids)
+        least, most = effective_inertias(model, ids)
         self.stable_springs = np.stack((0.25 * least / step**2, least / step), 1)
         is_slide = model.jnt_type[ids] == int(mujoco.mjtJoint.mjJNT_SLIDE)
         self.gains[:, POSITION_MODE] = np.stack(drive_gains(limits, is_slide, least, most, step), 1)

@@ -34,7 +34,7 @@ def arm(axis: str = "", plugin: str = "", inertia: float = 1e-4) -> str:
     [
         (30, 0.001, "30 Hz at a step of 1 ms: stamps every 33 or 34 ms"),
         (60, 0.004, "60 Hz at a step of 4 ms: stamps every 16 or 20 ms"),
-        (2000, 0.001, "2000 Hz is more than the 1000 steps a second: it gives 1000 Hz"),
+        (2000, 0.001, "2000 Hz is more than the 1000 steps per second: samples come at 1000 Hz"),
         (50, 0.001, ""),
         (0, 0.001, ""),
         (12.5, 0.002, ""),

@@ -234,7 +234,7 @@ def test_a_bone_without_matrices_is_reported_once(tmp_path: Path) -> None:
     turns = skinned_dae().replace('#leg-out-array" count="11" stride="16"', '#leg-out-array" count="44" stride="4"')
     with simkit.load(skinned(tmp_path, f'<actor name="a">{SWING}</actor>', leg=turns)) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-ACTOR-001"]
-        assert "leg.dae moves 'leg/transform' by other than matrices" in found.message
+        assert "leg.dae animates 'leg/transform' without matrices" in found.message
 
 
 # ------------------------------------------------------------------ bad input
