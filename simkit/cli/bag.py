@@ -129,7 +129,7 @@ def play(
         if not json_:
             print_note(f"[INFO] [rosbag2_player]: playing {', '.join(publishers)}")
         count = _play_once(client, reader, publishers, rate, start)
-        while loop and count:  # an empty round takes no time and would repeat for ever
+        while loop and count:  # a round without messages takes no time, so that the loop would never wait or end
             count += _play_once(client, reader, publishers, rate, start)
         client.flush()
     if json_:
@@ -147,7 +147,7 @@ def _parse_remappings(pairs: list[str]) -> dict[str, str]:
 
 
 def _input_topics(client: Client, topics: list[str], names: dict[str, str]) -> list[str]:
-    """Return the topics that plugins of the world subscribe to, without those that only clients subscribe to."""
+    """Return the topics that plugins of the world subscribe to; subscribers in clients do not count."""
     inputs = {row["name"] for row in client.topics() if any(s.get("kind") != "client" for s in row["subscribers"])}
     return [t for t in topics if names.get(t, t) in inputs]
 

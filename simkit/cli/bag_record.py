@@ -31,7 +31,9 @@ _DISCOVERY_PERIOD = 1.0  # [s] of wall time between two searches for new topics
 def record(
     topics: Annotated[list[str] | None, argument("Topics to record.", "[TOPIC]...", completion.topics)] = None,
     all_: Annotated[bool, Option("--all", "-a", help="Record all topics, including new ones.")] = False,
-    regex: Annotated[str | None, option("Matching topics.", "REGEX", "--regex", "-e", show_default=False)] = None,
+    regex: Annotated[
+        str | None, option("Record the topics that match.", "REGEX", "--regex", "-e", show_default=False)
+    ] = None,
     exclude: Annotated[
         str | None,
         option("Exclude topics that match.", "REGEX", "--exclude-regex", "--exclude", "-x", show_default=False),
@@ -187,4 +189,4 @@ class _Recording:
         for name, entry in fresh.items():
             print_note(f"[INFO] [rosbag2_recorder]: Subscribed to topic '{name}'")
             for end in entry.publishers[:1] or entry.subscribers[:1]:
-                bag.channel(name, end.types[0], end.latched)  # list the topic even if it has no messages
+                bag.channel(name, end.types[0], end.latched)  # the bag lists the topic even if no message arrives

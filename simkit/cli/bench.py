@@ -18,7 +18,7 @@ _HOUR = 3600.0
 @report_errors
 def bench(
     world: options.World,
-    rounds: Annotated[int, option("Number of timings of each side.", "N", min=1)] = 9,
+    rounds: Annotated[int, option("Number of measurements of simkit and of MuJoCo.", "N", min=1)] = 9,
     full: Annotated[bool, Option("--full", help="Measure memory over a simulated hour, not a minute.")] = False,
     resource_path: options.ResourcePaths = [],
     plugin_path: options.PluginPaths = [],

@@ -1,4 +1,4 @@
-"""Comparison side of `simkit bench`: the same compiled model, stepped and measured with MuJoCo alone."""
+"""Reference for `simkit bench`: the same compiled model, stepped and measured with MuJoCo alone."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class BareCamera:
                 self.draw()
 
     def reading(self, random: np.random.Generator) -> Callable[[], object]:
-        """Return a function that takes a complete reading: top row first, depth in metres, noise, new arrays."""
+        """Return a function that makes a complete reading in new arrays: top row first, depth in metres, with noise."""
         view, noise = self.view, self.sensor.options.noise
         slope = np.float32(view.near * view.far / (view.far - view.near))
         offset = np.float32(view.near / (view.far - view.near))
@@ -190,7 +190,7 @@ class HandWrittenLoop(BareEngine):
                     latest[topic] = read()
 
     def _plan(self, count: int) -> list[tuple[int, list[tuple[str, Callable[[], object]]]]]:
-        """Plan the steps between two readings, and the readings at each stop. Each plan is computed once."""
+        """Plan the numbers of steps between readings, and the readings after them. Each plan is computed once."""
         plan, at = [], 0
         for tick in sorted({count, *(t for period, _, _ in self._due for t in range(period, count + 1, period))}):
             plan.append((tick - at, [(topic, read) for period, topic, read in self._due if tick % period == 0]))
@@ -209,7 +209,7 @@ class HandWrittenLoop(BareEngine):
             return self._odometry
         if kind == "JointState":
             return lambda: (self.data.qpos.copy(), self.data.qvel.copy())
-        if kind == "Imu":  # computed by a plugin, without a sensor
+        if kind == "Imu":  # a plugin computes this reading; it has no sensor
             return lambda: self.data.xquat[self._root].copy()
         return lambda: (self.data.time, self.data.xpos[self._root].copy(), self.data.xquat[self._root].copy())
 

@@ -66,7 +66,7 @@ def time_interleaved(
 ) -> list[float]:
     """Return the median time of one call of each side [s].
 
-    The sides alternate, so that a busy machine slows all sides alike.
+    The functions are timed in turn, so that a busy machine slows all of them alike.
 
     Args:
         sides: functions to time.
@@ -164,7 +164,7 @@ def _topics_without_images(sim: Simulation) -> set[str]:
 
 
 def compare_stepping(sim: Simulation, rounds: int) -> Figure:
-    """Compare steps in which no plugin or sensor is due with `mj_step` on a copy of the same model and state."""
+    """Compare steps without due plugins and sensors with `mj_step` on a copy of the same model and state."""
     sim.step(100)
     sim.engine.scheduler.clear()
     sim.engine.scheduler.rewind(sim.tick)

@@ -153,7 +153,7 @@ def _example(entry: JsonObject) -> Example:
 
 
 def _example_files(example: Example) -> list[tuple[str, str]]:
-    """Return a title and a text for each file of an example; the file that is run comes last."""
+    """Return a title and a text for each file of an example; the file that the example runs comes last."""
     files = [
         (f"{name}:", content if isinstance(content, str) else f"({len(content)} bytes)")
         for name, content in example.files.items()

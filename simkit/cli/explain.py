@@ -37,5 +37,5 @@ def explain(
 
 
 def _text(value: object) -> str:
-    """Format a value that JSON does not support; bytes become their number."""
+    """Format a value that JSON does not support; bytes are replaced by a text with their number."""
     return f"({len(value)} bytes)" if isinstance(value, bytes) else str(value)

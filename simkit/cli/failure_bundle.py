@@ -70,7 +70,7 @@ class FailureBundle:
         return None
 
     def _write(self, folder: Path, failure: Failure) -> None:
-        """Write the bundle and print its path. A failure to write does not change the exit code of the run."""
+        """Write the bundle and print its path; the exit code of the run stays the same if this fails."""
         from simkit.testing.bundles.bundle_writer import pack_load_failure, write_failed
 
         try:

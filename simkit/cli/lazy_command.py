@@ -1,6 +1,6 @@
 """Commands with a name and a help line whose module is imported on first use.
 
-A shell completion, or a request to a running simulation, then waits for the import of one command instead of all.
+A shell completion or a command for a running simulation therefore imports one module instead of all.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Commands(TyperGroup):
 class DeferredCommand(TyperCommand):
     """Command, or group of commands, defined in `simkit.cli.<name>` under its own name.
 
-    A list of commands uses only name and help line. Running, completing and showing help go through `make_context`,
-    which imports the real command.
+    A list of commands uses only name and help line. To run a command, complete it or show its help, click calls
+    `make_context`, which imports the real command.
     """
 
     _real: Command | None = None

@@ -28,8 +28,8 @@ class PluginWatch:
         sim: simulation to watch.
         plugin_paths: folders of the watched plugins.
         interrupts: Ctrl-C handler; it ends the wait for a correction.
-        waits: True to wait for a correction when a plugin raises an error. Must be False while recording: the
-            recording would contain the time since the last slice twice.
+        waits: True to wait for a correction when a plugin raises an error. Must be False while the run is recorded,
+            because the run repeats the last slice and the recording would contain it twice.
     """
 
     def __init__(self, sim: Simulation, plugin_paths: Sequence[Path], interrupts: Interrupts, *, waits: bool) -> None:

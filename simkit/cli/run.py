@@ -29,12 +29,13 @@ _TOPIC = re.compile(r"/[A-Za-z0-9_/]*")
 class RunCommand(TyperCommand):
     """Command with options that work with or without a value: `--teleop` and `--bundle-on-failure`.
 
-    `--teleop` takes the next word as its topic if the word begins with a slash and is not a file. `--bundle-on-failure`
-    takes the next word as its folder if the folder exists, the word ends with a slash, or the world came first.
+    The next word is the topic of `--teleop` if the word begins with a slash and is not a file. The next word is the
+    folder of `--bundle-on-failure` if the folder exists, if the word ends with a slash, or if the world is the first
+    argument.
     """
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Insert the default value of both options where the value is missing."""
+        """Insert the default value of both options if the command line has the option without a value."""
         completed: list[str] = []
         for index, word in enumerate(args):
             if word == "--":
@@ -62,6 +63,27 @@ def _seconds(text: str) -> float:
     return float(match[1]) * _UNITS[match[2]]
 
 
+_RTF_HELP = "Highest real-time factor; default: no limit, 1 with --teleop or --view."
+_KEY_TIMEOUT_HELP = "Simulated seconds without a key after which --teleop stops; inf: never."
+_NAME_HELP = "Name of the run for other terminals; default: the world's or file's name."
+_PLAY_TOPIC_HELP = "Topic to play, optionally under a new name; repeatable."
+_ERROR_HELP = "Action if a plugin raises an error: stop ends the run (exit 4), disable continues without the plugin."
+_BUNDLE_HELP = "Write a bundle for simkit replay into this folder if the run fails; default: bundles/."
+_TIMEOUT_HELP = "Simulated time limit for --until; then exit 5."
+_WALL_TIMEOUT_HELP = "Wall time limit of the run; then exit 5."
+_ASSERT_HELP = "Condition that must hold at the end, else exit 5; repeatable."
+
+RealTimeFactor = Annotated[float | None, option(_RTF_HELP, "X", min=1e-3)]
+KeyTimeout = Annotated[float, option(_KEY_TIMEOUT_HELP, "S")]
+Name = Annotated[str | None, option(_NAME_HELP, "NAME")]
+PlayTopics = Annotated[list[str], option(_PLAY_TOPIC_HELP, "TOPIC[:=NEW]", "--play-topic")]
+OnPluginError = Annotated[str | None, option(_ERROR_HELP, "stop|disable")]
+BundleFolder = Annotated[Path | None, option(_BUNDLE_HELP, "[DIR]")]
+Timeout = Annotated[float | None, option(_TIMEOUT_HELP, "S", parser=_seconds)]
+WallTimeout = Annotated[float | None, option(_WALL_TIMEOUT_HELP, "S", parser=_seconds)]
+Conditions = Annotated[list[str], option(_ASSERT_HELP, "EXPR", "--assert")]
+
+
 @report_errors
 def run(
     world: options.World,
@@ -71,18 +93,12 @@ def run(
     topic: Annotated[list[str], option("Record only topics that match this pattern; repeatable.", "PATTERN")] = [],
     skip: Annotated[list[str], option("Do not record topics that match this pattern; repeatable.", "PATTERN")] = [],
     force: options.Force = False,
-    rtf: Annotated[
-        float | None, option("Highest real-time factor; default: no limit, 1 with --teleop or --view.", "X", min=1e-3)
-    ] = None,
+    rtf: RealTimeFactor = None,
     teleop: Annotated[str | None, option("Drive with the keyboard, on this velocity topic.", "[TOPIC]")] = None,
-    key_timeout: Annotated[
-        float, option("Simulated seconds without a key after which --teleop stops; inf: never.", "S")
-    ] = KEY_TIMEOUT,
+    key_timeout: KeyTimeout = KEY_TIMEOUT,
     paused: Annotated[bool, Option("--paused", help="Start paused; space or a service resumes the run.")] = False,
     step: Annotated[int | None, option("Pause after N steps.", "N", min=0)] = None,
-    name: Annotated[
-        str | None, option("Name of the run for other terminals; default: the world's or file's name.", "NAME")
-    ] = None,
+    name: Name = None,
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
     params_file: options.ParamsFiles = [],
@@ -91,40 +107,29 @@ def run(
     picture: Annotated[Path | None, option("Picture of the end to write, with path and scan.", "OUT.png")] = None,
     cmd_vel: options.CmdVel = None,
     script: options.Script = None,
-    play: Annotated[Path | None, option("Bag whose commands to play at their ticks.", "BAG")] = None,
-    play_topic: Annotated[
-        list[str], option("Topic to play, optionally under a new name; repeatable.", "TOPIC[:=NEW]", "--play-topic")
-    ] = [],
+    play: Annotated[Path | None, option("Bag with commands, which are played at their ticks.", "BAG")] = None,
+    play_topic: PlayTopics = [],
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
     watch: Annotated[bool, Option("--watch", help="Reload a plugin when its file changes.")] = False,
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
-    on_plugin_error: Annotated[
-        str | None,
-        option(
-            "Action if a plugin raises an error: stop ends the run (exit 4), disable continues without the plugin.",
-            "stop|disable",
-        ),
-    ] = None,
-    bundle_on_failure: Annotated[
-        Path | None,
-        option("Write a bundle for simkit replay into this folder if the run fails; default: bundles/.", "[DIR]"),
-    ] = None,
+    on_plugin_error: OnPluginError = None,
+    bundle_on_failure: BundleFolder = None,
     verbose: options.Verbose = False,
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print no table of topics at the end.")] = False,
     until: Annotated[str | None, option("End as soon as this condition holds: \"pose('tb3').x > 2\".", "EXPR")] = None,
-    timeout: Annotated[
-        float | None, option("Simulated time limit for --until; then exit 5.", "S", parser=_seconds)
-    ] = None,
-    wall_timeout: Annotated[
-        float | None, option("Wall time limit of the run; then exit 5.", "S", parser=_seconds)
-    ] = None,
-    assert_: Annotated[list[str], option("Condition at the end, else exit 5; repeatable.", "EXPR", "--assert")] = [],
+    timeout: Timeout = None,
+    wall_timeout: WallTimeout = None,
+    assert_: Conditions = [],
     junit: Annotated[Path | None, option("JUnit XML report to write.", "FILE.xml")] = None,
 ) -> int:
     """Run a world without a window, as fast as possible."""
+    policy, checks = _on_error(on_plugin_error), tuple(Check("final", expression=e, where="--assert") for e in assert_)
+    loading = load_options(
+        resource_path, package_path, xacro_arg, base, plugin_path, params_file, on_error=policy, strict=strict
+    )
     spec = RunSpec(
         world,
         duration=duration if duration is not None and math.isfinite(duration) else math.inf,
@@ -137,17 +142,8 @@ def run(
         until=_expression(until),
         timeout=_until_when(timeout, until),
         wall_timeout=wall_timeout,
-        checks=tuple(Check("final", expression=expression, where="--assert") for expression in assert_),
-        options=load_options(
-            resource_path,
-            package_path,
-            xacro_arg,
-            base,
-            plugin_path,
-            params_file,
-            on_error=_on_error(on_plugin_error),
-            strict=strict,
-        ),
+        checks=checks,
+        options=loading,
         play="" if play is None else str(play),
         play_topics=tuple(play_topic),
         velocity=cmd_vel,
@@ -177,7 +173,7 @@ def _timeout(seconds: float) -> float:
 
 
 def _expression(until: str | None) -> str:
-    """Validate a condition. An empty one is rejected: it usually comes from an unset variable of a shell script."""
+    """Validate a condition. An empty text is rejected: its usual cause is an unset variable of a shell script."""
     if until is not None and not until.strip():
         raise typer.BadParameter("the expression is empty", param_hint="--until")
     return until or ""
@@ -192,7 +188,10 @@ def _until_when(timeout: float | None, until: str | None) -> float | None:
 
 
 def highest_pace(rtf: float | None, *, is_watched: bool) -> float | None:
-    """Return the highest real-time factor; None for no limit. The default is 1 for runs with a viewer or teleop."""
+    """Return the highest real-time factor; None for no limit.
+
+    The default is 1 for runs with a viewer or teleop, else no limit.
+    """
     if rtf is None:
         return 1.0 if is_watched else None
     return rtf if math.isfinite(rtf) else None

@@ -16,7 +16,7 @@ HINT = "space resumes, n advances one step, Ctrl-C ends"
 
 
 class RunKeys:
-    """Key handler that is polled between the slices of a run.
+    """Key handler; the run polls it between its slices.
 
     Args:
         sim: simulation to control.
@@ -31,7 +31,7 @@ class RunKeys:
         self._step_ends: int | None = None  # tick of the end of the step
 
     def poll(self) -> None:
-        """Process the keys pressed since the last call, in order. Keys after a step wait until the step is done."""
+        """Process the keys pressed since the last call, in order. Keys after a step key wait until the step ends."""
         if not self._left:
             self._left.extend(self._keyboard.read())
         while self._left and not self._is_stepping():
@@ -42,7 +42,7 @@ class RunKeys:
             print_status("the terminal has closed: the robot is stopped, and keys have no effect any more")
 
     def _is_stepping(self) -> bool:
-        """Check whether a step that a key requested is not finished yet."""
+        """Check whether the run still executes a step that a key requested."""
         until: int | None = self._sim.control.pausing.until
         return until is not None and until == self._step_ends and self._sim.tick < until
 

@@ -90,7 +90,8 @@ class RunLoop:
     def run(self, duration: float | None) -> bool:
         """Advance `duration` [s], or for ever if it is None; return True if the run reached its end.
 
-        Steps that a plugin undid with a reset count, too. Otherwise a plugin that resets could keep a run from ending.
+        Steps before a reset by a plugin count too. Otherwise a plugin that resets the world regularly would prevent the
+        end of the run.
         """
         sim = self._sim
         end = None if duration is None else sim.engine.steps + round(duration / sim.timestep)
@@ -139,7 +140,7 @@ class RunLoop:
         )
 
     def _ahead(self) -> float:
-        """Return the wall time [s] by which the run is ahead of its highest real-time factor."""
+        """Return the wall time [s] by which the run is ahead of its highest real-time factor; negative if it lags."""
         tick, wall, pace = self._start
         if pace != self._sim.control.pausing.pace:
             self._restart_pace()

@@ -1,4 +1,4 @@
-"""Session of a loaded world, from its first slice to its summary."""
+"""Session that runs a loaded world, from its first slice to its summary."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def check_keyboard(display: RunDisplay) -> None:
 
 
 def run_length(spec: RunSpec, played: float | None = None) -> float | None:
-    """Return the simulated time [s] after which a run ends at the latest; None for a run until Ctrl-C.
+    """Return the longest simulated time [s] of a run; None if the run continues until Ctrl-C.
 
     Args:
         spec: run specification.
@@ -131,7 +131,6 @@ class Session:
 
     def execute(self) -> int:
         """Run the simulation to its end and return the exit code."""
-        from simkit.recording.bags.recorder import Recorder
         from simkit.recording.command_script import Commands
         from simkit.recording.run_picture import DrivenPath
         from simkit.recording.topic_counts import RENDERED, TopicCounter
@@ -148,12 +147,7 @@ class Session:
             if played is not None:
                 stack.enter_context(played)
             interrupts = stack.enter_context(Interrupts(self.blocked.hasten))
-            recording = None
-            if spec.recording is not None:
-                bag = spec.recording
-                recording = stack.enter_context(
-                    Recorder(sim, bag.path, overwrite=bag.overwrite, topics=spec.topics, skip=spec.skip)
-                )
+            recording = self._start_recording(stack)
             counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
             keyboard = self._keyboard()
             begun = time.perf_counter()
@@ -193,6 +187,16 @@ class Session:
         if driven is not None and display.picture is not None:
             draw_picture(sim, display.picture, driven)
         return interrupts.exit_code or self.verdict.code
+
+    def _start_recording(self, stack: ExitStack) -> Recorder | None:
+        """Start the recorder that the specification requests; the stack closes it."""
+        from simkit.recording.bags.recorder import Recorder
+
+        spec, bag = self.spec, self.spec.recording
+        if bag is None:
+            return None
+        recorder = Recorder(self.sim, bag.path, overwrite=bag.overwrite, topics=spec.topics, skip=spec.skip)
+        return stack.enter_context(recorder)
 
     # ------------------------------------------------------------------ commands
 
@@ -292,7 +296,7 @@ class Session:
     def _watched(
         self, loop: RunLoop, interrupts: Interrupts, watchers: list[Callable[[], None]]
     ) -> Callable[[float | None], object]:
-        """Return the loop's `run` with reloading of plugins whose files change."""
+        """Return a function that runs the loop and reloads plugins whose files change."""
         from simkit.cli.plugin_watch import PluginWatch
 
         folders = [Path(folder) for folder in self.spec.options.get("plugin_paths", ())]

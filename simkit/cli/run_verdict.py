@@ -52,7 +52,7 @@ class RunVerdict:
         return self
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
-        """Write the report. An interrupt at the wall time limit fails the run, but its exception is suppressed."""
+        """Write the report. The interrupt of the wall time limit fails the run, but its exception is suppressed."""
         self._wall.__exit__()
         if error is not None and not self.reason:
             self._conclude(error)
@@ -71,7 +71,7 @@ class RunVerdict:
 
         Args:
             sim: loaded simulation.
-            longest: simulated time [s] after which the run ends at the latest; None for a run until Ctrl-C.
+            longest: longest simulated time [s] of the run; None if the run continues until Ctrl-C.
 
         Raises:
             InputError: an expression is invalid, or names something that the world does not have.

@@ -27,36 +27,26 @@ if TYPE_CHECKING:
     from simkit.live import Client
 
 
+_TYPE_HELP = "Type such as geometry_msgs/msg/Twist; default: the topic's type."
+_VALUES_HELP = "Message as YAML: '{linear: {x: 0.2}}'; `header: auto` and `stamp: now` insert the present time."
+_WAIT_HELP = "Number of subscribers to wait for; default: 1 with --once and --times, else 0."
+_WAIT_NAMES = ("--wait-matching-subscriptions", "-w")
+
+MessageType = Annotated[str | None, argument(_TYPE_HELP, "[TYPE]", completion.topic_types)]
+Values = Annotated[str | None, argument(_VALUES_HELP, "[VALUES]", completion.message_values)]
+MatchingSubscribers = Annotated[int | None, option(_WAIT_HELP, "N", *_WAIT_NAMES, min=0, show_default=False)]
+
+
 def pub(
     topic: options.Topic,
-    message_type: Annotated[
-        str | None,
-        argument("Type such as geometry_msgs/msg/Twist; default: the topic's type.", "[TYPE]", completion.topic_types),
-    ] = None,
-    values: Annotated[
-        str | None,
-        argument(
-            "Message as YAML: '{linear: {x: 0.2}}'; `header: auto` and `stamp: now` insert the present time.",
-            "[VALUES]",
-            completion.message_values,
-        ),
-    ] = None,
+    message_type: MessageType = None,
+    values: Values = None,
     stdin: Annotated[bool, Option("--stdin", help="Read the values from standard input.")] = False,
     rate: Annotated[float, option("Messages per simulated second.", "N", "--rate", "-r", min=1e-3)] = 1.0,
     every: Annotated[int, option("Print every Nth message; 0: none.", "N", "--print", "-p", min=0)] = 1,
     once: Annotated[bool, Option("--once", "-1", help="Publish one message.")] = False,
     times: Annotated[int | None, option("Publish N messages.", "N", "--times", "-t", min=0, show_default=False)] = None,
-    wait: Annotated[
-        int | None,
-        option(
-            "Number of subscribers to wait for; default: 1 with --once and --times, else 0.",
-            "N",
-            "--wait-matching-subscriptions",
-            "-w",
-            min=0,
-            show_default=False,
-        ),
-    ] = None,
+    wait: MatchingSubscribers = None,
     keep_alive: Annotated[float, option("Wall time to stay after the last message.", "S", "--keep-alive", min=0)] = 0.1,
     wall_time: Annotated[bool, Option("--wall-time", help="Use wall time for the rate.")] = False,
     sim: options.Sim = None,

@@ -76,7 +76,9 @@ class WallTimeLimit:
         deadline, is_first = time.monotonic() + ABORT_SECONDS, True
         while time.monotonic() < deadline:
             now = self._at_work()
-            if self._may_alarm and (is_first or (found and now and found[0] is now[0])):  # a plugin may catch the first
+            if self._may_alarm and (
+                is_first or (found and now and found[0] is now[0])
+            ):  # a plugin may catch the first interrupt
                 signal.pthread_kill(self._thread_id, _ALARM)  # type: ignore[arg-type]
             is_first = False
             if self._ended.wait(1.0):

@@ -1,4 +1,4 @@
-"""Reports of plugins that block a run. A second thread reads the stack, so that the run itself does not change."""
+"""Reports of plugins that block a run. A second thread reads the stack of the run, so that the run does not change."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """Shell completion with names from the running simulation or the bag.
 
-Typer passes the incomplete command to each function. The words before the completed one are in its parameters.
+Typer passes the incomplete command line to each function. The parameters of its context are the words before the
+completed word.
 """
 
 from __future__ import annotations

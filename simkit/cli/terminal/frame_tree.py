@@ -98,7 +98,7 @@ class FrameTree:
     def pose_between(self, source: str, target: str) -> tuple[Pose, int] | None:
         """Return the pose of `target` in `source` and its time [ns]; None for unknown frames or separate trees."""
         if source not in self.names():
-            return None  # else an unknown frame would have a pose in itself
+            return None  # without this check, an unknown frame would have a pose in its own frame
         ancestors = {name: (pose, time_ns) for name, pose, time_ns in reversed(self.chain(source))}
         for name, pose, time_ns in self.chain(target):
             if name in ancestors:
@@ -123,7 +123,7 @@ def receive_transforms(
     static = {t for t in selected if any(end.latched for end in known[t].publishers) or t.endswith("tf_static")}
     from simkit import msgs
 
-    msgs.type_of(_TYPE)  # the first use of a type is slow; done before the duration begins
+    msgs.type_of(_TYPE)  # the first use of a type is slow, so it must come before the duration begins
     feed = source.feed(selected)
     until = time.monotonic() + duration
     try:

@@ -122,7 +122,7 @@ class Keyboard:
     def __enter__(self) -> Keyboard:
         if threading.current_thread() is threading.main_thread():
             for number, handler in ((signal.SIGTSTP, self._suspend), (signal.SIGCONT, self._continue)):
-                if signal.getsignal(number) is signal.SIG_DFL:  # keep a handler that is already set
+                if signal.getsignal(number) is signal.SIG_DFL:  # do not replace a handler that is already set
                     self._handlers[number] = signal.signal(number, handler)
         self._enter_key_mode()
         return self
@@ -162,7 +162,7 @@ class Keyboard:
             return True
 
     def _enter_key_mode(self) -> bool:
-        """Switch the terminal to single keys without echo; return whether it did."""
+        """Switch the terminal to single keys without echo; return True if the switch was made."""
         import termios
 
         if not self._is_foreground():
@@ -203,7 +203,9 @@ class Keyboard:
         if sys.stdout is not None and _is_terminal(sys.stdout.fileno):
             os.write(sys.stdout.fileno(), _SHOW_CURSOR)
         before = signal.signal(number, signal.SIG_DFL)
-        signal.pthread_kill(threading.get_ident(), number)  # to this thread: stops here, not later
+        signal.pthread_kill(
+            threading.get_ident(), number
+        )  # signal this thread, so that the process stops here and not later
         signal.signal(number, before)
 
     def _continue(self, _: int, __: FrameType | None) -> None:

@@ -38,14 +38,14 @@ def parse_fields(text: str, what: str) -> JsonObject:
 
 
 def split_type_and_values(type_name: str | None, values: str | None) -> tuple[str | None, str | None]:
-    """Return type and values; values given in place of the type become the values."""
+    """Return the type and the values of a command line; if the first argument is not a type, it is the values."""
     if type_name is not None and values is None and not _TYPE_FORM.fullmatch(type_name):
         return None, type_name
     return type_name, values
 
 
 def is_same_type(short_or_full: str, type_name: str) -> bool:
-    """Check whether a name means a type: `geometry_msgs/msg/Twist`, or `geometry_msgs/Twist` for short."""
+    """Check whether a name is the full or the short name of a type, such as `geometry_msgs/Twist`."""
     package, _, rest = type_name.partition("/")
     return short_or_full in (type_name, f"{package}/{rest.rpartition('/')[2]}")
 

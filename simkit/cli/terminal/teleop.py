@@ -57,7 +57,7 @@ def find_target(sim: Simulation, requested: str = "") -> TeleopTarget:
         requested: velocity topic; empty for `/cmd_vel`, else the world's only velocity topic.
 
     Raises:
-        InputError: SK-CLI-051 no subscriber of velocities on the topic, or several topics are possible.
+        InputError: SK-CLI-051 the topic has no subscriber of velocities, or several topics are possible.
     """
     owners: dict[str, object] = {}
     for topic, endpoint, types, role in sim.communication.bus.endpoints():
@@ -93,7 +93,7 @@ def _describe_target(sim: Simulation, topic: str, owner: object) -> TeleopTarget
     scoped = getattr(owner, "scoped", "")
     try:
         model = sim.model(scoped) if scoped else None
-    except KeyError:  # the owner is a plugin of the world or of a sensor
+    except KeyError:  # the subscriber is a plugin of the world or of a sensor
         model = None
     names = (*getattr(owner, "filenames", ()), *getattr(owner, "names", ()))
     linear, angular = _speed_limits(model, topic, owner)
@@ -237,7 +237,7 @@ class Teleop:
         if not self._is_active:
             return None
         tick: int = self._sim.tick
-        # after a reset of the world, the last command lies in the future
+        # after a reset of the world, the time of the last command is in the future
         first = tick + 1 if tick == self._sent else tick
         per_command: float = 1.0 / (RATE * self._sim.timestep)
         # command k is sent at the first tick at or after k periods; the tolerance absorbs rounding errors

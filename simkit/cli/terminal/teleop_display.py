@@ -97,8 +97,8 @@ def nearest_reading(sensor: Sensor) -> tuple[float, float, Pose, float] | None:
     """Return the shortest reading of a lidar; None for other sensors and before the first scan.
 
     Returns:
-        Range [m] (infinite for nothing in reach, minus infinite for something too near), angle about the sensor's
-        z axis [rad], the sensor's pose, and its shortest range [m].
+        Range [m] (infinite if no obstacle is in range, minus infinite if an obstacle is too near), angle about the
+        sensor's z axis [rad], pose of the sensor, and its shortest range [m].
     """
     scan = sensor.latest
     if scan is None or getattr(scan, "__msgtype__", "") != _SCAN:
@@ -109,7 +109,7 @@ def nearest_reading(sensor: Sensor) -> tuple[float, float, Pose, float] | None:
         return None
     index = int(ranges.argmin())
     step = float(scan.angle_increment)
-    beams = round((scan.angle_max - scan.angle_min) / step) + 1 if step else 1  # of one layer
+    beams = round((scan.angle_max - scan.angle_min) / step) + 1 if step else 1  # beams of one layer
     return float(ranges[index]), scan.angle_min + index % beams * step, sensor.pose, float(scan.range_min)
 
 

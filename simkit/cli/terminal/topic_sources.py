@@ -144,7 +144,7 @@ class LiveSource:
         return msgs.deserialize(received.data, received.type_name)
 
     def store(self, type_name: str) -> Typestore | None:
-        """Return the type store of a type; None for simkit's own."""
+        """Return the type store of a type; None for the type store of simkit."""
         return None
 
 
@@ -240,7 +240,7 @@ class BagSource:
         return BagFeed(self.bag, topics)
 
     def prepare(self, entry: TopicEntry) -> None:
-        """Do nothing: a bag has all definitions."""
+        """Do nothing, because a bag contains the definitions of all its types."""
 
     def decode(self, received: ReceivedMessage) -> Message:
         """Decode a message."""
