@@ -73,44 +73,44 @@ class GeomWriter:
         self._ambient = ambient
         self._count: Counter[str] = Counter()
 
-    def _add(self, place: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> mujoco.MjsGeom:
+    def _add(self, parent: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> mujoco.MjsGeom:
         base = owner.scoped + ("#v" if owner.is_visual else "#")
         name = f"{base}{self._count[base]}"
         self._count[base] += 1
         self.record.geoms[name] = owner
-        local = place.offset @ pose
-        return place.body.add_geom(name=name, pos=local.position, quat=local.quaternion, mass=0.0, **settings)
+        local = parent.offset @ pose
+        return parent.body.add_geom(name=name, pos=local.position, quat=local.quaternion, mass=0.0, **settings)
 
     # ------------------------------------------------------------------ collisions
 
-    def collision(self, place: GeomParent, collision: SceneCollision) -> None:
+    def collision(self, parent: GeomParent, collision: SceneCollision) -> None:
         """Add the geoms of one `<collision>`."""
         shape = collision.geometry
         if isinstance(shape, Empty) or not self._has_size(shape, collision.where):
             return
-        contact = contact_properties(collision.surface, self.timestep, place.mass, self.diagnostics)
+        contact = contact_properties(collision.surface, self.timestep, parent.mass, self.diagnostics)
         solid: GeomSettings = {"group": COLLISION, **contact._asdict()}
-        owner = GeomOwner(place.link, collision.scoped, False)
+        owner = GeomOwner(parent.link, collision.scoped, False)
         primitive = shape_geometry.primitive_of(shape, False)
-        if isinstance(shape, Plane) and not place.fixed and primitive is not None:
+        if isinstance(shape, Plane) and not parent.fixed and primitive is not None:
             message = "a plane on a moving link collides as a 100 m × 100 m plate"
             self.diagnostics.warning("SK-PHYS-016", message, collision.where)
             sunk = collision.pose_link @ primitive.pose @ Pose((0.0, 0.0, -_HALF_SPACE[2]))
-            self._add(place, owner, sunk, type=mujoco.mjtGeom.mjGEOM_BOX, size=_HALF_SPACE, **solid)
+            self._add(parent, owner, sunk, type=mujoco.mjtGeom.mjGEOM_BOX, size=_HALF_SPACE, **solid)
         elif primitive is not None:
             pose = collision.pose_link @ primitive.pose
-            self._add(place, owner, pose, type=primitive.type, size=primitive.size, **solid)
+            self._add(parent, owner, pose, type=primitive.type, size=primitive.size, **solid)
         elif isinstance(shape, Heightmap):
-            self._heightmap(place, owner, collision.pose_link, shape, collision.where, solid)
+            self._heightmap(parent, owner, collision.pose_link, shape, collision.where, solid)
         elif isinstance(shape, Polyline):
-            self._outlines(place, owner, collision, shape, solid)
+            self._outlines(parent, owner, collision, shape, solid)
         else:
             parts = self._visual_parts(shape, collision.where)
             if parts:
-                self._mesh_collision(place, owner, collision, parts, solid)
+                self._mesh_collision(parent, owner, collision, parts, solid)
 
     def _outlines(
-        self, place: GeomParent, owner: GeomOwner, collision: SceneCollision, shape: Polyline, solid: GeomSettings
+        self, parent: GeomParent, owner: GeomOwner, collision: SceneCollision, shape: Polyline, solid: GeomSettings
     ) -> None:
         """Add the exact convex pieces of extruded outlines."""
         try:
@@ -122,49 +122,54 @@ class GeomWriter:
             body = convex_hull(points)
             if body is not None:
                 name = self.assets.surface(*body)
-                self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **solid)
+                self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **solid)
 
     def _mesh_collision(
-        self, place: GeomParent, owner: GeomOwner, collision: SceneCollision, parts: list[MeshPart], solid: GeomSettings
+        self,
+        parent: GeomParent,
+        owner: GeomOwner,
+        collision: SceneCollision,
+        parts: list[MeshPart],
+        solid: GeomSettings,
     ) -> None:
         shape = collision.geometry
         vertices, faces = join_parts(parts)
         optimization, most = (shape.optimization, shape.max_hulls) if isinstance(shape, Mesh) else ("", 16)
-        bodies = convex_bodies(vertices, faces, fixed=place.fixed, optimization=optimization, most=most)
-        if isinstance(shape, Mesh) and place.axis is not None:
-            wheel = round_mesh(bodies.shapes, collision.pose_link, place.axis)
+        bodies = convex_bodies(vertices, faces, fixed=parent.fixed, optimization=optimization, most=most)
+        if isinstance(shape, Mesh) and parent.axis is not None:
+            wheel = round_mesh(bodies.shapes, collision.pose_link, parent.axis)
             if wheel is not None:
-                self._wheel(place, owner, collision, wheel, solid)
+                self._wheel(parent, owner, collision, wheel, solid)
                 return
         for severity, code, text, hint in bodies.findings:
             report_once(self.diagnostics, severity, code, f"{_collision_title(shape)} {text}", collision.where, hint)
         settings = solid if bodies.is_exact else {**solid, "group": COLLISION_CONTACT}
         for corners, triangles in bodies.shapes:
             name = self.assets.surface(corners, triangles)
-            self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
+            self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
         if not bodies.is_exact:
             drawn: GeomSettings = {"contype": 0, "conaffinity": 0, "group": COLLISION_RAY}
             name = self.assets.surface(vertices, faces)
-            self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **drawn)
+            self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **drawn)
 
     def _wheel(
-        self, place: GeomParent, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, solid: GeomSettings
+        self, parent: GeomParent, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, solid: GeomSettings
     ) -> None:
         size = (wheel.radius, wheel.length / 2, 0.0)
         cylinder = f"a cylinder of radius {wheel.radius:.4g} m and length {wheel.length:.4g} m"
         text = f"{_collision_title(collision.geometry)} is round about its joint axis: it collides as {cylinder}"
         report_once(self.diagnostics, "note", "SK-MESH-016", text, collision.where)
         kind = mujoco.mjtGeom.mjGEOM_CYLINDER
-        self._add(place, owner, collision.pose_link @ wheel.pose, type=kind, size=size, **solid)
+        self._add(parent, owner, collision.pose_link @ wheel.pose, type=kind, size=size, **solid)
 
     # ------------------------------------------------------------------ visuals
 
-    def visual(self, place: GeomParent, visual: SceneVisual) -> None:
+    def visual(self, parent: GeomParent, visual: SceneVisual) -> None:
         """Add the geoms of one `<visual>`."""
         shape = visual.geometry
         if isinstance(shape, Empty) or not self._has_size(shape, visual.where):
             return
-        owner = GeomOwner(place.link, visual.scoped, True)
+        owner = GeomOwner(parent.link, visual.scoped, True)
         pixels = self._pixels(visual.material, visual.where)
         # the engine does not draw its own shapes, except planes, from the inside
         has_inner_side = visual.material is not None and visual.material.double_sided and not isinstance(shape, Plane)
@@ -172,22 +177,22 @@ class GeomWriter:
         primitive = shape_geometry.primitive_of(shape, True) if textured is None else None
         pose = visual.pose_link
         if isinstance(shape, Heightmap):
-            self._heightmap(place, owner, pose, shape, visual.where, self._visual_settings(visual, None, pixels))
+            self._heightmap(parent, owner, pose, shape, visual.where, self._visual_settings(visual, None, pixels))
         elif primitive is None:
             for part in self._visual_parts(shape, visual.where) if textured is None else [textured]:
-                self._add_visual_part(place, owner, visual, part, pixels)
+                self._add_visual_part(parent, owner, visual, part, pixels)
         else:
             size, kind = primitive.size, primitive.type
-            if isinstance(shape, Plane) and not place.fixed:
+            if isinstance(shape, Plane) and not parent.fixed:
                 size, kind = (size[0], size[1], 1e-4), mujoco.mjtGeom.mjGEOM_BOX
                 pixels = None
             drawn = self._visual_settings(visual, None, pixels)
-            self._add(place, owner, pose @ primitive.pose, type=kind, size=size, **drawn)
+            self._add(parent, owner, pose @ primitive.pose, type=kind, size=size, **drawn)
             if kind == mujoco.mjtGeom.mjGEOM_PLANE and visual.material is not None and visual.material.double_sided:
-                self._add(place, owner, pose @ primitive.pose @ _OVER, type=kind, size=size, **drawn)
+                self._add(parent, owner, pose @ primitive.pose @ _OVER, type=kind, size=size, **drawn)
 
     def _add_visual_part(
-        self, place: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Pixels | None
+        self, parent: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Pixels | None
     ) -> None:
         """Add the triangles of one material; the material of the `<visual>` has priority over that of the mesh file."""
         if not has_area(part, LEAST_AREA):
@@ -197,7 +202,7 @@ class GeomWriter:
             return
         look = self._visual_settings(visual, part, pixels if part.uv is not None else None)
         mesh = self._surface_mesh(visual, part, self.assets.has_texture(look["material"]))
-        self._add(place, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, **look)
+        self._add(parent, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, **look)
 
     def _surface_mesh(self, visual: SceneVisual, part: MeshPart, is_textured: bool) -> str:
         """Add the mesh of a part and return its name.
@@ -265,9 +270,9 @@ class GeomWriter:
         return []
 
     def _heightmap(
-        self, place: GeomParent, owner: GeomOwner, pose: Pose, shape: Heightmap, where: Where, settings: GeomSettings
+        self, parent: GeomParent, owner: GeomOwner, pose: Pose, shape: Heightmap, where: Where, settings: GeomSettings
     ) -> None:
-        if not place.fixed:
+        if not parent.fixed:
             self.diagnostics.error("SK-MESH-010", "a heightmap can only belong to a static model", where)
             return
         try:
@@ -282,7 +287,7 @@ class GeomWriter:
         name = self.assets.heights((rows - low) / max(high - low, 1e-12), (*shape.size[:2], (high - low) * z_size))
         x, y, z = shape.position
         at = pose @ Pose((x, y, z + low * z_size))
-        self._add(place, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
+        self._add(parent, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
 
 
 def _collision_title(shape: Geometry) -> str:

@@ -135,7 +135,7 @@ def rank_friction(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnost
 
 
 def write_masses(child: mujoco.MjSpec, source: MjcfSource) -> None:
-    """Write the masses explicitly that the file only implies by its geoms, its bounds or its total mass."""
+    """Write explicit masses and inertias, which in the file follow from geoms, mass bounds or a total mass."""
     for name, (mass, centre, axes, moments) in source.masses.items():
         body = child.body(name)
         body.explicitinertial = True

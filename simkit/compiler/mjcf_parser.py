@@ -162,7 +162,7 @@ def measure_length_ranges(
     The error contains the reason, also if the file does not compile for a reason without relation to length ranges.
     """
     files = {"models": file.models, "assets": file.assets}
-    texts = {kind: {k: base64.b64encode(v).decode() for k, v in held.items()} for kind, held in files.items()}
+    texts = {kind: {k: base64.b64encode(v).decode() for k, v in contents.items()} for kind, contents in files.items()}
     task = json.dumps({"text": file.text, **texts})
     try:
         done = subprocess.run(

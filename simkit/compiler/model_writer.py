@@ -260,15 +260,15 @@ class ModelWriter:
                 stack += tree.children.get(name, ())
         return False
 
-    def _add_contents(self, place: GeomParent, link: SceneLink) -> None:
+    def _add_contents(self, parent: GeomParent, link: SceneLink) -> None:
         for collision in link.collisions:
-            self.geoms.collision(place, collision)
+            self.geoms.collision(parent, collision)
         for visual in link.visuals:
-            self.geoms.visual(place, visual)
+            self.geoms.visual(parent, visual)
         body_name = self.record.links[link.scoped].body_name
         for light in link.lights:
             pose = link.pose_world.inverse() @ light.pose_world
-            add_light(place.body, light, place.offset @ pose, self.world.surroundings.shadows)
+            add_light(parent.body, light, parent.offset @ pose, self.world.surroundings.shadows)
             report_light(light, self.world, self.diagnostics)
             self.record.lights[light.scoped] = LightBinding(light.scoped, light, self.record.scene.scoped, body_name)
 

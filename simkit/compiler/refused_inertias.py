@@ -253,7 +253,7 @@ def _likely_cause(inertial: Inertial, found: InertiaRepair) -> str:
 
 
 def restore_file_inertias(model: mujoco.MjModel, exact: Mapping[str, tuple[float, Six]]) -> None:
-    """Set the tensors that the compiler refused on the bodies of a compiled model.
+    """Set the file's inertia tensors, which the compiler refused, on the bodies of a compiled model.
 
     Args:
         model: MuJoCo's model.

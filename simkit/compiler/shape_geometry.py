@@ -310,7 +310,7 @@ _FORMATS: Final = ("PNG", "JPEG", "TIFF", "BMP", "TGA", "GIF", "PPM", "WEBP")
 
 
 def heightmap_rows(shape: Heightmap) -> Floats:
-    """Return rows from -y to +y, scaled so that the highest value is 1, as in Gazebo.
+    """Return the heights in an image as rows from -y to +y, scaled so that the highest value is 1, as in Gazebo.
 
     8-bit and 16-bit images and TIFF with floating-point numbers are supported; colours are converted to brightness.
 

@@ -18,7 +18,7 @@ __all__ = ["lint_world"]
 
 def lint_world(world: SceneWorld, compiled: Compiled) -> Diagnostics:
     """Report probable problems of a world; nothing is stepped or changed."""
-    found = Diagnostics()
+    diagnostics = Diagnostics()
     for check in (check_time_step, check_joints, check_links):
-        check(world, compiled, found)
-    return found
+        check(world, compiled, diagnostics)
+    return diagnostics

@@ -41,20 +41,20 @@ class JointGains:
     where: Where
 
 
-def check_joints(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
+def check_joints(world: SceneWorld, compiled: Compiled, diagnostics: Diagnostics) -> None:
     """Report unstable gains, springs too stiff for the step, empty joint ranges, and heavy loads on light links."""
     inertias = _JointInertia(compiled.model)
     step = world.physics.max_step_size
     for joint in compiled.names.joints.values():
-        _check_range(joint, found)
-        _check_spring(joint, inertias, step, found)
-    _check_servos(compiled, inertias, step, found)
+        _check_range(joint, diagnostics)
+        _check_spring(joint, inertias, step, diagnostics)
+    _check_servos(compiled, inertias, step, diagnostics)
     for model in world.models:
         for nested in model.all_models():
             for plugin in nested.plugins:
                 for gains in controller_gains(plugin.params, plugin.name or plugin.filename, plugin.where):
-                    _check_gains(gains, _find_joint(compiled, nested.scoped, gains.joint), inertias, step, found)
-    _check_loads(compiled, found)
+                    _check_gains(gains, _find_joint(compiled, nested.scoped, gains.joint), inertias, step, diagnostics)
+    _check_loads(compiled, diagnostics)
 
 
 class _JointInertia:
@@ -73,19 +73,19 @@ class _JointInertia:
         return self._known[dof]
 
 
-def _check_range(joint: JointBinding, found: Diagnostics) -> None:
+def _check_range(joint: JointBinding, diagnostics: Diagnostics) -> None:
     for axis in joint.scene.axes:
         if joint.type in ("revolute", "prismatic", "universal", "revolute2") and axis.lower == axis.upper:
             message = f"joint {joint.scoped!r} is {joint.type} but cannot move: both limits are {axis.lower:g}"
-            found.note(
+            diagnostics.note(
                 "SK-LINT-005", message, joint.scene.where, "use a joint of type fixed, which costs no computing time"
             )
 
 
-def _check_spring(joint: JointBinding, inertias: _JointInertia, step: float, found: Diagnostics) -> None:
+def _check_spring(joint: JointBinding, inertias: _JointInertia, step: float, diagnostics: Diagnostics) -> None:
     for axis, dof in zip(joint.scene.axes, joint.dofs, strict=False):
         if axis.stiffness > 0 and (number := axis.stiffness * step**2 / inertias.at(dof)) > 1.0:
-            found.warning(
+            diagnostics.warning(
                 "SK-LINT-004",
                 f"joint {joint.scoped!r}: its spring of {axis.stiffness:g} on an inertia of "
                 f"{inertias.at(dof):.3g} oscillates too fast for the step of {step * 1e3:g} ms "
@@ -95,7 +95,7 @@ def _check_spring(joint: JointBinding, inertias: _JointInertia, step: float, fou
             )
 
 
-def _check_servos(compiled: Compiled, inertias: _JointInertia, step: float, found: Diagnostics) -> None:
+def _check_servos(compiled: Compiled, inertias: _JointInertia, step: float, diagnostics: Diagnostics) -> None:
     """Report gains that are larger than a servo can use at this step."""
     for record in compiled.builder.records.values():
         for ref in record.actuators:
@@ -109,7 +109,7 @@ def _check_servos(compiled: Compiled, inertias: _JointInertia, step: float, foun
                     f"joint {joint.scoped!r}: the velocity gain {ref.kv:g} of {ref.owner} would oscillate at a "
                     f"step of {step * 1e3:g} ms on an inertia of {inertia:.3g}; {most:.3g} is used"
                 )
-                found.warning("SK-LINT-003", message, joint.scene.where, "use a smaller gain or a smaller step")
+                diagnostics.warning("SK-LINT-003", message, joint.scene.where, "use a smaller gain or a smaller step")
 
 
 def controller_gains(params: Params, name: str, where: Where) -> Iterator[JointGains]:
@@ -144,7 +144,7 @@ def _find_joint(compiled: Compiled, model: str, name: str) -> JointBinding | Non
 
 
 def _check_gains(
-    gains: JointGains, joint: JointBinding | None, inertias: _JointInertia, step: float, found: Diagnostics
+    gains: JointGains, joint: JointBinding | None, inertias: _JointInertia, step: float, diagnostics: Diagnostics
 ) -> None:
     if joint is None or not joint.dofs:
         return
@@ -160,10 +160,10 @@ def _check_gains(
             f"plugin {gains.plugin!r}: <{which}> {value:g} on joint {joint.scoped!r} with an inertia of {inertia:.3g} "
             f"(kg m2 or kg) oscillates or diverges at a step of {step * 1e3:g} ms"
         )
-        found.warning("SK-LINT-003", message, gains.where, f"use at most {most:.3g}, or a smaller step")
+        diagnostics.warning("SK-LINT-003", message, gains.where, f"use at most {most:.3g}, or a smaller step")
 
 
-def _check_loads(compiled: Compiled, found: Diagnostics) -> None:
+def _check_loads(compiled: Compiled, diagnostics: Diagnostics) -> None:
     """Report contacts in the first state where a heavy body stands on a much lighter one."""
     model = compiled.model
     data = first_state(model)
@@ -180,7 +180,7 @@ def _check_loads(compiled: Compiled, found: Diagnostics) -> None:
         key = (owners[light], owners[heavy])
         if masses[heavy] > LARGEST_LOAD_RATIO * masses[light] and is_above and key not in seen:
             seen.add(key)
-            found.warning(
+            diagnostics.warning(
                 "SK-LINT-006",
                 f"{owners[heavy]} ({masses[heavy]:.4g} kg) stands on {owners[light]} ({masses[light]:.4g} kg): a mass "
                 f"ratio of {masses[heavy] / masses[light]:.0f}; above {LARGEST_LOAD_RATIO:g} it sinks in by over 1 mm",

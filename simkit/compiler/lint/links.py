@@ -37,10 +37,10 @@ LEAST_EXTENT: Final = 1e-9
 """
 
 
-def check_links(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
+def check_links(world: SceneWorld, compiled: Compiled, diagnostics: Diagnostics) -> None:
     """Report masses and inertias that do not fit the size of their links."""
     for model in world.models:
-        _check_default_masses(model, found)
+        _check_default_masses(model, diagnostics)
     groups: dict[int, list[LinkBinding]] = {}
     for link in compiled.names.links.values():
         if not link.static and int(compiled.model.body_weldid[link.body]) != 0:
@@ -48,12 +48,12 @@ def check_links(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> No
     state = first_state(compiled.model)
     for links in groups.values():
         if all(link.scene.inertial.given for link in links):
-            _check_inertia(compiled.model, state, links, found)
+            _check_inertia(compiled.model, state, links, diagnostics)
     for link in compiled.names.links.values():
-        _check_collision_size(compiled.model, state, link, found)
+        _check_collision_size(compiled.model, state, link, diagnostics)
 
 
-def _check_default_masses(top: SceneModel, found: Diagnostics) -> None:
+def _check_default_masses(top: SceneModel, diagnostics: Diagnostics) -> None:
     """Report masses that are missing in the file: SDF gives 1 kg to a link without `<inertial>`."""
     links = [] if top.static else [link for m in top.all_models() if not m.static for link in m.links]
     default = [link for link in links if not link.inertial.given and link.inertial.mass > 0]
@@ -63,10 +63,12 @@ def _check_default_masses(top: SceneModel, found: Diagnostics) -> None:
     total = sum(link.inertial.mass for link in links)
     names = ", ".join(link.name for link in default[:6]) + (f" and {len(default) - 6} more" if len(default) > 6 else "")
     message = f"model {top.name!r}: {kilograms:g} kg of its {total:.4g} kg come from links without <inertial> ({names})"
-    found.warning("SK-LINT-007", message, default[0].where, "give them an <inertial>, or make them a <frame>")
+    diagnostics.warning("SK-LINT-007", message, default[0].where, "give them an <inertial>, or make them a <frame>")
 
 
-def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[LinkBinding], found: Diagnostics) -> None:
+def _check_inertia(
+    model: mujoco.MjModel, state: mujoco.MjData, links: list[LinkBinding], diagnostics: Diagnostics
+) -> None:
     """Compare mass and inertia of a rigid group of links with its bounding box."""
     foot = min(links, key=lambda link: link.body)
     mass, centre, tensor = _total_inertia(model, state, [link.body for link in links])
@@ -76,7 +78,7 @@ def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[Link
     farthest = max(float(np.linalg.norm(corners - centre, axis=1).max()), LEAST_EXTENT)
     gyration = float(np.sqrt(max(np.linalg.eigvalsh(tensor)[2], 0.0) / mass))
     if gyration > LARGEST_GYRATION_RATIO * farthest:
-        found.warning(
+        diagnostics.warning(
             "SK-LINT-008",
             f"link {foot.scoped!r}: the inertia is {(gyration / farthest) ** 2:.0f} times too large; "
             f"it is that of {mass:.4g} kg at a radius of {gyration:.3g} m, but the link reaches only {farthest:.3g} m "
@@ -89,7 +91,7 @@ def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[Link
         return
     volume = float(np.prod(np.ptp(solid, axis=0)))
     if volume > LEAST_VOLUME and not SMALLEST_DENSITY < mass / volume < LARGEST_DENSITY:
-        found.warning(
+        diagnostics.warning(
             "SK-LINT-009",
             f"link {foot.scoped!r}: {mass:.4g} kg in a box of {_box_in_words(solid)} m are {mass / volume:.4g} kg/m3; "
             f"{'no material is so dense' if mass / volume >= LARGEST_DENSITY else 'that is lighter than air'}",
@@ -98,7 +100,9 @@ def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[Link
         )
 
 
-def _check_collision_size(model: mujoco.MjModel, state: mujoco.MjData, link: LinkBinding, found: Diagnostics) -> None:
+def _check_collision_size(
+    model: mujoco.MjModel, state: mujoco.MjData, link: LinkBinding, diagnostics: Diagnostics
+) -> None:
     """Report a collision that is much larger than the visuals."""
     solid, drawn = (_corners(model, state, ids) for ids in (link.geoms, link.visuals))
     if solid is None or drawn is None or any(_is_unbounded(model, g) for g in (*link.geoms, *link.visuals)):
@@ -109,7 +113,7 @@ def _check_collision_size(model: mujoco.MjModel, state: mujoco.MjData, link: Lin
             f"link {link.scoped!r}: its collisions fill {_box_in_words(solid)} m, "
             f"its visuals only {_box_in_words(drawn)} m"
         )
-        found.warning("SK-LINT-010", message, link.scene.where, "check the scale of the collision's mesh")
+        diagnostics.warning("SK-LINT-010", message, link.scene.where, "check the scale of the collision's mesh")
 
 
 def _total_inertia(model: mujoco.MjModel, data: mujoco.MjData, bodies: Iterable[int]) -> tuple[float, Floats, Floats]:

@@ -14,23 +14,25 @@ LONGEST_STEP: Final = 0.005
 """Longest step [s]; with a longer one a body at 1 m/s penetrates the ground by more than 5 mm before contact."""
 
 
-def check_time_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
+def check_time_step(world: SceneWorld, compiled: Compiled, diagnostics: Diagnostics) -> None:
     """Report a step too long for contacts, and sensor rates whose period is not a whole number of steps."""
     step = world.physics.max_step_size
-    _check_step(world, compiled, found)
+    _check_step(world, compiled, diagnostics)
     for model in world.models:
         for sensor in model.all_sensors():
             text = rate_pattern(sensor.rate, step)
             if text and sensor.rate * step <= 1:  # loading the world already reports a rate above the step rate
-                found.note("SK-LINT-002", f"sensor {sensor.scoped!r}: {text}", sensor.where, _rate_hint(sensor.rate))
+                diagnostics.note(
+                    "SK-LINT-002", f"sensor {sensor.scoped!r}: {text}", sensor.where, _rate_hint(sensor.rate)
+                )
 
 
-def _check_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
+def _check_step(world: SceneWorld, compiled: Compiled, diagnostics: Diagnostics) -> None:
     step = world.physics.max_step_size
     weld = compiled.model.body_weldid  # 0 for a body that cannot move
     moving = [b for b in compiled.names.links.values() if not b.static and b.geoms and weld[b.body] != 0]
     if step > LONGEST_STEP and moving:
-        found.warning(
+        diagnostics.warning(
             "SK-LINT-001",
             f"the step is {step * 1e3:g} ms and {len(moving)} moving links collide: contacts get soft or unstable "
             f"beyond {LONGEST_STEP * 1e3:g} ms",
