@@ -434,7 +434,7 @@ def test_the_memory_of_this_process_stays_small():
 
 @pytest.fixture
 def neighbours(write):
-    """Return a world of alice, `home/alice/proj/worlds/w.sdf`, which names URI, and a model of bob beside her folder."""
+    """Return a maker of `home/alice/proj/worlds/w.sdf`, which includes a URI; a model of bob is in `home`."""
     for name in ("home/bob/private/model.sdf", "home/alice/proj/secret/model.xml", "home/alice/notes/model.xml"):
         write(name, '<sdf version="1.9"><model name="m"><link name="l"/></model></sdf>')
 
