@@ -215,9 +215,9 @@ def bounce_solref(restitution: float, timestep: float) -> tuple[float, float]:
 
     MuJoCo drives a contact with penetration r and velocity v towards the acceleration −b v − k r. With b = (1 + e) /
     dt, the velocity v at the beginning of a step becomes −e v in that step, at any speed, mass and number of contact
-    points. MuJoCo divides b by the impedance. The stiffness k only lets the body come to rest. In one rebound, the
-    spring adds at most a quarter of the energy that the impedance removes. The energy of a single contact therefore
-    never rises.
+    points. MuJoCo divides b by the impedance, which removes some energy in every rebound. The stiffness k is needed
+    only for a body at rest. In one rebound it adds at most a quarter of the removed energy. The energy of a single
+    contact therefore never rises.
     """
     impedance = BOUNCE_SOLIMP[1]
     rate = (1.0 + min(restitution, 1.0)) / timestep

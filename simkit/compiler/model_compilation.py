@@ -155,7 +155,7 @@ _DERIVED: Final[tuple[tuple[str, Callable[[mujoco.MjModel, int], str]], ...]] = 
 
 
 def check_derived_numbers(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where) -> None:
-    """Raise LoadError (SK-PHYS-028) if masses, inertias or distances differ so much that sums overflow.
+    """Raise LoadError (SK-PHYS-028) if masses, inertias or distances differ too much for the engine.
 
     Each number of the file may be valid by itself. But the mass matrix for 1e-9 kg on a lever of 1e8 m has no inverse
     in double precision, and the engine would compute NaN.

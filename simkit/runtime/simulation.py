@@ -155,8 +155,8 @@ class Simulation:
     def snapshot(self) -> Snapshot:
         """Return the whole state; a run that is restored to it repeats bit for bit.
 
-        A snapshot that a hook or a callback requests is taken at the end of the present step, and complete from then
-        on.
+        If a hook or a callback requests a snapshot, the state is stored in the snapshot at the end of the present step.
+        Use this snapshot only after the step.
         """
         self.engine.check_open()
         snapshots = self.contents.spawner.snapshots

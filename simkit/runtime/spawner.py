@@ -193,7 +193,7 @@ class Spawner:
             raise first
 
     def make_movable(self, name: str) -> bool:
-        """Replace the links of a static model by bodies that follow their set pose.
+        """Replace the links of a static model by mocap bodies, which stay at the pose that the user sets.
 
         Returns:
             False if the model is already movable.

@@ -190,7 +190,7 @@ class WorldContents:
 
     @journaled
     def make_movable(self, name: str) -> None:
-        """Make a static top-level model movable: its links become bodies that follow their set pose."""
+        """Make a static top-level model movable: its links become mocap bodies, which stay at the pose that is set."""
         if self.spawner.make_movable(name):
             self._engine.reschedule()
 

@@ -124,7 +124,7 @@ class NoiseState:
     """State of a sensor's noise at one sample. Each sample gets a new object, and no object is modified.
 
     Attributes:
-        interval: constants for the time since the previous sample.
+        interval: standard deviation and drift factors for the time since the previous sample.
         biases: current values of each drifting bias.
         constant: sum of all noise except white noise, shape (channels,).
     """

@@ -213,7 +213,7 @@ class GazeboRosDiffDrive(CommandedDrive):
     is_level = False  # whether the height in the odometry is 0
 
     def read(self, params: Params) -> CommonDiffDriveOptions:
-        """Return the options, in the spelling of the file."""
+        """Read the options, with the element names of ROS 1 or ROS 2 that the file uses."""
         return read_options(params)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:

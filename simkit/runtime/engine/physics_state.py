@@ -332,7 +332,7 @@ def set_speculative(model: mujoco.MjModel, is_on: bool) -> None:
 
 
 def _accelerations_by_control(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
-    """Return the acceleration of the driven body for a change of each control by 1 [m/s²], shape (nu,)."""
+    """Return the acceleration [m/s²] of the driven body that one unit of each control causes, shape (nu,)."""
     found = np.zeros(model.nu)
     for i in range(model.nu):
         if model.actuator_trntype[i] == mujoco.mjtTrn.mjTRN_JOINT:

@@ -132,10 +132,10 @@ class TickGrid:
 
 
 class ShiftedTickGrid:
-    """Ticks ceil(phase + k·period) + jitter(k), k = 0, 1, 2, …, but not before tick 1.
+    """Ticks ceil(phase + k·period) + round(spread·jitter(k)), k = 0, 1, 2, …, but not before tick 1.
 
-    The ticks follow from k alone, so that any range of them can be computed without the previous ones. The jitter is a
-    whole number of ticks, so that it is early as often as late.
+    The ticks follow from k alone, so that any range of them can be computed without the previous ones. The jitter is
+    rounded outside `ceil`, so that samples are early as often as they are late.
 
     Args:
         period: period [ticks], at least 1.

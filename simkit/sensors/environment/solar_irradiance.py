@@ -45,7 +45,8 @@ class SolarOptions:
 
     Attributes:
         shadow: True if an object between sensor and light makes a reading invalid.
-        towards: `direction` points against the rays of a directional light; `position` points at the light's pose.
+        towards: direction from the sensor to the light: `direction` is opposite to the rays of a directional light,
+            `position` is from the sensor to the pose of the light.
         irradiance: irradiance of a surface that faces the light [W/m²], for a lamp at 1 m; None uses the light's value.
         falloff: rule by which a lamp fades with the distance; see `illumination.falloff_factor`.
         normal: unit vector out of the sensor's face, sensor frame.

@@ -174,7 +174,7 @@ class SolarSensor(Sensor):
         return self._measure(model, data, motion.at(sample.time_ns) if motion is not None else None)
 
     def _measure(self, model: mujoco.MjModel, data: mujoco.MjData, state: LightState | None) -> SolarReading:
-        """Return the reading with the light's state at the time of the data; None means that there is no light."""
+        """Compute the reading from the light's state at the time of `data`; `state` is None if there is no light."""
         if self._view is None or state is None:
             return NO_LIGHT
         return self._view.measure(model, data, state, *self._frame_in_world(data))

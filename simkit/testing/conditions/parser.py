@@ -123,7 +123,7 @@ def parse(source: str) -> syntax.Expression:
 
 
 class _Parser:
-    """Parser of one expression; the token of a quoted text includes the quotes, so no operator or name equals it."""
+    """Parser of one expression; a quoted text keeps its quotes in its token, so that it is never read as a name."""
 
     def __init__(self, source: str) -> None:
         self._source = source
