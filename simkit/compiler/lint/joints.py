@@ -183,8 +183,8 @@ def _check_loads(compiled: Compiled, diagnostics: Diagnostics) -> None:
             diagnostics.warning(
                 "SK-LINT-006",
                 f"{owners[heavy]} ({masses[heavy]:.4g} kg) stands on {owners[light]} ({masses[light]:.4g} kg). The "
-                f"mass ratio is {masses[heavy] / masses[light]:.0f}. With a ratio above {LARGEST_LOAD_RATIO:g}, the upper "
-                "link sinks into the lower link by more than 1 mm",
+                f"mass ratio is {masses[heavy] / masses[light]:.0f}. With a ratio above {LARGEST_LOAD_RATIO:g}, the "
+                "upper link sinks into the lower link by more than 1 mm",
                 compiled.names.link(owners[light]).scene.where,
                 "give the lower link more mass",
             )
