@@ -27,7 +27,7 @@ def test_a_text_that_is_not_a_number_stays_a_text(text: str) -> None:
         ("!!bool foo", "a value does not fit its type"),
         ("!!int foo", "invalid literal"),
         ("!!float foo", "could not convert"),
-        ("9" * 5000, "400 digits"),
+        ("9" * 5000, "1000 digits"),
         ("&a {x: *a}", "nested too deep"),
         ("&a [*a]", "nested too deep"),
         ("[" * 3000, "nested too deep"),
@@ -65,8 +65,8 @@ def test_finite_number_returns_none_for_other_values(value: object) -> None:
     assert finite_number(value) is None and finite_number(10**20) == 1e20
 
 
-@pytest.mark.parametrize("digits", ["0x" + "f" * 5000, "9" * 5000, "0b" + "1" * 500], ids=["hex", "decimal", "binary"])
+@pytest.mark.parametrize("digits", ["0x" + "f" * 5000, "9" * 5000, "0b" + "1" * 1500], ids=["hex", "decimal", "binary"])
 def test_an_integer_with_more_digits_than_a_message_can_show_is_not_yaml(digits: str) -> None:
-    with pytest.raises(NotYaml, match="an integer has more than 400 digits") as raised:
+    with pytest.raises(NotYaml, match="an integer has more than 1000 digits") as raised:
         read_yaml(f"a: 1\nworld: {digits}\n")
     assert raised.value.line == 2

@@ -434,12 +434,12 @@ def test_the_memory_of_this_process_stays_small():
 
 @pytest.fixture
 def neighbours(write):
-    """Return a maker of `home/alice/proj/worlds/w.sdf`, which includes a URI; a model of bob is in `home`."""
-    for name in ("home/bob/private/model.sdf", "home/alice/proj/secret/model.xml", "home/alice/notes/model.xml"):
+    """Return a maker of `people/alice/proj/worlds/w.sdf`, which includes a URI; a model of bob is in `people`."""
+    for name in ("people/bob/private/model.sdf", "people/alice/proj/secret/model.xml", "people/alice/notes/model.xml"):
         write(name, '<sdf version="1.9"><model name="m"><link name="l"/></model></sdf>')
 
     def _world(uri: str) -> Path:
-        return write("home/alice/proj/worlds/w.sdf", WORLD.format(f"<include><uri>{uri}</uri></include>"))
+        return write("people/alice/proj/worlds/w.sdf", WORLD.format(f"<include><uri>{uri}</uri></include>"))
 
     return _world
 
@@ -447,9 +447,9 @@ def neighbours(write):
 @pytest.mark.parametrize(
     "uri",
     [
-        "model://home/bob/private",
-        "model://home/bob/private/model.sdf",
-        "package://home/bob/private/model.sdf",
+        "model://people/bob/private",
+        "model://people/bob/private/model.sdf",
+        "package://people/bob/private/model.sdf",
         "package://anything/bob/private/model.sdf",
         "package://anything/secret/model.xml",
         "model://alice/notes/model.xml",
@@ -463,5 +463,5 @@ def test_a_world_opens_no_folder_near_it_that_is_neither_a_model_nor_a_package(n
 
 @pytest.mark.parametrize("manifest", ["model.config", "package.xml"])
 def test_a_world_finds_its_own_model_or_package_by_the_name_of_the_folder(neighbours, write, manifest):
-    write(f"home/alice/proj/{manifest}", "<package><name>proj</name></package>")
+    write(f"people/alice/proj/{manifest}", "<package><name>proj</name></package>")
     assert errors(neighbours("model://proj/secret/model.xml")) == []

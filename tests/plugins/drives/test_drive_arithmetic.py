@@ -27,7 +27,7 @@ def test_missing_elements_of_a_ros_2_file_get_gazebos_defaults() -> None:
     (pair,) = found.pairs
     assert (pair.left, pair.right, pair.separation, pair.radius) == ("l", "r", 0.34, 0.075)
     assert (found.update_rate, found.max_wheel_torque, found.max_wheel_acceleration) == (100.0, 5.0, 0.0)
-    assert not (found.publish_odom or found.tells_odom_tf or found.publish_wheel_tf or found.from_encoders)
+    assert not (found.publish_odom or found.publishes_odom_tf or found.publish_wheel_tf or found.from_encoders)
     assert (found.odometry_frame, found.robot_base_frame) == ("odom", "base_footprint")
     assert (found.covariance_x, found.covariance_y, found.covariance_yaw) == (1e-5, 1e-5, 1e-3)
 
@@ -36,12 +36,12 @@ def test_missing_elements_of_a_ros_1_file_get_gazebos_defaults() -> None:
     found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b"}))
     (pair,) = found.pairs
     assert (pair.left, pair.right, pair.separation, pair.radius) == ("a", "b", 0.34, 0.075)
-    assert found.publish_odom and found.tells_odom_tf and not found.from_encoders
+    assert found.publish_odom and found.publishes_odom_tf and not found.from_encoders
 
 
 def test_ros_1_without_transforms_has_no_odometry_and_older_files_swap_the_wheels() -> None:
     found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b", "publishTf": False}))
-    assert not (found.publish_odom or found.tells_odom_tf)
+    assert not (found.publish_odom or found.publishes_odom_tf)
     params = Params.from_dict({"leftJoint": "a", "rightJoint": "b", "legacyMode": True, "rosDebugLevel": "na"})
     (pair,) = read_options(params).pairs
     assert (pair.left, pair.right) == ("b", "a")
