@@ -23,6 +23,7 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
+    context_settings={"help_option_names": ["--help", "-h"]},
 )
 COMMANDS = {
     "run": "Run a world without a window, as fast as possible.",
@@ -77,4 +78,4 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character must not end the run
-    app()
+    app(prog_name="simkit")  # also for `python -m simkit`, whose name has no shell completion

@@ -9,7 +9,7 @@ from typer import Option
 
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
-from simkit.cli.terminal.options import argument, option
+from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.errors import InputError, SimkitError
 from simkit.writers.atomic_output import check_file
@@ -17,7 +17,7 @@ from simkit.writers.atomic_output import check_file
 
 @report_errors
 def bundle(
-    world: Annotated[str, argument("World, model or scenario file.", "WORLD")],
+    world: options.Scenario,
     output: Annotated[Path, option("Bundle to write.", "FILE.zip", "--output", "-o")],
     duration: Annotated[
         float | None, option("Simulated seconds to run; default: the scenario's, else 10.", "S", min=0)

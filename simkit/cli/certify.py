@@ -8,7 +8,7 @@ from typing import Annotated
 
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
-from simkit.cli.terminal.options import argument, option
+from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_json, print_status, report_errors, stdout_console
 from simkit.writers.atomic_output import check_writable, write_atomically
 
@@ -18,7 +18,7 @@ _DEFAULT_DURATION = 5.0  # [s] for a world without a scenario
 
 @report_errors
 def certify(
-    world: Annotated[str, argument("World or scenario file (.yaml, .py).", "WORLD|SCENARIO")],
+    world: options.Scenario,
     duration: Annotated[float | None, option("Simulated seconds; default: the scenario's, else 5.", "S", min=0)] = None,
     seed: options.Seed = None,
     runs: Annotated[int, option("Number of runs, each in a fresh process.", "N")] = 6,

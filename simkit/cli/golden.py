@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
@@ -201,7 +201,7 @@ golden = typer.Typer(help="Record and compare golden runs (reference sensor outp
 @golden.command()
 @report_errors
 def record(
-    world: Annotated[str, Argument(help="Scenario (.yaml, .py), world or bare name.", metavar="WORLD|SCENARIO")],
+    world: options.Scenario,
     out_: Annotated[Path, option("Folder to write.", "DIR", "--out", "-o")],
     duration: Annotated[float | None, option("Simulated seconds; default: the scenario's, or 10.", "S", min=0)] = None,
     seed: options.Seed = None,

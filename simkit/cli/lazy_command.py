@@ -5,6 +5,7 @@ A shell completion or a command for a running simulation therefore imports one m
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from functools import partial
 from importlib import import_module
@@ -20,6 +21,9 @@ Context = Any
 # Parameter of click.
 Parameter = Any
 
+_SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
+_COMPLETION_CALLBACKS = {"--show-completion": "show_callback", "--install-completion": "install_callback"}
+
 
 class Commands(TyperGroup):
     """Group of all commands of the command line."""
@@ -32,6 +36,17 @@ class Commands(TyperGroup):
             self._is_spared = True
             _bypass_conversion(self)
         return super().make_context(info_name, args, parent, **extra)
+
+    def parse_args(self, ctx: Context, args: list[str]) -> list[str]:
+        """Parse the options before the command; `--show-completion` and `--install-completion` accept a shell."""
+        name, _, shell = "=".join(args[:2]).partition("=")
+        if name in _COMPLETION_CALLBACKS and shell and not shell.startswith("-") and not ctx.resilient_parsing:
+            if shell not in _SHELLS:
+                raise typer.BadParameter(f"{shell!r} is not one of {', '.join(_SHELLS)}", param_hint=name)
+            if os.environ.get("NO_COLOR"):
+                ctx.color = False  # click does not read the variable
+            getattr(import_module("typer.completion"), _COMPLETION_CALLBACKS[name])(ctx, None, shell)
+        return super().parse_args(ctx, args)
 
 
 class DeferredCommand(TyperCommand):

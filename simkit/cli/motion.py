@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer import Argument, Option
 
-from simkit.cli.terminal import options
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
@@ -34,7 +34,10 @@ OfModel = Annotated[str | None, option("Robot that plays the motions, if the wor
 @motion.command("list")
 @report_errors
 def list_motions(
-    file: Annotated[str, Argument(help="Robot, world with a robot, or motion file.", metavar="[FILE]")] = ROBOT,
+    file: Annotated[
+        str,
+        Argument(help="Robot, world with a robot, or motion file.", metavar="[FILE]", autocompletion=completion.worlds),
+    ] = ROBOT,
     motions: Motions = [],
     model: OfModel = None,
     json_: options.Json = False,
@@ -70,9 +73,14 @@ def list_motions(
 @report_errors
 def play(
     names: Annotated[list[str], argument("Motions to play, one after another.", "MOTION...")],
-    world: Annotated[str | None, option("World (a file or a bare name); default: level ground.", "WORLD")] = None,
+    world: Annotated[
+        str | None, option("World (a file or a bare name); default: level ground.", "WORLD", complete=completion.worlds)
+    ] = None,
     robot: Annotated[
-        str | None, option(f"Robot (a file or a bare name); default without --world: {ROBOT}.", "MODEL")
+        str | None,
+        option(
+            f"Robot (a file or a bare name); default without --world: {ROBOT}.", "MODEL", complete=completion.worlds
+        ),
     ] = None,
     motions: Motions = [],
     model: OfModel = None,

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from simkit.cli.plot_sources import PlotRequest, draw_chart, split_sources_and_fields
 from simkit.cli.run_options import load_options, scenario_spec
-from simkit.cli.terminal import options
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import report_errors_quietly
 
@@ -20,6 +20,7 @@ def plot(
         argument(
             "One or more worlds, scenarios or bags, then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
             "WORLD-or-BAG... FIELD...",
+            completion.scenarios,
         ),
     ],
     output: options.ChartFile = Path("plot.svg"),

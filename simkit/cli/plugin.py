@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer import Option
 
-from simkit.cli.terminal import options
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
@@ -100,7 +100,13 @@ def show_info(
 def new_plugin(
     name: Annotated[str | None, argument("Name of the plugin: wheel_brake, WheelBrake or libwheel_brake.so.")] = None,
     from_: Annotated[
-        str | None, option("Create a plugin for each unknown plugin library of this world.", "WORLD", "--from")
+        str | None,
+        option(
+            "Create a plugin for each unknown plugin library of this world.",
+            "WORLD",
+            "--from",
+            complete=completion.worlds,
+        ),
     ] = None,
     on: Annotated[str, Option(help="Parent element of the plugin: world, model, visual or sensor.")] = "model",
     folder: Annotated[Path, option("Folder for the new files.", "DIR")] = Path(),

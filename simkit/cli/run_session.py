@@ -236,14 +236,18 @@ class Session:
         return Teleop(self.sim, find_target(self.sim, display.teleop), display.key_timeout)
 
     def _keyboard(self) -> Keyboard | WindowsKeyboard | None:
-        """Open the terminal's keyboard if teleop is on or the output goes to the terminal.
+        """Open the terminal's keyboard for teleop, or if the options pause the run and its output is on the terminal.
 
-        If the output goes to a pager, the pager reads the keys. simkit then reads them only for teleop.
+        Keys that are typed during any other run are for the shell, which reads them after the run. If the output goes
+        to a pager, the pager reads the keys. simkit then reads them only for teleop.
         """
         from simkit.cli.terminal.keyboard import open_keyboard
 
-        if self._teleop is None and (sys.stdout is None or sys.stdout.closed or not sys.stdout.isatty()):
-            return None
+        if self._teleop is None:
+            is_paused_by_options = self.spec.paused or self.spec.steps is not None
+            has_output = sys.stdout is not None and not sys.stdout.closed and sys.stdout.isatty()
+            if not (is_paused_by_options and has_output):
+                return None
         return open_keyboard(sys.stdin)
 
     def _connect_keys(self, keyboard: Keyboard | WindowsKeyboard, loop: RunLoop) -> None:
@@ -261,7 +265,7 @@ class Session:
 
         if self._teleop is None:
             return Progress(self.sim, counter, duration, stdout_console())
-        console = stdout_console() if stdout_console().is_terminal else stderr_console()
+        console = stdout_console() if stdout_console().is_interactive else stderr_console()
         return Progress(self.sim, counter, duration, console, DriverLine(self.sim, self._teleop).lines)
 
     def _hold(self) -> None:

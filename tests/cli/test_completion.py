@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -59,6 +60,64 @@ def completed(line: str) -> list[str]:
 )
 def test_names_are_completed(line: str, offered: list[str], yard: Any) -> None:
     assert completed(line) == offered
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "run",
+        "check",
+        "inspect",
+        "bench",
+        "convert",
+        "vendor",
+        "bundle",
+        "certify",
+        "golden record",
+        "run empty --spawn",
+    ],
+)
+def test_the_names_of_bundled_worlds_are_completed(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert completed(f"simkit {command} turtlebot3_w") == [
+        "turtlebot3_waffle",
+        "turtlebot3_waffle_pi",
+        "turtlebot3_world",
+    ]
+
+
+def test_files_are_completed_by_their_suffix_and_a_single_folder_by_its_content(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "labs" / "one").mkdir(parents=True)
+    for name in ("labs/one/maze.world", "labs/one/maze.txt", "mazes.yaml", "maze.sdf", ".maze.sdf"):
+        (tmp_path / name).touch()
+    monkeypatch.chdir(tmp_path)
+    assert completed("simkit run maz") == ["maze.sdf"]
+    assert completed("simkit golden record maz") == ["maze.sdf", "mazes.yaml"]
+    assert completed("simkit run la") == ["labs/one/maze.world"]
+    (tmp_path / "labs" / "two").mkdir()
+    assert completed("simkit run la") == ["labs/one/", "labs/two/"]
+    assert completed("simkit run no/such/folder/") == []
+
+
+@pytest.mark.parametrize("line", ["run", "topic echo", "golden check", "plugin new", ""])
+def test_h_is_the_same_as_help(line: str) -> None:
+    short, long = (CliRunner().invoke(app, [*line.split(), option]) for option in ("-h", "--help"))
+    assert short.exit_code == 0
+    assert short.stdout == long.stdout
+    assert "Usage: " in short.stdout
+
+
+def test_the_script_of_a_named_shell_is_shown_and_an_unknown_shell_is_an_error() -> None:
+    for shell in ("bash", "zsh", "fish"):
+        shown = CliRunner().invoke(app, ["--show-completion", shell], prog_name="simkit")
+        assert f"_SIMKIT_COMPLETE=complete_{shell}" in shown.stdout
+    unknown = CliRunner().invoke(app, ["--show-completion", "tcsh"], prog_name="simkit")
+    assert unknown.exit_code == 2
+    assert "'tcsh' is not one of bash, zsh, fish" in unknown.stderr
 
 
 def test_without_a_simulation_completion_offers_and_prints_nothing(place: Any) -> None:

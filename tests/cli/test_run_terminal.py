@@ -19,6 +19,7 @@ from mcap.reader import make_reader
 from typer.main import get_command
 from typer.testing import CliRunner
 
+import simkit.live
 from simkit.cli import app
 from simkit.cli.run import highest_pace
 from simkit.cli.terminal.output import report_errors
@@ -30,6 +31,7 @@ from tests.cli.terminals import Terminal
 
 pytestmark = pytest.mark.slow  # a process each, some of them a shell's
 
+STYLE = r"\x1b\[[\d;]*m"
 SLED = """
 <sdf version="1.9"><world name="w"><model name="sled"><pose>0 0 1 0 0 0</pose><link name="base"/>
   <plugin filename="gz-sim-velocity-control-system" name="gz::sim::systems::VelocityControl"/>
@@ -96,7 +98,7 @@ def test_a_drive_by_keys_has_the_bits_of_the_same_drive_by_a_script(
     assert state(result.stdout) == driven
 
 
-def test_space_pauses_and_n_steps_in_every_run_on_a_terminal(folder: Path) -> None:
+def test_space_resumes_and_n_steps_a_run_that_its_options_pause(folder: Path) -> None:
     with run(folder, "--step", 7, "--duration", 1) as terminal:
         terminal.wait_for(r"paused at t=0\.007 s: space resumes, n advances one step")
         terminal.press("n.")
@@ -104,6 +106,50 @@ def test_space_pauses_and_n_steps_in_every_run_on_a_terminal(folder: Path) -> No
         terminal.press(" ")
         assert terminal.wait() == 0
         assert "simulated 1.000 s" in terminal.seen
+
+
+def test_keys_typed_during_a_run_do_not_pause_it_and_are_there_after_it(folder: Path) -> None:
+    with run(folder, "--duration", 2, "--rtf", 1) as terminal:
+        terminal.wait_for("t = ")
+        assert terminal.shows_keys()
+        terminal.press(" n ls\n")
+        assert terminal.wait() == 0
+        assert "paused" not in terminal.seen
+        assert "simulated 2.000 s" in terminal.seen
+        assert os.read(terminal.near, 100) == b" n ls\n"
+
+
+def test_a_run_that_a_service_paused_has_no_keys_and_says_so(folder: Path, place: Path) -> None:
+    with run(folder, "--duration", 1000) as terminal:
+        terminal.wait_for("t = ")
+        with simkit.live.connect() as client:
+            assert client.call("/world/w/control", {"world_control": {"pause": True}}).success
+            terminal.wait_for(r"paused at t=[\d.]+ s until a service resumes it \(Ctrl-C ends\)")
+            terminal.press("   \n")
+            terminal.wait_for("paused")
+            assert client.state()["paused"]
+            assert client.state()["tick"] == client.state()["tick"]
+            assert client.call("/world/w/control", {"world_control": {"pause": False}}).success
+        moving(terminal)
+        terminal.press("\x03")
+        assert terminal.wait() == 130
+
+
+@pytest.mark.parametrize(
+    ("environment", "unwanted"),
+    [({"NO_COLOR": "1"}, STYLE), ({"NO_COLOR": "1", "FORCE_COLOR": "1"}, STYLE), ({"TERM": "dumb"}, "\x1b")],
+)
+def test_no_color_and_a_dumb_terminal_get_no_styles(folder: Path, environment: dict[str, str], unwanted: str) -> None:
+    (folder / "bad.sdf").write_text('<sdf version="1.9"><world name="w"><model name="m"><lnk/></model></world></sdf>')
+    with run(folder, "--duration", 1, "--rtf", 1, "--assert", "1 > 2", environment=environment) as terminal:
+        assert terminal.wait() == 5
+        assert "FAILED" in terminal.seen
+        assert re.findall(unwanted, terminal.seen) == []
+    command = (sys.executable, "-m", "simkit", "check", "bad.sdf")
+    with Terminal(*command, cwd=folder, environment=environment) as terminal:
+        terminal.wait()
+        assert "SK-" in terminal.seen
+        assert re.findall(unwanted, terminal.seen) == []
 
 
 def test_ctrl_c_ends_a_drive_and_leaves_the_terminal_as_it_was(folder: Path) -> None:

@@ -69,6 +69,49 @@ def _topic_before(ctx: typer.Context) -> str:
     return absolute_name(found) if found else ""
 
 
+_WORLD_SUFFIXES = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".model", ".mjcf")
+_SCENARIO_SUFFIXES = (".yaml", ".yml", ".py")
+
+
+@_silent
+def worlds(ctx: typer.Context) -> Iterable[str]:
+    """Complete names of bundled worlds and models, and world and model files."""
+    return _worlds_and_files(ctx, _WORLD_SUFFIXES)
+
+
+@_silent
+def scenarios(ctx: typer.Context) -> Iterable[str]:
+    """Complete the same names as `worlds`, and scenario files."""
+    return _worlds_and_files(ctx, _WORLD_SUFFIXES + _SCENARIO_SUFFIXES)
+
+
+def _worlds_and_files(ctx: typer.Context, suffixes: tuple[str, ...]) -> list[str]:
+    from simkit.loaders.resources.bundled_models import bundled_names
+
+    incomplete = ctx.meta[_INCOMPLETE]
+    return list(dict.fromkeys([*bundled_names(), *_files(incomplete, suffixes)]))
+
+
+def _files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
+    """Return the files and folders that begin with `incomplete`.
+
+    A single folder is replaced by its content, because a shell ends a single completion with a space.
+    """
+    base, _, beginning = incomplete.rpartition("/")
+    folder = f"{base}/" if "/" in incomplete else ""
+    found: list[str] = []
+    with os.scandir(folder or ".") as entries:
+        for entry in entries:
+            is_folder = entry.is_dir()
+            if not entry.name.startswith(beginning) or (entry.name.startswith(".") and not beginning):
+                continue
+            if is_folder or entry.name.lower().endswith(suffixes):
+                found.append(f"{folder}{entry.name}/" if is_folder else f"{folder}{entry.name}")
+    if len(found) == 1 and found[0].endswith("/") and found[0] != incomplete:
+        return _files(found[0], suffixes) or found
+    return sorted(found)
+
+
 @_silent
 def simulations(_: typer.Context) -> Iterable[str]:
     """Complete names of running simulations."""

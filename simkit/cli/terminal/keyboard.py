@@ -200,7 +200,7 @@ class Keyboard:
     def _suspend(self, number: int, _: FrameType | None) -> None:
         """Restore the terminal and its cursor for the shell, then stop the process as Ctrl-Z does."""
         self._restore_modes(drop_keys=False)
-        if sys.stdout is not None and _is_terminal(sys.stdout.fileno):
+        if sys.stdout is not None and _is_terminal(sys.stdout.fileno) and os.environ.get("TERM") != "dumb":
             os.write(sys.stdout.fileno(), _SHOW_CURSOR)
         before = signal.signal(number, signal.SIG_DFL)
         signal.pthread_kill(

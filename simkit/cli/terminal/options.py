@@ -64,8 +64,13 @@ def argument(help: str, metavar: str | None = None, complete: completion.Complet
     return info
 
 
-World = Annotated[str, argument("World or model file, or the bare name of a world or model of simkit.")]
-File = Annotated[str, argument("World or model file, or a bare name.")]
+World = Annotated[
+    str, argument("World or model file, or the bare name of a world or model of simkit.", complete=completion.worlds)
+]
+File = Annotated[str, argument("World or model file, or a bare name.", complete=completion.worlds)]
+Scenario = Annotated[
+    str, argument("Scenario (.yaml, .py), world or bare name.", "WORLD|SCENARIO", completion.scenarios)
+]
 ResourcePaths = Annotated[
     list[Path],
     option("Search folder for model://, package:// and relative URIs; repeatable.", "DIR", "--resource-path"),
@@ -88,7 +93,12 @@ ParamsFiles = Annotated[
 Overrides = Annotated[
     list[str], option("Override one value: scoped::name.element=VALUE; repeatable.", "PATH=VALUE", "--set")
 ]
-Spawns = Annotated[list[str], option("Spawn a model, by name or file; repeatable.", "MODEL:x,y,yaw[:name]", "--spawn")]
+Spawns = Annotated[
+    list[str],
+    option(
+        "Spawn a model, by name or file; repeatable.", "MODEL:x,y,yaw[:name]", "--spawn", complete=completion.worlds
+    ),
+]
 CmdVel = Annotated[str | None, option("Send a constant velocity: m/s forward, rad/s left.", "V,W", "--cmd-vel")]
 Script = Annotated[Path | None, option("Script of timed commands.", "FILE.yaml", "--script")]
 Seed = Annotated[int | None, option("Seed of all random streams.", "N", "--seed", min=0)]

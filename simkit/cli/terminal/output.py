@@ -6,6 +6,7 @@ import errno
 import functools
 import json
 import math
+import os
 import signal
 import sys
 import traceback
@@ -38,17 +39,37 @@ _STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 @functools.cache
 def stdout_console() -> Console:
     """Console of standard output."""
-    from rich.console import Console
-
-    return Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
+    return _console(is_error=False)
 
 
 @functools.cache
 def stderr_console() -> Console:
     """Console of standard error."""
+    return _console(is_error=True)
+
+
+def _console(*, is_error: bool) -> Console:
+    """Create a console.
+
+    `FORCE_COLOR` makes rich write styles into a pipe or a file. A progress display still needs a real terminal.
+    """
     from rich.console import Console
 
-    return Console(stderr=True, highlight=False, markup=False, emoji=False, soft_wrap=True)
+    stream = sys.stderr if is_error else sys.stdout
+    return Console(
+        stderr=is_error,
+        highlight=False,
+        markup=False,
+        emoji=False,
+        soft_wrap=True,
+        color_system=None if is_plain() else "auto",
+        force_interactive=None if stream is not None and stream.isatty() else False,
+    )
+
+
+def is_plain() -> bool:
+    """Check whether the environment forbids colours and styles; rich alone would keep bold and dim text."""
+    return bool(os.environ.get("NO_COLOR")) or os.environ.get("TERM", "").lower() in ("dumb", "unknown")
 
 
 def print_status(text: str) -> None:

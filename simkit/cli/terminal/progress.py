@@ -53,7 +53,7 @@ class Progress:
         self._live: Live | None = None
 
     def __enter__(self) -> Progress:
-        if self._console.is_terminal:
+        if self._console.is_interactive:
             from rich.live import Live
 
             # redirect the output of plugins only if it goes to the same terminal
