@@ -8,17 +8,19 @@ from typer import Option
 
 from simkit.cli.run_options import load_options
 from simkit.cli.terminal import options
+from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.cli.terminal.output import stdout_console
 from simkit.run_spec import RunSpec
 
 _HOUR = 3600.0
 
 
-@report_errors
+@report_errors_and_json
 def bench(
     world: options.World,
     rounds: Annotated[int, option("Number of measurements of simkit and of MuJoCo.", "N", min=1)] = 9,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     full: Annotated[bool, Option("--full", help="Measure memory over a simulated hour, not a minute.")] = False,
     resource_path: options.ResourcePaths = [],
     plugin_path: options.PluginPaths = [],
@@ -35,14 +37,26 @@ def bench(
 
     stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'goal':>8}")
     spec = RunSpec(world, options=load_options(resource_path, package_path, xacro_arg, base, plugin_path))
+    figures = []
     for figure in compare_with_bare_mujoco(spec, rounds=rounds):
+        figures.append(figure)
         bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"
         ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"
         aim = f"{figure.most * 1e6:.0f} µs" if figure.most else "" if figure.aim is None else f"{figure.aim:.2f}"
         stdout_console().print(
             f"{figure.name:<52}{figure.ours * 1e6:>9.1f} µs{bare:>12}{ratio:>8}{aim:>8}  a {figure.unit}"
         )
-    stdout_console().print(f"{'import simkit':<52}{measure_import_time(rounds):>9.3f} s{'':>21}{'0.3 s':>8}")
+    import_time = measure_import_time(rounds)
+    stdout_console().print(f"{'import simkit':<52}{import_time:>9.3f} s{'':>21}{'0.3 s':>8}")
     with load(spec.world, **spec.load_arguments()) as sim:
-        growth = measure_memory_growth(sim, _HOUR if full else 60.0)
-    stdout_console().print(f"{'memory':<52}{growth * _HOUR / 1e6:>9.2f} MB  a simulated hour")
+        growth = measure_memory_growth(sim, _HOUR if full else 60.0) * _HOUR
+    stdout_console().print(f"{'memory':<52}{growth / 1e6:>9.2f} MB  a simulated hour")
+    add_to_report(
+        figures=[
+            {"name": f.name, "unit": f.unit, "simkit": f.ours, "mujoco": f.bare, "ratio": f.ratio, "goal_ratio": f.aim,
+             "goal_time": f.most}
+            for f in figures
+        ],
+        import_time=import_time,
+        memory_growth=growth,
+    )  # fmt: skip

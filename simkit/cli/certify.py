@@ -8,15 +8,16 @@ from typing import Annotated
 
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
+from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import print_json, print_status, report_errors, stdout_console
+from simkit.cli.terminal.output import print_status, stdout_console
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 _DIFFERENT = 5
 _DEFAULT_DURATION = 5.0  # [s] for a world without a scenario
 
 
-@report_errors
+@report_errors_and_json
 def certify(
     world: options.Scenario,
     duration: Annotated[float | None, option("Simulated seconds; default: the scenario's, else 5.", "S", min=0)] = None,
@@ -39,7 +40,7 @@ def certify(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
-    json_: options.Json = False,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     output: Annotated[Path | None, option("Certificate to write, as JSON.", "FILE.json", "--out", "-o")] = None,
 ) -> int:
     """Verify that a run is bit-identical in different environments."""
@@ -56,21 +57,20 @@ def certify(
     if scenario.velocity is not None or scenario.script is not None:
         with open_scenario(scenario) as sim:
             scenario = resolve_commands(scenario, sim.topics())
-    if not json_:
-        stdout_console().print(certificate.table_header())
+    stdout_console().print(certificate.table_header())
     report = certify_scenario(
         scenario,
         runs=runs,
         jobs=jobs,
         wall_timeout=scenario.wall_timeout if wall_timeout is None else wall_timeout,
-        on_row=None if json_ else lambda row: stdout_console().print(certificate.table_row(row)),
+        on_row=lambda row: stdout_console().print(certificate.table_row(row)),
     )
-    if json_:
-        print_json(report.to_dict())
-    else:
-        for line in certificate.conclusion_text(report):
-            stdout_console().print(line)
+    for line in certificate.conclusion_text(report):
+        stdout_console().print(line)
+    code = 0 if report.passed else _DIFFERENT
+    data = {**report.to_dict(), "diagnostics": [], "exit_code": code}  # the file has the keys of the report, too
+    add_to_report(**data)
     if output is not None:
-        write_atomically(output, (json.dumps(report.to_dict(), indent=1) + "\n").encode())
+        write_atomically(output, (json.dumps(data, indent=1) + "\n").encode())
         print_status(f"wrote {output}")
-    return 0 if report.passed else _DIFFERENT
+    return code

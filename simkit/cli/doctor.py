@@ -8,8 +8,11 @@ import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
+from typing import Any
 
-from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.cli.terminal import options
+from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
+from simkit.cli.terminal.output import stdout_console
 from simkit.version import __version__
 
 _PACKAGES = (
@@ -52,12 +55,19 @@ print("OK", describe_renderer() or "renderer", "black" if picture.max() == pictu
 """
 
 
-@report_errors
-def doctor() -> int:
+@report_errors_and_json
+def doctor(json_: options.Json = False) -> int:  # noqa: ARG001 (`report_errors_and_json` reads it)
     """Check the installation and print a remedy for each problem."""
-    broken = _versions() + _engine()
-    unusable = _renderer()
-    _folders()
+    found: dict[str, str] = {}
+    broken = _versions(found) + _engine(found)
+    unusable = _renderer(found)
+    for name, value in found.items():
+        _line(name, value)
+    folders = _folders()
+    for folder in folders:
+        _line(folder["variable"], folder["folder"] + ("" if folder["exists"] else " (missing)"))
+    _line("installed in", _location())
+    add_to_report(found=found, folders=folders, installed_in=_location(), problems=[*broken, *unusable])
     for problem in (*broken, *unusable):
         stdout_console().print(problem, style="yellow")
     stdout_console().print("no problems found" if not (broken or unusable) else "problems found; see the lines above")
@@ -68,35 +78,36 @@ def _line(name: str, value: str) -> None:
     stdout_console().print(f"{name:<24}{value}")
 
 
-def _versions() -> list[str]:
-    _line("simkit", __version__)
-    _line("python", f"{platform.python_version()} ({sys.executable})")
-    _line("platform", f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores")
+def _versions(found: dict[str, str]) -> list[str]:
+    """Add the versions to `found`, and return the problems."""
+    found["simkit"] = __version__
+    found["python"] = f"{platform.python_version()} ({sys.executable})"
+    found["platform"] = f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
     problems = []
     for name in _PACKAGES:
         try:
-            _line(name, version(name))
+            found[name] = version(name)
         except PackageNotFoundError:
-            _line(name, "missing")
+            found[name] = "missing"
             problems.append(f"{name} is missing: pip install --force-reinstall simkit-robotics")
     return problems
 
 
-def _engine() -> list[str]:
+def _engine(found: dict[str, str]) -> list[str]:
     """Report the version of MuJoCo, and mixtures of 3.x and 4.x that an in-place upgrade can leave."""
-    found: dict[str, str] = {}
+    versions: dict[str, str] = {}
     for name in ("mujoco", "mujoco-core"):
         try:
-            found[name] = version(name)
+            versions[name] = version(name)
         except PackageNotFoundError:
-            found[name] = ""
-    _line("mujoco", f"{found['mujoco'] or 'missing'} (core {found['mujoco-core'] or 'missing'})")
+            versions[name] = ""
+    found["mujoco"] = f"{versions['mujoco'] or 'missing'} (core {versions['mujoco-core'] or 'missing'})"
     problems = []
-    if not found["mujoco"] or not found["mujoco-core"] or found["mujoco"] != found["mujoco-core"]:
+    if not versions["mujoco"] or not versions["mujoco-core"] or versions["mujoco"] != versions["mujoco-core"]:
         problems.append(
             f"mujoco and mujoco-core are missing or have different versions, as after an upgrade from 3.x: {_REINSTALL}"
         )
-    elif not found["mujoco"].startswith("4."):
+    elif not versions["mujoco"].startswith("4."):
         problems.append(f"simkit needs mujoco 4: {_REINSTALL}")
     probe = subprocess.run(
         [sys.executable, "-P", "-c", "import mujoco; print(mujoco.__version__)"],
@@ -110,13 +121,13 @@ def _engine() -> list[str]:
     return problems
 
 
-def _renderer() -> list[str]:
+def _renderer(found: dict[str, str]) -> list[str]:
     try:
         probe = subprocess.run(
             [sys.executable, "-P", "-c", _DRAW], capture_output=True, text=True, check=False, timeout=_RENDERER_TIMEOUT
         )
     except subprocess.TimeoutExpired:
-        _line("renderer", "hangs")
+        found["renderer"] = "hangs"
         return [
             f"rendering a small image took more than {_RENDERER_TIMEOUT:g} s; cameras and --picture do not work here"
         ]
@@ -125,21 +136,25 @@ def _renderer() -> list[str]:
         reason = (
             _last_line(probe.stderr) if probe.returncode >= 0 else f"the driver crashed with signal {-probe.returncode}"
         )
-        _line("renderer", "none (only cameras and --picture need one)")
+        found["renderer"] = "none (only cameras and --picture need one)"
         return [f"no renderer: {reason}"]
-    _line("renderer", answer.removeprefix("OK ").removesuffix(" black").strip())
+    found["renderer"] = answer.removeprefix("OK ").removesuffix(" black").strip()
     return ["the renderer draws only black images"] if answer.endswith(" black") else []
 
 
-def _folders() -> None:
-    for name in _FOLDERS:
-        for folder in filter(None, os.environ.get(name, "").split(os.pathsep)):
-            _line(name, folder if Path(folder).is_dir() else f"{folder} (missing)")
+def _folders() -> list[dict[str, Any]]:
+    return [
+        {"variable": name, "folder": folder, "exists": Path(folder).is_dir()}
+        for name in _FOLDERS
+        for folder in filter(None, os.environ.get(name, "").split(os.pathsep))
+    ]
+
+
+def _location() -> str:
     try:
-        location = str(distribution("simkit-robotics").locate_file(""))
+        return str(distribution("simkit-robotics").locate_file(""))
     except PackageNotFoundError:
-        location = "run from a checkout"
-    _line("installed in", location)
+        return "run from a checkout"
 
 
 def _last_line(text: str) -> str:

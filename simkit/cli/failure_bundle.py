@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from simkit.cli.terminal.json_report import add_to_report
 from simkit.cli.terminal.output import print_status
 from simkit.errors import InputError, SimkitError
 from simkit.run_spec import RunSpec
@@ -81,4 +82,5 @@ class FailureBundle:
         except (SimkitError, OSError) as error:
             print_status(f"no bundle was written: {error}")
         else:
+            add_to_report(bundle=str(path))
             print_status(f"bundle {path}; repeat the run with `simkit replay {path}`")

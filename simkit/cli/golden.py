@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import math
-import sys
 from collections.abc import Sequence
-from contextlib import chdir, nullcontext, redirect_stdout
+from contextlib import chdir
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,6 +14,7 @@ from typer import Option
 
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
+from simkit.cli.terminal.json_report import add_diagnostics, add_to_report, error_diagnostics, report_errors_and_json
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     JsonObject,
@@ -76,7 +75,6 @@ def report_results(
     blessed: bool = False,
     html: Path | None = None,
     junit: Path | None = None,
-    as_json: bool = False,
     quiet: bool = False,
 ) -> int:
     """Print results, the worst first, and write the requested reports.
@@ -86,7 +84,6 @@ def report_results(
         blessed: True if the differences were accepted as the new golden runs.
         html: HTML report to write.
         junit: JUnit XML report to write.
-        as_json: print one JSON value instead of text.
         quiet: print nothing about golden runs that passed.
 
     Returns:
@@ -99,12 +96,10 @@ def report_results(
         write_html(html, verdicts)
     if junit is not None:
         _write_junit(junit, results, verdicts)
-    if as_json:
-        stdout_console().print(
-            json.dumps([result_dict(result) for result in results], indent=2, ensure_ascii=False, allow_nan=False)
-        )
-    else:
-        _print_results(results, blessed=blessed, quiet=quiet)
+    _print_results(results, blessed=blessed, quiet=quiet)
+    found = [result_dict(result) for result in results]
+    add_to_report(passed=all(one["passed"] for one in found), results=found)
+    add_diagnostics(d for result in results if result.error is not None for d in error_diagnostics(result.error))
     for result in results:
         if result.error is not None:
             return int(result.error.exit_code)
@@ -241,7 +236,7 @@ def record(
 
 
 @golden.command()
-@report_errors
+@report_errors_and_json
 def check(
     folders: Annotated[list[Path], argument("Golden runs, or folders that contain golden runs.", "DIR...")],
     bless: Annotated[str | None, option("Accept the differences as golden, with the reason.", "REASON")] = None,
@@ -253,7 +248,7 @@ def check(
     jobs: Annotated[int, option("Number of parallel processes.", "N", "--jobs", "-n", min=1)] = 1,
     causes: Annotated[bool, Option("--causes/--no-causes", help="Search for the causes of differences.")] = True,
     budget: Annotated[float, option("Wall time limit of the search for each golden run.", "S", min=0)] = 60.0,
-    json_: options.Json = False,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print only failures.")] = False,
 ) -> int:
     """Repeat golden runs and report the first difference and its cause. Exit code 5 if any golden run differs."""
@@ -262,6 +257,5 @@ def check(
     check_writable(html)
     check_writable(junit)
     check_options = CheckOptions(bless, bless_other_renderer, causes, budget)
-    with redirect_stdout(sys.stderr) if json_ else nullcontext():  # the output of plugins is not JSON
-        results = check_goldens(folders, check_options, jobs)
-    return report_results(results, blessed=bless is not None, html=html, junit=junit, as_json=json_, quiet=quiet)
+    results = check_goldens(folders, check_options, jobs)
+    return report_results(results, blessed=bless is not None, html=html, junit=junit, quiet=quiet)

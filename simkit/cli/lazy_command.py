@@ -21,6 +21,7 @@ Context = Any
 # Parameter of click.
 Parameter = Any
 
+_WORDS = __name__  # key of the words of the command line in the context's meta
 _SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 _COMPLETION_CALLBACKS = {"--show-completion": "show_callback", "--install-completion": "install_callback"}
 
@@ -39,6 +40,7 @@ class Commands(TyperGroup):
 
     def parse_args(self, ctx: Context, args: list[str]) -> list[str]:
         """Parse the options before the command; `--show-completion` and `--install-completion` accept a shell."""
+        ctx.meta[_WORDS] = list(args)
         name, _, shell = "=".join(args[:2]).partition("=")
         if name in _COMPLETION_CALLBACKS and shell and not shell.startswith("-") and not ctx.resilient_parsing:
             if shell not in _SHELLS:
@@ -47,6 +49,16 @@ class Commands(TyperGroup):
                 ctx.color = False  # click does not read the variable
             getattr(import_module("typer.completion"), _COMPLETION_CALLBACKS[name])(ctx, None, shell)
         return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: Context) -> object:
+        """Run the command; print a usage error as JSON too if the command line requests it."""
+        try:
+            return super().invoke(ctx)
+        except Exception as error:
+            from simkit.cli.terminal.json_report import print_usage_error
+
+            print_usage_error(error, ctx.meta[_WORDS])
+            raise
 
 
 class DeferredCommand(TyperCommand):

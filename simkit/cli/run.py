@@ -16,8 +16,9 @@ from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.run_options import RunDisplay, load_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
+from simkit.cli.terminal.json_report import add_diagnostics, report_errors_and_json
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors
+from simkit.cli.terminal.output import print_diagnostics, print_status
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
 from simkit.run_spec import Check, PluginErrorPolicy, Recording, RunSpec
 
@@ -84,7 +85,7 @@ WallTimeout = Annotated[float | None, option(_WALL_TIMEOUT_HELP, "S", parser=_se
 Conditions = Annotated[list[str], option(_ASSERT_HELP, "EXPR", "--assert")]
 
 
-@report_errors
+@report_errors_and_json
 def run(
     world: options.World,
     duration: Annotated[float | None, option("Simulated seconds to run; default: until Ctrl-C.", "S", min=0)] = None,
@@ -118,6 +119,7 @@ def run(
     on_plugin_error: OnPluginError = None,
     bundle_on_failure: BundleFolder = None,
     verbose: options.Verbose = False,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print no table of topics at the end.")] = False,
     until: Annotated[str | None, option("End as soon as this condition holds: \"pose('tb3').x > 2\".", "EXPR")] = None,
     timeout: Timeout = None,
@@ -226,7 +228,10 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
         sim = load(spec.world, **spec.load_arguments())
         with sim:
             bundling.keep(sim)
-            check_used(sim.diagnostics)
-            print_diagnostics(sim.diagnostics, verbose=display.verbose)
-            verdict.code = Session(spec, display, sim, blocked, verdict).execute()
+            try:
+                check_used(sim.diagnostics)
+                print_diagnostics(sim.diagnostics, verbose=display.verbose)
+                verdict.code = Session(spec, display, sim, blocked, verdict).execute()
+            finally:
+                add_diagnostics(sim.diagnostics)
     return verdict.code

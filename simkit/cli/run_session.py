@@ -14,7 +14,8 @@ from simkit.cli.run_loop import Interrupts, RunLoop
 from simkit.cli.run_options import RunDisplay
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
-from simkit.cli.terminal.output import print_status, stderr_console, stdout_console
+from simkit.cli.terminal.json_report import add_to_report
+from simkit.cli.terminal.output import JsonObject, print_status, stderr_console, stdout_console
 from simkit.errors import InputError, RenderError
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from simkit.recording.bags.recorder import Recorder
     from simkit.recording.command_script import Command
     from simkit.recording.run_picture import DrivenPath
-    from simkit.recording.topic_counts import TopicCounter
+    from simkit.recording.topic_counts import TopicCount, TopicCounter
     from simkit.runtime import Simulation
 
 
@@ -35,6 +36,8 @@ def print_summary(
     sim: Simulation, counter: TopicCounter, recording: Recorder | None, elapsed: float, *, quiet: bool
 ) -> None:
     """Print the topics with their measured rates, then one summary line, then the hash of the physics state.
+
+    With `--json`, the report gets the same values.
 
     Args:
         sim: simulation that has ended.
@@ -54,7 +57,28 @@ def print_summary(
     if recording is not None:
         line += f"; {recording.message_count} in {recording.path}"
     stdout_console().print(line)
-    stdout_console().print(f"state {state_hash(sim)}")
+    state = state_hash(sim)
+    stdout_console().print(f"state {state}")
+    add_to_report(
+        world=sim.world.name,
+        time=sim.time,
+        steps=sim.engine.steps,
+        wall_time=elapsed,
+        real_time_factor=factor,
+        state=state,
+        topics=[_topic_dict(row) for row in counter.rows],
+        recording=None if recording is None else {"path": str(recording.path), "messages": recording.message_count},
+    )
+
+
+def _topic_dict(row: TopicCount) -> JsonObject:
+    """Return the counts of a topic for the JSON report; null for numbers that are not known."""
+    return {
+        "topic": row.topic,
+        "type": row.type_name,
+        "messages": row.count if row.counted else None,
+        "rate": row.rate() if row.counted else None,
+    }
 
 
 def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
@@ -68,6 +92,7 @@ def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
         stderr_console().print(f"warning: no picture: {error}", style="yellow")
     else:
         stdout_console().print(f"picture {path}")
+        add_to_report(picture=str(path))
 
 
 def check_keyboard(display: RunDisplay) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from simkit.cli.terminal.json_report import add_to_report, print_report_now
 from simkit.cli.terminal.output import print_status, stdout_console
 from simkit.cli.wall_time_limit import WallTimeExceeded, WallTimeLimit
 from simkit.errors import RegressionError, SimkitError
@@ -37,6 +38,7 @@ class RunVerdict:
         self.code = 0
         self.reason = ""
         self.results: tuple[CheckResult, ...] = ()
+        self._end = ""  # for the JSON report
         self._spec, self._junit = spec, junit
         self._name = spec.world if "<" not in spec.world else "world"
         self._watch: Watch | None = None
@@ -95,6 +97,9 @@ class RunVerdict:
         """
         self._wall.end()
         self._conclude(error, interrupted_by)
+        self._end = "interrupt" if interrupted_by else self.reason
+        if error is not None and self.reason != "wall_timeout":
+            self._end = "error"
         if error is None and not interrupted_by and not self._has_passed:
             self.code = FAILED
 
@@ -105,6 +110,13 @@ class RunVerdict:
         for result in self.results:
             word, style = ("passed", None) if result.passed else ("FAILED", "red")
             stdout_console().print(f"{word}  {result.check.title}: {result.message}", style=style)
+        add_to_report(
+            end=self._end,
+            conditions=[
+                {"condition": r.check.title, "passed": r.passed, "message": r.message, "time": r.time}
+                for r in self.results
+            ],
+        )
 
     @property
     def _has_passed(self) -> bool:
@@ -163,4 +175,6 @@ class RunVerdict:
         """Write the report from the time limit's thread, because the run is blocked; return the exit code."""
         self.reason = "wall_timeout"
         self._write(None)
+        add_to_report(end=self.reason)
+        print_report_now(FAILED)
         return FAILED

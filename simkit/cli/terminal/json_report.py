@@ -1,0 +1,183 @@
+"""Report of a command with `--json`: one JSON object on standard output, everything else on standard error."""
+
+from __future__ import annotations
+
+import functools
+import os
+import re
+import sys
+from collections.abc import Callable, Iterable
+from contextlib import redirect_stdout, suppress
+from typing import IO, NoReturn
+
+import typer
+
+from simkit.cli.terminal.output import JsonObject, P, print_json, report_errors
+from simkit.diagnostics import Diagnostic
+from simkit.errors import InputError, LoadError, SimkitError
+
+# Base class of click's usage errors; newer versions of Typer have click as a private module.
+UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+_WANTS_REPORT = "wants_json_report"  # attribute of a callback that prints a report
+_USAGE_CODE = "SK-CLI-018"
+_FILE_AND_LINE = re.compile(r"(?P<file>\S[^:\n]*):(?P<line>\d+)")
+
+
+class JsonReport:
+    """Report of the running command; a context manager that redirects standard output to standard error.
+
+    The redirection includes the file descriptor, so that output of plugins, of child processes and of libraries in C
+    does not mix with the JSON object.
+
+    Attributes:
+        values: keys and values that the command has added.
+        diagnostics: problems and notes, in order and without repetition.
+    """
+
+    def __init__(self) -> None:
+        self.values: JsonObject = {}
+        self.diagnostics: dict[Diagnostic, None] = {}
+        self._output: IO[str] | None = None
+        self._descriptor: int | None = None
+        self._python_redirection = redirect_stdout(sys.stderr)
+        self._is_printed = False
+
+    def __enter__(self) -> JsonReport:
+        global _running
+        self._output = sys.stdout
+        with suppress(OSError, ValueError, AttributeError):  # output without a file descriptor, or a closed one
+            sys.stdout.flush()
+            if sys.stdout.fileno() == 1:
+                self._descriptor = os.dup(1)
+                os.dup2(2, 1)
+        self._python_redirection.__enter__()
+        _running = self
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        global _running
+        _running = None
+        self._python_redirection.__exit__(None, None, None)
+        self._restore_descriptor()
+
+    def _restore_descriptor(self) -> None:
+        if self._descriptor is not None:
+            os.dup2(self._descriptor, 1)
+            os.close(self._descriptor)
+            self._descriptor = None
+
+    def print(self, exit_code: int) -> None:
+        """Print the object, unless it is printed already."""
+        if self._is_printed or self._output is None:
+            return
+        self._is_printed = True
+        self._restore_descriptor()
+        found = [one.as_dict() for one in self.diagnostics]
+        with redirect_stdout(self._output):
+            print_json({**self.values, "diagnostics": found, "exit_code": exit_code})
+
+
+_running: JsonReport | None = None
+
+
+def add_to_report(**values: object) -> None:
+    """Add keys to the report of the running command; without `--json` there is no report, and nothing happens."""
+    if _running is not None:
+        _running.values.update(values)
+
+
+def add_diagnostics(found: Iterable[Diagnostic]) -> None:
+    """Add diagnostics to the report of the running command, if it has one."""
+    if _running is not None:
+        _running.diagnostics.update(dict.fromkeys(found))
+
+
+def print_report_now(exit_code: int) -> None:
+    """Print the report from another thread, before the process is terminated."""
+    if _running is not None:
+        _running.print(exit_code)
+
+
+def error_diagnostics(error: BaseException) -> list[Diagnostic]:
+    """Return the problems that an error reports."""
+    if isinstance(error, LoadError):
+        return list(error.diagnostics)
+    code = error.code if isinstance(error, SimkitError) else "SK-CORE-001"
+    if isinstance(error, UsageError):
+        code = _USAGE_CODE
+        message = str(getattr(error, "format_message", error.__str__)())
+    else:
+        message = str(error) if isinstance(error, SimkitError) else f"{type(error).__name__}: {error}"
+    message, _, hint = message.removeprefix(code).strip().partition("\n    help: ")
+    place = _FILE_AND_LINE.match(getattr(error, "where", None) or message)
+    file, line = (place["file"], int(place["line"])) if place else (None, None)
+    if place and message.startswith(f"{place[0]}: "):
+        message = message.removeprefix(f"{place[0]}: ")
+    return [Diagnostic(code, "error", message, file, line, hint)]
+
+
+def report_errors_and_json(command: Callable[P, int | None]) -> Callable[P, None]:
+    """Wrap a command like `report_errors`; with `--json`, print its report, also after an error.
+
+    The command adds its results with `add_to_report`. Diagnostics and the exit code are added here.
+    """
+
+    @functools.wraps(command)
+    def collect_errors(*args: P.args, **kwargs: P.kwargs) -> int | None:
+        try:
+            return command(*args, **kwargs)
+        except SimkitError as error:
+            add_diagnostics(error_diagnostics(error))
+            raise
+
+    in_words = report_errors(collect_errors)
+
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        if not kwargs.get("json_"):
+            in_words(*args, **kwargs)
+            return
+        code = 0
+        with JsonReport() as report:
+            try:
+                in_words(*args, **kwargs)
+            except typer.Exit as ended:
+                code = ended.exit_code
+            except UsageError:  # `print_usage_error` prints it
+                raise
+            except Exception as error:
+                add_diagnostics(error_diagnostics(error))
+                report.print(1)
+                raise
+            report_errors(lambda: report.print(code))()
+        if code:
+            raise typer.Exit(code)
+
+    setattr(run, _WANTS_REPORT, True)
+    return run
+
+
+def end_with_error(error: SimkitError, *, json_: bool) -> NoReturn:
+    """End the command with an error that is found before its function is called, in words and as a report."""
+
+    @report_errors_and_json
+    def fail(*, json_: bool) -> None:  # noqa: ARG001 (`report_errors_and_json` reads it)
+        raise error
+
+    fail(json_=json_)
+    raise AssertionError("an error ends the command")
+
+
+def print_usage_error(error: Exception, words: Iterable[str]) -> None:
+    """Print a usage error as a report, if the words of the command line select a command with a report and `--json`.
+
+    Other errors are printed by the command itself.
+    """
+    command = getattr(getattr(error, "ctx", None), "command", None)
+    if (
+        isinstance(error, UsageError)
+        and "--json" in words
+        and hasattr(getattr(command, "callback", None), _WANTS_REPORT)
+    ):
+        found = [one.as_dict() for one in error_diagnostics(error)]
+        print_json({"diagnostics": found, "exit_code": InputError.exit_code})
