@@ -13,13 +13,15 @@ from typer.core import TyperCommand
 
 from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
 from simkit.cli.failure_bundle import FailureBundle
+from simkit.cli.gazebo_options import remove_gazebo_options
 from simkit.cli.run_options import RunDisplay, load_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
-from simkit.cli.terminal.json_report import add_diagnostics, report_errors_and_json
+from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, report_errors_and_json
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
+from simkit.errors import LoadError
 from simkit.run_spec import Check, PluginErrorPolicy, Recording, RunSpec
 
 _TIME = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|min|)")
@@ -28,7 +30,9 @@ _TOPIC = re.compile(r"/[A-Za-z0-9_/]*")
 
 
 class RunCommand(TyperCommand):
-    """Command with options that work with or without a value: `--teleop` and `--bundle-on-failure`.
+    """Command that answers options of Gazebo, with options that work with or without a value.
+
+    The latter are `--teleop` and `--bundle-on-failure`.
 
     The next word is the topic of `--teleop` if the word begins with a slash and is not a file. The next word is the
     folder of `--bundle-on-failure` if the folder exists, if the word ends with a slash, or if the world is the first
@@ -50,7 +54,22 @@ class RunCommand(TyperCommand):
                 if following.startswith("-") or not following or not is_folder:
                     word = f"--bundle-on-failure={BUNDLES}"
             completed.append(word)
+        if not ctx.resilient_parsing:
+            completed = self._without_gazebo_options(completed)
         return super().parse_args(ctx, completed)
+
+    def _without_gazebo_options(self, args: list[str]) -> list[str]:
+        """Remove options of Gazebo that need no action, with a note; for other options of Gazebo, end the command."""
+        options_with_value = {
+            name for each in self.params if not getattr(each, "is_flag", True) for name in each.opts if name[0] == "-"
+        }
+        try:
+            remaining, notes = remove_gazebo_options(args, options_with_value)
+        except LoadError as error:
+            end_with_error(error, json_="--json" in args)
+        for note in notes:
+            print_status(f"note: {note}")
+        return remaining
 
 
 COMMAND = RunCommand

@@ -99,6 +99,12 @@ def test_a_wrong_command_line_is_a_diagnostic(words: str, message: str, world: P
     assert "Usage: " in text
 
 
+def test_options_of_gazebo_are_diagnostics(world: Path) -> None:
+    found, code, _ = report("run", world, "--levels", "gui:=false")
+    assert code == 2
+    assert [d["code"] for d in found["diagnostics"]] == ["SK-CLI-052", "SK-CLI-052"]
+
+
 def test_standard_output_is_only_the_object_whatever_plugins_and_their_processes_print(world: Path) -> None:
     world.with_name("noisy.py").write_text(NOISY)
     world.write_text(WORLD.format(extra='<plugin name="n" filename="noisy"/>'))
