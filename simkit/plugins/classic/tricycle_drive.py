@@ -3,10 +3,10 @@
 A command has the speed of the driven wheel (`linear.x`) and the angle of its steering (`angular.z`). Deliberate
 differences to Gazebo Classic:
 
-- The acceleration ramp follows the commanded speed. Classic adds to the wheel's own speed, which winds up while the
-  wheel is blocked.
-- With a maximum steering speed, the steering moves towards the commanded angle. Classic compares the angle with a
-  speed.
+- With a limit of the wheel acceleration, the motor's command changes step by step from its last value. Classic starts
+  each step from the measured speed of the wheel, so a load on the wheel also reduces the command.
+- With a maximum steering speed, the steering moves at this speed to the commanded angle. Classic chooses the direction
+  of the steering by comparing the angle error with the commanded speed of the wheel.
 - In odometry from the wheels, a turn to the left is positive. In Classic it is negative.
 - Without a maximum steering speed, a servo moves the steering. Classic sets the position of the joint.
 """
@@ -51,7 +51,7 @@ class TricycleOptions(Options):
 
     command_topic: str = "cmd_vel"
     odometry_topic: str = "odom"
-    max_wheel_acceleration: float = number(0.0, "m/s²", minimum=0)
+    max_wheel_acceleration: float = number(0.0, "rad/s²", minimum=0)
     publish_odom: bool = boolean()
     steering_joint: str = text("front_steering_joint")
     actuated_wheel_joint: str = text("front_wheel_joint")
@@ -77,7 +77,7 @@ class TricycleRos1Options(Options):
     """Options in the spelling of ROS 1; the odometry is always published."""
 
     publish_odom = True
-    max_wheel_acceleration: float = number(0.0, "m/s²", element="wheelAcceleration", minimum=0)
+    max_wheel_acceleration: float = number(0.0, "rad/s²", element="wheelAcceleration", minimum=0)
     steering_joint: str = text("front_steering_joint", element="steeringJoint")
     actuated_wheel_joint: str = text("front_wheel_joint", element="actuatedWheelJoint")
     encoder_wheel_left_joint: str = text("left_wheel_joint", element="encoderWheelLeftJoint")
