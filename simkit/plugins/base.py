@@ -12,7 +12,6 @@ A plugin is a class with a `load` method; all other methods are optional:
 from __future__ import annotations
 
 import abc
-import copy
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -20,7 +19,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, TypeVar
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.params import Params
+from simkit.plugins.attribute_state import copy_attributes, restore_attributes
 from simkit.plugins.endpoints import Endpoint
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options
 from simkit.plugins.ros_names import RosNames
 from simkit.plugins.unread_parameters import report_unread
@@ -305,13 +306,25 @@ class Plugin(abc.ABC):
             self.on_error = "disable" if self.params.choice("on_error", PLUGIN_ERROR_POLICIES) == "disable" else "stop"
         self.log = logging.getLogger(f"simkit.plugins.{self.name}")
 
+    def _set_before_step_rate(self, rate: float | None) -> None:
+        """Change the rate of `before_step` [Hz] from now on."""
+        if rate != self.before_step_rate:
+            self.before_step_rate = rate
+            self.sim.engine.reschedule()
+
+    def _set_after_step_rate(self, rate: float | None) -> None:
+        """Change the rate of `after_step` [Hz] from now on."""
+        if rate != self.after_step_rate:
+            self.after_step_rate = rate
+            self.sim.engine.reschedule()
+
     def report_unread(self) -> None:
         """Warn about elements of the file that the plugin did not read; done after `load`."""
         report_unread(self.params, f"plugin {self.name!r}", getattr(self, "system", self) or self)
 
     def _setup(self, sim: Simulation, source: ScenePlugin | None = None) -> None:
         """Connect the instance to its simulation; done before `load`."""
-        self.sim = sim
+        self.sim, self._once = sim, OneTimeWarnings(self)
         if source is not None or not hasattr(self, "params"):
             self.source = source
 
@@ -326,36 +339,16 @@ class Plugin(abc.ABC):
         An attribute that cannot be copied is left out and reported once (SK-PLUGIN-006). Override this method and
         `set_state` to store such an attribute.
         """
-        own = {k: v for k, v in vars(self).items() if k not in _OWNED}
-        memo: dict[int, object] = {id(self): self}
-        try:
-            return copy.deepcopy(own, memo)
-        except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
-            return self._state_by_attribute(own)
+        return copy_attributes(self, _OWNED, self._report_uncopied)
 
     def set_state(self, state: Mapping[str, Any]) -> None:
         """Restore a state from `get_state`; later attributes are deleted, except those that cannot be copied."""
-        uncopied = vars(self).get("_uncopied", set())
-        for key in [k for k in vars(self) if k not in _OWNED and k not in state and k not in uncopied]:
-            delattr(self, key)
-        vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
+        restore_attributes(self, _OWNED, state)
 
-    def _state_by_attribute(self, own: dict[str, object]) -> dict[str, Any]:
-        memo: dict[int, object] = {id(self): self}
-        state, uncopied = {}, set()
-        for key, value in own.items():
-            try:
-                state[key] = copy.deepcopy(value, memo)
-            except Exception as error:  # noqa: BLE001 - a foreign object may raise anything when copied
-                uncopied.add(key)
-                if key not in vars(self).get("_uncopied", set()):
-                    uncopyable = f"plugin {self.name!r}: attribute {key!r} cannot be copied"
-                    message = f"{uncopyable}; snapshots and reset do not change it: {error}"
-                    self.sim.engine.reports.warning(
-                        "SK-PLUGIN-006", message, self.where, "override get_state and set_state"
-                    )
-        self._uncopied = uncopied
-        return state
+    def _report_uncopied(self, attribute: str, error: Exception) -> None:
+        message = f"plugin {self.name!r}: attribute {attribute!r} cannot be copied"
+        message = f"{message}; snapshots and reset do not change it: {error}"
+        self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.where, "override get_state and set_state")
 
     def _remember_loaded(self) -> None:
         """Report attributes that cannot be copied; called after `load`, not only at the first snapshot."""
@@ -367,7 +360,7 @@ class Plugin(abc.ABC):
 
 _OWNED = frozenset(
     ("sim", "name", "scoped", "params", "where", "ros", "log", "_source", "_uncopied", "_values")  # noqa: RUF005
-    + ("_actuators", "_failed", "_order", "_read_options", "plugin_paths")
+    + ("_actuators", "_failed", "_order", "_once", "_read_options", "plugin_paths")
 )
 
 

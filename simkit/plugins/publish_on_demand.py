@@ -33,20 +33,6 @@ def publish_while_subscribed(
     sim.communication.on_demand.add(lambda: publisher.active and (publisher.wanted or also()), rate or None, task)
 
 
-def set_before_step_rate(plugin: Plugin, rate: float | None) -> None:
-    """Change the rate of a plugin's `before_step` [Hz] from now on."""
-    if rate != plugin.before_step_rate:
-        plugin.before_step_rate = rate
-        plugin.sim.engine.reschedule()
-
-
-def set_after_step_rate(plugin: Plugin, rate: float | None) -> None:
-    """Change the rate of a plugin's `after_step` [Hz] from now on."""
-    if rate != plugin.after_step_rate:
-        plugin.after_step_rate = rate
-        plugin.sim.engine.reschedule()
-
-
 def count_instants(plugin: Plugin, rate: float) -> int:
     """Return how many times a task with this rate [Hz] (0 for every step) is due from t = 0 until now.
 

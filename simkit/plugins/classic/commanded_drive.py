@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, TrueMotion, command_of
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.msgs import Twist, TwistStamped
@@ -21,7 +20,6 @@ class CommandedDrive(ModelPlugin):
 
     def start(self, parent: Model, topic: str, rate: float) -> None:
         """Subscribe to commands, and set the rate [Hz] of both hooks; `load` must call this method first."""
-        self.once = OneTimeWarnings(self)
         self.before_step_rate = self.after_step_rate = rate
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._command = (0.0, 0.0)
@@ -31,7 +29,7 @@ class CommandedDrive(ModelPlugin):
     def _on_command(self, message: Twist | TwistStamped) -> None:
         command = command_of(message)
         if command is None:
-            self.once.not_finite()
+            self._once.not_finite()
         else:
             self._command = command
 

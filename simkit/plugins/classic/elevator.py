@@ -11,7 +11,6 @@ from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import find_axis_joint, read_topic
 from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, integer, number, text
 from simkit.runtime.engine.physics_step import CONTROL
 
@@ -91,7 +90,6 @@ class ElevatorPlugin(ModelPlugin):
         return find_axis_joint(scene, name, named) if named is not None else None
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._lift, self._door = (JointAxis(self.sim.joint(name)) for name in self._joints)
         self._phase: Phase = "idle"
         self._floor, self._until_ns = 0, 0
@@ -110,7 +108,7 @@ class ElevatorPlugin(ModelPlugin):
     def _on_floor(self, message: String) -> None:
         found = _FLOOR.match(message.data)
         if found is None or len(found[0]) > 9:
-            self.once.left_out("text", f"{message.data[:40]!r} is not a floor number; the command is ignored")
+            self._once.left_out("text", f"{message.data[:40]!r} is not a floor number; the command is ignored")
             return
         floor = int(found[0])
         if self._bottom is not None and floor < self._bottom:
@@ -122,7 +120,7 @@ class ElevatorPlugin(ModelPlugin):
             self._go("closing first")
 
     def _beyond(self, floor: int, limit: str) -> None:
-        self.once.left_out(f"floor {floor}", f"there is no floor {floor}: {limit}; the command is ignored")
+        self._once.left_out(f"floor {floor}", f"there is no floor {floor}: {limit}; the command is ignored")
 
     def before_step(self) -> None:
         """Start the next phase when the current phase has ended."""
@@ -145,10 +143,7 @@ class ElevatorPlugin(ModelPlugin):
             self._until_ns = self.sim.time_ns + self._wait_ns
         elif phase != "idle":
             self._hold(1, _OPEN if phase == "opening" else 0.0)
-        pace = NEVER if phase == "idle" else None
-        if pace != self.before_step_rate:
-            self.before_step_rate = pace
-            self.sim.engine.reschedule()
+        self._set_before_step_rate(NEVER if phase == "idle" else None)
 
     def _hold(self, number: int, position: float) -> None:
         """Set the target of the servo of the cabin (0) or the door (1)."""

@@ -11,7 +11,6 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, choice, text
 from simkit.pose import Vector, quat_rotate
 
@@ -53,7 +52,6 @@ class GazeboRosForce(ModelPlugin):
         self._turns = self.options.force_frame == "link"
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._wrench = np.zeros(6)
         # a wrench in the link's axes rotates with the link, so every step sets it again
         self.before_step_rate = None if self._turns else NEVER
@@ -63,7 +61,7 @@ class GazeboRosForce(ModelPlugin):
         f, t = message.force, message.torque
         wrench = np.array((f.x, f.y, f.z, t.x, t.y, t.z), float)
         if not np.isfinite(wrench).all():
-            self.once.not_finite("a wrench")
+            self._once.not_finite("a wrench")
             return
         self._wrench = wrench
         if not self._turns:

@@ -13,7 +13,6 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
 from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import IDENTITY, Pose
@@ -62,7 +61,6 @@ class GazeboRosHandOfGod(ModelPlugin):
         self._has_weight = link is not None and link.gravity
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._damping = 2.0 * np.sqrt(self._stiffness * (self._mass, self._inertia))
         self._link = self.sim.link(self._scoped)
         self._frames: dict[str, tuple[str, Pose]] = {}
@@ -95,13 +93,10 @@ class GazeboRosHandOfGod(ModelPlugin):
             if child == own:
                 continue
             if not all(abs(number) <= _FARTHEST for number in position) or not 1e-6 <= math.hypot(*turn) <= 1e6:
-                self.once.left_out(child, f"frame {child!r} is ignored: its transform is not a valid pose")
+                self._once.left_out(child, f"frame {child!r} is ignored: its transform is not a valid pose")
                 continue
             self._frames[child] = transform.header.frame_id.lstrip("/"), Pose(position, turn)
-        pace = None if self._desired() is not None else NEVER
-        if pace != self.before_step_rate:
-            self.before_step_rate = pace
-            self.sim.engine.reschedule()
+        self._set_before_step_rate(NEVER if self._desired() is None else None)
 
     def _desired(self) -> Pose | None:
         """Return the desired pose of the link in the world; None if `/tf` does not contain this pose yet."""

@@ -11,7 +11,6 @@ from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import listens
 from simkit.plugins.joints.joint_axis import suggest_names
 from simkit.plugins.joints.joint_trajectory import nanoseconds
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, choice, number, text
 
 if TYPE_CHECKING:
@@ -53,7 +52,6 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
     drives = True
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._model = parent
         is_ros_1 = any(params.has(name) for name in ("topicName", "serviceName", "updateRate", "robotNamespace"))
         if is_ros_1:
@@ -86,12 +84,12 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         unknown = [name for name in names if name not in known]
         if unknown:
             problem = f"a trajectory is ignored: model {model.scoped!r} has no joint {unknown[0]!r}"
-            self.once.left_out(unknown[0], problem, suggest_names(unknown[0], list(known)))
+            self._once.left_out(unknown[0], problem, suggest_names(unknown[0], list(known)))
             return
         points = [(tuple(float(v) for v in p.positions), nanoseconds(p.time_from_start)) for p in message.points]
         for i, (positions, _) in enumerate(points):
             if not all(math.isfinite(v) for v in positions):
-                self.once.left_out("finite", f"a trajectory is ignored: point {i} has a NaN or infinite number")
+                self._once.left_out("finite", f"a trajectory is ignored: point {i} has a NaN or infinite number")
                 return
         self._names, self._points, self._model_name = names, points, model.scoped
         self._fixed = link.scoped if link is not None else ""
@@ -108,7 +106,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         found = found or next((link for scoped, link in links.items() if scoped.endswith("::" + frame)), None)
         if found is None:
             problem = f"a trajectory is ignored: its frame_id {frame!r} is not 'world', 'map' or a link"
-            self.once.left_out(f"frame {frame}", problem, suggest_names(frame, list(links)))
+            self._once.left_out(f"frame {frame}", problem, suggest_names(frame, list(links)))
         return found
 
     def before_step(self) -> None:
@@ -123,7 +121,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
             self._set_joints(positions)
         else:
             counts = f"{len(positions)} positions for {len(self._names)} joint names"
-            self.once.left_out(counts, f"point {self._index} of a trajectory has {counts}; the point is ignored")
+            self._once.left_out(counts, f"point {self._index} of a trajectory has {counts}; the point is ignored")
         self._last = now
         self._due += time
         self._index += 1
@@ -137,12 +135,12 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
             joint: Joint = model.joint(name)
             if joint.dof != 1:
                 problem = f"joint {joint.scoped!r} is {joint.type} and is not set; expected a joint with one axis"
-                self.once.left_out(joint.scoped, problem)
+                self._once.left_out(joint.scoped, problem)
                 continue
             try:
                 joint.set_position(position)
             except InputError as error:
-                self.once.left_out(joint.scoped, str(error))
+                self._once.left_out(joint.scoped, str(error))
         after = model.pose if link is None else link.pose
         if after != before:
             model.set_pose(before @ after.inverse() @ model.pose)

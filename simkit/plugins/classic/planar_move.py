@@ -23,7 +23,6 @@ from simkit.plugins.drives.odometry import (
     transforms,
 )
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, boolean, number, text
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, quat_from_rpy
@@ -127,7 +126,6 @@ class GazeboRosPlanarMove(ModelPlugin):
         self._in_canonical = canonical.pose_world.inverse() @ scene.pose_world
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         options = self.options
         self._covariance = planar_covariance(options.covariance_x, options.covariance_y, options.covariance_yaw)
         self._twist_covariance = np.zeros(36) if options.is_level else self._covariance
@@ -153,7 +151,7 @@ class GazeboRosPlanarMove(ModelPlugin):
         if all(map(math.isfinite, requested)):
             self._requested, self._requested_ns = requested, self.sim.time_ns
         else:
-            self.once.not_finite()
+            self._once.not_finite()
 
     def before_step(self) -> None:
         """Set the velocity for the next step."""

@@ -11,13 +11,12 @@ from simkit import msgs
 from simkit.compiler.contact_friction import MU_MOST, directional_friction, friction_priority
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, command_of
 from simkit.plugins.drives.tracks import belt_of, needs_direction, report_missing_collisions
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import find_link
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, integer, number, text, texts
 from simkit.pose import IDENTITY
 from simkit.runtime.contact.moving_surface import Belt, BeltMotion
@@ -70,7 +69,6 @@ class _TrackedVehicle(ModelPlugin):
         self._friction_overrides = [min(MU_MOST, mu) if params.has(name) else None for name, mu in frictions.items()]
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         own = valid_topic(f"/{self._namespace}") if self._namespace else ""
         self.listen(f"{own}/cmd_vel", COMMAND_TYPES, partial(self._on_command, 1.0))
         self.listen(f"{own}/cmd_vel_twist", COMMAND_TYPES, partial(self._on_command, -1.0))
@@ -79,7 +77,7 @@ class _TrackedVehicle(ModelPlugin):
     def _on_command(self, sense: float, message: Twist | TwistStamped) -> None:
         command = command_of(message)
         if command is None:
-            self.once.not_finite()
+            self._once.not_finite()
             return
         ahead = _clamped(command[0], self._fastest)
         half = sense * _clamped(command[1], self._fastest_turn) * self._separation / 2 / self._efficiency
@@ -160,7 +158,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         self._stopped_belts = [BeltMotion(0.0) if is_directed else None for is_directed in directed]
         self._belt_motions: list[BeltMotion | None] = list(self._stopped_belts)
         self._speeds = (0.0, 0.0)
-        self.before_step_rate = 1e-9
+        self.before_step_rate = NEVER
         self.sim.engine.friction.add_belts(self, self._belts)
 
     def _belts(self) -> list[Belt]:
@@ -176,10 +174,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         self._speeds = left, right
         self._run()
         # in a turn the centre of rotation moves with the vehicle, so every step updates the centre
-        pace = None if self._turn() is not None else 1e-9
-        if pace != self.before_step_rate:
-            self.before_step_rate = pace
-            self.sim.engine.reschedule()
+        self._set_before_step_rate(NEVER if self._turn() is None else None)
 
     def _turn(self) -> float | None:
         """Return the position of the centre of rotation on the axis to the left [m]; None for straight motion."""

@@ -13,7 +13,6 @@ from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, 
 from simkit.plugins.drives.speed_limits import SpeedLimiter, limit_each
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.find_entities import read_topic
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -57,7 +56,6 @@ class TwistDrive(ModelPlugin):
 
     def start(self) -> None:
         """Set all speeds to zero; `load` must call this method first."""
-        self.once = OneTimeWarnings(self)
         self._target: Speeds = (0.0,) * len(self._limiters)
         self._last = self._before_last = self._target
         self._settled = True  # the speeds have reached the command
@@ -84,7 +82,7 @@ class TwistDrive(ModelPlugin):
         if all(map(math.isfinite, speeds)):
             self.aim(speeds)
         else:
-            self.once.not_finite()
+            self._once.not_finite()
 
     def speeds_of(self, twist: Twist) -> Speeds:
         """Return the components of a twist that the drive follows, one for each limiter."""

@@ -10,7 +10,6 @@ from simkit.plugins.base import NEVER, Plugin
 from simkit.plugins.fluids.buoyant_force import BuoyantForces, Fluid, Immersion
 from simkit.plugins.fluids.collision_volumes import Hull, HullFactory
 from simkit.plugins.fluids.link_forces import moving_data
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     import mujoco
@@ -31,7 +30,6 @@ class BuoyancyBase(Plugin):
 
     def start(self) -> None:
         """Set up the forces; a subclass calls this method at the end of `load`."""
-        self.once = OneTimeWarnings(self)
         self._factory = HullFactory(self._report_open_mesh)
         self._found: BuoyantForces | None = None
         self._steady_state: tuple[object, ...] | None = None
@@ -104,4 +102,4 @@ class BuoyancyBase(Plugin):
 
     def _report_open_mesh(self, collision: str) -> None:
         message = f"the mesh of {collision!r} is open and has no volume; its convex hull is used instead"
-        self.once.warn("SK-PLUGIN-112", collision, message, "close the mesh, or use a primitive shape, such as <box>")
+        self._once.warn("SK-PLUGIN-112", collision, message, "close the mesh, or use a primitive shape, such as <box>")

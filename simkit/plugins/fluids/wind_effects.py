@@ -20,7 +20,6 @@ from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.endpoints import listens, offers
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.fluids.wind_gusts import GustOptions, Velocity, WindTarget, read_gusts
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, block, blocks, number, vector
 from simkit.pose import Vector
 
@@ -250,7 +249,6 @@ class WindPluginBase(WorldPlugin):
     has_field = True
 
     def load(self, parent: Simulation, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._gusts = read_gusts(self.options, self.period)
         self._field = WindField(everywhere=1.0)
         if self.has_field:
@@ -349,7 +347,7 @@ class WindPluginBase(WorldPlugin):
         vector = getattr(message, "linear_velocity", message)
         velocity = float(vector.x), float(vector.y), float(vector.z)
         if not all(map(math.isfinite, velocity)) or max(map(abs, velocity)) > 1e6:
-            self.once.not_finite("a wind")
+            self._once.not_finite("a wind")
             return
         blows = bool(getattr(message, "enable_wind", True))
         for sensor in self.sim.engine.structure.all_sensors():

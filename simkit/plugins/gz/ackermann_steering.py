@@ -194,7 +194,7 @@ class AckermannSteering(TwistDrive):
         if math.isfinite(angle):
             self.aim((0.0, angle))
         else:
-            self.once.not_finite()
+            self._once.not_finite()
 
     def before_step(self) -> None:
         """Advance the limited command by one step, and set the speeds of the wheels and of the steering joints."""

@@ -19,9 +19,7 @@ from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import read_required_name, read_topic
 from simkit.plugins.joints.joint_axis import JointAxis, find_joints
 from simkit.plugins.joints.joint_commands import DOUBLE
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, blocks, boolean, choice, text, texts, vector3
-from simkit.plugins.publish_on_demand import set_before_step_rate
 from simkit.plugins.world.service_entities import RequestRefused, entity_of
 from simkit.pose import Vector
 
@@ -82,7 +80,6 @@ class ApplyLinkWrench(WorldPlugin):
     names = ("gz::sim::systems::ApplyLinkWrench",)
 
     def load(self, parent: Simulation, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._verbose = self.options.verbose
         self._persistent = [w for block in self.options.persistent if (w := self._read(block)) is not None]
         self._set_wrenches()
@@ -169,7 +166,7 @@ class ApplyLinkWrench(WorldPlugin):
         found = self._name_and_type(message.entity)
         force, torque = _xyz(message.wrench.force), _xyz(message.wrench.torque)
         if not all(map(math.isfinite, (*force, *torque))):
-            self.once.not_finite("a wrench")
+            self._once.not_finite("a wrench")
             return None
         return None if found is None else _Wrench(*found, force, torque)
 
@@ -203,7 +200,7 @@ class ApplyLinkWrench(WorldPlugin):
                 both = np.array((*wrench.force, *wrench.torque))
                 total[link.scoped] = total.get(link.scoped, np.zeros(6)) + both
         self.sim.engine.wrenches.set(self, total, are_applied=are_applied)
-        set_before_step_rate(self, None if is_missing else NEVER)
+        self._set_before_step_rate(None if is_missing else NEVER)
 
     def _log_if_verbose(self, text: str, name: str) -> None:
         if self._verbose:
@@ -249,7 +246,6 @@ class ApplyJointForce(ModelPlugin):
         self._joint_name = names[0].value if names else ""
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._axis = JointAxis(self.sim.joint(self._scoped)) if self._scoped else None
         self._effort = 0.0
         self.listen(valid_topic(f"/model/{parent.name}/joint/{self._joint_name}/cmd_force"), DOUBLE, self._on_command)
@@ -259,7 +255,7 @@ class ApplyJointForce(ModelPlugin):
         if math.isfinite(effort):
             self._effort = effort
         else:
-            self.once.left_out("finite", f"the command {effort} is ignored; expected a finite number")
+            self._once.left_out("finite", f"the command {effort} is ignored; expected a finite number")
 
     def explain_divergence(self, name: str) -> str:
         """Describe the effort of this plugin on a joint whose physics diverged, or return an empty text."""

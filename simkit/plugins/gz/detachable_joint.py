@@ -12,7 +12,6 @@ from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import find_named_link, read_required_name, read_topic
 from simkit.plugins.options import Options, OptionsOf, boolean, text
-from simkit.plugins.publish_on_demand import set_before_step_rate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -146,7 +145,7 @@ class DetachableJoint(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Call `before_step` at every step while a child link waits for its attachment, otherwise not at all."""
-        set_before_step_rate(self, None if self._shall_attach and not self._is_attached else NEVER)
+        self._set_before_step_rate(None if self._shall_attach and not self._is_attached else NEVER)
 
     def _publish_state(self, state: str) -> None:
         if self._state.wanted:

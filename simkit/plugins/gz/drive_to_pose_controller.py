@@ -9,8 +9,6 @@ from simkit import msgs
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.one_time_warnings import OneTimeWarnings
-from simkit.plugins.publish_on_demand import set_after_step_rate
 from simkit.pose import rpy_from_quat
 
 if TYPE_CHECKING:
@@ -43,7 +41,6 @@ class DriveToPoseController(ModelPlugin):
     drives = True
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._linear_gain = self.declare(
             "linear_p_gain", 1.0, minimum=0.0, description="forward speed [m/s] per metre of remaining distance"
         )
@@ -73,9 +70,9 @@ class DriveToPoseController(ModelPlugin):
         found = _first_pose(message)
         target = None if found is None else _planar(found)
         if found is None:
-            self.once.left_out("empty", "a target message without a pose is ignored")
+            self._once.left_out("empty", "a target message without a pose is ignored")
         elif target is None:
-            self.once.not_finite("a target")
+            self._once.not_finite("a target")
         else:
             self._target = target
             self._warn_about_missing_plugins()
@@ -92,16 +89,16 @@ class DriveToPoseController(ModelPlugin):
         topics = self.sim.topics()
         if self._robot_pose is None and self._pose_topic not in topics:
             message = f"no publisher on {self._pose_topic} gives the robot's pose, so the robot does not start"
-            self.once.warn("SK-PLUGIN-132", "place", message, "add an OdometryPublisher to the model")
+            self._once.warn("SK-PLUGIN-132", "place", message, "add an OdometryPublisher to the model")
         ends = self.sim.communication.bus.endpoints(self._speed.topic)
         if not self._speed.wanted and not any(does == "takes" for *_, does in ends):
             message = f"no plugin subscribes to the speeds on {self._speed.topic}"
             hint = "add a DiffDrive to the model, or set the <topic> of its drive to this name"
-            self.once.warn("SK-PLUGIN-132", "speed", message, hint)
+            self._once.warn("SK-PLUGIN-132", "speed", message, hint)
 
     def _set_pace(self) -> None:
         """Call `after_step` at every step while there is a target, otherwise not at all."""
-        set_after_step_rate(self, NEVER if self._target is None else None)
+        self._set_after_step_rate(NEVER if self._target is None else None)
 
     # ------------------------------------------------------------------ driving
 

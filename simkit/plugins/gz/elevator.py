@@ -13,9 +13,8 @@ from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import find_axis_joint, find_link, read_topic
 from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, number, text
-from simkit.plugins.publish_on_demand import publish_while_subscribed, set_after_step_rate
+from simkit.plugins.publish_on_demand import publish_while_subscribed
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -95,7 +94,6 @@ class Elevator(ModelPlugin):
         self._joint_names = [cabin, *(f"{door}{k}" for k in range(count))]
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         own = f"/model/{parent.name}"
         axes = [JointAxis(self.sim.joint(name)) for name in (self._cabin, *self._doors)]
         self._lift, self._door_axes = axes[0], axes[1:]
@@ -132,7 +130,7 @@ class Elevator(ModelPlugin):
         target = int(message.data)
         if not 0 <= target < len(self._heights):
             top = len(self._heights) - 1
-            self.once.left_out(f"floor {target}", f"there is no floor {target}; the floors are 0 to {top}")
+            self._once.left_out(f"floor {target}", f"there is no floor {target}; the floors are 0 to {top}")
         elif self._phase == "idle":
             self._add_stop(target)
             self._at = self.floor
@@ -205,7 +203,7 @@ class Elevator(ModelPlugin):
         if not mover.wanted and not any(does == "takes" for *_, does in ends):
             message = f"no plugin subscribes to the positions on {mover.topic}"
             hint = f"add a JointPositionController for joint {self._joint_names[joint]!r} to the model"
-            self.once.warn("SK-PLUGIN-132", mover.topic, message, hint)
+            self._once.warn("SK-PLUGIN-132", mover.topic, message, hint)
         mover.publish(msgs.make(DOUBLE, data=position))
 
     def _has_waited(self) -> bool:
@@ -226,4 +224,4 @@ class Elevator(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Call `after_step` at `<update_rate>` while the elevator is in use, and not at all while it is idle."""
-        set_after_step_rate(self, NEVER if self._phase == "idle" else self.options.update_rate)
+        self._set_after_step_rate(NEVER if self._phase == "idle" else self.options.update_rate)

@@ -104,9 +104,7 @@ class FollowActor(ModelPlugin):
         self._travel += gone
         self._since_ns, self._left = self.sim.time_ns, 0.0
         self._aim()
-        if self.before_step_rate is None:
-            self.before_step_rate = _RATE
-            self.sim.engine.reschedule()
+        self._set_before_step_rate(_RATE)
 
     def _distance_since_update(self) -> float:
         """Return the distance walked since the last update of the direction [m]."""

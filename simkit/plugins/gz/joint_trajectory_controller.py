@@ -25,7 +25,6 @@ from simkit.plugins.joints.joint_trajectory import (
     trajectory_faults,
 )
 from simkit.plugins.joints.pid import FIELDS, Pid, declare_pid
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, choice, numbers, text, texts
 
 if TYPE_CHECKING:
@@ -132,7 +131,6 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         return valid_topic(f"/model/{self.scoped.replace('::', '/')}/joint_trajectory_controller")
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._axes = self._read_axes(params)
         # Gazebo reads an attribute, but its manual describes an element
         attribute = self.options.use_header_start_time_attribute
@@ -194,16 +192,16 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         names, points = [str(name) for name in message.joint_names], read_points(message)
         fault = trajectory_faults(names, points) if names else "it names no joints"
         if fault:
-            self.once.left_out(fault, f"a trajectory is ignored: {fault}")
+            self._once.left_out(fault, f"a trajectory is ignored: {fault}")
             return
         for name in names:
             if name not in self._axes:
                 message_text = f"a trajectory contains joint {name!r}, which is not controlled; that part is ignored"
-                self.once.left_out(name, message_text, suggest_names(name, list(self._axes)))
+                self._once.left_out(name, message_text, suggest_names(name, list(self._axes)))
         if any(point.accelerations for point in points) and self._rule != "quintic":
             warning = "accelerations of a trajectory are not used"
             hint = "set <simkit:interpolation>quintic</simkit:interpolation> to use them"
-            self.once.warn("SK-PLUGIN-045", "accelerations", warning, hint)
+            self._once.warn("SK-PLUGIN-045", "accelerations", warning, hint)
         start = nanoseconds(message.header.stamp) if self._by_header else 0
         self._message = names, points, start
 

@@ -15,7 +15,6 @@ from simkit.plugins.drives.entity_poses import PoseNumbers, pose_numbers
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
 from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
 
@@ -114,7 +113,7 @@ class LogRecord(WorldPlugin):
             params.diagnostics.note("SK-PLUGIN-128", message, self.where)
 
     def load(self, parent: Simulation, params: Params) -> None:
-        self.once, self._log = OneTimeWarnings(self), _Log()
+        self._log = _Log()
         self.before_step_rate = self.after_step_rate = NEVER
         recorders = [
             p for p in self.sim.engine.structure.all_plugins() if isinstance(p, LogRecord) and p._path is not None
@@ -138,8 +137,7 @@ class LogRecord(WorldPlugin):
         """Start the recording in the first step."""
         if not self._log.was_begun:
             self._begin()
-        self.before_step_rate = NEVER
-        self.sim.engine.reschedule()
+        self._set_before_step_rate(NEVER)
 
     def _begin(self) -> None:
         from simkit.recording.bags.recorder import Recorder
@@ -151,7 +149,7 @@ class LogRecord(WorldPlugin):
             path.mkdir(parents=True, exist_ok=True)
             log.recorder = Recorder(self.sim, path / FILE, overwrite=True, choose=self._is_recorded)
         except (OSError, SimkitError) as error:
-            self.once.warn("SK-PLUGIN-127", "begin", f"nothing is recorded: {error}")
+            self._once.warn("SK-PLUGIN-127", "begin", f"nothing is recorded: {error}")
             return
         self._sdf.publish(msgs.type_of(STRING)(self.sim.control.to_sdf()))
         self._publish_state()
@@ -163,7 +161,7 @@ class LogRecord(WorldPlugin):
     def after_step(self) -> None:
         recorder = self._log.recorder
         if recorder is not None and recorder.failure is not None:
-            self.once.warn("SK-PLUGIN-127", "failed", str(recorder.failure))
+            self._once.warn("SK-PLUGIN-127", "failed", str(recorder.failure))
         if self._state.wanted:
             self._publish_state()
 

@@ -13,7 +13,6 @@ from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, offers, publishes
 from simkit.plugins.find_entities import read_required_name
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
-from simkit.plugins.publish_on_demand import set_after_step_rate
 from simkit.runtime.contact.collision_contacts import Bools, collision_table, find_contacts
 
 if TYPE_CHECKING:
@@ -115,7 +114,7 @@ class TouchTimer(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Call `before_step` at every step while the detector is enabled, otherwise not at all."""
-        set_after_step_rate(self, None if self._is_enabled else NEVER)
+        self._set_after_step_rate(None if self._is_enabled else NEVER)
 
 
 class TouchPluginOptions(TouchOptions):

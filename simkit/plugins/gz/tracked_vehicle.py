@@ -27,9 +27,8 @@ from simkit.plugins.drives.tracks import TrackOdometry, belt_of, needs_direction
 from simkit.plugins.drives.twist_drive import Speeds, TwistDrive
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import find_link, find_named_link, read_topic
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, number, text, vector3
-from simkit.plugins.publish_on_demand import publish_while_subscribed, set_after_step_rate, set_before_step_rate
+from simkit.plugins.publish_on_demand import publish_while_subscribed
 from simkit.pose import Pose
 from simkit.runtime.contact.moving_surface import Belt, BeltMotion
 
@@ -96,7 +95,6 @@ class TrackController(ModelPlugin):
             params.diagnostics.note("SK-PLUGIN-100", "<debug> of a track has no effect in simkit", params.where)
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self.before_step_rate = NEVER
         self._target_speed, self._command_tick = 0.0, -1
         self._speed, self._history = 0.0, (0.0, 0.0)  # current speed, and the speeds of the two steps before [m/s]
@@ -121,7 +119,7 @@ class TrackController(ModelPlugin):
     def _on_speed(self, message: msgs.Float64) -> None:
         speed = float(message.data)
         if not math.isfinite(speed):
-            self.once.not_finite()
+            self._once.not_finite()
             return
         self._target_speed = speed
         self._begin()
@@ -135,7 +133,7 @@ class TrackController(ModelPlugin):
         """Apply the last command from the next step on."""
         self._command_tick = self.sim.tick
         self.before_step()
-        set_before_step_rate(self, None)
+        self._set_before_step_rate(None)
 
     def before_step(self) -> None:
         """Advance the limited speed by one step; when the speed reaches the command, the calls end."""
@@ -152,8 +150,7 @@ class TrackController(ModelPlugin):
             self._speed = speed
         self._apply()
         if not waits and speed == last == before and self.before_step_rate is None and tick != self._command_tick:
-            self.before_step_rate = NEVER
-            self.sim.engine.reschedule()
+            self._set_before_step_rate(NEVER)
 
     def _apply(self) -> None:
         stands = self._speed == 0.0 and not self._is_directed
@@ -291,11 +288,11 @@ class TrackedVehicle(TwistDrive):
             self._efficiency = efficiency
             self._begin()
         else:
-            self.once.left_out("efficiency", "a steering efficiency is ignored; expected a positive number")
+            self._once.left_out("efficiency", "a steering efficiency is ignored; expected a positive number")
 
     def _begin(self) -> None:
         self._is_new = True
-        set_after_step_rate(self, None)
+        self._set_after_step_rate(None)
 
     def after_step(self) -> None:
         """Advance the limited speeds by one step towards the command, and send them to the tracks for the next step."""
@@ -305,8 +302,7 @@ class TrackedVehicle(TwistDrive):
         if is_sent:
             self._command_tracks(ahead, turning)
         elif self._settled:
-            self.after_step_rate = NEVER
-            self.sim.engine.reschedule()
+            self._set_after_step_rate(NEVER)
 
     def _command_tracks(self, ahead: float, turning: float) -> None:
         half = turning * self._separation / (2.0 * self._efficiency)

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.find_entities import find_named_link, read_topic
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, block, boolean, number, text, vector
-from simkit.plugins.publish_on_demand import set_before_step_rate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -89,13 +87,12 @@ class TrajectoryFollower(ModelPlugin):
         self.options.read_all()
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._is_paused, self._is_held = False, False
         self._remaining = list(self._points)
         self._link = self.sim.link(self._scoped)
         if self.options.zero_vel_on_bearing_reached and not self._link.is_free:
             message = "<zero_vel_on_bearing_reached> has no effect: the link has a joint to its parent or to the world"
-            self.once.warn("SK-PLUGIN-131", "held", message, "set <link_name> to the root link of the model")
+            self._once.warn("SK-PLUGIN-131", "held", message, "set <link_name> to the root link of the model")
         self._set_pace()
         own = f"/model/{parent.name}/trajectory_follower/pause"
         self.listen(read_topic(params, "topic", own), BOOL, self._on_pause)
@@ -106,7 +103,7 @@ class TrajectoryFollower(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Call `before_step` at every step while the link follows waypoints, and not at all during a pause."""
-        set_before_step_rate(self, NEVER if self._is_paused or not self._remaining else None)
+        self._set_before_step_rate(NEVER if self._is_paused or not self._remaining else None)
 
     def before_step(self) -> None:
         if not self._remaining or self._is_paused:

@@ -17,9 +17,7 @@ from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.gz_python.msgs.message_matcher import TOLERANCE, MessageMatcher
 from simkit.plugins.gz_python.msgs.ros_conversion import SERVICE_REQUEST_TYPES, call_service, from_ros, to_ros, twins_of
 from simkit.plugins.gz_python.msgs.text_format import parse_message
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, blocks, integer, text
-from simkit.plugins.publish_on_demand import set_before_step_rate
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -86,7 +84,6 @@ class TriggeredPublisher(WorldPlugin):
     names = ("gz::sim::systems::TriggeredPublisher",)
 
     def load(self, parent: Simulation, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._due: deque[int] = deque()  # [ns]
         self.before_step_rate = NEVER
         self._delay = max(0, self.options.delay_ms) * _MS
@@ -212,7 +209,7 @@ class TriggeredPublisher(WorldPlugin):
 
     def _set_pace(self) -> None:
         """Call `before_step` at every step while a delayed output is pending, otherwise not at all."""
-        set_before_step_rate(self, None if self._due else NEVER)
+        self._set_before_step_rate(None if self._due else NEVER)
 
     def _respond(self) -> None:
         for out in self._outputs:
@@ -223,10 +220,10 @@ class TriggeredPublisher(WorldPlugin):
             if not was_called:
                 hint = did_you_mean(request.service, self.sim.communication.services.names())
                 message = f"there is no service {request.service!r} for this request type"
-                self.once.warn("SK-PLUGIN-122", request.service, message, hint)
+                self._once.warn("SK-PLUGIN-122", request.service, message, hint)
             elif "data" in request.answer.FIELDS and answer.data is False:
                 message = f"service {request.service!r} was called and reported failure"
-                self.once.warn("SK-PLUGIN-122", f"{request.service} failed", message)
+                self._once.warn("SK-PLUGIN-122", f"{request.service} failed", message)
 
 
 def _has_ros_type(name: str) -> bool:

@@ -13,7 +13,6 @@ from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, Triple, VelocityTarget
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.find_entities import find_link
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, text, texts, vector3
 
 if TYPE_CHECKING:
@@ -57,7 +56,6 @@ class VelocityControl(ModelPlugin):
         self._canonical, self._pose = scene.canonical_link, scene.pose_world
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self._target: Motion = self.options.initial_linear, self.options.initial_angular
         self._link_targets: dict[str, Motion] = {}
         self._mover = KinematicMover(self.sim)
@@ -97,7 +95,7 @@ class VelocityControl(ModelPlugin):
         linear, angular = ((float(v.x), float(v.y), float(v.z)) for v in (twist.linear, twist.angular))
         if all(map(math.isfinite, (*linear, *angular))):
             return linear, angular
-        self.once.not_finite()
+        self._once.not_finite()
         return None
 
     def before_step(self) -> None:

@@ -35,7 +35,7 @@ class ControlledJoints:
 
     name: str
     where: Where
-    once: OneTimeWarnings
+    _once: OneTimeWarnings
 
     def controllers(self) -> list[tuple[JointAxis, Pid]]:
         """Return the driven joint axes with their controllers."""
@@ -49,7 +49,7 @@ class ControlledJoints:
                 f"between both effort limits (p_gain {pid.p:g}, i_gain {pid.i:g}, d_gain {pid.d:g})"
             )
             hint = "use smaller gains or a smaller max_step_size, or add damping to the joint"
-            self.once.warn("SK-PLUGIN-040", f"unstable {axis.joint.scoped}", message, hint)
+            self._once.warn("SK-PLUGIN-040", f"unstable {axis.joint.scoped}", message, hint)
 
     def explain_divergence(self, name: str) -> str:
         """Describe the effect of this plugin on a joint whose physics diverged.
@@ -112,7 +112,6 @@ class JointCommander(ControlledJoints, ModelPlugin):
         self._first_name = next((e.value for e in params.all("joint_name") if e.value), "")
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         self.axes = [JointAxis(self.sim.joint(name), self._index) for name in self._scoped]
         self._target = params.number(self.target_element, 0.0)
         self._is_ready = False
@@ -137,7 +136,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
                 self._number = self.options.actuator_number
             else:
                 message = "<use_actuator_msg> needs <actuator_number>; commands are read from Float64 messages instead"
-                self.once.warn("SK-PLUGIN-042", "number", message)
+                self._once.warn("SK-PLUGIN-042", "number", message)
         else:
             _ = self.options.actuator_number
         own = f"/model/{parent.name}"
@@ -158,13 +157,13 @@ class JointCommander(ControlledJoints, ModelPlugin):
             self._aim(float(values[self._number]))
         else:
             what = f"{self.actuator_field} of a message has {len(values)} numbers and none for actuator {self._number}"
-            self.once.left_out("short", f"{what}; the message is ignored")
+            self._once.left_out("short", f"{what}; the message is ignored")
 
     def _aim(self, target: float) -> None:
         if math.isfinite(target):
             self._target = target
         else:
-            self.once.left_out("finite", f"the command {target} is ignored; expected a finite number")
+            self._once.left_out("finite", f"the command {target} is ignored; expected a finite number")
 
     def declare_controller(self, first: Pid) -> None:
         """Set the controller and declare its gains as live parameters.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import abc
-import copy
 import logging
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from simkit.msgs.message_types import Message
 from simkit.params import Params
+from simkit.plugins.attribute_state import copy_attributes, restore_attributes
 from simkit.plugins.live_parameters import declare_at
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.one_time_warnings import OneTimeWarnings
@@ -239,32 +239,16 @@ class Controller(SharedByCopies, abc.ABC):
 
         An attribute that cannot be copied is omitted and reported once (SK-PLUGIN-006).
         """
-        own = {k: v for k, v in vars(self).items() if k not in _OWN_ATTRIBUTES}
-        memo: dict[int, object] = {id(self): self}
-        try:
-            return copy.deepcopy(own, memo)
-        except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
-            return dict(self._copy_attributes(own, memo))
+        return copy_attributes(self, _OWN_ATTRIBUTES, self._report_uncopied)
 
     def set_state(self, state: Mapping[str, object]) -> None:
         """Restore a state from `get_state`; attributes that could not be copied keep their values."""
-        uncopied = vars(self).get("_uncopied", ())
-        for key in [k for k in vars(self) if k not in _OWN_ATTRIBUTES and k not in state and k not in uncopied]:
-            delattr(self, key)
-        vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
+        restore_attributes(self, _OWN_ATTRIBUTES, state)
 
-    def _copy_attributes(self, own: Mapping[str, object], memo: dict[int, object]) -> Iterator[tuple[str, object]]:
-        """Copy the attributes that can be copied, and report the others once."""
-        uncopied: set[str] = vars(self).setdefault("_uncopied", set())
-        for key, value in own.items():
-            try:
-                yield key, copy.deepcopy(value, memo)
-            except Exception as error:  # noqa: BLE001 - a foreign object may raise anything when copied
-                if key not in uncopied:
-                    uncopied.add(key)
-                    message = f"controller {self.name!r}: attribute {key!r} cannot be copied"
-                    message = f"{message}, so snapshots and reset do not change it: {error}"
-                    self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.params.where)
+    def _report_uncopied(self, attribute: str, error: Exception) -> None:
+        message = f"controller {self.name!r}: attribute {attribute!r} cannot be copied"
+        message = f"{message}, so snapshots and reset do not change it: {error}"
+        self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.params.where)
 
 
 _OWN_ATTRIBUTES = frozenset(
