@@ -367,6 +367,11 @@ def _is_number(text: str) -> bool:
     return True
 
 
+def number_or_nan(text: str) -> float:
+    """Return the number that a text contains; NaN if the text is not a number."""
+    return float(text) if _is_number(text) else math.nan
+
+
 def _range_text(minimum: float | None, maximum: float | None) -> str:
     if minimum is not None and maximum is not None:
         return f" from {minimum:g} to {maximum:g}"

@@ -11,6 +11,7 @@ from simkit import msgs
 from simkit.msgs.topic_names import valid_topic
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import Endpoint, publishes
+from simkit.plugins.options import Options, number, text
 from simkit.plugins.publish_on_demand import publish_while_subscribed
 
 _HOUR: Final = 3600.0  # [s]
@@ -97,6 +98,16 @@ class BatteryConsumer(ModelPlugin):
     def power(self) -> float:
         """Power drawn from the battery [W]."""
         return 0.0
+
+
+class BatteryOptions(Options):
+    """Options that the batteries of both Gazebos have."""
+
+    battery_name: str = text(required=True)
+    capacity: float = number(minimum=1e-12, required=True)
+    open_circuit_voltage_constant_coef: float = number(0.0)
+    open_circuit_voltage_linear_coef: float = number(0.0)
+    resistance: float = number(0.0, minimum=0.0)
 
 
 class Battery(ModelPlugin):

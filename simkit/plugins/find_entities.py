@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 from simkit.diagnostics import did_you_mean
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
+from simkit.plugins.options import Options, text
 from simkit.scene import SceneJoint, SceneLink, SceneModel
 
 T = TypeVar("T")
@@ -94,8 +95,7 @@ def find_axis_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint 
     """Return a joint with one degree of freedom by its name; None after an error."""
     joint = find_joint(scene, name, params)
     if joint is not None and len(joint.axes) != 1:
-        message = f"joint {name!r} is {joint.type}; the plugin needs a joint with one axis"
-        params.error("SK-PLUGIN-003", message)
+        params.error("SK-PLUGIN-003", f"joint {name!r} is {joint.type}; the plugin needs a joint with one axis")
         return None
     return joint
 
@@ -127,10 +127,15 @@ def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Seq
         return None
 
 
-def read_frame(sensor: Sensor, params: Params) -> str:
-    """Return `<frame_name>` (`<frameName>` in ROS 1), or the plain name of the sensor's link if it is missing."""
-    name = params.text("frame_name", "") or params.text("frameName", "")
-    return name or link_name(sensor)
+class SensorFrameOptions(Options):
+    """Name of a sensor's frame, in the spelling of ROS 2 or of ROS 1."""
+
+    frame_name: str = text()
+    frame_name_ros_1: str = text(element="frameName")
+
+    def frame_of(self, sensor: Sensor) -> str:
+        """Return the frame that the file names, or else the name of the sensor's link."""
+        return self.frame_name or self.frame_name_ros_1 or link_name(sensor)
 
 
 def link_name(sensor: Sensor) -> str:

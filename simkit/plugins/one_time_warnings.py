@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.diagnostics import Where
-    from simkit.plugins.base import Plugin
+    from simkit.runtime import Simulation
+
+
+class Reporter(Protocol):
+    """Plugin whose warnings are reported."""
+
+    name: str
+    where: Where
+    sim: Simulation
 
 
 class OneTimeWarnings(SharedByCopies):
@@ -20,7 +28,7 @@ class OneTimeWarnings(SharedByCopies):
         where: location of the warnings; None for the plugin's own location.
     """
 
-    def __init__(self, plugin: Plugin, label: str = "", where: Where | None = None) -> None:
+    def __init__(self, plugin: Reporter, label: str = "", where: Where | None = None) -> None:
         self._plugin, self._label, self._where = plugin, label, where
         self._reported: set[str] = set()
 

@@ -120,8 +120,7 @@ def read_numbers(params: Params, name: str, default: Sequence[float], minimum: f
     found = [item.number(name, minimum=minimum) for item in items]
     if len(found) == len(default):
         return found
-    message = f"found {len(found)} numbers in {name!r}; expected {len(default)}"
-    params.diagnostics.error("SK-PARAM-002", message, items[0].where)
+    items[0].error("SK-PARAM-002", f"found {len(found)} numbers in {name!r}; expected {len(default)}")
     return list(default)
 
 
@@ -138,8 +137,7 @@ def read_names(params: Params, name: str, *, required: bool = False, code: str =
     found = [item for item in params.all(name) if item.value or item.children]
     for k, item in enumerate(found):
         if item.value in [other.value for other in found[:k]]:
-            message = f"{item.value!r} occurs twice in {name!r}; expected each name once"
-            params.diagnostics.error(code, message, item.where)
+            item.error(code, f"{item.value!r} occurs twice in {name!r}; expected each name once")
     if required and not found and params.diagnostics.error_count == before:
         near = did_you_mean(name, [item.name for item in params.children if item.name != name])
         params.error("SK-PARAM-001", f"<{params.name}> needs <{name}>: a list of names", near)

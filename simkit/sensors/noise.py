@@ -110,8 +110,7 @@ def read_noise(owner: Params, default: str = "none") -> NoiseModel:
         params.error("SK-PARAM-002", f"found noise of type {kind!r}; expected {', '.join(_TYPES)}")
     if kind == "none":
         if not type_name and any(_is_nonzero_or_text(child.value) for child in params.children):
-            hint = 'write <noise type="gaussian">'
-            params.diagnostics.warning("SK-SENSOR-020", "<noise> without a type adds no noise", params.where, hint)
+            params.warning("SK-SENSOR-020", "<noise> without a type adds no noise", 'write <noise type="gaussian">')
         params.mark_all_read()
         return NO_NOISE
     values = {}

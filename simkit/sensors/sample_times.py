@@ -48,8 +48,7 @@ def read_timing(params: Params, rate: float) -> TimingOptions:
         jitter = 0.0
     elif jitter > 0 and 2 * exact_fraction(jitter) * exact_rate(rate) >= 1:
         limit = f"less than half a period, {0.5 / rate:g} s at {rate:g} Hz"
-        message = f"<jitter>{jitter:g}</jitter> is too large; the limit is {limit}"
-        params.block("jitter").error("SK-SENSOR-022", message)
+        params.block("jitter").error("SK-SENSOR-022", f"<jitter>{jitter:g}</jitter> is too large; the limit is {limit}")
         jitter = 0.0
     if latency_jitter > latency:
         found = f"<latency_jitter>{latency_jitter:g}</latency_jitter>"

@@ -84,8 +84,7 @@ def read_transceiver(params: Params) -> Transceiver:
     low = block.number("min_frequency", 2412.0, minimum=0)
     high = block.number("max_frequency", 2484.0, minimum=0)
     if low > high:
-        message = f"found <min_frequency> {low:g} above <max_frequency> {high:g}; expected min ≤ max"
-        block.error("SK-PARAM-002", message)
+        block.error("SK-PARAM-002", f"found <min_frequency> {low:g} above <max_frequency> {high:g}; expected min ≤ max")
     return Transceiver(
         essid=block.text("essid", "wireless"),
         frequency=block.number("frequency", 2442.0, minimum=0),

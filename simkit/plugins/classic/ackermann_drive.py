@@ -21,7 +21,7 @@ from simkit.plugins.drives.wheel_joints import find_drive_joint, find_wheels, st
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.pid import Pid
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector, vector3
+from simkit.plugins.options import OptionsOf, boolean, number, text, vector, vector3
 from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel, Sphere
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ _WHEELS = ("front_left_joint", "front_right_joint", "rear_left_joint", "rear_rig
 _STEERING = ("left_steering_joint", "right_steering_joint")
 
 
-class GazeboRosAckermannDriveOptions(Options):
+class GazeboRosAckermannDriveOptions(DriveOutputOptions):
     """Options of `GazeboRosAckermannDrive`."""
 
     max_speed: float = number(20.0, minimum=0)
@@ -99,16 +99,8 @@ class GazeboRosAckermannDrive(CommandedDrive):
             "right_steering": _pid_numbers(options.right_steering_pid_gain, options.right_steering_i_range),
             "linear_velocity": _pid_numbers(options.linear_velocity_pid_gain, options.linear_velocity_i_range),
         }
-        x, y = (params.number(f"covariance_{axis}", 1e-5, minimum=0) for axis in "xy")
-        self._output_options = DriveOutputOptions(
-            odometry_topic="odom",
-            odometry_frame=options.odometry_frame,
-            base_frame=options.robot_base_frame,
-            odometry=options.publish_odom,
-            odometry_tf=options.publish_odom_tf,
-            wheel_tf=options.publish_wheel_tf,
-            joint_states=False,
-            covariance=(x, y, options.covariance_yaw),
+        options.covariance_x, options.covariance_y = (
+            params.number(f"covariance_{axis}", 1e-5, minimum=0) for axis in "xy"
         )
 
     def _measure(self, scene: SceneModel, wheels: list[SceneJoint], params: Params) -> None:
@@ -157,7 +149,7 @@ class GazeboRosAckermannDrive(CommandedDrive):
         self._pids = {name: Pid.of(numbers) for name, numbers in self._gains.items()}
         self._distance = 0.0
         self._place = self._true.place()[:2]
-        self._outputs = DriveOutputs(self, self._output_options, [*self._turned, *self._wheels])
+        self._outputs = DriveOutputs(self, self.options, [*self._turned, *self._wheels])
         self._distance_out = self.advertise("distance", _FLOAT) if self.options.publish_distance else None
         self._angle_out = self.advertise("steerangle", _FLOAT) if self.options.publish_steerangle else None
 

@@ -8,18 +8,17 @@ from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.options import Options, OptionsOf, text, without_effect
+from simkit.plugins.find_entities import SensorFrameOptions
+from simkit.plugins.options import OptionsOf, text, without_effect
 
 if TYPE_CHECKING:
     from simkit.sensors.devices.contact import Contact
 
 
-class GazeboRosBumperOptions(Options):
+class GazeboRosBumperOptions(SensorFrameOptions):
     """Options of `GazeboRosBumper`."""
 
     bumper_topic_name: str = text(element="bumperTopicName")
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
     always_on: bool = without_effect(element="alwaysOn")
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
 from simkit.plugins.endpoints import Endpoint, publishes
-from simkit.plugins.find_entities import link_name
+from simkit.plugins.find_entities import SensorFrameOptions
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, without_effect
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ _FEW_PIXELS = 0.51
 _LITTLE = 1e-3  # tolerance, relative for a focal length, absolute for a distortion; files write 1e-8 for no distortion
 
 
-class CameraOptions(Options):
+class CameraOptions(SensorFrameOptions):
     """Options of every camera plugin: in the spelling of ROS 2, and in camelCase of ROS 1."""
 
     camera_name: str = text()
@@ -47,8 +47,6 @@ class CameraOptions(Options):
     camera_info_topic_name: str = text("camera_info", element="cameraInfoTopicName")
     hack_baseline_ros_1: float = number(0.0, "m", element="hackBaseline")
     hack_baseline: float = number(0.0, "m", instead="hack_baseline_ros_1")
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
     update_rate: float = number(0.0, "Hz", element="updateRate", minimum=0)
     always_on: bool = without_effect(element="alwaysOn")
     focal_length_ros_1: float = number(0.0, "px", element="focalLength", minimum=0, maximum=_MOST_PIXELS)
@@ -116,7 +114,7 @@ def name_frame(plugin: CameraPlugin, sensor: RenderedCamera) -> None:
 
     Without `<frame_name>`, messages with optical axes keep the sensor's `<optical_frame_id>`.
     """
-    frame = (plugin.options.frame_name or plugin.options.frame_name_ros_1 or link_name(sensor)).lstrip("/")
+    frame = plugin.options.frame_of(sensor).lstrip("/")
     is_named = any(plugin.params.has(name) for name in ("frame_name", "frameName"))
     if is_named or not sensor.optical_frame_id:
         sensor.set_frame_id(frame)
@@ -192,9 +190,8 @@ def _report_difference(params: Params, drawn: CameraModel, published: CameraMode
     if np.abs(published.coefficients - drawn.coefficients).max(initial=0.0) > _LITTLE:
         off.append("a distortion that the picture does not have")
     if off:
-        message = f"CameraInfo differs from the picture: {'; '.join(off)}"
         hint = "set <horizontal_fov>, <lens><intrinsics> and <distortion> of the sensor, which change both"
-        params.diagnostics.warning("SK-SENSOR-122", message, params.where, hint)
+        params.warning("SK-SENSOR-122", f"CameraInfo differs from the picture: {'; '.join(off)}", hint)
 
 
 def read_depths(options: Options, near: str, far: str) -> tuple[float, float]:

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import abc
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, ClassVar, Self
 
 from simkit.params import Params
 from simkit.plugins.classic.commanded_drive import CommandedDrive
+from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
@@ -22,9 +22,7 @@ from simkit.plugins.drives.odometry import (
     BodyTwist,
     DeadReckoning,
     odometry_message,
-    planar_covariance,
     rolling_twist,
-    transforms,
 )
 from simkit.plugins.drives.odometry_noise import (
     EquivalentWheelAngles,
@@ -35,7 +33,7 @@ from simkit.plugins.drives.odometry_noise import (
 )
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.endpoints import Endpoint, listens, publishes
-from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
+from simkit.plugins.joint_states import JOINT_STATE
 from simkit.plugins.options import (
     Options,
     block,
@@ -70,21 +68,14 @@ class Pair:
     radius: float
 
 
-class CommonDiffDriveOptions(Options, abc.ABC):
+class CommonDiffDriveOptions(DriveOutputOptions, abc.ABC):
     """Options of both spellings; an element that a spelling does not have is a constant."""
 
     command_topic: str = "cmd_vel"
-    odometry_topic: str = "odom"
     max_wheel_acceleration: float = 0.0
     odometry_source: str | int = "world"
-    publish_odom: bool = True
-    publish_wheel_tf: bool = False
-    publish_wheel_joint_state: bool = False
-    publish_odom_tf: bool
     update_rate: float
     max_wheel_torque: float
-    odometry_frame: str
-    robot_base_frame: str
 
     publish_ground_truth: bool = boolean()
     covariance_x: float = number(1e-5, minimum=0)
@@ -107,11 +98,6 @@ class CommonDiffDriveOptions(Options, abc.ABC):
     def from_encoders(self) -> bool:
         """True if the odometry is computed from the wheels; False if the odometry is the ground truth."""
         return self.odometry_source in (0, "0", "encoder")
-
-    @property
-    def publishes_odom_tf(self) -> bool:
-        """True if the odometry is published as a transform."""
-        return self.publish_odom_tf
 
 
 class DiffDriveOptions(CommonDiffDriveOptions):
@@ -210,7 +196,6 @@ class GazeboRosDiffDrive(CommandedDrive):
     )
     option_types: ClassVar[tuple[type[Options], ...]] = (DiffDriveOptions, DiffDriveRos1Options)
     filenames = ("libgazebo_ros_diff_drive.so",)
-    is_level = False  # whether the height in the odometry is 0
 
     def read(self, params: Params) -> CommonDiffDriveOptions:
         """Read the options, with the element names of ROS 1 or ROS 2 that the file uses."""
@@ -220,31 +205,25 @@ class GazeboRosDiffDrive(CommandedDrive):
         self.options = options = self.read(params)
         sides = {"left wheel": [p.left for p in options.pairs], "right wheel": [p.right for p in options.pairs]}
         wheels = find_wheels(scene, sides, params)
-        self._joints: list[tuple[str, str, str]] = []  # scoped names: joint, parent link, child link
+        self._joints: list[str] = []  # scoped names
         self._servos: list[ActuatorRef] = []
         self._canonical = scene.canonical_link
         for joint in (joint for pair in zip(*wheels.values(), strict=False) for joint in pair):
-            self._joints.append((joint.scoped, joint.parent_link, joint.child_link))
+            self._joints.append(joint.scoped)
             servo = builder.add_velocity_servo(joint.scoped, max_effort=options.max_wheel_torque, owner=self.name)
             self._servos.append(servo)
 
     def load(self, parent: Model, params: Params) -> None:
         options = self.options
         self.start(parent, options.command_topic, options.update_rate)
-        self._wheels = [self.sim.joint(name) for name, _, _ in self._joints]
+        self._wheels = [self.sim.joint(name) for name in self._joints]
         self._rims = [0.0] * len(self._wheels)
         self._reckoning = DeadReckoning()
         self._angles = self._first_angles()
-        self._covariance = planar_covariance(options.covariance_x, options.covariance_y, options.covariance_yaw)
         self._erring, self._followed = self._create_noisy_odometry()
         self._last_read_ns = self.sim.time_ns
-        self._odom = self.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
-        has_tf = options.publishes_odom_tf or options.publish_wheel_tf
-        self._tf = self.advertise("/tf", TRANSFORMS) if has_tf else None
+        self._outputs = DriveOutputs(self, options, [wheel.scene for wheel in self._wheels])
         self._truth = self.advertise("ground_truth/odom", ODOMETRY) if options.publish_ground_truth else None
-        self._states = None
-        if options.publish_wheel_joint_state:
-            self._states = self.advertise("joint_states", JOINT_STATE)
 
     # ------------------------------------------------------------------ commands
 
@@ -278,18 +257,9 @@ class GazeboRosDiffDrive(CommandedDrive):
             self._advance()
         if self._truth is not None and self._truth.wanted:
             self._truth.publish(odometry_message(now, "world", options.robot_base_frame, *self._true.state()))
-        odom = self._odom if self._odom is not None and self._odom.wanted else None
-        tf = self._tf if self._tf is not None and self._tf.wanted else None
-        if odom or tf:
-            pose, twist = self._measured()
-            if odom:
-                frames = options.odometry_frame, options.robot_base_frame
-                shown = Pose((*pose.position[:2], 0.0), pose.quaternion) if self.is_level else pose
-                odom.publish_later(partial(odometry_message, now, *frames, shown, twist, *self._covariances()))
-            if tf:
-                tf.publish_later(partial(transforms, now, *self._transforms(pose)))
-        if self._states is not None and self._states.wanted:
-            self._states.publish_later(partial(joint_state_message, now, joint_readings(self._wheels)))
+        if self._outputs.wants_odometry:
+            self._outputs.tell(*self._measured(), *self._covariances())
+        self._outputs.tell_joints()
 
     def _measured(self) -> tuple[Pose, BodyTwist]:
         """Return pose and twist from `<odometry_source>`; the twist is in the robot's own axes."""
@@ -325,11 +295,9 @@ class GazeboRosDiffDrive(CommandedDrive):
             odometry.advance(left, right, elapsed, sideways)
 
     def _covariances(self) -> tuple[Vector, ...]:
-        """Return the covariances: accumulated wheel errors if the noise is random, else the values in the file."""
+        """Return the covariances of the accumulated wheel errors; none for the values in the file."""
         odometry = self._erring
-        if odometry is None or not odometry.noise.wheel_variance:
-            return (self._covariance,)
-        return odometry.messages_covariance()
+        return () if odometry is None or not odometry.noise.wheel_variance else odometry.messages_covariance()
 
     def _advance(self) -> None:
         pair = self.options.pairs[0]
@@ -341,16 +309,6 @@ class GazeboRosDiffDrive(CommandedDrive):
     def _first_angles(self) -> tuple[float, float]:
         left, right = self._wheels[:2]
         return float(left.position), float(right.position)
-
-    def _transforms(self, base: Pose) -> list[tuple[str, str, Pose]]:
-        found = []
-        if self.options.publishes_odom_tf:
-            found.append((self.options.odometry_frame, self.options.robot_base_frame, base))
-        if self.options.publish_wheel_tf:
-            for _, above, below in self._joints:
-                parent, child = self.sim.link(above), self.sim.link(below)
-                found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
-        return found
 
 
 class SkidSteerOptions(CommonDiffDriveOptions):
@@ -372,6 +330,7 @@ class SkidSteerOptions(CommonDiffDriveOptions):
     covariance_x: float = number(1e-4, minimum=0)
     covariance_y: float = number(1e-4, minimum=0)
     covariance_yaw: float = number(1e-2, minimum=0)
+    is_level = True
 
     def _read_pairs(self) -> tuple[Pair, ...]:
         left, right = (self.left_front_joint, self.left_rear_joint), (self.right_front_joint, self.right_rear_joint)
@@ -394,7 +353,6 @@ class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
     )
     option_types = (SkidSteerOptions,)
     filenames = ("libgazebo_ros_skid_steer_drive.so",)
-    is_level = True
 
     def read(self, params: Params) -> CommonDiffDriveOptions:
         return SkidSteerOptions(params).read_all()

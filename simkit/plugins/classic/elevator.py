@@ -73,8 +73,7 @@ class ElevatorPlugin(ModelPlugin):
         self._wait_ns = round(self.options.door_wait_time * 1e9)
         self._height = self.options.floor_height
         if not params.has("floor_height"):
-            message = f"plugin {self.name!r} has no <floor_height>: floors are 3 m apart"
-            params.diagnostics.warning("SK-PLUGIN-137", message, params.where)
+            params.warning("SK-PLUGIN-137", f"plugin {self.name!r} has no <floor_height>: floors are 3 m apart")
         found = [self._joint(scene, params, element) for element in ("lift_joint", "door_joint")]
         self._joints = [joint.scoped for joint in found if joint is not None]
         strengths = (_LIFT, _DOOR)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.find_entities import link_name
-from simkit.plugins.options import Options, OptionsOf, text
+from simkit.plugins.find_entities import SensorFrameOptions
+from simkit.plugins.options import OptionsOf
 
 if TYPE_CHECKING:
     from simkit.sensors.environment.navsat import NavSat
@@ -18,11 +18,8 @@ _KINDS = ("gps", "navsat")
 _BACKWARDS = -0.999  # cosine of a heading close to 180 degrees
 
 
-class GazeboRosGpsSensorOptions(Options):
+class GazeboRosGpsSensorOptions(SensorFrameOptions):
     """Options of `GazeboRosGpsSensor`."""
-
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
 
 
 class GazeboRosGpsSensor(SensorPlugin):
@@ -42,7 +39,7 @@ class GazeboRosGpsSensor(SensorPlugin):
         if parent.kind not in _KINDS:
             self.refuse(parent, "gps")
             return
-        parent.frame_id = self.options.frame_name or self.options.frame_name_ros_1 or link_name(parent)
+        parent.frame_id = self.options.frame_of(parent)
         parent.use_classic_noise()
         self._check_heading(params)
         parent.publish_on({"fix": self.ros.topic("~/out"), "velocity": self.ros.topic("~/vel")})

@@ -11,7 +11,7 @@ from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin, SensorPlugin
 from simkit.plugins.endpoints import offers, publishes
-from simkit.plugins.find_entities import find_named_link, link_name
+from simkit.plugins.find_entities import SensorFrameOptions, find_named_link
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3, without_effect
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
 
@@ -115,15 +115,13 @@ class GazeboRosImu(ModelPlugin):
 _WORLD = (1.0, 0.0, 0.0, 0.0)
 
 
-class GazeboRosImuSensorOptions(Options):
+class GazeboRosImuSensorOptions(SensorFrameOptions):
     """Options of `GazeboRosImuSensor`."""
 
     topic_name: str = text(element="topicName")
     initial_orientation_as_reference_ros_1: bool = boolean(element="initialOrientationAsReference")
     initial_orientation_as_reference: bool = boolean(instead="initial_orientation_as_reference_ros_1")
     body_name: str = text(element="bodyName")
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
     gaussian_noise: float = number(0.0, element="gaussianNoise", minimum=0, maximum=LARGEST)
     rpy_offset: tuple[float, float, float] = vector3(unit="rad", element="rpyOffset")
     xyz_offset: tuple[float, float, float] = vector3(unit="m", element="xyzOffset")
@@ -150,7 +148,7 @@ class GazeboRosImuSensor(SensorPlugin):
             self.refuse(parent, "imu")
             return
         is_named = any(params.has(name) for name in ("frame_name", "frameName"))
-        frame = self.options.frame_name or self.options.frame_name_ros_1 or link_name(parent)
+        frame = self.options.frame_of(parent)
         parent.frame_id = body if body and not is_named else frame
         parent.set_orientation_reference(parent.scene.pose_world.quaternion if from_start else _WORLD)
         parent.publish_on({"imu": topic})
@@ -166,8 +164,7 @@ class GazeboRosImuSensor(SensorPlugin):
         if any(self.options.xyz_offset):
             where = params.block("xyzOffset").where
             message = f"plugin {self.name!r}: <xyzOffset> changes no reading, as in Gazebo"
-            hint = "move the sensor with its <pose> instead"
-            params.diagnostics.note("SK-SENSOR-072", message, where, hint)
+            params.diagnostics.note("SK-SENSOR-072", message, where, "move the sensor with its <pose> instead")
         rate = self.options.update_rate_hz
         if rate and not 0 < imu.update_rate <= rate:
             imu.set_rate(rate)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
-from simkit.plugins.battery import Battery, BatteryConsumer, Cell
+from simkit.plugins.battery import Battery, BatteryConsumer, BatteryOptions, Cell
 from simkit.plugins.find_entities import find_named_link, read_required_name
 from simkit.plugins.options import Options, OptionsOf, number, text
 
@@ -16,16 +16,11 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 
-class ClassicLinearBatteryOptions(Options):
+class ClassicLinearBatteryOptions(BatteryOptions):
     """Options of `ClassicLinearBattery`."""
 
     link_name: str = text(required=True)
-    battery_name: str = text(required=True)
-    capacity: float = number(minimum=1e-12, required=True)
     initial_charge: float = number(0.0, minimum=0.0)
-    open_circuit_voltage_constant_coef: float = number(0.0)
-    open_circuit_voltage_linear_coef: float = number(0.0)
-    resistance: float = number(0.0, minimum=0.0)
     smooth_current_tau: float = number(0.0, minimum=0.0)
 
 

@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from functools import partial
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
 
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, VelocityTarget
+from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
+from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, KinematicPlugin, VelocityTarget
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
     TRANSFORMS,
     BodyTwist,
     TrueMotion,
-    odometry_message,
     planar_covariance,
-    transforms,
 )
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.options import Options, boolean, number, text
+from simkit.plugins.options import boolean, number, text
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, quat_from_rpy
 
@@ -38,7 +34,7 @@ _ROS_1 = ("robotNamespace", "commandTopic", "odometryTopic", "odometryFrame", "r
 _ROS_1_TIMES = ("odometryRate", "cmdTimeout")
 
 
-class PlanarMoveOptions(Options):
+class PlanarMoveOptions(DriveOutputOptions):
     """Options in the spelling of ROS 2, whose topics have fixed names; rates in Hz, 0 is every step.
 
     Attributes:
@@ -47,9 +43,7 @@ class PlanarMoveOptions(Options):
     """
 
     command_topic: str = "cmd_vel"
-    odometry_topic: str = "odom"
     timeout = math.inf
-    is_level = False
 
     covariance_x: float = number(1e-5, minimum=0)
     covariance_y: float = number(1e-5, minimum=0)
@@ -62,10 +56,9 @@ class PlanarMoveOptions(Options):
     publish_odom_tf: bool = boolean(True)
 
 
-class PlanarMoveRos1Options(Options):
+class PlanarMoveRos1Options(DriveOutputOptions):
     """Options in the spelling of ROS 1, which has one rate for the odometry and its transform."""
 
-    covariance_x, covariance_y, covariance_yaw = 1e-5, 1e-5, 1e-3
     update_rate = 0.0
     is_level = True
 
@@ -81,12 +74,11 @@ class PlanarMoveRos1Options(Options):
         """Time for which a command stays active [s]; unlimited if `<cmdTimeout>` is negative or missing."""
         return self.cmd_timeout if self.cmd_timeout >= 0 else math.inf
 
-    @property
-    def publish_odom(self) -> bool:
-        """True if odometry and transform are published."""
-        return self.publish_rate > 0
-
-    publish_odom_tf = publish_odom
+    def read_all(self) -> Self:
+        """Read all options; a rate of 0 publishes neither the odometry nor the transform."""
+        super().read_all()
+        self.publish_odom = self.publish_odom_tf = self.publish_rate > 0
+        return self
 
 
 def read_options(params: Params) -> PlanarMoveOptions | PlanarMoveRos1Options:
@@ -95,7 +87,7 @@ def read_options(params: Params) -> PlanarMoveOptions | PlanarMoveRos1Options:
     return kind(params).read_all()
 
 
-class GazeboRosPlanarMove(ModelPlugin):
+class GazeboRosPlanarMove(KinematicPlugin):
     """Moves the model in the plane with the twist on `cmd_vel`: forward, left, and rotation about the vertical.
 
     The linear speeds are along the model's heading, at the model's origin. Each command stays active until the next, in
@@ -115,7 +107,6 @@ class GazeboRosPlanarMove(ModelPlugin):
     )
     option_types = (PlanarMoveOptions, PlanarMoveRos1Options)
     filenames = ("libgazebo_ros_planar_move.so",)
-    drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self.options = read_options(params)
@@ -127,8 +118,8 @@ class GazeboRosPlanarMove(ModelPlugin):
 
     def load(self, parent: Model, params: Params) -> None:
         options = self.options
-        self._covariance = planar_covariance(options.covariance_x, options.covariance_y, options.covariance_yaw)
-        self._twist_covariance = np.zeros(36) if options.is_level else self._covariance
+        variances = options.covariance_x, options.covariance_y, options.covariance_yaw
+        self._covariances = (planar_covariance(*variances), np.zeros(36)) if options.is_level else ()
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._requested = self._command = (0.0, 0.0, 0.0)
         self._requested_ns = self.sim.time_ns
@@ -137,11 +128,9 @@ class GazeboRosPlanarMove(ModelPlugin):
         self._mover = KinematicMover(self.sim)
         if not self._motion:
             message = f"plugin {self.name!r}: model {self.scoped!r} has a joint to the world and cannot move"
-            hint = "remove the joint to the world"
-            params.diagnostics.warning("SK-PLUGIN-053", message, self.where, hint)
+            params.diagnostics.warning("SK-PLUGIN-053", message, self.where, "remove the joint to the world")
         self.listen(options.command_topic, COMMAND_TYPES, self._on_command)
-        self._odom = self.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
-        self._tf = self.advertise("/tf", TRANSFORMS) if options.publish_odom_tf else None
+        self._outputs = DriveOutputs(self, options, ())
 
     # ------------------------------------------------------------------ commands
 
@@ -153,23 +142,7 @@ class GazeboRosPlanarMove(ModelPlugin):
         else:
             self._once.not_finite()
 
-    def before_step(self) -> None:
-        """Set the velocity for the next step."""
-        self._mover.move(self._velocity_targets())
-
-    @classmethod
-    def before_step_together(
-        cls, plugins: Sequence[GazeboRosPlanarMove]
-    ) -> Callable[[Iterable[GazeboRosPlanarMove]], None]:
-        """Return a function that runs `before_step` of many plugins with one shared mover."""
-        mover = KinematicMover(plugins[0].sim)
-
-        def run(rota: Iterable[GazeboRosPlanarMove]) -> None:
-            mover.move([move for plugin in rota for move in plugin._velocity_targets()])
-
-        return run
-
-    def _velocity_targets(self) -> list[VelocityTarget]:
+    def velocity_targets(self) -> list[VelocityTarget]:
         """Return the commanded velocity of the model, in the axes of its heading; empty if the model cannot move."""
         tick = self.sim.tick
         if tick >= self._next:
@@ -189,18 +162,8 @@ class GazeboRosPlanarMove(ModelPlugin):
 
     def after_step(self) -> None:
         """Publish the odometry and its transform."""
-        odom = self._odom if self._odom is not None and self._odom.wanted else None
-        tf = self._tf if self._tf is not None and self._tf.wanted else None
-        if not (odom or tf):
-            return
-        options, now, (pose, twist) = self.options, self.sim.time_ns, self._reading()
-        frames = options.odometry_frame, options.robot_base_frame
-        if odom:
-            shown = Pose((*pose.position[:2], 0.0), pose.quaternion) if options.is_level else pose
-            covariances = self._covariance, self._twist_covariance
-            odom.publish_later(partial(odometry_message, now, *frames, shown, twist, *covariances))
-        if tf:
-            tf.publish_later(partial(transforms, now, (*frames, pose)))
+        if self._outputs.wants_odometry:
+            self._outputs.tell(*self._reading(), *self._covariances)
 
     def _reading(self) -> tuple[Pose, BodyTwist]:
         """Return the true pose, and the twist in the plane along the heading."""

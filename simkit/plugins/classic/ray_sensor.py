@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.find_entities import link_name, read_frame
-from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, text
+from simkit.plugins.find_entities import SensorFrameOptions
+from simkit.plugins.options import OptionsOf, boolean, choice, number, text
 
 if TYPE_CHECKING:
     from simkit.sensors.rays.lidar import Lidar
@@ -26,15 +26,18 @@ _OUTPUTS = {
 RADIATION = {"ultrasound": 0, "infrared": 1}  # values of sensor_msgs/Range
 
 
-class GazeboRosRaySensorOptions(Options):
+class GazeboRosLaserOptions(SensorFrameOptions):
+    """Options of `GazeboRosLaser`."""
+
+    topic_name: str = text(element="topicName")
+
+
+class GazeboRosRaySensorOptions(GazeboRosLaserOptions):
     """Options of `GazeboRosRaySensor`."""
 
     output_type: str = choice(tuple(_OUTPUTS), "sensor_msgs/PointCloud2")
     radiation_type: str = choice(tuple(RADIATION), "infrared")
     min_intensity: float = number(0.0)
-    topic_name: str = text(element="topicName")
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
 
 
 class GazeboRosRaySensor(SensorPlugin):
@@ -65,14 +68,6 @@ class GazeboRosRaySensor(SensorPlugin):
         _connect(self, parent, {output: topic}, least, radiation)
 
 
-class GazeboRosLaserOptions(Options):
-    """Options of `GazeboRosLaser`."""
-
-    topic_name: str = text(element="topicName")
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
-
-
 class GazeboRosLaser(SensorPlugin):
     """Publishes a ROS 1 LaserScan on `<topicName>` (`/world`), in the link's frame or `<frameName>`."""
 
@@ -84,15 +79,12 @@ class GazeboRosLaser(SensorPlugin):
         _connect(self, parent, {"scan": _named_topic(self, self.options.topic_name)}, 0.0, RADIATION["infrared"])
 
 
-class GazeboRosBlockLaserOptions(Options):
+class GazeboRosBlockLaserOptions(GazeboRosLaserOptions):
     """Options of `GazeboRosBlockLaser`."""
 
     gaussian_noise: float = number(0.0, element="gaussianNoise", minimum=0, maximum=LARGEST)
     hokuyo_min_intensity: float = number(0.0, element="hokuyoMinIntensity")
     update_rate: float = number(0.0, "Hz", element="updateRate")
-    topic_name: str = text(element="topicName")
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
 
 
 class GazeboRosBlockLaser(SensorPlugin):
@@ -129,7 +121,7 @@ def _named_topic(plugin: SensorPlugin, topic: str) -> str:
     return plugin.ros.topic(topic or "/world")
 
 
-class GazeboRosVelodyneLaserOptions(Options):
+class GazeboRosVelodyneLaserOptions(GazeboRosLaserOptions):
     """Options of `GazeboRosVelodyneLaser`."""
 
     min_range: float = number(0.0, minimum=0)
@@ -137,9 +129,6 @@ class GazeboRosVelodyneLaserOptions(Options):
     organize_cloud: bool = boolean()
     min_intensity: float = number(-math.inf, finite=False)
     gaussian_noise: float = number(0.0, element="gaussianNoise", minimum=0, maximum=LARGEST)
-    topic_name: str = text(element="topicName")
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
 
 
 class GazeboRosVelodyneLaser(SensorPlugin):
@@ -170,13 +159,13 @@ def _connect(plugin: SensorPlugin, sensor: Lidar, topics: dict[str, str], min_in
     if not hasattr(sensor, "min_intensity"):
         plugin.refuse(sensor, "ray")
         return False
-    sensor.frame_id = read_frame(sensor, plugin.params)
+    sensor.frame_id = SensorFrameOptions(plugin.params).frame_of(sensor)
     sensor.min_intensity, sensor.radiation = min_intensity, radiation
     sensor.publish_on(topics)
     return True
 
 
-class GazeboRosRangeOptions(Options):
+class GazeboRosRangeOptions(SensorFrameOptions):
     """Options of `GazeboRosRange`."""
 
     topic_name: str = text("range", element="topicName")
@@ -184,8 +173,6 @@ class GazeboRosRangeOptions(Options):
     fov: float = number(0.05, minimum=0, maximum=1e6)
     gaussian_noise: float = number(0.0, element="gaussianNoise", minimum=0, maximum=1e6)
     update_rate: float = number(0.0, "Hz", element="updateRate", minimum=0)
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
 
 
 class GazeboRosRange(SensorPlugin):
@@ -209,7 +196,7 @@ class GazeboRosRange(SensorPlugin):
         if not hasattr(parent, "range_noise"):
             self.refuse(parent, "ray")
             return
-        parent.frame_id = self.options.frame_name or self.options.frame_name_ros_1 or link_name(parent)
+        parent.frame_id = self.options.frame_of(parent)
         parent.radiation, parent.field_of_view = radiation, view
         if stddev > 0:
             parent.add_range_noise(stddev)

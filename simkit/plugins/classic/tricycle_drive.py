@@ -22,7 +22,7 @@ from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning, rolling_twist, wheel_angles
 from simkit.plugins.drives.wheel_joints import find_drive_joint, find_wheels
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.options import Options, boolean, choice, integer, number, text
+from simkit.plugins.options import boolean, choice, integer, number, text
 from simkit.plugins.ros_names import is_ros_1
 
 if TYPE_CHECKING:
@@ -37,10 +37,17 @@ _ROS_1 = frozenset(
         *("odometryTopic", "odometryFrame", "robotBaseFrame", "updateRate", "steeringSpeed", "odometrySource"),
     }
 )
-_COVARIANCE = (1e-5, 1e-5, 1e-3)
 
 
-class TricycleOptions(Options):
+class CommonTricycleOptions(DriveOutputOptions):
+    """Options of both spellings: the odometry and its transform are published together."""
+
+    @property
+    def publishes_odom_tf(self) -> bool:
+        return self.publish_odom
+
+
+class TricycleOptions(CommonTricycleOptions):
     """Options in the spelling of ROS 2; its topics have fixed names.
 
     The torque limit [N·m] applies to the driven wheel, and also to the steering if it has a maximum speed. If the
@@ -50,7 +57,6 @@ class TricycleOptions(Options):
     """
 
     command_topic: str = "cmd_vel"
-    odometry_topic: str = "odom"
     max_wheel_acceleration: float = number(0.0, "rad/s²", minimum=0)
     publish_odom: bool = boolean()
     steering_joint: str = text("front_steering_joint")
@@ -73,10 +79,9 @@ class TricycleOptions(Options):
     publish_wheel_joint_state: bool = boolean()
 
 
-class TricycleRos1Options(Options):
+class TricycleRos1Options(CommonTricycleOptions):
     """Options in the spelling of ROS 1; the odometry is always published."""
 
-    publish_odom = True
     max_wheel_acceleration: float = number(0.0, "rad/s²", element="wheelAcceleration", minimum=0)
     steering_joint: str = text("front_steering_joint", element="steeringJoint")
     actuated_wheel_joint: str = text("front_wheel_joint", element="actuatedWheelJoint")
@@ -98,19 +103,6 @@ class TricycleRos1Options(Options):
     robot_base_frame: str = text("base_link", element="robotBaseFrame")
     publish_wheel_tf: bool = boolean(element="publishWheelTF")
     publish_wheel_joint_state: bool = boolean(element="publishWheelJointState")
-
-
-def _outputs(options: TricycleOptions | TricycleRos1Options) -> DriveOutputOptions:
-    return DriveOutputOptions(
-        odometry_topic=options.odometry_topic,
-        odometry_frame=options.odometry_frame,
-        base_frame=options.robot_base_frame,
-        odometry=options.publish_odom,
-        odometry_tf=options.publish_odom,
-        wheel_tf=options.publish_wheel_tf,
-        joint_states=options.publish_wheel_joint_state,
-        covariance=_COVARIANCE,
-    )
 
 
 class GazeboRosTricycleDrive(CommandedDrive):
@@ -155,7 +147,7 @@ class GazeboRosTricycleDrive(CommandedDrive):
         self._speed, self._steering_target = 0.0, 0.0
         self._reckoning = DeadReckoning()
         self._angles = wheel_angles(*self._pair)
-        self._outputs = DriveOutputs(self, _outputs(self.options), self._all)
+        self._outputs = DriveOutputs(self, self.options, self._all)
 
     # ------------------------------------------------------------------ commands
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit.plugins.drives.odometry import (
     ODOMETRY,
@@ -17,36 +16,47 @@ from simkit.plugins.drives.odometry import (
 )
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Pose
+from simkit.plugins.options import Options
+from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
     from simkit.scene import SceneJoint
 
 
-@dataclass(frozen=True, slots=True)
-class DriveOutputOptions:
-    """Selection and names of the outputs of a drive.
+class DriveOutputOptions(Options):
+    """Options that select and name the outputs of a drive; an element that a drive does not have is a constant.
 
     Attributes:
         odometry_topic: Name of the odometry topic.
         odometry_frame: Frame of the odometry, parent of its transform.
-        base_frame: Frame of the robot's base, child of the odometry's transform.
-        odometry: True to publish odometry.
-        odometry_tf: True to publish the transform of the odometry.
-        wheel_tf: True to publish the transforms of the joints' child links.
-        joint_states: True to publish joint states.
-        covariance: Variances of x, y [m²] and yaw [rad²].
+        robot_base_frame: Frame of the robot's base, child of the odometry's transform.
+        publish_odom: True to publish odometry.
+        publish_odom_tf: True to publish the transform of the odometry.
+        publish_wheel_tf: True to publish the transforms of the joints' child links.
+        publish_wheel_joint_state: True to publish joint states.
+        covariance_x: Variance of x [m²].
+        covariance_y: Variance of y [m²].
+        covariance_yaw: Variance of the yaw [rad²].
+        is_level: True if the height in the odometry is 0.
     """
 
-    odometry_topic: str
+    odometry_topic: str = "odom"
     odometry_frame: str
-    base_frame: str
-    odometry: bool
-    odometry_tf: bool
-    wheel_tf: bool
-    joint_states: bool
-    covariance: tuple[float, float, float]
+    robot_base_frame: str
+    publish_odom: bool = True
+    publish_odom_tf: bool
+    publish_wheel_tf: bool = False
+    publish_wheel_joint_state: bool = False
+    covariance_x: float = 1e-5
+    covariance_y: float = 1e-5
+    covariance_yaw: float = 1e-3
+    is_level: ClassVar[bool] = False
+
+    @property
+    def publishes_odom_tf(self) -> bool:
+        """True if the odometry is published as a transform."""
+        return self.publish_odom_tf
 
 
 class DriveOutputs(SharedByCopies):
@@ -54,7 +64,7 @@ class DriveOutputs(SharedByCopies):
 
     Args:
         plugin: Drive that publishes; its `load` creates this object.
-        options: Selected outputs.
+        options: Selection and names of the outputs.
         joints: Joints whose transforms and states are published.
     """
 
@@ -62,30 +72,34 @@ class DriveOutputs(SharedByCopies):
         self._sim, self._options = plugin.sim, options
         self._links = [(joint.parent_link, joint.child_link) for joint in joints]
         self._joints = [plugin.sim.joint(joint.scoped) for joint in joints]
-        self._covariance = planar_covariance(*options.covariance)
-        self._odom = plugin.advertise(options.odometry_topic, ODOMETRY) if options.odometry else None
-        self._tf = plugin.advertise("/tf", TRANSFORMS) if options.odometry_tf or options.wheel_tf else None
-        self._states = plugin.advertise("joint_states", JOINT_STATE) if options.joint_states else None
+        self._covariance = planar_covariance(options.covariance_x, options.covariance_y, options.covariance_yaw)
+        self._odom = plugin.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
+        has_tf = options.publishes_odom_tf or options.publish_wheel_tf
+        self._tf = plugin.advertise("/tf", TRANSFORMS) if has_tf else None
+        self._states = plugin.advertise("joint_states", JOINT_STATE) if options.publish_wheel_joint_state else None
 
     @property
     def wants_odometry(self) -> bool:
         """True while the odometry or transform topic has a subscriber."""
         return any(out is not None and out.wanted for out in (self._odom, self._tf))
 
-    def tell(self, pose: Pose, twist: BodyTwist) -> None:
+    def tell(self, pose: Pose, twist: BodyTwist, *covariances: Vector) -> None:
         """Publish odometry and transforms.
 
         Args:
             pose: Pose of the base in the odometry frame.
             twist: Twist in the axes of the base.
+            covariances: Covariances of the pose and of the twist; none for the variances of the options.
         """
         options, now = self._options, self._sim.time_ns
-        frames = options.odometry_frame, options.base_frame
+        frames = options.odometry_frame, options.robot_base_frame
         if self._odom is not None and self._odom.wanted:
-            self._odom.publish_later(partial(odometry_message, now, *frames, pose, twist, self._covariance))
+            shown = Pose((*pose.position[:2], 0.0), pose.quaternion) if options.is_level else pose
+            spread = covariances or (self._covariance,)
+            self._odom.publish_later(partial(odometry_message, now, *frames, shown, twist, *spread))
         if self._tf is not None and self._tf.wanted:
-            found = [(*frames, pose)] if options.odometry_tf else []
-            for above, below in self._links if options.wheel_tf else ():
+            found = [(*frames, pose)] if options.publishes_odom_tf else []
+            for above, below in self._links if options.publish_wheel_tf else ():
                 parent, child = self._sim.link(above), self._sim.link(below)
                 found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
             self._tf.publish_later(partial(transforms, now, *found))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import abc
 import functools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.params import LARGEST
+from simkit.plugins.base import ModelPlugin
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import IDENTITY, Pose, Vector
 from simkit.runtime.engine.physics_step import STALE, VELOCITY
@@ -184,6 +186,31 @@ class KinematicMover(SharedByCopies):
             for dof, _, _ in motion.addresses:
                 self._units[_SIX, _SIX + dof] = 1.0
         self._owners: npt.NDArray[np.int_] = owners
+
+
+class KinematicPlugin(ModelPlugin):
+    """Plugin that sets the velocity of its model, or of links of the model, at every step."""
+
+    drives = True
+    _mover: KinematicMover
+
+    @abc.abstractmethod
+    def velocity_targets(self) -> list[VelocityTarget]:
+        """Return the commanded velocities of the next step."""
+
+    def before_step(self) -> None:
+        """Set the velocities for the next step."""
+        self._mover.move(self.velocity_targets())
+
+    @classmethod
+    def before_step_together(cls, plugins: Sequence[KinematicPlugin]) -> Callable[[Iterable[KinematicPlugin]], None]:
+        """Return a function that runs `before_step` of many plugins and does their common computation only once."""
+        mover = KinematicMover(plugins[0].sim)
+
+        def run(rota: Iterable[KinematicPlugin]) -> None:
+            mover.move([move for plugin in rota for move in plugin.velocity_targets()])
+
+        return run
 
 
 def _solve_force(mobility: Vector, acceleration: Vector) -> Vector:

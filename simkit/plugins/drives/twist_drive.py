@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, cast
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
-from simkit.plugins.drives.speed_limits import SpeedLimiter, limit_each
+from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimitOptions, limit_each
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.find_entities import read_topic
+from simkit.plugins.options import Options, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -23,6 +24,22 @@ if TYPE_CHECKING:
 
 Speeds = tuple[float, ...]
 """Forward speed [m/s], for some drives the speed to the left [m/s], and turning rate [rad/s]."""
+
+
+class OdometryOptions(Options):
+    """Rate and topics of a drive that publishes its odometry."""
+
+    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
+    topic: str = text()
+    odom_topic: str = text()
+    tf_topic: str = text()
+
+
+class WheeledDriveOptions(SpeedLimitOptions, OdometryOptions):
+    """Options of a drive with wheels of one size."""
+
+    wheel_separation: float = number(1.0, "m", minimum=1e-6)
+    wheel_radius: float = number(0.2, "m", minimum=1e-6)
 
 
 class TwistDrive(ModelPlugin):

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.msgs.topic_names import valid_topic
-from simkit.params import Params
+from simkit.params import Params, number_or_nan
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.endpoints import listens, offers
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
@@ -188,10 +188,7 @@ def _piece(options: FieldPieceOptions, is_bounded: bool = True) -> FieldPiece:
 
 def _number_of(block: Params) -> float:
     """Return the text of an element as a number; 0 after an error."""
-    try:
-        value = float(block.value)
-    except ValueError:
-        value = math.nan
+    value = number_or_nan(block.value)
     if not abs(value) <= 1e9:
         block.error("SK-PARAM-002", f"found <{block.name}>{block.value}</{block.name}>; expected a number")
         return 0.0
@@ -209,10 +206,7 @@ def _bound(block: Params, closed: str, opened: str, default: float) -> tuple[flo
     if len(bounds) == 2:
         block.error("SK-PARAM-002", f"found {closed} and {opened} on one <{block.name}>; expected one of the two")
     for name, text in bounds[:1]:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
+        value = number_or_nan(text)
         if math.isfinite(value):
             return value, name == closed
         block.error("SK-PARAM-002", f'found {name}="{text}"; expected a number [m]')

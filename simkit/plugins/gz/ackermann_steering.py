@@ -16,8 +16,8 @@ from simkit.plugins.drives.odometry import (
     TravelOdometry,
     joint_angles,
 )
-from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
-from simkit.plugins.drives.twist_drive import TwistDrive
+from simkit.plugins.drives.speed_limits import speed_limits
+from simkit.plugins.drives.twist_drive import TwistDrive, WheeledDriveOptions
 from simkit.plugins.drives.wheel_joints import find_drive_joint, steering_angles
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import read_topic
@@ -58,18 +58,15 @@ class AckermannOdometry(TravelOdometry):
         return ahead, 0.0, ahead * math.tan((after[2] + after[3]) / 2) / self._base
 
 
-class AckermannSteeringOptions(SpeedLimitOptions):
+class AckermannSteeringOptions(WheeledDriveOptions):
     """Options of `AckermannSteering`."""
 
     steering_only: bool = boolean()
     wheel_base: float = number(1.0, "m", minimum=1e-6)
-    wheel_separation: float = number(1.0, "m", minimum=1e-6)
     steering_limit: float = number(0.5, minimum=1e-6, maximum=math.pi / 2)
     left_steering_joint: tuple[str, ...] = texts(required=True)
     right_steering_joint: tuple[str, ...] = texts(required=True)
     kingpin_width: float = number(0.8, "m", minimum=1e-6)
-    wheel_radius: float = number(0.2, "m", minimum=1e-6)
-    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
     left_joint: tuple[str, ...] = texts(required=True)
     right_joint: tuple[str, ...] = texts(required=True)
     steer_i_min: float = number(0.0)
@@ -80,9 +77,6 @@ class AckermannSteeringOptions(SpeedLimitOptions):
     use_actuator_msg: bool = boolean()
     actuator_number: int = integer(0, minimum=0)
     sub_topic: str = text()
-    topic: str = text()
-    odom_topic: str = text()
-    tf_topic: str = text()
 
 
 class AckermannSteering(TwistDrive):

@@ -99,8 +99,7 @@ class ApplyLinkWrench(WorldPlugin):
             return None
         wrench = _Wrench(name, _TYPES[kind], force, torque)
         if self._target(name, wrench.type) is None:
-            message = f"plugin {self.name!r}: there is no {kind} {name!r} to push yet"
-            element.diagnostics.warning("SK-JOINT-013", message, self.where)
+            self.params.warning("SK-JOINT-013", f"plugin {self.name!r}: there is no {kind} {name!r} to push yet")
         return wrench
 
     def _target(self, name: str, kind: int) -> Link | None:

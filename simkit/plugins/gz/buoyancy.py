@@ -77,13 +77,11 @@ class Buoyancy(BuoyancyBase, WorldPlugin):
             if graded.is_given:
                 graded.params.mark_all_read()
                 fault = "found both <uniform_fluid_density> and <graded_buoyancy>"
-                message = f"{fault}: <uniform_fluid_density> is used, as in Gazebo"
-                params.diagnostics.warning("SK-PLUGIN-111", message, graded.params.where)
+                graded.params.warning("SK-PLUGIN-111", f"{fault}: <uniform_fluid_density> is used, as in Gazebo")
             return Fluid((self.options.uniform_fluid_density,))
         if not graded.is_given:
             message = f"plugin {self.name!r} defines no fluid: the whole world is filled with water of {WATER:g} kg/m³"
-            hint = "add <uniform_fluid_density> or <graded_buoyancy>"
-            params.diagnostics.warning("SK-PLUGIN-114", message, self.where, hint)
+            params.warning("SK-PLUGIN-114", message, "add <uniform_fluid_density> or <graded_buoyancy>")
             return Fluid((WATER,))
         layers: dict[float, float] = {}
         for change in graded.density_change:

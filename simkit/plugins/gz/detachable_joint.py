@@ -80,9 +80,8 @@ class DetachableJoint(ModelPlugin):
         if not self._quiet and not self._is_missing_reported:
             missing = f"link {self._child_link!r} of model {name!r}" if inner else f"model {name!r}"
             self._is_missing_reported = True
-            message = f"plugin {self.name!r}: there is no {missing} to attach yet"
             hint = "if this is intended, add <suppress_child_warning>true</suppress_child_warning>"
-            params.diagnostics.warning("SK-JOINT-013", message, self.where, hint)
+            params.warning("SK-JOINT-013", f"plugin {self.name!r}: there is no {missing} to attach yet", hint)
         return ""
 
     _is_missing_reported = False

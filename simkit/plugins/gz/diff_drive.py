@@ -22,9 +22,9 @@ from simkit.plugins.drives.odometry import (
     wheel_angles,
 )
 from simkit.plugins.drives.odometry_noise import NoisyOdometry, OdometryNoiseOptions, odometry_noise
-from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
-from simkit.plugins.drives.twist_drive import Speeds, TwistDrive
-from simkit.plugins.options import OptionsOf, block, boolean, number, text, texts
+from simkit.plugins.drives.speed_limits import speed_limits
+from simkit.plugins.drives.twist_drive import Speeds, TwistDrive, WheeledDriveOptions
+from simkit.plugins.options import OptionsOf, block, boolean, texts
 from simkit.pose import Vector
 
 _NS = 1_000_000_000
@@ -36,18 +36,12 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 
-class DiffDriveOptions(SpeedLimitOptions):
+class DiffDriveOptions(WheeledDriveOptions):
     """Options of `DiffDrive`."""
 
-    wheel_separation: float = number(1.0, "m", minimum=1e-6)
-    wheel_radius: float = number(0.2, "m", minimum=1e-6)
-    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
     left_joint: tuple[str, ...] = texts(required=True)
     right_joint: tuple[str, ...] = texts(required=True)
     odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
-    topic: str = text()
-    odom_topic: str = text()
-    tf_topic: str = text()
     publish_ground_truth: bool = boolean()
 
 

@@ -67,9 +67,8 @@ class FollowActor(ModelPlugin):
         known = sorted(name for name in cast.rig.clips if name) if isinstance(cast.rig, SkinRig) else []
         if known and options.animation and options.animation not in known:
             missing = f"actor {scene.scoped!r} has no animation {options.animation!r}"
-            message = f"plugin {self.name!r}: {missing}; the first one is played"
             hint = did_you_mean(options.animation, known) or f"animations: {', '.join(known)}"
-            params.diagnostics.warning("SK-ACTOR-003", message, self.where, hint)
+            params.warning("SK-ACTOR-003", f"plugin {self.name!r}: {missing}; the first one is played", hint)
         least, most = options.min_distance, options.max_distance
         if most < least:
             message = f"plugin {self.name!r}: <max_distance> {most:g} is below <min_distance> {least:g}"

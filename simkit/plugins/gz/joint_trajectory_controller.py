@@ -199,9 +199,8 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
                 message_text = f"a trajectory contains joint {name!r}, which is not controlled; that part is ignored"
                 self._once.left_out(name, message_text, suggest_names(name, list(self._axes)))
         if any(point.accelerations for point in points) and self._rule != "quintic":
-            warning = "accelerations of a trajectory are not used"
             hint = "set <simkit:interpolation>quintic</simkit:interpolation> to use them"
-            self._once.warn("SK-PLUGIN-045", "accelerations", warning, hint)
+            self._once.warn("SK-PLUGIN-045", "accelerations", "accelerations of a trajectory are not used", hint)
         start = nanoseconds(message.header.stamp) if self._by_header else 0
         self._message = names, points, start
 

@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
-from simkit.plugins.battery import Battery, Cell
+from simkit.plugins.battery import Battery, BatteryOptions, Cell
 from simkit.plugins.endpoints import listens, offers, publishes
 from simkit.plugins.find_entities import read_required_name
 from simkit.plugins.gz.sensors import SensorsSystem
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
+from simkit.plugins.options import OptionsOf, boolean, number, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -30,17 +30,12 @@ _RENDERED: Final = ("camera", "depth", "gpu_", "segmentation", "boundingbox", "t
 _LEAST_EFFORT: Final = 1e-9  # smallest effort that counts as a command [N·m or N]
 
 
-class LinearBatteryOptions(Options):
+class LinearBatteryOptions(BatteryOptions):
     """Options of `LinearBattery`."""
 
-    battery_name: str = text(required=True)
     voltage: float = number(minimum=0.0, required=True)
-    capacity: float = number(minimum=1e-12, required=True)
     initial_charge: float = number(instead="capacity")
     smooth_current_tau: float = number(1.0)
-    open_circuit_voltage_constant_coef: float = number(0.0)
-    open_circuit_voltage_linear_coef: float = number(0.0)
-    resistance: float = number(0.0, minimum=0.0)
     start_draining: bool = boolean()
     enable_recharge: bool = boolean()
     invert_current_sign: bool = boolean()

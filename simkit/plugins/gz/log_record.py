@@ -69,9 +69,8 @@ class LogRecord(WorldPlugin):
     def _read_path(self, params: Params) -> Path | None:
         record_path = self.options.record_path
         if not record_path:
-            message = f"plugin {self.name!r} has no <record_path>; nothing is recorded"
             hint = "set <record_path> to a folder below the working directory, or use `simkit run --record OUT.mcap`"
-            params.diagnostics.warning("SK-PLUGIN-127", message, self.where, hint)
+            params.warning("SK-PLUGIN-127", f"plugin {self.name!r} has no <record_path>; nothing is recorded", hint)
             return None
         path = allowed_folder(record_path)
         if path is None or (path.exists() and not path.is_dir()):
@@ -109,8 +108,7 @@ class LogRecord(WorldPlugin):
         if self.options.compress_path:
             unused.append("<compress_path>: the only file is in <record_path>")
         if unused:
-            message = f"plugin {self.name!r} ignores {'; '.join(unused)}"
-            params.diagnostics.note("SK-PLUGIN-128", message, self.where)
+            params.diagnostics.note("SK-PLUGIN-128", f"plugin {self.name!r} ignores {'; '.join(unused)}", self.where)
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._log = _Log()

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 from simkit.compiler.contact_friction import has_directional_friction
 from simkit.params import Params
 from simkit.plugins.drives.odometry import Angles, Motion, TravelOdometry, joint_angles
-from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
-from simkit.plugins.drives.twist_drive import Speeds, TwistDrive
-from simkit.plugins.options import OptionsOf, number, text, texts
+from simkit.plugins.drives.speed_limits import speed_limits
+from simkit.plugins.drives.twist_drive import Speeds, TwistDrive, WheeledDriveOptions
+from simkit.plugins.options import OptionsOf, number, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -49,20 +49,14 @@ class MecanumOdometry(TravelOdometry):
         return ahead, left, turn / self._arm
 
 
-class MecanumDriveOptions(SpeedLimitOptions):
+class MecanumDriveOptions(WheeledDriveOptions):
     """Options of `MecanumDrive`."""
 
-    wheel_separation: float = number(1.0, "m", minimum=1e-6)
     wheelbase: float = number(1.0, "m", minimum=1e-6)
-    wheel_radius: float = number(0.2, "m", minimum=1e-6)
-    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
     front_left_joint: tuple[str, ...] = texts(required=True)
     front_right_joint: tuple[str, ...] = texts(required=True)
     back_left_joint: tuple[str, ...] = texts(required=True)
     back_right_joint: tuple[str, ...] = texts(required=True)
-    topic: str = text()
-    odom_topic: str = text()
-    tf_topic: str = text()
 
 
 class MecanumDrive(TwistDrive):

@@ -88,8 +88,7 @@ class Performers(WorldPlugin):
         if params.has("level"):
             for level in params.all("level"):
                 level.mark_all_read()
-            message = "levels have no effect: every model is loaded from the start"
-            params.diagnostics.note("SK-PLUGIN-126", message, params.block("level").where)
+            params.block("level").note("SK-PLUGIN-126", "levels have no effect: every model is loaded from the start")
 
     def load(self, parent: Simulation, params: Params) -> None:
         """Do nothing."""

@@ -79,8 +79,7 @@ class PythonSystemLoader(GzSystem):
             searched = ", ".join(map(str, folders)) or "no folder, because no folder is allowed"
             hint = "allow its folder with --plugin-path or plugin_paths, or add it to GZ_SIM_SYSTEM_PLUGIN_PATH"
             missing = f"no module {self._module_name!r} for PythonSystemLoader"
-            message = f"{missing}; the plugin is ignored; searched: {searched}"
-            params.diagnostics.warning("SK-PLUGIN-080", message, self.where, hint)
+            params.warning("SK-PLUGIN-080", f"{missing}; the plugin is ignored; searched: {searched}", hint)
             params.mark_all_read()
 
     def _import(self, params: Params, folder: Path | None, folders: list[Path]) -> None:

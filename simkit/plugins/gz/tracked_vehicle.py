@@ -24,7 +24,7 @@ from simkit.plugins.drives.odometry import (
 )
 from simkit.plugins.drives.speed_limits import LimiterOptions, speed_limiter
 from simkit.plugins.drives.tracks import TrackOdometry, belt_of, needs_direction, report_missing_collisions
-from simkit.plugins.drives.twist_drive import Speeds, TwistDrive
+from simkit.plugins.drives.twist_drive import OdometryOptions, Speeds, TwistDrive
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import find_link, find_named_link, read_topic
 from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, number, text, vector3
@@ -45,16 +45,21 @@ _STILL = 1e-6  # change of a speed per step below which no new speeds are sent t
 _SIDES = ("left", "right")
 
 
-class TrackControllerOptions(LimiterOptions):
-    """Options of `TrackController`."""
+class TrackOptions(Options):
+    """Options of a `<left_track>` or `<right_track>` block."""
 
     link: str = text(required=True)
+    velocity_topic: str = text()
+    center_of_rotation_topic: str = text()
+
+
+class TrackControllerOptions(LimiterOptions, TrackOptions):
+    """Options of `TrackController`."""
+
     track_orientation: tuple[float, float, float] = vector3()
     max_command_age: float = number(math.inf, minimum=0, finite=False)
     odometry_publish_frequency: float = number(50.0, "Hz", minimum=0)
     debug: bool = boolean()
-    velocity_topic: str = text()
-    center_of_rotation_topic: str = text()
     odometry_topic: str = text()
 
 
@@ -172,15 +177,7 @@ class TrackController(ModelPlugin):
         self._odometry.publish_later(partial(odometry_message, self.sim.time_ns, "", "", pose, twist))
 
 
-class TrackOptions(Options):
-    """Options of a `<left_track>` or `<right_track>` block."""
-
-    link: str = text(required=True)
-    velocity_topic: str = text()
-    center_of_rotation_topic: str = text()
-
-
-class TrackedVehicleOptions(Options):
+class TrackedVehicleOptions(OdometryOptions):
     """Options of `TrackedVehicle`."""
 
     body_link: str = text(required=True)
@@ -191,12 +188,8 @@ class TrackedVehicleOptions(Options):
     tracks_height: float = number(0.2, "m", minimum=1e-6)
     linear_velocity: LimiterOptions = block(LimiterOptions)
     angular_velocity: LimiterOptions = block(LimiterOptions)
-    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
     debug: bool = boolean()
-    topic: str = text()
     steering_efficiency_topic: str = text()
-    odom_topic: str = text()
-    tf_topic: str = text()
 
 
 class TrackedVehicle(TwistDrive):

@@ -140,8 +140,7 @@ def _waypoints(params: Params, start: Pose, name: str) -> list[Point]:
     kinds = [kind for kind in _KINDS if params.has(kind)]
     if not kinds:
         message = f"plugin {name!r} has no <waypoints>, <circle> or <line>, so it pushes nothing"
-        hint = "add <waypoints><waypoint>2 0</waypoint></waypoints>"
-        params.diagnostics.warning("SK-PLUGIN-130", message, params.where, hint)
+        params.warning("SK-PLUGIN-130", message, "add <waypoints><waypoint>2 0</waypoint></waypoints>")
         return []
     if len(kinds) > 1:
         others = " and ".join(f"<{kind}>" for kind in kinds[1:])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs.topic_names import valid_topic
-from simkit.params import Params
+from simkit.params import Params, number_or_nan
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.gz.performer_detector import DETAILS, STATUS, pose_of_status
 from simkit.plugins.gz_python.msgs import message_class
@@ -134,8 +134,7 @@ class TriggeredPublisher(WorldPlugin):
             element.error("SK-PARAM-002", f"found {found}; expected positive or negative")
             return None
         if not element.value:
-            message = f"plugin {self.name!r}: a <match> without a text has no effect"
-            element.diagnostics.warning("SK-PLUGIN-124", message, element.where)
+            element.warning("SK-PLUGIN-124", f"plugin {self.name!r}: a <match> without a text has no effect")
             return None
         try:
             return MessageMatcher(kind, element.value, field, tolerance, logic == "positive")
@@ -245,10 +244,7 @@ def _topic(element: Params) -> str:
 
 def _tolerance(element: Params) -> float:
     text = element.attribute("tol", str(TOLERANCE))
-    try:
-        tolerance = float(text)
-    except ValueError:
-        tolerance = -1.0
+    tolerance = number_or_nan(text)
     if not tolerance >= 0.0:
         element.error("SK-PARAM-002", f'found <match tol="{text}">; expected a number of at least 0')
         return TOLERANCE

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, Triple, VelocityTarget
+from simkit.plugins.drives.kinematic_motion import (
+    KinematicMotion,
+    KinematicMover,
+    KinematicPlugin,
+    Triple,
+    VelocityTarget,
+)
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.find_entities import find_link
 from simkit.plugins.options import Options, OptionsOf, text, texts, vector3
@@ -33,7 +38,7 @@ class VelocityControlOptions(Options):
     initial_angular: Triple = vector3()
 
 
-class VelocityControl(ModelPlugin):
+class VelocityControl(KinematicPlugin):
     """Moves the model with the twist on `/model/<model>/cmd_vel`, in the model's own axes, around the model's origin.
 
     The velocity is `<initial_linear>` and `<initial_angular>` (default: zero) until the first command; each command
@@ -46,7 +51,6 @@ class VelocityControl(ModelPlugin):
     options = OptionsOf(VelocityControlOptions)
     filenames = ("gz-sim-velocity-control-system",)
     names = ("gz::sim::systems::VelocityControl",)
-    drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self.options.read_all()
@@ -98,21 +102,7 @@ class VelocityControl(ModelPlugin):
         self._once.not_finite()
         return None
 
-    def before_step(self) -> None:
-        """Set the velocities for the next step."""
-        self._mover.move(self._velocity_targets())
-
-    @classmethod
-    def before_step_together(cls, plugins: Sequence[VelocityControl]) -> Callable[[Iterable[VelocityControl]], None]:
-        """Return a function that runs `before_step` of many plugins and does their common computation only once."""
-        mover = KinematicMover(plugins[0].sim)
-
-        def run(rota: Iterable[VelocityControl]) -> None:
-            mover.move([move for plugin in rota for move in plugin._velocity_targets()])
-
-        return run
-
-    def _velocity_targets(self) -> list[VelocityTarget]:
+    def velocity_targets(self) -> list[VelocityTarget]:
         """Return the commanded velocities of the next step."""
         if not self._link_targets:
             return [VelocityTarget(self._whole, self._whole.frame, *self._target)] if self._whole else []

@@ -118,8 +118,7 @@ def _find_picture(options: ThermalOptions, builder: SpecBuilder) -> Path | None:
             return path
         except MeshFileError as error:
             problem = str(error)
-    message = f"heat signature {uri!r} {problem}; the surface gets the temperature of the air"
-    params.diagnostics.warning("SK-SENSOR-142", message, element.where)
+    element.warning("SK-SENSOR-142", f"heat signature {uri!r} {problem}; the surface gets the temperature of the air")
     return None
 
 

@@ -100,9 +100,8 @@ class PlayMotion(ModelPlugin):
         for element in params.all("motions"):
             path = self._find(element.value, builder)
             if path is None:
-                message = f"the motion file {element.value} is not found"
                 hint = "add --package-path NAME=DIR for the package, or put the file next to the robot's file"
-                params.diagnostics.warning("SK-MOTION-001", message, element.where, hint)
+                element.warning("SK-MOTION-001", f"the motion file {element.value} is not found", hint)
                 continue
             contents.update(read_motions(path, params.diagnostics))
         self.known = dict(contents.motions)
@@ -148,8 +147,7 @@ class PlayMotion(ModelPlugin):
         self.ros = RosNames(self.ros.node, f"{self.ros.namespace}/{self.robot.name}", params=self.params)
         reason = f"another robot uses {taken!r}"
         message = f"robot {self.robot.name!r} plays motions under {self.action_name!r}, because {reason}"
-        hint = "give each robot a namespace: <ros><namespace>...</namespace></ros>"
-        self.params.diagnostics.note("SK-MOTION-007", message, self.where, hint)
+        self.params.note("SK-MOTION-007", message, "give each robot a namespace: <ros><namespace>...</namespace></ros>")
 
     def _open_interfaces(self) -> None:
         self.act("play_motion2", ROS_2, self._on_goal, self._on_cancel)

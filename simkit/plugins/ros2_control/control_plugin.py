@@ -140,8 +140,7 @@ class ControlPlugin(ModelPlugin):
                 continue
             gains.mark_all_read()
             message = f"pid_gains names joint {name!r}, which the hardware does not have"
-            near = did_you_mean(name, self.hardware.joints)
-            self.params.diagnostics.warning("SK-CONTROL-008", message, where, near)
+            self.params.diagnostics.warning("SK-CONTROL-008", message, where, did_you_mean(name, self.hardware.joints))
         return found
 
     def speed_bounds(self, topic: str) -> tuple[tuple[float, float], tuple[float, float]] | None:

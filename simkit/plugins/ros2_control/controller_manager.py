@@ -168,9 +168,8 @@ class ControllerManager(SharedByCopies):
         for name in dict.fromkeys(names):
             if name not in known:
                 listed = f"the {kind} interfaces are: " + (", ".join(known) or "none")
-                near = did_you_mean(name, known) or listed
                 message = f"controller {controller.name!r} needs the {kind} interface {name!r}, which does not exist"
-                controller.params.error("SK-CONTROL-012", message, near)
+                controller.params.error("SK-CONTROL-012", message, did_you_mean(name, known) or listed)
 
     def _not_found(self, name: str) -> str:
         near = did_you_mean(name, self.controllers)

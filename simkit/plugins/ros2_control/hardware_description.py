@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
-from simkit.params import Params
+from simkit.params import Params, number_or_nan
 from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.hardware_joint import PidGains
 
@@ -50,10 +50,7 @@ def parse_number(
     text: str, default: float, element: Params, diagnostics: Diagnostics, *, minimum: float = -_LARGEST_NUMBER
 ) -> float:
     """Parse a finite number; report an invalid one as an error and return the default."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
+    value = number_or_nan(text)
     if minimum <= value <= _LARGEST_NUMBER:
         return value
     allowed = "a number" if math.isnan(value) else f"a number from {minimum:g} to {_LARGEST_NUMBER:g}"
@@ -199,9 +196,8 @@ def _joint(scene: SceneModel, element: Params, diagnostics: Diagnostics) -> Join
     name = element.attribute("name")
     joints = {joint.name: joint for joint in scene.all_joints()}
     if name not in joints:
-        near = did_you_mean(name, joints)
         message = f"<ros2_control> names joint {name!r}, which model {scene.scoped!r} does not have; it is ignored"
-        diagnostics.warning("SK-CONTROL-008", message, element.where, near)
+        diagnostics.warning("SK-CONTROL-008", message, element.where, did_you_mean(name, joints))
         return None
     if len(joints[name].axes) != 1:
         message = f"<ros2_control> names joint {name!r}, a {joints[name].type} joint; the joint needs exactly one axis"

@@ -6,7 +6,7 @@ import math
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from simkit.params import LARGEST, Params
+from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.find_entities import find_light
 from simkit.plugins.options import Options, OptionsOf, number, text
@@ -63,11 +63,13 @@ class Sun(WorldPlugin):
     filenames = ("simkit-sun",)
 
     def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
+        from simkit.sensors.environment.solar_irradiance import read_irradiance
+
         self._start = _start(self.options)
         self._scale = self.options.time_scale
         self.before_step_rate = self.options.update_rate
         self._site = _site(self.options, scene.spherical_coordinates)
-        self._irradiance = _irradiance(self.options)
+        self._irradiance = read_irradiance(params, self.options.irradiance, "clear_sky")
         self._path: SunPath | None = None
         try:
             self._path = SunPath(self._site)
@@ -146,23 +148,6 @@ def _site(options: SunOptions, world: SphericalCoordinates | None) -> Site:
         pressure=params.number("pressure", air_column(Atmosphere()).at(elevation).pressure, minimum=0, maximum=1e6),
         temperature=options.temperature,
     )
-
-
-def _irradiance(options: SunOptions) -> float | None:
-    """Return `<irradiance>` [W/m²], or None for `clear_sky`."""
-    text = options.irradiance
-    if text == "clear_sky":
-        return None
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if 0 <= value <= LARGEST:
-        return value
-    allowed = f"clear_sky, or a number from 0 to {LARGEST:g} [W/m²]"
-    message = f"found <irradiance>{text}</irradiance>; expected {allowed}"
-    options.params.block("irradiance").error("SK-PARAM-002", message)
-    return None
 
 
 def _find_sun(sim: Simulation, options: SunOptions) -> Light | None:

@@ -191,8 +191,7 @@ def _scale_to_view(params: Params, lens: Lens, hfov: float) -> tuple[Lens, float
         least = max(_NARROWEST, -2 * lens.c2 * lens.c3)
         allowed = f"a number from {least:.4g} to {widest:.4g} for a lens of type {lens.type}"
         hint = "choose another <type> of <lens>"
-        message = f"found <horizontal_fov>{hfov:g}</horizontal_fov>; expected {allowed}"
-        found.error("SK-PARAM-002", message, hint)
+        found.error("SK-PARAM-002", f"found <horizontal_fov>{hfov:g}</horizontal_fov>; expected {allowed}", hint)
         hfov = widest
     return lens.scaled_to(min(hfov, 2 * lens.widest)), hfov
 

@@ -55,8 +55,7 @@ def _read_year(block: Params) -> float:
     if FIRST_YEAR <= year <= LAST_YEAR:
         return year
     allowed = f"expected a date such as 2026-07-01 or 2026.5, from {FIRST_YEAR:g} to {LAST_YEAR:g}"
-    message = f"found <date>{element.value[:60]}</date>, {allowed}"
-    element.error("SK-SENSOR-063", message)
+    element.error("SK-SENSOR-063", f"found <date>{element.value[:60]}</date>, {allowed}")
     return DEFAULT_DATE
 
 

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler import Compiled
-from simkit.params import LARGEST, Params
+from simkit.params import LARGEST, Params, number_or_nan
 from simkit.pose import Vector, quat_from_rpy, quat_multiply
 from simkit.runtime.handles.light import Light, LightState
 from simkit.scene.geometry import Vec3
@@ -97,12 +97,11 @@ def read_solar_options(params: Params, towards: str) -> SolarOptions:
         towards: default of `<towards>`.
     """
     normal = _normal(params, _UP)
-    irradiance = params.text("irradiance", "")
     measures_irradiance = params.has("irradiance") or params.has("panel")
     return SolarOptions(
         shadow=params.boolean("shadow", False),
         towards=params.choice("towards", ("direction", "position"), towards),
-        irradiance=None if irradiance in ("", "light") else _irradiance(params),
+        irradiance=read_irradiance(params, params.text("irradiance", "") or "light", "light"),
         falloff=params.choice("falloff", FALLOFFS, "none"),
         normal=normal,
         field_of_view=params.number("field_of_view", _FULL_CIRCLE, minimum=0, maximum=_FULL_CIRCLE + 1e-9),
@@ -111,16 +110,13 @@ def read_solar_options(params: Params, towards: str) -> SolarOptions:
     )
 
 
-def _irradiance(params: Params) -> float | None:
-    found = params.block("irradiance")
-    try:
-        value = float(found.value)
-    except ValueError:
-        value = math.nan
-    if 0 <= value <= LARGEST:
-        return value
-    allowed = f"light, or a number from 0 to {LARGEST:g} [W/m²]"
-    found.error("SK-PARAM-002", f"found <irradiance>{found.value}</irradiance>; expected {allowed}")
+def read_irradiance(params: Params, text: str, keyword: str) -> float | None:
+    """Return the number in `<irradiance>` [W/m²]; None for the keyword that stands for no number, or after an error."""
+    value = number_or_nan(text)
+    if text == keyword or 0 <= value <= LARGEST:
+        return None if text == keyword else value
+    allowed = f"{keyword}, or a number from 0 to {LARGEST:g} [W/m²]"
+    params.block("irradiance").error("SK-PARAM-002", f"found <irradiance>{text}</irradiance>; expected {allowed}")
     return None
 
 

@@ -90,15 +90,8 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         w, x, y, z, rx, ry, rz, fx, fy, fz = self._rows[member_index]
         if not has_attitude:
             w, x, y, z = 1.0, 0.0, 0.0, 0.0
-        message: msgs.Imu = make(
-            header(time(*self._clock), frame),
-            quaternion(x, y, z, w),
-            orientation_cov,
-            vector(rx, ry, rz),
-            rate_cov,
-            vector(fx, fy, fz),
-            force_cov,
-        )
+        motion = vector(rx, ry, rz), rate_cov, vector(fx, fy, fz), force_cov
+        message: msgs.Imu = make(header(time(*self._clock), frame), quaternion(x, y, z, w), orientation_cov, *motion)
         return message
 
     # ------------------------------------------------------------------ arithmetic
@@ -167,13 +160,6 @@ class Imu(ImuMeasurement):
         orientation_cov, rate_cov, force_cov = self.covariances()
         w, x, y, z = reading.orientation if self.options.enable_orientation else NO_ROTATION
         rx, ry, rz, fx, fy, fz = reading.motion
-        message: msgs.Imu = imu(
-            msgs.header(time_ns, self.frame_id),
-            quaternion(x, y, z, w),
-            orientation_cov,
-            vector(rx, ry, rz),
-            rate_cov,
-            vector(fx, fy, fz),
-            force_cov,
-        )
+        motion = vector(rx, ry, rz), rate_cov, vector(fx, fy, fz), force_cov
+        message: msgs.Imu = imu(msgs.header(time_ns, self.frame_id), quaternion(x, y, z, w), orientation_cov, *motion)
         return message

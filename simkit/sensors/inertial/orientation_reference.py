@@ -152,8 +152,7 @@ def _find_parent_frame(
     model = "::".join((*scope, ""))
     nearby = [scoped.removeprefix(model) for scoped in known if scoped.startswith(model)]
     message = f"found parent_frame {name!r}; expected 'world', or the name of a link, joint, frame or model"
-    hint = did_you_mean(name, [WORLD, *nearby, *known])
-    diagnostics.error("SK-SENSOR-070", message, reference.where, hint)
+    diagnostics.error("SK-SENSOR-070", message, reference.where, did_you_mean(name, [WORLD, *nearby, *known]))
     return None
 
 

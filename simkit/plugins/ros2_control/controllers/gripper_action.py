@@ -55,8 +55,7 @@ class GripperActionController(Controller):
             self._pids = JointPids(params.block("gains"), (self._joint,))
             if not (self._pids.p.any() or self._pids.i.any()):
                 message = f"gains of joint {self._joint!r} are all 0, so the joint never gets an effort"
-                hint = f"gains: {{{self._joint}: {{p: 100.0, d: 10.0}}}}"
-                params.diagnostics.warning("SK-CONTROL-026", message, params.where, hint)
+                params.warning("SK-CONTROL-026", message, f"gains: {{{self._joint}: {{p: 100.0, d: 10.0}}}}")
         self._read_own_parameters()
         self.act("~/gripper_cmd", self.action_type, self._on_goal, self._on_cancel)
         self._is_active = False
