@@ -107,9 +107,10 @@ class Sensor(Sampler):
     def products(self) -> dict[str, Product]:
         """Return the messages that the kind can publish, by product; `latest` shows the first product."""
 
-    @abc.abstractmethod
     def default_topics(self) -> dict[str, str]:
-        """Return Gazebo's default topic of each product; `latest` shows the first product."""
+        """Return Gazebo's default topic of each product; by default only of the first one, which it is named after."""
+        first = next(iter(self.products()))
+        return {first: self._default_topic(first)}
 
     # ------------------------------------------------------------------ readings
 

@@ -25,9 +25,6 @@ class VectorSensor(Sensor):
     def products(self) -> dict[str, Product]:
         return {self.product: Product(self.message_type, self._message_of)}
 
-    def default_topics(self) -> dict[str, str]:
-        return {self.product: self._default_topic(self.product)}
-
     def perturb(self, reading: Vector, index: int) -> Vector:
         return reading if self.noise.is_silent else self.noise.apply(reading, index)
 

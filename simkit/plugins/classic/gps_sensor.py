@@ -18,10 +18,6 @@ _KINDS = ("gps", "navsat")
 _BACKWARDS = -0.999  # cosine of a heading close to 180 degrees
 
 
-class GazeboRosGpsSensorOptions(SensorFrameOptions):
-    """Options of `GazeboRosGpsSensor`."""
-
-
 class GazeboRosGpsSensor(SensorPlugin):
     """Publishes the fix on `~/out` and the velocity (east, north, up) on `~/vel`, after `<remapping>`.
 
@@ -32,7 +28,7 @@ class GazeboRosGpsSensor(SensorPlugin):
         publishes("~/out", "sensor_msgs/msg/NavSatFix"),
         publishes("~/vel", "geometry_msgs/msg/Vector3Stamped"),
     )
-    options = OptionsOf(GazeboRosGpsSensorOptions)
+    options = OptionsOf(SensorFrameOptions)
     filenames = ("libgazebo_ros_gps_sensor.so",)
 
     def load(self, parent: NavSat, params: Params) -> None:

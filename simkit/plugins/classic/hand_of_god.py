@@ -70,9 +70,6 @@ class GazeboRosHandOfGod(ModelPlugin):
         for topic in ("/tf", "/tf_static"):
             self.subscribe(topic, self._on_transforms)
 
-    def reset(self) -> None:
-        self.sim.engine.reschedule()
-
     def set_state(self, state: Mapping[str, object]) -> None:
         """Restore a state from `get_state`."""
         super().set_state(state)

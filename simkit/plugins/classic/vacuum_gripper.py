@@ -109,9 +109,6 @@ class GazeboRosVacuumGripper(ModelPlugin):
         self._grasping = self.advertise(self._topic, BOOL)
         publish_while_subscribed(self, self._grasping, self._rate, "publish_grasping")
 
-    def reset(self) -> None:
-        self.sim.engine.reschedule()
-
     @property
     def holds(self) -> list[str]:
         """Scoped names of the links that the gripper holds."""

@@ -100,9 +100,6 @@ class DetachableJoint(ModelPlugin):
         # an initial attachment is published in the first step
         self._is_attached = False
 
-    def reset(self) -> None:
-        self.sim.engine.reschedule()
-
     # ------------------------------------------------------------------ commands
 
     def _on_detach(self, _: object) -> None:

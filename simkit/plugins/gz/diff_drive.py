@@ -290,15 +290,7 @@ def planar_odometry(
 ) -> Odometry:
     """Return a planar `nav_msgs/msg/Odometry` without covariance.
 
-    Args:
-        time_ns: Time of the message [ns].
-        frame: Frame of the pose.
-        child: Frame of the base.
-        x: Position along x [m].
-        y: Position along y [m].
-        yaw: Heading [rad].
-        ahead: Forward speed [m/s].
-        turn: Turning rate [rad/s].
+    Units: time [ns], position [m], yaw [rad], forward speed [m/s] and turning rate [rad/s].
     """
     types = message_types()
     w, qx, qy, qz = _attitude(yaw)

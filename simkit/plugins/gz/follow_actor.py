@@ -93,9 +93,6 @@ class FollowActor(ModelPlugin):
             message = f"plugin {self.name!r}: there is no model or link {self._target!r} to follow yet"
             params.diagnostics.warning("SK-PLUGIN-136", message, self.where, did_you_mean(self._target, models))
 
-    def reset(self) -> None:
-        self.sim.engine.reschedule()
-
     def before_step(self) -> None:
         """Update the actor's position and its walking direction."""
         gone = self._distance_since_update()

@@ -64,9 +64,6 @@ class TouchTimer(ModelPlugin):
             models = sorted({part for name in names for part in name.split("::")})
             params.diagnostics.warning("SK-SENSOR-044", message, self.where, did_you_mean(self._target, models))
 
-    def reset(self) -> None:
-        self.sim.engine.reschedule()
-
     def after_step(self) -> None:
         sim = self.sim
         own, target, model = sim.engine.names.shared(f"touch {id(self)}", self._masks)

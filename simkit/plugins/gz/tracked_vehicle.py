@@ -97,7 +97,7 @@ class TrackController(ModelPlugin):
         self._command_timeout = self.options.max_command_age
         self._odometry_rate = self.options.odometry_publish_frequency
         if self.options.debug:
-            params.diagnostics.note("SK-PLUGIN-100", "<debug> of a track has no effect in simkit", params.where)
+            params.note("SK-PLUGIN-100", "<debug> of a track has no effect in simkit")
 
     def load(self, parent: Model, params: Params) -> None:
         self.before_step_rate = NEVER
@@ -234,9 +234,7 @@ class TrackedVehicle(TwistDrive):
         self._limiters = [speed_limiter(self.options.linear_velocity), speed_limiter(self.options.angular_velocity)]
         self._odometry_rate = self.options.odom_publish_frequency
         if self.options.debug:
-            params.diagnostics.note(
-                "SK-PLUGIN-100", "<debug> of tracked vehicles has no effect in simkit", params.where
-            )
+            params.note("SK-PLUGIN-100", "<debug> of tracked vehicles has no effect in simkit")
 
     def _read_side(self, element: str, found: Sequence[TrackOptions], scene: SceneModel) -> list[tuple[str, str]]:
         """Return the speed and centre topics of the track controllers on one side."""

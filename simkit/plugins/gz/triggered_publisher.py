@@ -197,9 +197,6 @@ class TriggeredPublisher(WorldPlugin):
         self._due.append(self.sim.time_ns + self._delay)
         self._set_pace()
 
-    def reset(self) -> None:
-        self.sim.engine.reschedule()
-
     def before_step(self) -> None:
         while self._due and self._due[0] <= self.sim.time_ns:
             self._due.popleft()

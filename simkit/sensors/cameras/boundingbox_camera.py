@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import ClassVar
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics
 from simkit.runtime import Simulation
-from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import bounding_box_messages, image_messages, label_camera
 from simkit.sensors.cameras.bounding_boxes import (
@@ -26,31 +24,12 @@ from simkit.sensors.cameras.bounding_boxes import (
     gazebo_boxes,
     visible_boxes,
 )
-from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
-from simkit.sensors.cameras.label_camera import LabelCamera, read_keyword
+from simkit.sensors.cameras.label_camera import LabelCamera
 from simkit.sensors.cameras.labelled_objects import LabelledObjects
 from simkit.sensors.cameras.rendering.view import DrawnView, Ids, Shot
 
 _VISIBLE, _FULL, _SPACE = "visible_2d", "full_2d", "3d"
-_BOX_TYPES: Final = {
-    "2d": _VISIBLE,
-    "visible_2d": _VISIBLE,
-    "visible_box_2d": _VISIBLE,
-    "full_2d": _FULL,
-    "full_box_2d": _FULL,
-    "3d": _SPACE,
-}
-
-
-@dataclass(frozen=True, slots=True)
-class BoundingBoxOptions(CameraOptions):
-    """Options of the `<camera>` block. Depths, clip planes and noise are in m, as for every camera.
-
-    Attributes:
-        type: visible_2d, full_2d or 3d.
-    """
-
-    type: str = _VISIBLE
+_TWO_D = {"2d": _VISIBLE, "visible_2d": _VISIBLE, "visible_box_2d": _VISIBLE, "full_2d": _FULL, "full_box_2d": _FULL}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,20 +55,13 @@ class BoundingBoxCamera(LabelCamera):
 
     kinds = ("boundingbox_camera", "boundingbox")
     makes_boxes = True
-
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options: BoundingBoxOptions = extend_options(
-            self.options, BoundingBoxOptions, type=read_keyword(scene.params, "box_type", _BOX_TYPES, "2d")
-        )
-        self._shapes: LabelledShapes | None = None
+    type_element = "box_type"
+    types: ClassVar[dict[str, str]] = {**_TWO_D, "3d": _SPACE}
+    _shapes: LabelledShapes | None = None
 
     def attach(self, sim: Simulation) -> None:
         self._is_gazebos = bool(sim.world.gazebo_quirks)
         super().attach(sim)
-
-    def describe(self) -> dict[str, object]:
-        return {**super().describe(), "box_type": self.options.type}
 
     def products(self) -> dict[str, Product]:
         kind = bounding_box_messages.TYPE_3D if self.options.type == _SPACE else bounding_box_messages.TYPE_2D

@@ -15,7 +15,3 @@ class Camera(RenderedCamera):
 
     def products(self) -> dict[str, Product]:
         return {"image": self._colour_product(), "camera_info": self._info_product()}
-
-    def default_topics(self) -> dict[str, str]:
-        topic = self._default_topic("image")
-        return {"image": topic, "camera_info": self._info_topic(topic)}

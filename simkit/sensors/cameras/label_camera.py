@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar, Final
 
@@ -16,6 +16,7 @@ from simkit.params import Params
 from simkit.runtime import Simulation, WorldStructure
 from simkit.scene import SceneSensor
 from simkit.sensors.cameras.bounding_box_messages import TYPE_2D, TYPE_3D, boxes_as_csv
+from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
 from simkit.sensors.cameras.labelled_objects import LabelledObjects, find_labelled_objects
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.view import DrawnView, Ids
@@ -56,9 +57,28 @@ def _count_files(folder: Path) -> int:
         return 0
 
 
-class LabelCamera(RenderedCamera):
-    """Camera with the exact geom at each pixel: without noise and without blending of edges."""
+@dataclass(frozen=True, slots=True)
+class LabelCameraOptions(CameraOptions):
+    """Options of the `<camera>` block. Depths, clip planes and noise are in m, as for every camera.
 
+    Attributes:
+        type: type of the maps or boxes.
+    """
+
+    type: str = ""
+
+
+class LabelCamera(RenderedCamera):
+    """Camera with the exact geom at each pixel: without noise and without blending of edges.
+
+    Attributes:
+        type_element: element with the type of the maps or boxes.
+        types: types by keyword; the first one is the default.
+    """
+
+    options: LabelCameraOptions
+    type_element: ClassVar[str]
+    types: ClassVar[Mapping[str, str]]
     reads_labels: ClassVar[bool] = True
     makes_boxes: ClassVar[bool] = False
 
@@ -75,6 +95,11 @@ class LabelCamera(RenderedCamera):
         if noise.mean or noise.stddev:
             message = f"<noise> has no effect on a {scene.kind}, as in Gazebo"
             diagnostics.warning("SK-SENSOR-131", message, scene.params.block("camera").block("noise").where)
+        chosen = read_keyword(scene.params, self.type_element, self.types)
+        self.options = extend_options(self.options, LabelCameraOptions, type=chosen)
+
+    def describe(self) -> dict[str, object]:
+        return {**super().describe(), self.type_element: self.options.type}
 
     @property
     def items(self) -> LabelledObjects:
@@ -140,16 +165,15 @@ class LabelCamera(RenderedCamera):
             sim.engine.reports.warning("SK-SENSOR-132", message, self.scene.where, hint)
 
 
-def read_keyword(params: Params, element: str, meanings: Mapping[str, str], default: str) -> str:
+def read_keyword(params: Params, element: str, meanings: Mapping[str, str]) -> str:
     """Return the meaning of a keyword in `<camera>`, or in `<sensor>` as in older files; case is ignored.
 
     Args:
         params: the `<sensor>` block.
         element: name of the element with the keyword.
-        meanings: meanings by keyword.
-        default: keyword that applies without the element.
+        meanings: meanings by keyword; the first one applies without the element.
     """
-    camera = params.block("camera")
+    camera, default = params.block("camera"), next(iter(meanings))
     block = camera if camera.has(element) or not params.has(element) else params
     child = block.child(element)
     keyword = default if child is None else child.value.strip().lower()

@@ -275,6 +275,10 @@ class RenderedCamera(RenderedSampler):
     def _info_message(self, _: object, time_ns: int) -> msgs.CameraInfo:
         return self._info.make(time_ns, self.optical_frame_id or self.frame_id)
 
+    def default_topics(self) -> dict[str, str]:
+        topic = self._default_topic("image")
+        return {"image": topic, "camera_info": self._info_topic(topic)}
+
     def _info_topic(self, image_topic: str) -> str:
         info_topic = self.options.info_topic
         return valid_topic(info_topic) if info_topic else sibling_topic(image_topic, "camera_info")

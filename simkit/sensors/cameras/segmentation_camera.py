@@ -8,19 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import Final
+from typing import ClassVar, Final
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics
-from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages, label_camera
-from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
-from simkit.sensors.cameras.label_camera import LabelCamera, read_keyword
+from simkit.sensors.cameras.label_camera import LabelCamera
 from simkit.sensors.cameras.labelled_objects import LabelledObjects
 from simkit.sensors.cameras.rendering.view import DrawnView, Ids, Shot
 
@@ -66,19 +63,6 @@ def _random_channels(seed: int) -> Iterator[int]:
 
 Pixels = npt.NDArray[np.uint8]
 
-_TYPES: Final = {"semantic": "semantic", "instance": "panoptic", "panoptic": "panoptic"}
-
-
-@dataclass(frozen=True, slots=True)
-class SegmentationOptions(CameraOptions):
-    """Options of the `<camera>` block. Depths, clip planes and noise are in m, as for every camera.
-
-    Attributes:
-        type: `semantic` for labels, `panoptic` to distinguish objects of one label as well.
-    """
-
-    type: str = "semantic"
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Palette:
@@ -122,17 +106,10 @@ class SegmentationCamera(LabelCamera):
     """
 
     kinds = ("segmentation_camera", "segmentation")
-
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options: SegmentationOptions = extend_options(
-            self.options, SegmentationOptions, type=read_keyword(scene.params, "segmentation_type", _TYPES, "semantic")
-        )
-        self._palette: Palette | None = None
-        self._palette_of: LabelledObjects | None = None
-
-    def describe(self) -> dict[str, object]:
-        return {**super().describe(), "segmentation_type": self.options.type}
+    type_element = "segmentation_type"
+    types: ClassVar[dict[str, str]] = {"semantic": "semantic", "instance": "panoptic", "panoptic": "panoptic"}
+    _palette: Palette | None = None
+    _palette_of: LabelledObjects | None = None
 
     def products(self) -> dict[str, Product]:
         return {

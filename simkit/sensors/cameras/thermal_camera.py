@@ -117,10 +117,6 @@ class ThermalCamera(RenderedCamera):
     def products(self) -> dict[str, Product]:
         return {"image": Product(image_messages.IMAGE_TYPE, self._thermal_message), "camera_info": self._info_product()}
 
-    def default_topics(self) -> dict[str, str]:
-        topic = self._default_topic("image")
-        return {"image": topic, "camera_info": self._info_topic(topic)}
-
     # ------------------------------------------------------------------ measuring
 
     def _drawn_view(self) -> View:

@@ -131,9 +131,6 @@ class Encoder(Sensor):
     def products(self) -> dict[str, Product]:
         return {"encoder": Product(TYPE, self._message_of)}
 
-    def default_topics(self) -> dict[str, str]:
-        return {"encoder": self._default_topic("encoder")}
-
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> JointReading:
         position = self._position_in(data)
         velocity = joint_velocity(self._joint, data) if self._joint.dofs else np.zeros(self._width)

@@ -152,9 +152,6 @@ class Imu(ImuMeasurement):
     def products(self) -> dict[str, Product]:
         return {"imu": Product(_TYPES[0], self._message_of)}
 
-    def default_topics(self) -> dict[str, str]:
-        return {"imu": self._default_topic("imu")}
-
     def _message_of(self, reading: ImuReading, time_ns: int) -> msgs.Imu:
         imu, vector, quaternion = msgs.types_of(*_TYPES)
         orientation_cov, rate_cov, force_cov = self.covariances()

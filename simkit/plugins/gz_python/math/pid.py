@@ -31,21 +31,11 @@ class PID:
     the lower bound.
     """
 
-    def __init__(
-        self,
-        _p: PID | float = 0.0,
-        _i: float = 0.0,
-        _d: float = 0.0,
-        _imax: float = -1.0,
-        _imin: float = 0.0,
-        _cmdMax: float = -1.0,  # noqa: N803 - keyword names of gz-math's binding
-        _cmdMin: float = 0.0,  # noqa: N803
-        _cmdOffset: float = 0.0,  # noqa: N803
-    ) -> None:
+    def __init__(self, _p: PID | float = 0.0, *gains: float, **named: float) -> None:
         if isinstance(_p, PID):
             vars(self).update(vars(_p))
-            return
-        self.init(_p, _i, _d, _imax, _imin, _cmdMax, _cmdMin, _cmdOffset)
+        else:
+            self.init(_p, *gains, **named)
 
     def init(
         self,
@@ -54,7 +44,7 @@ class PID:
         _d: float = 0.0,
         _imax: float = -1.0,
         _imin: float = 0.0,
-        _cmdMax: float = -1.0,  # noqa: N803
+        _cmdMax: float = -1.0,  # noqa: N803 - keyword names of gz-math's binding
         _cmdMin: float = 0.0,  # noqa: N803
         _cmdOffset: float = 0.0,  # noqa: N803
     ) -> None:

@@ -35,14 +35,8 @@ class UpdateInfo:
     def sim_time(self, value: timedelta) -> None:
         self._time_ns = _nanoseconds(value)
 
-    @property
-    def real_time(self) -> timedelta:
-        """Simulated time, the same as `sim_time`: the time of the machine's clock would make two runs differ."""
-        return self.sim_time
-
-    @real_time.setter
-    def real_time(self, value: timedelta) -> None:
-        self._time_ns = _nanoseconds(value)
+    real_time = sim_time
+    """The same as `sim_time`: the time of the machine's clock would make two runs differ."""
 
     @property
     def dt(self) -> timedelta:
