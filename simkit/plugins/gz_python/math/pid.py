@@ -31,11 +31,21 @@ class PID:
     the lower bound.
     """
 
-    def __init__(self, _p: PID | float = 0.0, *gains: float, **named: float) -> None:
+    def __init__(
+        self,
+        _p: PID | float = 0.0,
+        _i: float = 0.0,
+        _d: float = 0.0,
+        _imax: float = -1.0,
+        _imin: float = 0.0,
+        _cmdMax: float = -1.0,  # noqa: N803 - keyword names of gz-math's binding
+        _cmdMin: float = 0.0,  # noqa: N803
+        _cmdOffset: float = 0.0,  # noqa: N803
+    ) -> None:
         if isinstance(_p, PID):
             vars(self).update(vars(_p))
         else:
-            self.init(_p, *gains, **named)
+            self.init(_p, _i, _d, _imax, _imin, _cmdMax, _cmdMin, _cmdOffset)
 
     def init(
         self,
@@ -44,7 +54,7 @@ class PID:
         _d: float = 0.0,
         _imax: float = -1.0,
         _imin: float = 0.0,
-        _cmdMax: float = -1.0,  # noqa: N803 - keyword names of gz-math's binding
+        _cmdMax: float = -1.0,  # noqa: N803
         _cmdMin: float = 0.0,  # noqa: N803
         _cmdOffset: float = 0.0,  # noqa: N803
     ) -> None:
