@@ -66,6 +66,7 @@ HEAVY = {
     "glfw": "optional: the extra `view`",
     "jinja2": "only reports and new plugins need it",
     "lxml": "only files need it",
+    "lz4": "only some bags need it",
     "markupsafe": "comes with jinja2",
     "msvcrt": "only some systems have it",
     "multiprocessing": "0.02 s; few commands start processes",
@@ -87,6 +88,7 @@ HEAVY = {
     "typer": "only the command line needs it",
     "xacro": "only xacro files need it",
     "yaml": "only YAML files need it",
+    "zstandard": "only bags need it",
 }
 """Packages that may be imported inside a function, with the reason."""
 

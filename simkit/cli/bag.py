@@ -20,7 +20,6 @@ from simkit.cli.terminal.output import (
     print_note,
     report_errors,
     report_errors_quietly,
-    stdout_console,
 )
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
 from simkit.errors import InputError
@@ -28,6 +27,8 @@ from simkit.errors import InputError
 if TYPE_CHECKING:
     from simkit.live import Client, LivePublisher
     from simkit.recording.bags.reader import BagReader
+
+_LOSSES_LISTED = 20
 
 
 @report_errors_quietly
@@ -205,16 +206,22 @@ bag.command()(export)
 @bag.command()
 @report_errors
 def recover(
-    broken: Annotated[Path, argument("Bag that was cut off: an MCAP file or a rosbag2 folder.")],
+    broken: Annotated[Path, argument("Bag that is damaged or was cut off: an MCAP file or a rosbag2 folder.")],
     recovered: Annotated[Path | None, argument("Bag to write; default: NAME_recovered in the same folder.")] = None,
     output: Annotated[Path | None, option("Alias of the argument RECOVERED.", "RECOVERED", "--output", "-o")] = None,
     force: options.Force = False,
 ) -> None:
-    """Copy the readable part of a bag into a new, complete bag. The original is not changed."""
+    """Copy the readable part of a bag into a new, complete bag, and report what is lost.
+
+    The original is not changed.
+    """
     from simkit.recording.bags.recovery import recover_bag
 
     target = output or recovered or broken.with_name(f"{broken.stem}_recovered{broken.suffix}")
     found = recover_bag(broken, target, overwrite=force)
+    for line in found.loss_lines()[:_LOSSES_LISTED]:
+        print_note(f"note: {line}")
+    if len(found.losses) > _LOSSES_LISTED:
+        print_note(f"note: {len(found.losses) - _LOSSES_LISTED} more damaged parts")
     span = (found.end - found.start) * 1e-9
-    state = "the bag was complete" if found.complete else "the bag was cut off"
-    stdout_console().print(f"{target}: {found.messages} messages on {found.topics} topics over {span:.3f} s ({state})")
+    print_line(f"{target}: {found.messages} messages on {found.topics} topics over {span:.3f} s ({found.state})")

@@ -50,7 +50,7 @@ def record(
     json_: options.Json = False,
 ) -> int:
     """Record topics of a running simulation until Ctrl-C. `simkit run --record` drops no message at any speed."""
-    from simkit.recording.bags.recorder import open_bag
+    from simkit.recording.bags.writer import open_bag
 
     named = [absolute_name(t) for t in (*(topics or ()), *topics_too)]
     selection = _TopicSelection(

@@ -102,12 +102,12 @@ def play(
     """Play motions: at a safe speed to the first point, then with the timing of the motion file."""
     from simkit.plugins.play_motion.motion_session import choose_player, motion_players, play_motions
     from simkit.recording import run_picture as pictures
-    from simkit.recording.bags import recorder
+    from simkit.recording.bags import recorder, writer
 
     if picture is not None:
         pictures.check_target(picture)
     if record is not None:
-        recorder.check_target(record, overwrite=force)
+        writer.check_target(record, overwrite=force)
     source: Any = {**options.source_arguments(resource_path, package_path, xacro_arg), "params_files": params_file}
     shown = []
     with ExitStack() as stack:

@@ -229,11 +229,11 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
     from simkit.cli.run_session import Session, check_keyboard
     from simkit.cli.run_verdict import RunVerdict
     from simkit.recording import run_picture
-    from simkit.recording.bags import recorder
+    from simkit.recording.bags import writer
     from simkit.scene.overrides import check_used
 
     if spec.recording is not None:
-        recorder.check_target(spec.recording.path, overwrite=spec.recording.overwrite)
+        writer.check_target(spec.recording.path, overwrite=spec.recording.overwrite)
     if display.picture is not None:
         run_picture.check_target(display.picture)
     if display.view:

@@ -88,8 +88,10 @@ def outcome(file: Path, resources: list[Path]) -> dict[str, str]:
     import simkit
 
     try:
-        if file.suffix == ".yaml":
+        if file.suffix == ".yaml" and file.name != "metadata.yaml":
             return commanded(file)
+        if file.suffix in (".mcap", ".db3") or file.name == "metadata.yaml":
+            return bag_read(file.parent if file.name == "metadata.yaml" else file)
         simkit.describe(file, resource_paths=resources)
         with simkit.load(file, resource_paths=resources) as sim:
             return loaded(sim)
@@ -99,6 +101,44 @@ def outcome(file: Path, resources: list[Path]) -> dict[str, str]:
         return {"outcome": "loaded", "code": "diverged"}
     except BaseException as error:  # noqa: BLE001 -- whatever it is, it is what is looked for
         return {"outcome": f"{type(error).__name__}: {error}"[:500], "trace": traceback.format_exc()[-5000:]}
+
+
+def bag_read(path: Path) -> dict[str, str]:
+    """Describe, decode, export and recover a bag; each step may refuse it."""
+    import simkit
+    from simkit.recording.bags.reader import open_bag_to_read
+    from simkit.recording.bags.recovery import recover_bag
+    from simkit.recording.bags.summary import bag_summary, bag_text
+    from simkit.recording.export import ExportOptions, export_bag
+
+    def describe() -> None:
+        with open_bag_to_read(path) as bag:
+            json.dumps(bag_summary(bag))
+            bag_text(bag).encode()
+
+    def decode() -> None:
+        with open_bag_to_read(path) as bag:
+            for message in bag.messages():
+                bag.decode(message)
+
+    top = path.parents[1] / "bag_output"
+    shutil.rmtree(top, ignore_errors=True)
+    top.mkdir()
+    steps = (
+        *(describe, decode, lambda: export_bag(path, top / "export", ExportOptions())),
+        lambda: recover_bag(path, top / "recovered.mcap"),
+    )
+    codes = []
+    for step in steps:
+        try:
+            step()
+        except simkit.InputError as error:
+            if not error.code.startswith("SK-") or len(str(error)) > 20_000:
+                return {"outcome": f"an error without a code, or longer than a screen: {error}"[:300]}
+            codes.append(error.code)
+    if any(file.name.startswith(".") for file in top.iterdir()):
+        return {"outcome": "a temporary folder is left"}
+    return {"outcome": "refused", "code": " ".join(codes)} if codes else {"outcome": "loaded"}
 
 
 def refused(found: list[Any]) -> dict[str, str]:

@@ -7,11 +7,12 @@ import functools
 import json
 import math
 import os
+import re
 import signal
 import sys
 import traceback
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 import typer
@@ -20,7 +21,8 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, LoadError, PluginError, SimkitError
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from rich.console import Console, ConsoleOptions, RenderableType
+    from rich.segment import Segment
 
     from simkit.diagnostics import Diagnostic
 
@@ -33,7 +35,17 @@ P = ParamSpec("P")
 INTERRUPTED = 130
 _MOST_LISTED, _MOST_ERRORS_LISTED = 12, 200  # listed entries of one code
 _PLACES = 8  # listed further places of one entry
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
+
+
+def printable(text: str) -> str:
+    r"""Write control characters as `\x1b`, except line feeds and tabs.
+
+    Names out of files can contain control characters, which would change the colours, the title or the content of a
+    terminal. The characters that reverse the direction of writing are written as `\u202e`.
+    """
+    return _CONTROL.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
 
 
 @functools.cache
@@ -49,14 +61,19 @@ def stderr_console() -> Console:
 
 
 def _console(*, is_error: bool) -> Console:
-    """Create a console.
+    """Create a console that prints every text as `printable`.
 
     `FORCE_COLOR` makes rich write styles into a pipe or a file. A progress display still needs a real terminal.
     """
     from rich.console import Console
 
+    class PrintableConsole(Console):
+        def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+            for segment in super().render(renderable, options):
+                yield segment if segment.control else segment._replace(text=printable(segment.text))
+
     stream = sys.stderr if is_error else sys.stdout
-    return Console(
+    return PrintableConsole(
         stderr=is_error,
         highlight=False,
         markup=False,
@@ -78,7 +95,7 @@ def print_status(text: str) -> None:
     The progress display intercepts only `sys.stderr`, so this function does not use the console.
     """
     if sys.stderr is not None:
-        sys.stderr.write(f"{text}\n")
+        sys.stderr.write(f"{printable(text)}\n")
         sys.stderr.flush()
 
 
@@ -152,7 +169,7 @@ def print_error(error: SimkitError) -> None:
             stderr_console().print("--strict treats warnings as errors; nothing was run", style="bold")
         return
     if isinstance(error, PluginError) and error.__cause__ is not None:
-        sys.stderr.write("".join(traceback.format_exception(error.__cause__)))
+        sys.stderr.write(printable("".join(traceback.format_exception(error.__cause__))))
     message = str(error)
     if error.code not in message:
         message = f"{error.code} {message}"
@@ -199,17 +216,18 @@ def _hang_up_exit_code() -> int:
 
 def print_line(text: str = "") -> None:
     """Print a line on standard output at once."""
-    typer.echo(text)
+    typer.echo(printable(text))
 
 
 def print_note(text: str) -> None:
     """Print a line on standard error."""
-    typer.echo(text, err=True)
+    typer.echo(printable(text), err=True)
 
 
 def print_json(value: object) -> None:
     """Print a JSON value on one line; infinity and NaN become the texts `"inf"`, `"-inf"`, `"nan"`."""
-    typer.echo(json.dumps(_json_value(value), allow_nan=False, ensure_ascii=False))
+    text = json.dumps(_json_value(value), allow_nan=False, ensure_ascii=False)
+    typer.echo(_CONTROL.sub(lambda match: f"\\u{ord(match[0]):04x}", text))
 
 
 def _json_value(value: object) -> object:
@@ -239,7 +257,7 @@ def print_names(names: Sequence[str], *, count: bool = False, json_: bool) -> No
         print_json(len(names) if count else list(names))
     else:
         for text in [str(len(names))] if count else names:
-            print_line(text)
+            print_line(text.replace("\n", "\\n"))
 
 
 def print_names_and_types(types: Mapping[str, str], *, show_types: bool, count: bool, json_: bool) -> None:

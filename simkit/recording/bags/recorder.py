@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import fnmatch
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simkit import msgs
-from simkit.errors import InputError, SimkitError
-from simkit.recording.bags.writer import McapBag, Rosbag2Folder
+from simkit.errors import SimkitError
+from simkit.recording.bags.bag_contents import matches_topic
+from simkit.recording.bags.writer import McapBag, open_bag
 from simkit.recording.message_taps import MessageQueue, TopicTaps
-from simkit.writers.atomic_output import write_obstacle
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
-
-
-def matches_topic(topic: str, patterns: Iterable[str]) -> bool:
-    """Check whether a topic matches one of the shell patterns; `scan` and `/scan` are the same."""
-    return any(fnmatch.fnmatchcase(topic, p if p.startswith(("/", "*")) else f"/{p}") for p in patterns)
 
 
 def _serialise(message: object) -> tuple[str, bytes]:
@@ -31,60 +25,6 @@ class RecordError(SimkitError):
     """Error that stopped a recording during a run. The flushed part of the bag is readable."""
 
     code = "SK-BAG-003"
-
-
-def is_single_file(path: Path) -> bool:
-    """Check whether a path names one MCAP file (`x.mcap`) instead of a rosbag2 folder."""
-    return path.suffix.lower() == ".mcap"
-
-
-def check_target(path: Path, *, overwrite: bool = False) -> None:
-    """Check before a run whether a bag can be written.
-
-    Raises:
-        InputError: SK-BAG-001 the path exists; SK-BAG-002 the path is not writable.
-    """
-    if _path_exists(path) and not overwrite:
-        raise InputError(f"SK-BAG-001 {path} already exists\n    help: replace it with --force", "SK-BAG-001")
-    if path.is_dir() and is_single_file(path):
-        raise InputError(f"SK-BAG-002 cannot write {path}: it is a folder", "SK-BAG-002")
-    if is_single_file(path) and not path.absolute().parent.is_dir():
-        raise InputError(
-            f"SK-BAG-002 cannot write {path}: folder {path.absolute().parent} does not exist", "SK-BAG-002"
-        )
-    why = write_obstacle(path)
-    if why:
-        raise InputError(f"SK-BAG-002 cannot write {path}: {why}", "SK-BAG-002")
-
-
-def _path_exists(path: Path) -> bool:
-    """Check whether a path exists.
-
-    Raises:
-        InputError: SK-BAG-002 the path is invalid, for example too long.
-    """
-    try:
-        return path.exists()
-    except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise InputError(f"SK-BAG-002 cannot write {path}: {why}", "SK-BAG-002") from None
-
-
-def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
-    """Create a bag: one MCAP file or a rosbag2 folder, by the suffix of `path`.
-
-    Raises:
-        InputError: SK-BAG-001 the path exists; SK-BAG-002 the path is not writable.
-    """
-    check_target(path, overwrite=overwrite)
-    try:
-        if is_single_file(path):
-            return McapBag(path, overwrite=overwrite)
-        return Rosbag2Folder(path, overwrite=overwrite)
-    except FileExistsError as error:
-        raise InputError(f"SK-BAG-001 {path} is not overwritten: {error}", "SK-BAG-001") from None
-    except OSError as error:
-        raise InputError(f"SK-BAG-002 cannot write {path}: {error.strerror or error}", "SK-BAG-002") from None
 
 
 class Recorder:

@@ -18,12 +18,15 @@ def bag_text(bag: BagReader) -> str:
     files = f"\n{_INDENT}".join(bag.files)
     topics = [t for t in bag.topics if not t.name.endswith(_SERVICE_EVENTS)]
     rows = f"\n{_INDENT}".join(
-        f"Topic: {t.name} | Type: {t.type_name} | Count: {t.count} | Serialization Format: {t.format}" for t in topics
+        _line(f"Topic: {t.name} | Type: {t.type_name} | Count: {t.count} | Serialization Format: {t.format}")
+        for t in topics
     )
     services = [t for t in bag.topics if t.name.endswith(_SERVICE_EVENTS)]
     events = f"\n{' ' * 21}".join(
-        f"Service: {t.name.removesuffix(_SERVICE_EVENTS)} | Type: {t.type_name.removesuffix('_Event')} | "
-        f"Event Count: {t.count} | Serialization Format: {t.format}"
+        _line(
+            f"Service: {t.name.removesuffix(_SERVICE_EVENTS)} | Type: {t.type_name.removesuffix('_Event')} | "
+            f"Event Count: {t.count} | Serialization Format: {t.format}"
+        )
         for t in services
     )
     return "\n".join(
@@ -43,6 +46,11 @@ def bag_text(bag: BagReader) -> str:
             "",
         )
     )
+
+
+def _line(text: str) -> str:
+    """Return a text on one line. A name with a line feed would look like two topics."""
+    return text.replace("\n", "\\n")
 
 
 def bag_summary(bag: BagReader) -> dict[str, object]:

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from simkit import msgs
+from simkit.errors import InputError
+from simkit.writers.atomic_output import write_obstacle
 
 if TYPE_CHECKING:
     from yaml import SafeDumper
@@ -51,6 +53,7 @@ class Channel:
     topic: str
     type_name: str
     latched: bool
+    type_hash: str = ""
     count: int = 0
 
 
@@ -86,7 +89,7 @@ class McapBag:
         self.path = path
         self.span = Span()
         self.channels: dict[tuple[str, str], Channel] = {}
-        self._schemas: dict[str, int] = {}
+        self._schemas: dict[tuple[str, str, bytes], int] = {}
         self._second = -1
         self._file: IO[bytes] = path.open("wb" if overwrite else "xb")
         # Half a minute of an RGB-D camera is 2 GB; compression reduces images without noise to a tenth.
@@ -98,26 +101,49 @@ class McapBag:
         """Return the channel of a topic and a type; register it on first use."""
         found = self.channels.get((topic, type_name))
         if found is None:
-            schema = self._schemas.get(type_name)
-            if schema is None:
-                text = msgs.definition(type_name).encode()
-                schema = self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", text)
             metadata = {
                 "offered_qos_profiles": qos_profiles_yaml([qos_profile(latched)]),
                 "topic_type_hash": msgs.rihs(type_name),
             }
-            number = self._writer.register_channel(topic, "cdr", schema, metadata)
-            found = self.channels[(topic, type_name)] = Channel(number, topic, type_name, latched)
+            found = self.add_channel(topic, type_name, latched, msgs.definition(type_name).encode(), metadata)
         return found
 
-    def write_raw(self, channel: Channel, data: bytes, time_ns: int) -> None:
-        """Append one serialised message."""
+    def add_channel(
+        self,
+        topic: str,
+        type_name: str,
+        latched: bool,
+        definition: bytes,
+        metadata: dict[str, str],
+        encodings: tuple[str, str] = ("cdr", "ros2msg"),
+    ) -> Channel:
+        """Register a channel with its own definition of the type.
+
+        Args:
+            topic: name of the topic.
+            type_name: name of the type.
+            latched: True if the publisher keeps the last message for late subscribers.
+            definition: definition of the type.
+            metadata: metadata of the channel.
+            encodings: encodings of the messages and of the definition.
+        """
+        key = (type_name, encodings[1], definition)
+        if key not in self._schemas:
+            self._schemas[key] = self._writer.register_schema(type_name, encodings[1], definition)
+        number = self._writer.register_channel(topic, encodings[0], self._schemas[key], metadata)
+        found = Channel(number, topic, type_name, latched, metadata.get("topic_type_hash", ""))
+        self.channels.setdefault((topic, type_name), found)
+        return found
+
+    def write_raw(self, channel: Channel, data: bytes, time_ns: int, publish_ns: int | None = None) -> None:
+        """Append one serialised message. The time of publication is the recording time, unless it is given."""
         second = time_ns // _SECOND
         if second != self._second:
             if self._second >= 0:
                 self.flush()
             self._second = second
-        self._writer.add_message(channel.id, time_ns, data, time_ns, channel.count)
+        publish_ns = time_ns if publish_ns is None else publish_ns
+        self._writer.add_message(channel.id, time_ns, data, publish_ns, channel.count)
         channel.count += 1
         self.span.add(time_ns)
 
@@ -185,7 +211,7 @@ class Rosbag2Folder(McapBag):
                         "type": channel.type_name,
                         "serialization_format": "cdr",
                         "offered_qos_profiles": [qos_profile(channel.latched)],
-                        "type_description_hash": msgs.rihs(channel.type_name),
+                        "type_description_hash": channel.type_hash,
                     },
                     "message_count": channel.count,
                 }
@@ -211,3 +237,57 @@ def _plain_dumper() -> type[SafeDumper]:
             return True
 
     return Plain
+
+
+def is_single_file(path: Path) -> bool:
+    """Check whether a path names one MCAP file (`x.mcap`) instead of a rosbag2 folder."""
+    return path.suffix.lower() == ".mcap"
+
+
+def check_target(path: Path, *, overwrite: bool = False) -> None:
+    """Check before a run whether a bag can be written.
+
+    Raises:
+        InputError: SK-BAG-001 the path exists; SK-BAG-002 the path is not writable.
+    """
+    if _path_exists(path) and not overwrite:
+        raise InputError(f"SK-BAG-001 {path} already exists\n    help: replace it with --force", "SK-BAG-001")
+    if path.is_dir() and is_single_file(path):
+        raise InputError(f"SK-BAG-002 cannot write {path}: it is a folder", "SK-BAG-002")
+    if is_single_file(path) and not path.absolute().parent.is_dir():
+        raise InputError(
+            f"SK-BAG-002 cannot write {path}: folder {path.absolute().parent} does not exist", "SK-BAG-002"
+        )
+    why = write_obstacle(path)
+    if why:
+        raise InputError(f"SK-BAG-002 cannot write {path}: {why}", "SK-BAG-002")
+
+
+def _path_exists(path: Path) -> bool:
+    """Check whether a path exists.
+
+    Raises:
+        InputError: SK-BAG-002 the path is invalid, for example too long.
+    """
+    try:
+        return path.exists()
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"SK-BAG-002 cannot write {path}: {why}", "SK-BAG-002") from None
+
+
+def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
+    """Create a bag: one MCAP file or a rosbag2 folder, by the suffix of `path`.
+
+    Raises:
+        InputError: SK-BAG-001 the path exists; SK-BAG-002 the path is not writable.
+    """
+    check_target(path, overwrite=overwrite)
+    try:
+        if is_single_file(path):
+            return McapBag(path, overwrite=overwrite)
+        return Rosbag2Folder(path, overwrite=overwrite)
+    except FileExistsError as error:
+        raise InputError(f"SK-BAG-001 {path} is not overwritten: {error}", "SK-BAG-001") from None
+    except OSError as error:
+        raise InputError(f"SK-BAG-002 cannot write {path}: {error.strerror or error}", "SK-BAG-002") from None

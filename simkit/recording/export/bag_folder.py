@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.reader import BagTopic, open_bag_to_read
-from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.export.images import MessageWriter, NpzFile, PngFiles, VideoFile
 from simkit.recording.export.point_clouds import CloudFiles
 from simkit.recording.export.tables import TEXT, WRITERS, Column, check_parquet, columns_of

@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 from simkit import msgs
 from simkit.errors import InputError, SimkitError
 from simkit.msgs import Message
-from simkit.recording.bags.recorder import matches_topic
+from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.writer import McapBag
 from simkit.recording.message_taps import TopicTaps
 from simkit.recording.topic_counts import RENDERED

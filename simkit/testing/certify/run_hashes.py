@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.msgs import Message
-from simkit.recording.bags.recorder import matches_topic
+from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.message_taps import TopicTaps
 from simkit.run_spec import JsonObject
 from simkit.runtime import Simulation

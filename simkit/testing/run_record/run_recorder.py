@@ -17,7 +17,7 @@ import numpy as np
 from simkit import msgs
 from simkit.errors import PluginError, SimulationDiverged, SubscriberError
 from simkit.msgs import Message
-from simkit.recording.bags.recorder import matches_topic
+from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.message_taps import MessageQueue, TopicTaps
 from simkit.run_spec import RunSpec
 from simkit.testing.run_record.fingerprint import fingerprint, source_hashes
