@@ -17,6 +17,7 @@ from simkit.cli.terminal.output import (
     absolute_name,
     print_json,
     print_line,
+    print_name,
     print_note,
     report_errors,
     report_errors_quietly,
@@ -192,7 +193,7 @@ def info(
             print_json(bag_summary(reader))
         elif topic_name:
             for name in dict.fromkeys(topic.name for topic in reader.topics):
-                print_line(name)
+                print_name(name)
         else:
             print_line(bag_text(reader))
 

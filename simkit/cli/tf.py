@@ -13,7 +13,7 @@ from typer import Argument, Option
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.output import not_found_error, print_json, print_line, print_name, report_errors_quietly
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError
 
@@ -46,7 +46,7 @@ def tree(
         print_json(rows)
     elif frames.edges:
         for text in frames.lines():
-            print_line(text)
+            print_name(text)
     else:
         print_line("no transforms received")
 

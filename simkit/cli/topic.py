@@ -11,7 +11,7 @@ from typer import Option
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import is_same_type
 from simkit.cli.terminal.options import argument, live_command
-from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_names
+from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_name, print_names
 from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, find_topic, open_source
 from simkit.cli.topic_echo import echo
 from simkit.cli.topic_pub import pub
@@ -51,11 +51,11 @@ def list_(
                 number = len(entry.publishers if end == "publisher" else entry.subscribers)
                 if number:
                     types = ", ".join(entry.types)
-                    print_line(f" * {entry.name} [{types}] {number} {end}{'s' if number > 1 else ''}")
+                    print_name(f" * {entry.name} [{types}] {number} {end}{'s' if number > 1 else ''}")
             print_line()
     else:
         for entry in found:
-            print_line(f"{entry.name} [{', '.join(entry.types)}]" if show_types else entry.name)
+            print_name(f"{entry.name} [{', '.join(entry.types)}]" if show_types else entry.name)
 
 
 def _topic_dict(entry: TopicEntry, *, show_ends: bool) -> JsonObject:

@@ -102,7 +102,7 @@ def zeros(size: int) -> bytes:
 def mutated(content: bytes, chance: random.Random) -> bytes:
     """Return the file with one to three mutations; most are in heads of records, some fix the checksum of a chunk."""
     for _ in range(chance.choice((1, 1, 2, 3))):
-        content = chance.choice(MUTATIONS)(content, chance)
+        content = chance.choice(MUTATIONS)(content, chance) if content else content
     return content
 
 
@@ -158,7 +158,7 @@ def _inside(content: bytes, chance: random.Random) -> bytes:
         inner = zstandard.decompress(content[at + 53 : at + size])
     except zstandard.ZstdError:
         return content
-    inner = chance.choice((_bytes, _cut, _inner_number))(inner, chance) if inner else inner
+    inner = chance.choice((_bytes, _cut, _inner_number))(inner, chance) if inner else inner  # a chunk can be empty
     body = chunk_record(zstandard.compress(inner), len(inner), checksum=crc32(inner))
     return content[:at] + body + content[at + size :]
 

@@ -219,6 +219,11 @@ def print_line(text: str = "") -> None:
     typer.echo(printable(text))
 
 
+def print_name(text: str) -> None:
+    r"""Print a name on one line of standard output; a line feed is written as `\n`."""
+    print_line(text.replace("\n", "\\n"))
+
+
 def print_note(text: str) -> None:
     """Print a line on standard error."""
     typer.echo(printable(text), err=True)
@@ -257,7 +262,7 @@ def print_names(names: Sequence[str], *, count: bool = False, json_: bool) -> No
         print_json(len(names) if count else list(names))
     else:
         for text in [str(len(names))] if count else names:
-            print_line(text.replace("\n", "\\n"))
+            print_name(text)
 
 
 def print_names_and_types(types: Mapping[str, str], *, show_types: bool, count: bool, json_: bool) -> None:

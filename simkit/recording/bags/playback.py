@@ -12,7 +12,8 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 from simkit.msgs.message_text import message_to_dict
 from simkit.msgs.message_types import Message
-from simkit.recording.bags.reader import BagMessage, open_bag_to_read
+from simkit.recording.bags.bag_contents import BagMessage, unreadable
+from simkit.recording.bags.reader import LATEST_SIMULATED_TIME, open_bag_to_read
 from simkit.runtime.communication.topic_bus import absolute_name
 
 if TYPE_CHECKING:
@@ -49,6 +50,9 @@ class Playback:
         self._sim = sim
         self._bag = open_bag_to_read(path)
         try:
+            if self._bag.start < LATEST_SIMULATED_TIME <= self._bag.end:  # the run would last for decades
+                times = f"{self._bag.start * _NS:.9g} s to {self._bag.end * _NS:.9g} s"
+                raise unreadable(path, f"its times, {times}, are simulated times and calendar times")
             self.notes: list[str] = [f"{path}: {self._bag.broken}"] if self._bag.broken else []
             self._input_types = self._world_inputs()
             self.names = self._requested_topics(topics) if topics else self._playable_topics()
