@@ -12,7 +12,7 @@ from typer import Option
 
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument, option
-from simkit.cli.terminal.output import JsonObject, report_errors, stdout_console
+from simkit.cli.terminal.output import JsonObject, printable, report_errors, stdout_console
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
@@ -62,24 +62,24 @@ def _print_result(found: ReplayResult, seconds: float) -> None:
     manifest = found.manifest
     print_ = stdout_console().print
     title = f"{manifest.name}: replayed {found.time:g} s"
-    print_(printable_text(f"{title} with {manifest.commands} commands in {seconds:.1f} s"))
+    print_(printable(f"{title} with {manifest.commands} commands in {seconds:.1f} s"))
     for text in manifest.missing:
-        print_(printable_text(f"note: {text}"), style="yellow")
+        print_(printable(f"note: {text}"), style="yellow")
     for name, (recorded, current) in found.machine.items():
         text = f"note: {name} is {current or 'none'} here, was {recorded or 'none'}: the bits may differ"
-        print_(printable_text(text), style="yellow")
+        print_(printable(text), style="yellow")
     if found.failure is not None and found.is_same:
-        print_(printable_text(f"failed as in the bundle: {found.failure.text}"))
+        print_(printable(f"failed as in the bundle: {found.failure.text}"))
     elif manifest.end.failure is not None and manifest.end.failure.kind == CHECK:
-        print_(printable_text(f"failed in the recorded run: {manifest.end.failure.text}"))
+        print_(printable(f"failed in the recorded run: {manifest.end.failure.text}"))
     for text in found.differences:
-        print_(printable_text(text), style="red")
+        print_(printable(text), style="red")
     if found.is_same:
         print_(f"state {found.state}")
         print_(f"identical: state, and {found.messages} messages of the last seconds on {len(manifest.streams)} topics")
     else:
         for text in found.refused[:5]:
-            print_(printable_text(f"refused: {text}"), style="yellow")
+            print_(printable(f"refused: {text}"), style="yellow")
         print_(f"not identical: {len(found.differences)} differences", style="bold red")
 
 
@@ -106,7 +106,8 @@ def _extract(bundle: Bundle, folder: Path) -> None:
         bundle.extract(folder, with_code=True)
     except OSError as error:
         raise InputError(f"SK-CLI-016 cannot write {folder}: {error.strerror or error}", "SK-CLI-016") from None
-    stdout_console().print(f"{folder / bundle.manifest.world} and {len(bundle.manifest.files) - 1} other files")
+    text = f"{folder / bundle.manifest.world} and {len(bundle.manifest.files) - 1} other files"
+    stdout_console().print(printable(text))
 
 
 def _print_contents(bundle: Bundle, *, as_json: bool) -> None:
@@ -117,27 +118,22 @@ def _print_contents(bundle: Bundle, *, as_json: bool) -> None:
     print_ = stdout_console().print
     end = manifest.end
     title = f"{manifest.name}: {end.time_ns / 1e9:g} s, seed {manifest.seed}"
-    print_(printable_text(f"{title}, {manifest.commands} commands"))
-    print_(printable_text(f"world {manifest.world}" + "".join(f" --set {override}" for override in manifest.overrides)))
-    print_(printable_text("created by " + ", ".join(f"{k} {v}" for k, v in manifest.fingerprint.items() if v)))
-    print_(f"state {printable_text(end.state)}")
+    print_(printable(f"{title}, {manifest.commands} commands"))
+    print_(printable(f"world {manifest.world}" + "".join(f" --set {override}" for override in manifest.overrides)))
+    print_(printable("created by " + ", ".join(f"{k} {v}" for k, v in manifest.fingerprint.items() if v)))
+    print_(f"state {printable(end.state)}")
     if end.failure is not None:
-        print_(printable_text(f"failed: {end.failure.text}"), style="red")
+        print_(printable(f"failed: {end.failure.text}"), style="red")
     for text in manifest.missing:
-        print_(printable_text(f"note: {text}"), style="yellow")
+        print_(printable(f"note: {text}"), style="yellow")
     print_(f"{len(manifest.files)} files, {sum(f['size'] for f in manifest.files.values()) / 1000:.0f} kB")
     for name in manifest.code:
-        print_(printable_text(f"code  {name}  ({manifest.files[name]['size']} bytes)"), style="yellow")
+        print_(printable(f"code  {name}  ({manifest.files[name]['size']} bytes)"), style="yellow")
     for topic, stream in manifest.streams.items():
-        print_(printable_text(f"last seconds  {topic}  {stream['count']} × {stream['type']}"))
+        print_(printable(f"last seconds  {topic}  {stream['count']} × {stream['type']}"))
     for number, entry in enumerate(bundle.commands()):
         if number == _MOST:
             print_(f"… {manifest.commands - _MOST} more commands")
             break
         arguments = {k: v for k, v in entry.items() if k not in ("steps", "tick", "do", "served")}
-        print_(printable_text(f"after {entry['steps']} steps  {entry['do']}  {json.dumps(arguments):.160}"))
-
-
-def printable_text(text: str) -> str:
-    """Replace the control characters of an untrusted text, which could move the terminal's cursor."""
-    return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)
+        print_(printable(f"after {entry['steps']} steps  {entry['do']}  {json.dumps(arguments):.160}"))

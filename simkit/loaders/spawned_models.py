@@ -19,6 +19,7 @@ _NUMBERS: Final = rf"\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)*"
 _TEXT: Final = re.compile(rf"(?P<model>.+?):(?P<numbers>{_NUMBERS})(?::(?P<name>[^:/,]+))?")
 _POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*)?$")
 _FORM: Final = "MODEL:x,y,yaw[:name], as in tiago:1,0,1.57 or robot.urdf:0,2,0:second; or MODEL alone"
+_FARTHEST: Final = 1e15  # [m, rad]; sums of larger numbers lose their precision or overflow
 _COUNTS: Final = {3: "x,y,yaw", 4: "x,y,z,yaw", 6: "x,y,z,roll,pitch,yaw"}
 
 
@@ -96,6 +97,10 @@ def add_spawned_models(
     for item in spawned_models:
         spawn = parse_spawn(item, diagnostics) if isinstance(item, str) else item
         if spawn is None:
+            continue
+        if not all(abs(number) <= _FARTHEST for number in spawn.place or ()):  # false for NaN, too
+            text = f"--spawn: {spawn.source!s:.80} at {spawn.place}"
+            diagnostics.error("SK-SPAWN-001", text, hint=f"give numbers between -{_FARTHEST:g} and {_FARTHEST:g}")
             continue
         found = Diagnostics()
         own = _file_pose(spawn.source, resolver, xacro_args)

@@ -82,3 +82,11 @@ def test_the_command_line_accepts_several_spawn_options() -> None:
     bad = CliRunner().invoke(app, [*line, "turtlebot3_burger:1,0"])
     assert bad.exit_code != 0
     assert "SK-SPAWN-001" in bad.output
+
+
+@pytest.mark.parametrize("number", [1e308, -1e16, float("nan")])
+def test_a_spawn_pose_beyond_the_largest_distance_is_an_error(number: float) -> None:
+    """The levers of contacts overflow at 1e308 m; a bundle can also contain NaN."""
+    with pytest.raises(simkit.LoadError, match="SK-SPAWN-001") as raised:
+        simkit.load("empty", spawn=[SpawnedModel("turtlebot3_burger", (0.0, number, 0.5), None)])
+    assert [d.code for d in raised.value.diagnostics if d.severity == "error"] == ["SK-SPAWN-001"]

@@ -38,7 +38,9 @@ def socket_folders() -> list[Path]:
     """Return the folders that sockets may be in, the preferred folder first."""
     if not is_possible():
         return []
-    found = [Path(tempfile.gettempdir()) / f"simkit-{os.getuid()}"]
+    found = []
+    with suppress(FileNotFoundError):  # there is no folder for temporary files, for example because the disk is full
+        found.append(Path(tempfile.gettempdir()) / f"simkit-{os.getuid()}")
     runtime = os.environ.get("XDG_RUNTIME_DIR")
     if runtime and Path(runtime).is_absolute():
         found.insert(0, Path(runtime) / "simkit")
@@ -86,7 +88,7 @@ def bind(name: str) -> tuple[socket.socket, str, Path]:
             return _bind_in(folder, file_name(name))
         except OSError as error:
             full.append(f"{folder}: {error.strerror or error}")
-    raise NoSocketFolder("; ".join((*full, *unusable)))
+    raise NoSocketFolder("; ".join((*full, *unusable)) or "there is no folder for temporary files")
 
 
 def _bind_in(folder: Path, requested: str) -> tuple[socket.socket, str, Path]:

@@ -36,6 +36,7 @@ INTERRUPTED = 130
 _MOST_LISTED, _MOST_ERRORS_LISTED = 12, 200  # listed entries of one code
 _PLACES = 8  # listed further places of one entry
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+_FULL = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))  # the disk, or a limit on the size of files
 _STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 
 
@@ -141,16 +142,16 @@ def _print_entry(equal: list[Diagnostic], target: Console) -> None:
 
     d = equal[0]
     place = _location(d)
-    line = Text(f"{place}: " if place else "")
+    line = Text(printable(f"{place}: ") if place else "")
     line.append(d.severity, style=_STYLES[d.severity])
-    line.append(f" {d.code}: {d.message}")
+    line.append(printable(f" {d.code}: {d.message}"))
     if d.hint:
-        line.append(f"\n    help: {d.hint}", style="dim")
+        line.append(printable(f"\n    help: {d.hint}"), style="dim")
     if len(equal) > 1:
         others = [f":{o.line}" if o.file == d.file and o.line else _location(o) for o in equal[1 : _PLACES + 1]]
         rest = len(equal) - 1 - len(others)
         more = f" and {rest} more" if rest else ""
-        line.append(f"\n    also at {', '.join(others)}{more}", style="dim")
+        line.append(printable(f"\n    also at {', '.join(others)}{more}"), style="dim")
     target.print(line)
 
 
@@ -173,7 +174,7 @@ def print_error(error: SimkitError) -> None:
     message = str(error)
     if error.code not in message:
         message = f"{error.code} {message}"
-    stderr_console().print(f"error: {message}", style="red")
+    stderr_console().print(f"error: {printable(message)}", style="red")
 
 
 def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
@@ -197,11 +198,16 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
             if error.errno == errno.EIO:  # the terminal has closed, and its signal may arrive later
                 sys.stdout = sys.stderr = None
                 raise typer.Exit(_hang_up_exit_code()) from None
-            if error.errno not in (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)):
+            if error.errno in _FULL:
+                sys.stdout = None
+                print_status(f"error: cannot write the output: {error.strerror}")
+                raise typer.Exit(1) from None
+            if error.strerror is None:
                 raise
-            sys.stdout = None
-            print_status(f"error: cannot write the output: {error.strerror}")
-            raise typer.Exit(1) from None
+            # a file that no other check expected to fail, for example because there are too many open files
+            place = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else "a file"
+            print_error(InputError(f"SK-CLI-016 cannot read or write {place}: {error.strerror}", "SK-CLI-016"))
+            raise typer.Exit(2) from None
         if code:
             raise typer.Exit(int(code))
 
