@@ -48,7 +48,7 @@ class Mutator:
 
     def _kinds(self) -> tuple[Callable[[bytes, random.Random], bytes], ...]:
         gentle = (_scaled, _scaled, _scaled, _scaled, _swap, _swap, _element, _element, _block, _block)
-        rough = (_bytes, _cut, _repeat, _number, _number, _number, _name, _name, _tag)
+        rough = (_bytes, _cut, _repeat, replaced_number, replaced_number, replaced_number, _name, _name, _tag)
         ours = (self._splice, self._splice, self._splice, self._word, self._word) if self._blocks else ()
         return (*gentle, *rough, *ours)
 
@@ -86,7 +86,7 @@ def shuffled_bytes(content: bytes, chance: random.Random) -> bytes:
                 content[:at] + chance.choice((b"\xff" * 4, b"\0" * 4, b"\x7f" * 4, b"\0\0\xc0\x7f")) + content[at + 4 :]
             )
         else:
-            content = _number(content, chance)
+            content = replaced_number(content, chance)
     return content
 
 
@@ -109,7 +109,8 @@ def _repeat(content: bytes, chance: random.Random) -> bytes:
     return content[:start] + piece * chance.randint(2, 20) + content[start:]
 
 
-def _number(content: bytes, chance: random.Random) -> bytes:
+def replaced_number(content: bytes, chance: random.Random) -> bytes:
+    """Return the content with one number replaced by an odd one."""
     return _replaced(content, NUMBER, lambda _: chance.choice(ODD_NUMBERS).encode(), chance)
 
 

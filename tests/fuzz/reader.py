@@ -8,13 +8,14 @@ import selectors
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import simkit
 
 SECONDS = 30.0  # within which a file is answered, whatever it holds
+CPU_SECONDS = 10.0  # of the processor that an answer may take
 LARGEST = 2048  # [MiB] that reading it may take
 FINE = {"loaded", "refused"}
 
@@ -44,15 +45,20 @@ class Reader:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def read(self, main: str, files: Mapping[str, bytes], name: str = "") -> dict[str, Any]:
+    def read(
+        self, main: str, files: Mapping[str, bytes], name: str = "", arguments: Sequence[str] = ()
+    ) -> dict[str, Any]:
         """What became of a file with its companions; a crash or a hang of the worker is an outcome as well.
 
         Args:
             main: the name among `files` of the one that is opened.
             files: path -> content.
             name: how the report calls this input.
+            arguments: command line that opens the files; empty: the main file is loaded as a world.
         """
-        answer = self._ask(main, files)
+        answer = self._ask(main, files, arguments)
+        if answer["outcome"] in FINE and answer["cpu"] > CPU_SECONDS:
+            answer["outcome"] = f"took {answer['cpu']} s"
         if answer["outcome"] in FINE and answer["peak_mib"] > LARGEST:
             answer["outcome"] = f"took {answer['peak_mib']} MiB"
         self.slowest = max(self.slowest, (answer.get("seconds", SECONDS), name))
@@ -67,10 +73,11 @@ class Reader:
             f"; largest {self.largest[0]} MiB ({self.largest[1]})"
         )
 
-    def _ask(self, main: str, files: Mapping[str, bytes]) -> dict[str, Any]:
+    def _ask(self, main: str, files: Mapping[str, bytes], arguments: Sequence[str]) -> dict[str, Any]:
         worker = self._worker or self._start()
         assert worker.stdin is not None
-        header = json.dumps({"main": main, "files": [[n, len(c)] for n, c in files.items()]}).encode()
+        lengths = [[n, len(c)] for n, c in files.items()]
+        header = json.dumps({"main": main, "arguments": list(arguments), "files": lengths}).encode()
         try:
             worker.stdin.write(header + b"\n" + b"".join(files.values()))
             worker.stdin.flush()

@@ -1,13 +1,15 @@
 """Reads one broken file after another in a process of its own, within bounds of time and memory.
 
-The parent sends one line of JSON, `{"main": name, "files": [[name, length], ...]}`, followed by the bytes of the files
-in that order, and gets one line of JSON for each such set: what became of it, how long it took and the most memory.
+The parent sends one line of JSON, `{"main": name, "arguments": command, "files": [[name, length], ...]}`, followed by
+the bytes of the files in that order, and gets one line of JSON for each such set: what became of it, how long it took
+and the most memory. A command is run in the folder of the files; without one the main file is loaded as a world.
 """
 
 from __future__ import annotations
 
 import io
 import json
+import os
 import re
 import shutil
 import sys
@@ -17,6 +19,8 @@ import traceback
 import warnings
 from pathlib import Path
 from typing import Any
+
+from openers import Watch, opened
 
 ADDRESSES = 8 << 30  # [bytes] of address space; the engine and its libraries take 2 of it
 STEPPING = 0.2  # [s] of wall time that a file that loads is stepped for
@@ -37,6 +41,8 @@ def main() -> None:
 
     simkit.load("<sdf version='1.9'><world name='w'/></sdf>").close()
     top = Path(tempfile.mkdtemp(prefix="simkit_fuzz_"))
+    inside(top)
+    watch = Watch(top)
     resources = [Path(p) for p in sys.argv[1:]]
     say({"ready": True})
     while header := sys.stdin.buffer.readline():
@@ -49,14 +55,34 @@ def main() -> None:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(sys.stdin.buffer.read(length))
         forget_peak()
-        began = time.perf_counter()
-        answer = outcome(folder / asked["main"], [folder, *resources])
-        say({**answer, "seconds": round(time.perf_counter() - began, 3), "peak_mib": peak_mib()})
+        began, used = time.perf_counter(), time.process_time()
+        if asked["arguments"]:
+            answer: dict[str, Any] = opened(asked["arguments"], folder, watch)
+            if more := {path.name for path in top.iterdir()} - {"world", "home"}:
+                answer = {"outcome": f"writes outside its folder: {sorted(more)}"}
+        else:
+            answer = outcome(folder / asked["main"], [folder, *resources])
+        times = {"seconds": round(time.perf_counter() - began, 3), "cpu": round(time.process_time() - used, 3)}
+        say({**answer, **times, "peak_mib": peak_mib()})
 
 
 def say(answer: dict[str, Any]) -> None:
     sys.stdout.write(json.dumps(answer) + "\n")
     sys.stdout.flush()
+
+
+def inside(top: Path) -> None:
+    """Give this process a home and a folder for temporary files of its own, and a fixed width of the terminal."""
+    for name, folder in (
+        ("HOME", "home"),
+        ("TMPDIR", "home/tmp"),
+        ("XDG_CACHE_HOME", "home/cache"),
+        ("XDG_RUNTIME_DIR", "home/run"),
+    ):
+        (top / folder).mkdir(parents=True, exist_ok=True, mode=0o700)
+        os.environ[name] = str(top / folder)
+    tempfile.tempdir = None
+    os.environ.update(COLUMNS="120", NO_COLOR="1")
 
 
 def bound_memory() -> None:
