@@ -70,7 +70,7 @@ def node_value(node: Any) -> Any:
         raise _yaml_error(error) from None
     except RecursionError:
         raise NotYaml("the text is nested too deeply") from None
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:  # the value does not fit its tag
+    except (ValueError, LookupError, TypeError, AttributeError, OverflowError) as error:  # it does not fit its tag
         reason = error.args[0] if error.args else ""
         raise NotYaml(f"a value does not fit its type: {str(reason).partition(';')[0]:.200}") from None
     return found

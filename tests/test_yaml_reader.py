@@ -26,6 +26,7 @@ def test_a_text_that_is_not_a_number_stays_a_text(text: str) -> None:
         ("!!timestamp foo", "a value does not fit its type"),
         ("!!bool foo", "a value does not fit its type"),
         ("!!int foo", "invalid literal"),
+        ("!!int ''", "a value does not fit its type"),
         ("!!float foo", "could not convert"),
         ("9" * 5000, "1000 digits"),
         ("&a {x: *a}", "nested too deep"),

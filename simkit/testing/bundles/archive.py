@@ -236,7 +236,7 @@ class Bundle:
             raise self._broken(f"{name} does not have the size and hash that {PAGE} lists")
 
     def _broken(self, reason: str) -> InputError:
-        return InputError(f"{BROKEN} {self.path} is not a simkit bundle or is damaged: {reason}", BROKEN)
+        return InputError(f"{BROKEN} {self.path} is not a simkit bundle or is damaged: {reason:.300}", BROKEN)
 
     def _too_large(self, reason: str) -> InputError:
         return InputError(f"{_TOO_LARGE} {self.path} {reason}", _TOO_LARGE)

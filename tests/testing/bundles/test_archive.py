@@ -250,3 +250,16 @@ def test_opening_and_extracting_runs_nothing(sound: Path, tmp_path: Path) -> Non
         bundle.extract(tmp_path / "all", with_code=True)
         assert (tmp_path / "all" / "code" / "0" / "boom.py").read_bytes() == code
     assert not Path("was_run").exists()
+
+
+def test_the_reason_for_a_damaged_archive_has_at_most_300_characters(tmp_path: Path) -> None:
+    """A header that claims a name of 20 000 bytes makes zipfile print all of them."""
+    file = tmp_path / "b.zip"
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("bundle.json", b"\xff" * 30_000)
+    content = bytearray(file.read_bytes())
+    content[26:28] = (20_000).to_bytes(2, "little")  # length of the name in the local header
+    file.write_bytes(content)
+    with pytest.raises(InputError, match="SK-BUNDLE-001") as raised:
+        open_bundle(file)
+    assert len(str(raised.value)) < 500 + len(str(file))
