@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.errors import InputError, LoadError, PluginError
+from simkit.errors import LoadError, PluginError
 from simkit.loaders import Resolver, load_scene
+from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.make_instances import (
@@ -114,8 +115,13 @@ def load(
         LoadError: the input has errors; the exception lists all of them.
         PluginError: a plugin raised while it was loaded.
     """
-    if on_error not in (None, "stop", "disable"):
-        raise InputError(f"on_error is 'stop' or 'disable', got {on_error!r}")
+    check_source_arguments(
+        source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base
+    )
+    seed = check_load_arguments(
+        seed=seed, plugin_paths=plugin_paths, plugins=plugins, strict=strict, overrides=overrides, sleep=sleep,
+        on_error=on_error, spawn=spawn, params_files=params_files, change_world=change_world,
+    )  # fmt: skip
     import_mujoco()
     from simkit.compiler import SpecBuilder
     from simkit.runtime import SensorsAndPlugins, Simulation, WorldStructure
@@ -203,6 +209,9 @@ def describe(
     Raises:
         LoadError: the file has errors.
     """
+    check_source_arguments(
+        source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base
+    )
     diagnostics = Diagnostics()
     resolver = Resolver([Path(p) for p in resource_paths], missing_meshes=True, package_paths=package_paths)
     scene = _scene(source, resolver, diagnostics, xacro_args, base, ())
@@ -332,6 +341,9 @@ def read_scene(
     Raises:
         LoadError: the file has errors.
     """
+    check_source_arguments(
+        source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base
+    )
     diagnostics = Diagnostics()
     paths = [Path(p) for p in resource_paths]
     resolver = Resolver(paths, missing_meshes=missing_meshes, package_paths=package_paths)
@@ -357,6 +369,7 @@ def _model_to_spawn(
     taken: Container[str] = (),
     xacro_args: Mapping[str, str] | None = None,
 ) -> SceneModel:
+    check_source(source)
     scene = load_scene(
         source,
         resolver=resolver,

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from typing import Any, Final, Literal
+
+TEXT_SOURCE: Final = "<string>"
+"""Name of XML that was passed as text, instead of a file name."""
 
 Severity = Literal["error", "warning", "note"]
 
@@ -21,7 +24,7 @@ class Where:
     serial: int = field(default=0, compare=False, repr=False)
 
     def __str__(self) -> str:
-        return f"{self.file or '<text>'}:{self.line}" if self.line else (self.file or "<text>")
+        return f"{self.file or TEXT_SOURCE}:{self.line}" if self.line else (self.file or TEXT_SOURCE)
 
 
 NOWHERE = Where()
@@ -35,6 +38,8 @@ class Diagnostic:
         code: `SK-AREA-NNN`; never renumbered.
         severity: "error" stops the load, "warning" may change the meaning, "note" is a known conversion.
         message: the problem and the allowed values.
+        file: file of the problem, `<string>` for XML that was passed as text; None if the problem has no place.
+        line: line in the file.
         hint: remedy; may be empty.
     """
 

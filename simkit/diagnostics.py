@@ -7,7 +7,7 @@ import functools
 import re
 from collections.abc import Iterable, Iterator
 
-from simkit.diagnostic_record import NOWHERE, Diagnostic, Severity, Where
+from simkit.diagnostic_record import NOWHERE, TEXT_SOURCE, Diagnostic, Severity, Where
 from simkit.errors import LoadError
 
 __all__ = [
@@ -48,6 +48,9 @@ class Diagnostics:
     def __len__(self) -> int:
         return len(self._items)
 
+    def __contains__(self, item: object) -> bool:
+        return item in self._items
+
     @property
     def has_errors(self) -> bool:
         return self._errors > 0
@@ -60,10 +63,11 @@ class Diagnostics:
     def add(self, severity: Severity, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
         if len(message) > LONGEST_MESSAGE:
             message = f"{message[: LONGEST_MESSAGE // 2]} ... {message[-LONGEST_MESSAGE // 2 :]}"
-        self._put(Diagnostic(code, severity, message, where.file, where.line, hint[:LONGEST_MESSAGE]))
+        file = where.file or (TEXT_SOURCE if where.line else None)
+        self._put(Diagnostic(code, severity, message, file, where.line, hint[:LONGEST_MESSAGE]))
         if severity == "error" and self._errors >= MOST_ERRORS:
             text = f"the input has {self._errors} errors; the rest is not checked"
-            self._put(Diagnostic("SK-LOAD-012", "error", text, where.file, where.line))
+            self._put(Diagnostic("SK-LOAD-012", "error", text, file, where.line))
             self.raise_if_errors()
 
     def _put(self, item: Diagnostic) -> None:

@@ -2,8 +2,10 @@
 
 SimkitError                 exit 1
 ├── InputError              exit 2   invalid input of the user
+│   ├── ArgumentTypeError            an argument has another kind than expected; also a TypeError
+│   ├── ArgumentValueError           an argument is out of range, NaN or infinite; also a ValueError
 │   ├── LoadError                    a file has errors; `.diagnostics` lists all of them
-│   ├── MessageError                 a message does not fit its topic
+│   ├── MessageError                 a message does not fit its topic; NoMessageError is also a TypeError
 │   ├── ServiceError                 a service is unknown, or its name is already used
 │   ├── ActionError                  an action is unknown, or its name is already used
 │   └── ParameterError               a parameter is unknown, or its value is not allowed
@@ -55,6 +57,18 @@ class InputError(SimkitError):
         self.code = code or self.code
 
 
+class ArgumentTypeError(InputError, TypeError):
+    """Argument of a Python call that has another kind than the call expects."""
+
+    code = "SK-INPUT-002"
+
+
+class ArgumentValueError(InputError, ValueError):
+    """Argument of a Python call that is NaN, infinite, out of range or of a wrong length."""
+
+    code = "SK-INPUT-003"
+
+
 class LoadError(InputError):
     """Errors in a file, found while the file was loaded.
 
@@ -72,6 +86,10 @@ class MessageError(InputError):
     """Message that does not fit the topic it is sent to."""
 
     code = "SK-MSG-001"
+
+
+class NoMessageError(MessageError, TypeError):
+    """Value that is neither a message nor a dict of a message's fields."""
 
 
 class ServiceError(InputError):

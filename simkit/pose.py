@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit.errors import ArgumentTypeError, ArgumentValueError
+
 Vector = npt.NDArray[np.float64]
 VectorLike = Sequence[float] | Vector
 _set = object.__setattr__
+_POSE_NUMBERS: Final = "needs a position of 3 numbers and a quaternion (w, x, y, z) of 4 numbers"
 
 
 def _floats(values: VectorLike) -> list[float]:
@@ -87,6 +90,16 @@ def quat_to_matrix(q: VectorLike) -> Vector:
     )
 
 
+def _checked_point(values: VectorLike) -> VectorLike:
+    """Return 3 numbers unchanged."""
+    try:
+        if len(values) == 3:
+            return values
+    except TypeError:
+        raise ArgumentTypeError(f"a vector has 3 numbers, got {values!r}") from None
+    raise ArgumentValueError(f"a vector has 3 numbers, got {values!r}")
+
+
 class Pose:
     """Immutable rigid pose. If pose b is in the frame of a, `a @ b` is the same pose in the parent frame of a.
 
@@ -100,14 +113,17 @@ class Pose:
     quaternion: Vector
 
     def __init__(self, position: VectorLike = (0.0, 0.0, 0.0), quaternion: VectorLike = (1.0, 0.0, 0.0, 0.0)) -> None:
-        p = np.array(position, dtype=np.float64)
-        q = np.array(quaternion, dtype=np.float64)
+        try:
+            p = np.array(position, dtype=np.float64)
+            q = np.array(quaternion, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise ArgumentTypeError(f"Pose {_POSE_NUMBERS}, got {position!r}, {quaternion!r}: {error}") from None
         if p.shape != (3,) or q.shape != (4,):
-            raise ValueError(f"Pose needs a position of 3 and a quaternion (w, x, y, z) of 4, got {p.shape}, {q.shape}")
+            raise ArgumentValueError(f"Pose {_POSE_NUMBERS}, got {position!r}, {quaternion!r}")
         norm = math.sqrt(q.dot(q))
         x, y, z = p.tolist()
         if not (1e-12 < norm < math.inf and math.isfinite(x) and math.isfinite(y) and math.isfinite(z)):
-            raise ValueError(f"Pose needs finite numbers and a quaternion that is not zero, got {p}, {q}")
+            raise ArgumentValueError(f"Pose needs finite numbers and a quaternion that is not zero, got {p}, {q}")
         if abs(norm - 1.0) > 1e-15:
             q = q / norm
         p.setflags(write=False)
@@ -121,7 +137,11 @@ class Pose:
     @classmethod
     def from_rpy(cls, x: float, y: float, z: float, roll: float, pitch: float, yaw: float) -> Pose:
         """Create a pose from a position [m] and fixed-axis roll, pitch and yaw [rad]."""
-        return cls((x, y, z), quat_from_rpy(roll, pitch, yaw))
+        try:
+            quaternion = quat_from_rpy(roll, pitch, yaw)
+        except (TypeError, ValueError):  # a text, an infinite angle
+            raise ArgumentValueError(f"roll, pitch and yaw must be finite numbers, got {(roll, pitch, yaw)}") from None
+        return cls((x, y, z), quaternion)
 
     @property
     def rpy(self) -> Vector:
@@ -139,6 +159,8 @@ class Pose:
         if self is IDENTITY:
             return other
         # `transform` and `quat_multiply` without intermediate arrays: a load multiplies thousands of poses
+        if not isinstance(other, Pose):
+            return self.__rmatmul__(other)
         aw, ax, ay, az = self.quaternion.tolist()
         bw, bx, by, bz = other.quaternion.tolist()
         px, py, pz = self.position.tolist()
@@ -158,8 +180,10 @@ class Pose:
             ),
         )
 
+    __array_ufunc__ = None  # an array on the left leaves the product to `__rmatmul__`
+
     def __rmatmul__(self, other: object) -> Pose:
-        raise TypeError(f"a pose is a simkit.Pose, such as simkit.Pose((0, 0, 1)), got {other!r}")
+        raise ArgumentTypeError(f"a pose is a simkit.Pose, such as simkit.Pose((0, 0, 1)), got {other!r}")
 
     def inverse(self) -> Pose:
         w, x, y, z = self.quaternion.tolist()
@@ -173,11 +197,11 @@ class Pose:
 
     def rotate(self, vector: VectorLike) -> Vector:
         """Rotate a free vector from this frame to the parent's axes."""
-        return quat_rotate(self.quaternion, vector)
+        return quat_rotate(self.quaternion, _checked_point(vector))
 
     def transform(self, point: VectorLike) -> Vector:
         """Transform a point [m] from this frame to the parent's frame."""
-        return self.position + quat_rotate(self.quaternion, point)
+        return self.position + quat_rotate(self.quaternion, _checked_point(point))
 
     def as_list(self) -> list[float]:
         """Return the pose as [x, y, z, qw, qx, qy, qz]."""

@@ -20,6 +20,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "simkit"
 
 SMALL_MODULES = frozenset(
     {
+        "argument_checks",
         "child_process",
         "diagnostic_record",
         "diagnostics",

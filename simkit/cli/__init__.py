@@ -78,4 +78,14 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character must not end the run
-    app(prog_name="simkit")  # also for `python -m simkit`, whose name has no shell completion
+    try:
+        try:
+            app(prog_name="simkit")  # also for `python -m simkit`, whose name has no shell completion
+        finally:
+            for stream in (sys.stdout, sys.stderr):
+                if stream is not None:
+                    stream.flush()
+    except OSError as error:  # outside of a command: the output of `--help`, `--version` and of usage errors
+        from simkit.cli.terminal.output import output_failure_exit_code
+
+        sys.exit(output_failure_exit_code(error))

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
-from simkit.errors import MessageError
+from simkit.errors import MessageError, NoMessageError
 from simkit.msgs.message_types import Message, definition, full_name, message_class, rihs, type_of, type_store, types_of
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def type_name(message: Message) -> str:
     """
     name = getattr(message, "__msgtype__", None)
     if not isinstance(name, str):
-        raise MessageError(
+        raise NoMessageError(
             f"{type(message).__name__} is not a message; use simkit.msgs.make(...) or a dict of its fields"
         )
     return name

@@ -12,3 +12,11 @@ def valid_topic(name: str) -> str:
     """
     valid = re.sub(r"[^A-Za-z0-9_/.:-]|:=", "", name.replace(" ", "_"))
     return "/" + re.sub("/{2,}", "/", valid).strip("/")
+
+
+TYPES_OF_DICTS = (
+    *("std_msgs/msg/Bool", "std_msgs/msg/Float64", "std_msgs/msg/String", "std_msgs/msg/Float64MultiArray"),
+    *("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped", "geometry_msgs/msg/Pose"),
+    *("geometry_msgs/msg/PoseStamped", "sensor_msgs/msg/JointState", "trajectory_msgs/msg/JointTrajectory"),
+)
+"""Types of a dict on a topic that only has subscriptions, and therefore no type. The first one that fits is used."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from simkit.argument_checks import check_function, checked_integer
 from simkit.errors import InputError, SimulationDiverged
 from simkit.pose import Pose, Vector
 from simkit.run_spec import PluginErrorPolicy, RunSpec
@@ -15,6 +16,7 @@ from simkit.runtime.communication.service_server import Service, ServiceHandler
 from simkit.runtime.communication.subscription import Callback, CallbackPolicy, Subscription
 from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.engine.engine import Engine
+from simkit.runtime.engine.engine_state import InProcess
 from simkit.runtime.engine.plugin_faults import add_driver_hints
 from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.snapshot import Snapshot, Stateful
@@ -38,7 +40,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneWorld
 
 
-class Simulation:
+class Simulation(InProcess):
     """Loaded world, made by `simkit.load`; also a context manager.
 
     All readings show the state at `time`.
@@ -103,22 +105,20 @@ class Simulation:
 
     def step(self, count: int = 1) -> None:
         """Advance by `count` steps. Raise SimulationDiverged or PluginError if the physics or a plugin fails."""
-        if count < 0:
-            raise ValueError(f"count must not be negative, got {count}")
-        self._advance(self.tick + int(count))
+        self._advance(self.tick + self.engine.clock.checked_count(count))
 
     def run(self, duration: float) -> None:
         """Advance by a duration [s] of simulated time, rounded to the nearest whole step.
 
         If a hook restores an earlier time, the number of steps stays the same.
         """
-        if not duration >= 0:
-            raise ValueError(f"duration must be a number of seconds that is not negative, got {duration}")
-        self._advance(self.tick + self.engine.clock.ticks(duration))
+        self._advance(self.tick + self.engine.clock.checked_ticks(duration, "duration"))
 
     def run_until(self, condition: Callable[[Simulation], bool], timeout: float) -> bool:
         """Step until `condition(sim)` holds after a step; return False if `timeout` [s] passed first."""
-        for _ in range(self.engine.clock.ticks(timeout)):
+        check_function(condition, "condition")
+        self.engine.check_open()
+        for _ in range(self.engine.clock.checked_ticks(timeout, "timeout")):
             self.step()
             if condition(self):
                 return True
@@ -142,9 +142,10 @@ class Simulation:
     def reset(self, seed: int | None = None) -> None:
         """Reset physics, plugins, sensors and random streams to the loaded state at t = 0; `seed` replaces the seed."""
         loaded, engine = self._loaded_state(), self.engine
+        seed = engine.streams.seed if seed is None else checked_integer(seed, "seed")
         engine.loop.drop_deferred()
         self.communication.bus.settle()
-        engine.streams.reseed(engine.streams.seed if seed is None else seed)
+        engine.streams.reseed(seed)
         self._restore(loaded)
         for sensor in engine.structure.all_sensors():
             sensor.reset()
@@ -175,10 +176,7 @@ class Simulation:
         """
         engine = self.engine
         engine.check_open()
-        if snapshot.owner is not self:
-            raise ValueError("the snapshot belongs to another simulation; restore only snapshots of this one")
-        if not snapshot.is_complete:
-            raise ValueError("the snapshot was requested in a step that has not ended; restore it after that step")
+        self.contents.spawner.snapshots.check(snapshot)
         engine.loop.drop_deferred()
         if snapshot.seed != engine.streams.seed:
             self.communication.bus.settle()
@@ -211,31 +209,32 @@ class Simulation:
     @property
     def models(self) -> dict[str, Model]:
         """Top-level models by name."""
+        self.engine.check_open()
         return self.contents.models
 
     def model(self, name: str) -> Model:
         """Return a model by scoped name; a KeyError suggests the closest name."""
-        return self.contents.handles.model(name)
+        return self.contents.open_handles.model(name)
 
     def link(self, name: str) -> Link:
         """Return a link by scoped name; a KeyError suggests the closest name."""
-        return self.contents.handles.link(name)
+        return self.contents.open_handles.link(name)
 
     def joint(self, name: str) -> Joint:
         """Return a joint by scoped name; a KeyError suggests the closest name."""
-        return self.contents.handles.joint(name)
+        return self.contents.open_handles.joint(name)
 
     def sensor(self, name: str) -> Any:
         """Return a sensor by scoped name; a KeyError suggests the closest name."""
-        return self.contents.handles.find("sensor", name)
+        return self.contents.open_handles.find("sensor", name)
 
     def light(self, name: str) -> Light:
         """Return a light by scoped name; a KeyError suggests the closest name."""
-        return self.contents.handles.light(name)
+        return self.contents.open_handles.light(name)
 
     def visual(self, name: str) -> Visual:
         """Return a visual by scoped name; a KeyError suggests the closest name."""
-        return self.contents.handles.find_visual(name)
+        return self.contents.open_handles.find_visual(name)
 
     def spawn(self, source: object, name: str | None = None, pose: Pose | None = None) -> Model:
         """Add a model during the run; everything else keeps its state and its handles.
@@ -267,6 +266,7 @@ class Simulation:
     @property
     def plugins(self) -> dict[str, Any]:
         """Plugins of the file by scoped name."""
+        self.engine.check_open()
         return self.contents.plugins
 
     @property
@@ -299,10 +299,12 @@ class Simulation:
             on_error: policy for a callback that raises: "stop" ends the run with a SubscriberError, "drop" closes the
                 subscription.
         """
+        self.engine.check_open()
         return self.communication.bus.subscribe(topic, callback, keep, on_error)
 
     def topics(self) -> dict[str, str]:
         """Return the ROS type names by topic."""
+        self.engine.check_open()
         return self.communication.bus.topics()
 
     def call(self, service: str, request: Message = None) -> Message:
@@ -317,7 +319,6 @@ class Simulation:
             MessageError: the request does not fit the type.
             PluginError: the service of a plugin raised.
         """
-        self.engine.check_open()
         return self.communication.services.call(service, request)
 
     def offer(self, service: str, type_name: str, handler: ServiceHandler) -> Service:
@@ -350,7 +351,6 @@ class Simulation:
             ActionError: no such action; the message suggests the closest name.
             MessageError: the goal does not fit the type.
         """
-        self.engine.check_open()
         return self.communication.actions.send(action, goal, on_feedback, on_done)
 
     def set_parameter(self, node: str, name: str, value: object) -> None:
@@ -385,15 +385,14 @@ class Simulation:
         first = self.contents.spawner.close_plugins()
         for sensor in engine.structure.all_sensors():
             sensor.close()
+        self.contents.handles.close()
         engine.is_closed = True
         if first is not None:
             raise first
 
     def __enter__(self) -> Simulation:
+        self.engine.check_open()
         return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-    def __deepcopy__(self, memo: Mapping[int, object]) -> Simulation:
-        return self

@@ -6,10 +6,10 @@ import math
 import weakref
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from simkit.compiler.state_transfer import copy_fields_by_name, restore_compiled_fields
-from simkit.diagnostics import Diagnostics
+from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
 from simkit.pose import Pose
 from simkit.runtime import sensor_attachment
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.communication import Communication
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.handles.entity_handles import EntityHandles
+
+MOST_SPAWN_REPORTS: Final = 1000
+"""Largest number of diagnostics of spawned models; the oldest ones are dropped."""
 
 ModelLoader = Callable[..., SceneModel]
 SensorsAndPluginsMaker = Callable[..., SensorsAndPlugins]
@@ -72,6 +75,7 @@ class Spawner:
         self.snapshots = Snapshots(sim, engine, stateful, communication.bus.inbox, self.adopt)
         self._attached: set[AttachedSensor] = set()
         self._spawned = 0
+        self._reported: list[Diagnostic] = []
         self._structures: list[weakref.ref[WorldStructure]] = []
         self.loaded_plugins: list[AttachedPlugin] = []
 
@@ -140,7 +144,15 @@ class Spawner:
                 sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
             for plugin, _ in parts.plugins:
                 plugin.report_unread()
-        self._engine.reports.extend(found)
+        self._report(found)
+
+    def _report(self, found: Diagnostics) -> None:
+        """Add diagnostics of spawned models; only the newest ones are kept, because a run may spawn without end."""
+        reports = self._engine.reports
+        self._reported += [item for item in found if item not in reports]
+        reports.extend(found)
+        reports.drop(self._reported[:-MOST_SPAWN_REPORTS])
+        del self._reported[:-MOST_SPAWN_REPORTS]
 
     def undo(self, before: Snapshot) -> None:
         """Undo a failed change, perhaps within a hook; commands for the next step stay in the queue."""
@@ -176,7 +188,8 @@ class Spawner:
             PluginError: a plugin raised; the others are closed all the same.
         """
         now = self._engine.structure
-        if len(self.loaded_plugins) == len(now.all_plugins()) and len(self._attached) == len(now.all_sensors()):
+        counts = len(self.loaded_plugins), len(self._attached), self._handles.count
+        if counts == (len(now.all_plugins()), len(now.all_sensors()), len(now.models)):
             return  # nothing was removed
         self._structures = [kept for kept in self._structures if kept() is not None]
         structures = [structure for kept in self._structures if (structure := kept()) is not None]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from simkit.argument_checks import checked_pose
 from simkit.errors import InputError
 from simkit.pose import Pose, quat_conjugate, quat_multiply
 from simkit.runtime.communication.journal import journaled
@@ -54,6 +55,12 @@ class WorldContents:
         self.spawner = Spawner(sim, engine, communication, self.handles, stateful, load_model, make_parts)
 
     # ------------------------------------------------------------------ lists
+
+    @property
+    def open_handles(self) -> EntityHandles:
+        """Handles of the simulation; an error if the simulation is closed."""
+        self._engine.check_open()
+        return self.handles
 
     @property
     def models(self) -> dict[str, Model]:
@@ -116,9 +123,11 @@ class WorldContents:
     @journaled
     def _spawned(self, wanted: list[SpawnRequest]) -> list[Model]:
         self._engine.check_open()
-        for _, name, _ in wanted:
+        for _, name, pose in wanted:
             if name is not None:
                 check_model_name(name)
+            if pose is not None:
+                checked_pose(pose)
         names = self.spawner.spawn(wanted)
         self._engine.reschedule()
         return [self.handles.model(name) for name in names]

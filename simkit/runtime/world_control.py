@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 import mujoco
 import numpy as np
 
+from simkit.argument_checks import checked_vector
 from simkit.compiler.state_transfer import copy_state
 from simkit.errors import InputError
 from simkit.pose import Vector
@@ -215,6 +216,7 @@ class WorldControl:
 
     @paused.setter
     def paused(self, paused: bool) -> None:
+        self._engine.check_open()
         if not paused:
             self.pausing.resume()
         elif not self.pausing.is_paused:
@@ -240,14 +242,14 @@ class WorldControl:
     @property
     def gravity(self) -> Vector:
         """Gravity [m/s²], world frame, shape (3,); settable at any time."""
+        self._engine.check_open()
         return np.array(self._engine.mj_model.opt.gravity)
 
     @gravity.setter
     def gravity(self, value: Sequence[float] | Vector) -> None:
-        numbers = np.asarray(value, dtype=float)
-        if numbers.shape != (3,) or not np.isfinite(numbers).all():
-            raise ValueError(f"gravity must be 3 finite numbers, got {value}")
+        numbers = checked_vector(value, "gravity")
         engine = self._engine
+        engine.check_open()
         for sensor in engine.structure.all_sensors():
             sensor.take_held()  # pending values belong to the old gravity
         engine.physics.changed_model()

@@ -12,8 +12,10 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.argument_checks import checked_number
 from simkit.compiler import Compiled, SpecBuilder
 from simkit.compiler.name_map import NameMap
+from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import Diagnostics, Severity, Where
 from simkit.msgs.message_types import Message
 from simkit.msgs.topic_names import valid_topic
@@ -122,6 +124,7 @@ class Sensor(Sampler):
     @property
     def latest(self) -> Message:
         """Newest message that has arrived, or None before the first."""
+        self.sim.engine.check_open()
         if self._sample is None:
             return None
         return self._message(self._sample, next(iter(self._topics)))
@@ -129,6 +132,7 @@ class Sensor(Sampler):
     @property
     def truth(self) -> Message:
         """Newest message without noise, or None before the first."""
+        self.sim.engine.check_open()
         sample = self._finished_sample()
         if sample is None:
             return None
@@ -151,6 +155,7 @@ class Sensor(Sampler):
     @property
     def pose(self) -> Pose:
         """Current pose of the sensor in the world."""
+        self.sim.engine.check_open()
         data = self.sim.engine.physics.fresh()
         return Pose(data.xpos[self._body], data.xquat[self._body]) @ self._offset
 
@@ -160,12 +165,12 @@ class Sensor(Sampler):
         Raises:
             ValueError: the rate is negative, NaN or infinite.
         """
-        if not (math.isfinite(rate) and rate >= 0):
-            raise ValueError(f"the rate must be a finite number of at least 0 [Hz], got {rate}")
+        rate = checked_number(rate, "rate", 0.0, unit="Hz")
+        self.sim.engine.check_open()
         self.sim.communication.bus.settle()
         if self._noises and self._sample is not None:
             self.latest  # noqa: B018 - make this message now, because it may contain the rate of its sample
-        self._apply_rate(float(rate))
+        self._apply_rate(rate)
         self.sim.engine.reschedule()
 
     def optical_frames(self) -> dict[str, Pose]:
@@ -245,9 +250,6 @@ class Sensor(Sampler):
 
     def close(self) -> None:
         """Release the resources of the kind; called when the simulation closes."""
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Sensor:
-        return self
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.scoped!r}>"
@@ -329,5 +331,5 @@ class Sensor(Sampler):
 def report_once(sensor: Sensor, severity: Severity, code: str, message: str, where: Where, hint: str = "") -> None:
     """Add a diagnostic unless the same code was already reported for the same place."""
     known = chain(sensor.diagnostics, sensor.sim.engine.reports)
-    if not any(d.code == code and (d.file, d.line) == (where.file, where.line) for d in known):
+    if not any(d.code == code and (d.file, d.line) == (where.file or TEXT_SOURCE, where.line) for d in known):
         sensor.diagnostics.add(severity, code, message, where, hint)

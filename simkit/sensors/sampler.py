@@ -12,6 +12,7 @@ import mujoco
 from simkit.msgs.message_types import Message
 from simkit.runtime import Publisher, Simulation
 from simkit.runtime.communication.subscription import LazyMessage, PendingWork
+from simkit.runtime.engine.engine_state import InProcess
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
 from simkit.sensors.sample import Batch, Memory, NoiseProcess, Product, Reading, ReadingFunction, Sample
@@ -24,7 +25,7 @@ def _is_always_on() -> bool:
     return True
 
 
-class Sampler(abc.ABC):
+class Sampler(InProcess, abc.ABC):
     """Base class of `Sensor` that takes, keeps and publishes the samples."""
 
     needs_acceleration: ClassVar[bool] = False

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
 
 MOST_CLIENTS: Final = 64
+_RESERVED_FILES = 16  # files that the run itself may still open: a recording, a module that is imported late
 BUDGET: Final = 0.005  # [s] of wall time for clients between two slices
 _SLICE, _BUSY_SLICE = 0.4, 0.08  # share of a slice's usual wall time with idle clients, and with busy clients
 _REQUESTS_PER_TURN = 64  # frames that are read from one client before the turn of the next client
@@ -293,8 +294,9 @@ class Server:
         self._interest[connection.fileno()] = selectors.EVENT_READ
         hello = {"name": self.name, "world": self.sim.world.name, "pid": os.getpid(), "version": __version__}
         peer.send_json(TELL, {"tell": "hello", "protocol": PROTOCOL, **hello})
-        if len(self.peers) > MOST_CLIENTS:
-            self.refuse(peer, f"{MOST_CLIENTS} clients are connected to {self.name!r} already", "SK-LIVE-007")
+        limit = os.sysconf("SC_OPEN_MAX")
+        if len(self.peers) > MOST_CLIENTS or 0 < limit <= connection.fileno() + _RESERVED_FILES:
+            self.refuse(peer, f"{len(self.peers) - 1} clients are connected to {self.name!r} already", "SK-LIVE-007")
             self._disconnect(peer)
         else:
             self._write(peer)

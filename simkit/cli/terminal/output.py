@@ -34,9 +34,11 @@ JsonObject = dict[str, JsonValue]
 P = ParamSpec("P")
 INTERRUPTED = 130
 _MOST_LISTED, _MOST_ERRORS_LISTED = 12, 200  # listed entries of one code
+_OUTPUT_ERRORS = frozenset(
+    getattr(errno, name, errno.ENOSPC) for name in ("EPIPE", "EIO", "ENOSPC", "EDQUOT", "EFBIG", "EBADF")
+)
 _PLACES = 8  # listed further places of one entry
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-_FULL = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))  # the disk, or a limit on the size of files
 _STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 
 
@@ -156,7 +158,7 @@ def _print_entry(equal: list[Diagnostic], target: Console) -> None:
 
 
 def _location(d: Diagnostic) -> str:
-    return f"{d.file or '<text>'}:{d.line}" if d.line else (d.file or "")
+    return f"{d.file}:{d.line}" if d.file and d.line else (d.file or "")
 
 
 def print_error(error: SimkitError) -> None:
@@ -190,20 +192,9 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
         except KeyboardInterrupt as stopped:
             print_status(f"interrupted {stopped}".rstrip())
             raise typer.Exit(INTERRUPTED) from None
-        except BrokenPipeError:
-            # The reader of the output has ended. Closing standard output again would raise a second error.
-            sys.stdout = None
-            raise typer.Exit(0) from None
         except OSError as error:
-            if error.errno == errno.EIO:  # the terminal has closed, and its signal may arrive later
-                sys.stdout = sys.stderr = None
-                raise typer.Exit(_hang_up_exit_code()) from None
-            if error.errno in _FULL:
-                sys.stdout = None
-                print_status(f"error: cannot write the output: {error.strerror}")
-                raise typer.Exit(1) from None
-            if error.strerror is None:
-                raise
+            if error.errno in _OUTPUT_ERRORS or error.strerror is None:
+                raise typer.Exit(output_failure_exit_code(error)) from None
             # a file that no other check expected to fail, for example because there are too many open files
             place = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else "a file"
             print_error(InputError(f"SK-CLI-016 cannot read or write {place}: {error.strerror}", "SK-CLI-016"))
@@ -212,6 +203,28 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
             raise typer.Exit(int(code))
 
     return run
+
+
+def output_failure_exit_code(error: OSError) -> int:
+    """Return the exit code of a program whose output cannot be written, and print the reason where that is possible.
+
+    Raises:
+        OSError: the error itself, if it does not come from writing the output.
+    """
+    if error.errno not in _OUTPUT_ERRORS:
+        raise error
+    # closing a standard stream that failed would raise a second error at the end of the program
+    sys.stdout = None
+    if error.errno == errno.EPIPE:  # the reader of the output has ended
+        return 0
+    if error.errno == errno.EIO:  # the terminal has closed, and its signal may arrive later
+        sys.stderr = None
+        return _hang_up_exit_code()
+    try:
+        print_status(f"error: cannot write the output: {error.strerror}")
+    except OSError:
+        sys.stderr = None
+    return 1
 
 
 def _hang_up_exit_code() -> int:

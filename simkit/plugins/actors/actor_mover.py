@@ -60,6 +60,12 @@ class ActorMover(WorldPlugin):
         if moving:
             sim.engine.physics.changed(STALE)
 
+    def animation_state(self) -> tuple[tuple[str, float, bool, bool], ...]:
+        """Return name, time since the start [s], and whether it has started and stopped, of each moving actor."""
+        now = float(self.sim.time)
+        names = [cast.name for cast, _ in self._moving()]
+        return tuple((name, self._time_of(name, now), name in self._began, name in self._stopped) for name in names)
+
     def _moving(self) -> tuple[_Moving, ...]:
         """Return the actors that move, with the indices of their links among the engine's mocap bodies."""
         structure = self.sim.engine.structure

@@ -151,6 +151,11 @@ class FollowActor(ModelPlugin):
         data.mocap_pos[places], data.mocap_quat[places] = poses[:, :3], poses[:, 3:]
         sim.engine.physics.changed(STALE)
 
+    def animation_state(self) -> tuple[object, ...]:
+        """Return the actor's position, heading, distance walked, and motion since the last update."""
+        place = self._x, self._y, self._yaw, self._travel
+        return (*place, self._since_ns, self._way, self._left, self._is_following)
+
     def _find_bodies(self) -> npt.NDArray[np.intp]:
         """Return the mocap indices of the actor's links."""
         return np.array([self.sim.engine.names.link(link).mocap for link in self._links], dtype=np.intp)

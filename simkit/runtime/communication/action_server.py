@@ -265,6 +265,7 @@ class ActionTable(EndpointTable[Action]):
             ActionError: no such action; the message suggests the closest name.
             MessageError: the goal does not fit the type.
         """
+        self._engine.check_open()
         action = self._get(absolute_name(name))
         request = self._as_message(action, goal)
         journal = self._bus.journal

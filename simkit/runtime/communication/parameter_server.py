@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
+from simkit.argument_checks import check_text
 from simkit.diagnostics import did_you_mean, name_hint
 from simkit.errors import ParameterError
 from simkit.runtime.communication.journal import journaled
@@ -153,6 +154,8 @@ class ParameterTable:
         Raises:
             ParameterError: no parameter has that name; the message suggests the closest name.
         """
+        check_text(node, "node")
+        check_text(name, "name")
         nodes = self.nodes()
         if node not in nodes:
             hint = name_hint(node, nodes)

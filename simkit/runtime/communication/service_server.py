@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from simkit import msgs
+from simkit.argument_checks import check_function, check_text
 from simkit.errors import PluginError, ServiceError, SimkitError
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.subscription import Message
@@ -60,7 +61,10 @@ class ServiceTable(EndpointTable[Service]):
             ServiceError: a service of that name exists.
             MessageError: the type is unknown.
         """
+        self._engine.check_open()
         name = absolute_name(name)
+        check_text(type_name, "type_name")
+        check_function(handler, "handler")
         self._check_type(type_name)
         existing = self._find(name)
         if existing is not None and not existing.yields:
@@ -95,6 +99,7 @@ class ServiceTable(EndpointTable[Service]):
             MessageError: the request does not fit the type.
             PluginError: the service of a plugin raised.
         """
+        self._engine.check_open()
         service = self._get(absolute_name(name))
         message = self._as_message(service, request)
         with self._bus.passing("call", service=service, request=message):

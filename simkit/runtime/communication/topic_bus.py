@@ -7,12 +7,15 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 from simkit import msgs
+from simkit.argument_checks import check_function, check_text, checked_integer, wrong_value
 from simkit.diagnostics import Diagnostics, name_hint
 from simkit.errors import MessageError, SimkitError
+from simkit.msgs.topic_names import TYPES_OF_DICTS
 from simkit.runtime.communication.command_queue import CommandQueue
 from simkit.runtime.communication.journal import Journal
 from simkit.runtime.communication.publisher import ExternalPublisher, Listener, Publisher, TopicSides
 from simkit.runtime.communication.subscription import (
+    MAX_KEPT_MESSAGES,
     Callback,
     CallbackPolicy,
     LazyMessage,
@@ -27,7 +30,9 @@ from simkit.runtime.engine.plugin_faults import is_guarded
 
 
 def absolute_name(topic: str) -> str:
-    """Return the topic with its leading slash."""
+    """Return a name with its leading slash; raise an error if it is not a text, or empty."""
+    if not topic or type(topic) is not str:
+        check_text(topic, "the name")
     return topic if topic.startswith("/") else "/" + topic
 
 
@@ -144,7 +149,11 @@ class TopicBus:
                 subscription with a warning, and the run continues.
         """
         if on_error not in ("stop", "drop"):
-            raise ValueError(f"on_error must be 'stop' or 'drop', got {on_error!r}")
+            raise wrong_value("on_error", "'stop' or 'drop'", on_error)
+        if callback is not None:
+            check_function(callback, "callback")
+        if keep is not None:
+            keep = checked_integer(keep, "keep", 0, MAX_KEPT_MESSAGES)
         subscription = Subscription(self, absolute_name(topic), callback, keep, on_error)
         if self.journal is not None and callback is not None and not is_guarded(callback):
             self.journal.hears(subscription.topic, subscription)
@@ -211,8 +220,9 @@ class TopicBus:
     # ------------------------------------------------------------------ lists
 
     def topics(self) -> dict[str, str]:
-        """Return the ROS type names of all published or received topics, except unlisted topics, sorted by topic."""
-        return {t: kind for t, kind in self.all_topics().items() if t not in self.unlisted or self.wanted(t)}
+        """Return the types by topic, sorted, except unlisted topics; "" for a topic that only has subscriptions."""
+        found = {t: "" for t, readers in self._readers.items() if readers.readers} | self.all_topics()
+        return {t: found[t] for t in sorted(found) if t not in self.unlisted or self.wanted(t)}
 
     def all_topics(self) -> dict[str, str]:
         """Return the ROS type names of all topics, including unlisted ones."""
@@ -287,10 +297,11 @@ class TopicBus:
         types = [t for li in self._listeners.get(topic, ()) if li.active for t in li.types]
         types += [p.type_name for p in self._publishers.get(topic, ()) if p.active]
         if isinstance(message, Mapping):
+            types = types or (list(TYPES_OF_DICTS) if self._readers_of(topic).readers else [])
             if not types:
                 raise MessageError(f"no topic {topic!r}; {name_hint(topic, self.topics())}")
             message = msgs.from_dict(list(dict.fromkeys(types)), dict(message))
-        elif types and msgs.type_name(message) not in types:
+        elif msgs.type_name(message) not in types and types:
             raise MessageError(f"{topic!r} needs {' or '.join(dict.fromkeys(types))}, got {msgs.type_name(message)}")
         with self.passing("publish", topic=topic, message=message):
             self.gather(topic)

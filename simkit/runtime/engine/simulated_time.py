@@ -6,6 +6,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Final
+
+from simkit.argument_checks import checked_integer, checked_number
 
 _MAX_DENOMINATOR = 1_000_000  # largest denominator of a rate that is interpreted as a fraction
 
@@ -42,6 +45,12 @@ class SampleTiming:
     jitter: Jitter | None = None
 
 
+LONGEST_DURATION: Final = 2.0**31 - 1.0
+"""Longest duration [s], 68 years: the largest time of a ROS message."""
+
+_USUAL_COUNT: Final = 1_000_000  # up to this number of steps, a count needs no further check
+
+
 class Clock:
     """Conversion of ticks to time.
 
@@ -68,6 +77,16 @@ class Clock:
     def ticks(self, duration: float) -> int:
         """Return the number of whole steps in a duration [s], rounded to the nearest."""
         return math.floor(exact_fraction(duration) / self._step + Fraction(1, 2))
+
+    def checked_count(self, count: object) -> int:
+        """Return a number of steps, or raise an error for what is none."""
+        if type(count) is int and 0 <= count <= _USUAL_COUNT:
+            return count
+        return checked_integer(count, "count", 0, self.ticks(LONGEST_DURATION))
+
+    def checked_ticks(self, duration: object, name: str) -> int:
+        """Return the number of whole steps in a duration [s], or raise an error for what is no duration."""
+        return self.ticks(checked_number(duration, name, 0.0, LONGEST_DURATION, unit="s"))
 
     def grid(self, rate: float, from_start: bool = False) -> TickGrid | None:
         """Return the ticks at which a periodic task is due; None for every step.

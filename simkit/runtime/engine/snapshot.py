@@ -12,7 +12,10 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.argument_checks import wrong_type
 from simkit.compiler.state_transfer import restore_compiled_fields
+from simkit.errors import ArgumentValueError
+from simkit.runtime.engine.engine_state import InProcess
 from simkit.runtime.engine.physics_state import STALE, StepWindow
 
 if TYPE_CHECKING:
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Snapshot:
+class Snapshot(InProcess):
     """State that `restore` brings back; made by `Simulation.snapshot`.
 
     A snapshot that a hook or callback requests is taken at the end of the present step. The snapshot then includes the
@@ -58,9 +61,6 @@ class Snapshot:
 
     def __getattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"a snapshot has no {name!r} before the end of the step in which it was requested")
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Snapshot:
-        return self
 
 
 class Stateful(Protocol):
@@ -110,6 +110,16 @@ class Snapshots:
         pending: Snapshot = object.__new__(Snapshot)
         vars(pending)["owner"] = self._owner
         return pending, lambda: vars(pending).update(vars(self.take()))
+
+    def check(self, snapshot: object) -> None:
+        """Raise an error if a value is not a complete snapshot of this simulation."""
+        if not isinstance(snapshot, Snapshot):
+            raise wrong_type("snapshot", "a result of `snapshot()`", snapshot)
+        if snapshot.owner is not self._owner:
+            raise ArgumentValueError("the snapshot belongs to another simulation; restore only snapshots of this one")
+        if not snapshot.is_complete:
+            message = "the snapshot was requested in a step that has not ended; restore it after that step"
+            raise ArgumentValueError(message)
 
     def take(self) -> Snapshot:
         """Take a snapshot of the present state."""
@@ -193,10 +203,28 @@ class HashedSimulation(Protocol):
     def mj_data(self) -> mujoco.MjData:
         """MuJoCo's data."""
 
+    @property
+    def engine(self) -> Engine:
+        """Engine, whose structure has the actors."""
+
 
 def state_hash(sim: HashedSimulation) -> str:
-    """Return the SHA-256 of the bits of positions and velocities, in hexadecimal."""
+    """Return the SHA-256 of the bits of positions and velocities, in hexadecimal.
+
+    In a world with actors, the hash also covers their names, the poses of their links, and their animations. Actors
+    have no positions or velocities in MuJoCo's state, because they follow a script.
+    """
     digest = hashlib.sha256()
-    digest.update(sim.mj_data.qpos.tobytes())
-    digest.update(sim.mj_data.qvel.tobytes())
+    data, structure = sim.mj_data, sim.engine.structure
+    digest.update(data.qpos.tobytes())
+    digest.update(data.qvel.tobytes())
+    actors = [model for _, model in sorted(structure.models.items()) if model.moved_by is not None]
+    for actor in actors:
+        rows = [structure.compiled.names.link(link.scoped).mocap for link in actor.links]
+        digest.update(actor.name.encode())
+        digest.update(data.mocap_pos[rows].tobytes())
+        digest.update(data.mocap_quat[rows].tobytes())
+    for plugin in structure.all_plugins() if actors else ():
+        if hasattr(plugin, "animation_state"):
+            digest.update(repr(plugin.animation_state()).encode())
     return digest.hexdigest()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
+from simkit.argument_checks import check_kind
 from simkit.runtime.handles.handle import look_up
 from simkit.runtime.handles.joint import Joint
 from simkit.runtime.handles.light import Light
@@ -82,6 +83,18 @@ class EntityHandles:
                 light._is_present = True
             tables["light"].update(lights)
 
+    def close(self) -> None:
+        """End the presence of all handles, because the simulation is closed."""
+        lights = [light for _, _, lights in self._by_scene.values() for light in lights.values()]
+        handles = [handle for _, model, _ in self._by_scene.values() for handle in model.everything()]
+        for handle in (*handles, *lights, *(self._world_lights or {}).values(), *(self._world_joints or {}).values()):
+            handle._is_present = False
+
+    @property
+    def count(self) -> int:
+        """Number of top-level models that have handles, including removed models that a restore may bring back."""
+        return len(self._by_scene)
+
     def forget(self, living: Iterable[SceneModel]) -> None:
         """Drop the handles of models that nothing can bring back."""
         kept = {id(scene) for scene in living}
@@ -104,6 +117,7 @@ class EntityHandles:
 
     def find_visual(self, name: str) -> Visual:
         """Return a visual by scoped name; a KeyError suggests the closest name."""
+        check_kind(name, str, "the name of a visual", "a text")
         link: Link | None = self.tables["link"].get(name.rpartition("::")[0])
         if link is not None:
             found = next((v for v in link.visuals.values() if v.scoped == name), None)

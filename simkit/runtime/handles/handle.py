@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Self, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
+from simkit.argument_checks import check_kind
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.runtime.engine.engine_state import InProcess
 
 if TYPE_CHECKING:
     from simkit.runtime.handles.entity_handles import EntityHandles
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-class Handle:
+class Handle(InProcess):
     """Named entity of a simulation.
 
     Attributes:
@@ -26,14 +28,12 @@ class Handle:
         self.name, self.scoped = name, scoped
         self._is_present = True
 
-    def __deepcopy__(self, memo: dict[int, object]) -> Self:
-        return self
-
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.scoped!r}{'' if self._is_present else ' (removed)'}>"
 
     def _check(self) -> None:
         if not self._is_present:
+            self._engine.check_open()  # closing a simulation ends the presence of all its handles
             raise InputError(f"{type(self).__name__.lower()} {self.scoped!r} was removed", "SK-NAME-002")
 
 
@@ -48,6 +48,7 @@ def look_up(table: dict[str, T], name: str, kind: str) -> T:
     """Return the entry of a table; a KeyError suggests the closest name."""
     try:
         return table[name]
-    except KeyError:
+    except (KeyError, TypeError):
+        check_kind(name, str, f"the name of a {kind}", "a text")
         near = did_you_mean(name, table) or ("there is " + ", ".join(list(table)[:20]) if table else "there is none")
         raise UnknownName(f"no {kind} {name!r}; {near}") from None

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from simkit.argument_checks import checked_number, checked_vector, wrong_value
 from simkit.errors import InputError
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
@@ -21,6 +22,14 @@ if TYPE_CHECKING:
     from simkit.scene import SceneJoint
 
 JointValue = float | Vector
+
+
+def _checked_limits(value: JointValue, name: str, count: int) -> list[float]:
+    """Return one limit for each axis, from one number or a number for each axis."""
+    limits = [value] * count if np.ndim(value) == 0 else list(value)  # type: ignore[arg-type]  # a number or numbers
+    if len(limits) != count:
+        raise wrong_value(name, f"one number or {count} numbers", value)
+    return [checked_number(limit, name, 0.0, finite=False) for limit in limits]
 
 
 class Joint(Handle):
@@ -142,10 +151,8 @@ class Joint(Handle):
         Raises:
             InputError: the joint closes a loop.
         """
-        self._check()
-        self._check_settable()
+        values = self.check_position(position)
         qpos = self._physics.data.qpos
-        values = self._shaped(position, 7 if self._is_floating else self.dof)
         if self._is_floating:
             mechanics.set_relative_pose(self._engine, self._binding, Pose(values[:3], values[3:]))
         elif self._is_ball:
@@ -160,6 +167,15 @@ class Joint(Handle):
         mechanics.update_loop_joints(self._engine)
         self._physics.changed_body(STALE, self._body)
 
+    def check_position(self, position: float | Sequence[float] | Vector) -> Vector:
+        """Return a position as numbers; raise an error if `set_position` would refuse it."""
+        self._check()
+        self._check_settable()
+        values = self._shaped(position, 7 if self._is_floating else self.dof, "position")
+        if self._is_floating and not values[3:].any():
+            raise wrong_value(f"the quaternion of joint {self.scoped!r}", "different from zero", position)
+        return values
+
     def set_velocity(self, velocity: float | Sequence[float] | Vector) -> None:
         """Set the present velocity of the joint.
 
@@ -168,7 +184,7 @@ class Joint(Handle):
         """
         self._check()
         self._check_settable()
-        values = self._shaped(velocity, self.dof)
+        values = self._shaped(velocity, self.dof, "velocity")
         if self._is_floating:
             mechanics.set_relative_velocity(self._engine, self._binding, values)
         else:
@@ -193,7 +209,7 @@ class Joint(Handle):
             physics.data.qfrc_applied[self._one_dof] = max(-most, min(most, effort))
         else:
             limit = self._limit()
-            values = np.clip(self._shaped(effort, self.dof), -limit, limit)
+            values = np.clip(self._shaped(effort, self.dof, "effort"), -limit, limit)
             physics.data.qfrc_applied[self._dofs] = self._from_joint(values)
         physics.one_shot = True
         physics.changed_body(CONTROL, self._body)
@@ -221,20 +237,24 @@ class Joint(Handle):
     @property
     def effort_limit(self) -> JointValue:
         """Effort limit [N·m or N]; settable."""
+        self._check()
         return float(self._effort_limit[0]) if len(self._effort_limit) == 1 else self._effort_limit.copy()
 
     @effort_limit.setter
     def effort_limit(self, value: float) -> None:
-        self._effort_limit[:] = value
+        self._check()
+        self._effort_limit[:] = _checked_limits(value, "effort_limit", len(self._effort_limit))
 
     @property
     def velocity_limit(self) -> JointValue:
         """Velocity limit [rad/s or m/s]; settable, and then enforced at every step."""
+        self._check()
         return float(self._velocity_limit[0]) if len(self._velocity_limit) == 1 else self._velocity_limit.copy()
 
     @velocity_limit.setter
     def velocity_limit(self, value: float) -> None:
-        self._velocity_limit[:] = value
+        self._check()
+        self._velocity_limit[:] = _checked_limits(value, "velocity_limit", len(self._velocity_limit))
         self._handles.limit_velocity(self)
 
     @property
@@ -271,11 +291,9 @@ class Joint(Handle):
             return self._effort_limit
         return np.full(len(self._dofs), self._effort_limit[0])
 
-    def _shaped(self, value: float | Sequence[float] | Vector, count: int) -> Vector:
-        values = np.atleast_1d(np.asarray(value, dtype=float))
-        if len(values) != count or not np.isfinite(values).all():
-            raise ValueError(f"joint {self.scoped!r} needs {count} finite number(s), got {value}")
-        return values
+    def _shaped(self, value: float | Sequence[float] | Vector, count: int, noun: str) -> Vector:
+        values = [value] if count == 1 and np.ndim(value) == 0 else value
+        return checked_vector(values, f"{noun} of joint {self.scoped!r}", count)
 
     def _check_settable(self) -> None:
         if self._binding.is_loop:
@@ -300,6 +318,7 @@ class Joint(Handle):
         return np.array(self._physics.data.qpos[start : start + 4])
 
     def _range(self, side: int) -> JointValue:
+        self._check()
         model = self._physics.model
         ends = (-math.inf, math.inf)
         values = [float(model.jnt_range[j][side]) if model.jnt_limited[j] else ends[side] for j in self._ids]
@@ -307,6 +326,7 @@ class Joint(Handle):
 
     def _set_range(self, side: int, value: float) -> None:
         self._check()
+        value = checked_number(value, ("lower", "upper")[side], finite=False)
         ranges, limited = self._engine.touch("jnt_range"), self._engine.touch("jnt_limited")
         for j in self._ids:
             if not limited[j]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import mujoco
 
+from simkit.argument_checks import check_kind, checked_pose
 from simkit.compiler.lights import drawn_fields, drawn_position
 from simkit.pose import IDENTITY, Pose, Vector
 from simkit.runtime.handles.handle import Handle
@@ -67,6 +68,7 @@ class Light(Handle):
     @property
     def state(self) -> LightState:
         """Present state."""
+        self._check()
         return self.motion.at(self._engine.time_ns)
 
     @property
@@ -79,6 +81,7 @@ class Light(Handle):
     def set_pose(self, pose: Pose) -> None:
         """Move the light and its direction. The pose replaces an earlier motion, for example that of a sun."""
         self._check()
+        pose = checked_pose(pose)
         own = self._handles.link(self.scene.link).pose.inverse() @ pose if self.scene.link else pose
         self.motion = LightMotion(replace(self.state, pose=own))
         self.draw()
@@ -116,6 +119,7 @@ class Light(Handle):
     def switch(self, on: bool) -> None:
         """Switch the light on or off. The setting replaces an earlier motion, for example that of a sun."""
         self._check()
+        check_kind(on, (bool, int), "on", "True or False")
         self.motion = LightMotion(replace(self.state, on=on))
         self.draw()
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
+from simkit.argument_checks import check_kind, checked_pose, checked_vector
 from simkit.errors import InputError
 from simkit.pose import IDENTITY, Pose, Vector, VectorLike, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
@@ -86,6 +87,7 @@ class Link(Handle):
     @property
     def mass(self) -> float:
         """Mass [kg]."""
+        self._check()
         return float(self.scene.inertial.mass)
 
     # ------------------------------------------------------------------ commands
@@ -93,6 +95,7 @@ class Link(Handle):
     @property
     def is_free(self) -> bool:
         """True if the link moves freely, together with the links that joints connect to it."""
+        self._check()
         return int(self._binding.root_joint_qpos) >= 0
 
     def set_pose(self, pose: Pose) -> None:
@@ -102,6 +105,7 @@ class Link(Handle):
             InputError: joints or the world hold the link; move its model, or set its joints.
         """
         self._check()
+        pose = checked_pose(pose)
         if not self.is_free:
             raise self._held(f"move the model {self.scoped.rpartition('::')[0]!r}")
         data, start = self._physics.data, int(self._binding.root_joint_qpos)
@@ -118,13 +122,14 @@ class Link(Handle):
             InputError: joints or the world hold the link.
         """
         self._check()
+        linear = checked_vector(linear, "linear")
+        angular = checked_vector(angular, "angular")
         if not self.is_free:
             raise self._held("set the velocity of its joints")
         data, binding = self._physics.data, self._binding
         start, dof = int(binding.root_joint_qpos), int(binding.root_joint_dof)
-        angular = np.asarray(angular, float)
         arm = data.qpos[start : start + 3] - self.pose.position
-        data.qvel[dof : dof + 3] = np.asarray(linear, float) + np.cross(angular, arm)
+        data.qvel[dof : dof + 3] = linear + np.cross(angular, arm)
         data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(data.qpos[start + 3 : start + 7]), angular)
         update_loop_joints(self._engine)
         self._physics.changed_body(VELOCITY, self._body)
@@ -136,6 +141,7 @@ class Link(Handle):
     def apply_wrench(self, force: VectorLike, torque: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Add a force [N] and torque [N·m], world frame, at the centre of mass, for the next step."""
         self._check()
+        force, torque = checked_vector(force, "force"), checked_vector(torque, "torque")
         if not self._body:
             return
         physics = self._physics
@@ -148,12 +154,14 @@ class Link(Handle):
     @property
     def collisions_enabled(self) -> bool:
         """True if the link's collisions make contacts; settable."""
+        self._check()
         model = self._physics.model
         return any(model.geom_contype[g] or model.geom_conaffinity[g] for g in self._binding.geoms)
 
     @collisions_enabled.setter
     def collisions_enabled(self, enabled: bool) -> None:
         self._check()
+        check_kind(enabled, (bool, np.bool_, int), "collisions_enabled", "True or False")
         for field in ("geom_contype", "geom_conaffinity"):
             values = self._engine.touch(field)
             original = self._engine.original(field)

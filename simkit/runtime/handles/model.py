@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from simkit.argument_checks import check_kind, checked_pose, checked_vector
 from simkit.compiler import LinkBinding
 from simkit.pose import IDENTITY, Pose, VectorLike, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import STALE, VELOCITY
@@ -76,6 +77,7 @@ class Model(Handle):
     def set_pose(self, pose: Pose) -> None:
         """Move the whole model; joint positions and velocities stay the same. A static model may be moved too."""
         self._check()
+        pose = checked_pose(pose)
         if self.static:
             self._handles.make_movable(self.scoped.split("::")[0])
         shift = pose @ self.pose.inverse()
@@ -108,8 +110,9 @@ class Model(Handle):
     def set_velocity(self, linear: VectorLike, angular: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Set the twist of every free part of the model about the model's origin, world frame [m/s, rad/s]."""
         self._check()
+        linear = checked_vector(linear, "linear")
+        angular = checked_vector(angular, "angular")
         data, names, origin = self._physics.data, self._engine.names, self.pose.position
-        linear, angular = np.asarray(linear, float), np.asarray(angular, float)
         for link in self.scene.all_links():
             binding = names.link(link.scoped)
             start = int(binding.root_joint_qpos)
@@ -123,8 +126,12 @@ class Model(Handle):
         update_loop_joints(self._engine)
 
     def set_joint_positions(self, positions: Mapping[str, float | Sequence[float]]) -> None:
-        """Set the present positions of several joints."""
+        """Set the present positions of several joints; an error in one of them changes none."""
+        self._check()
+        check_kind(positions, Mapping, "positions", "a dict from names of joints to positions")
         found = [(self.joint(name), value) for name, value in positions.items()]
+        for joint, value in found:
+            joint.check_position(value)
         for joint, value in found:
             joint.set_position(value)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, TypeVar
 
+from simkit.argument_checks import checked_vector
 from simkit.pose import Pose
 from simkit.runtime.handles.handle import Handle, look_up
 
@@ -44,7 +45,8 @@ class Visual(Handle):
 
     def set_colour(self, red: float, green: float, blue: float, alpha: float = 1.0) -> None:
         """Set the colour, each component from 0 to 1; gloss, glow and texture stay."""
-        parts = [min(1.0, max(0.0, float(part))) for part in (red, green, blue, alpha)]
+        components = checked_vector((red, green, blue, alpha), "colour", 4).tolist()
+        parts = [min(1.0, max(0.0, part)) for part in components]
         if parts == [0.5, 0.5, 0.5, 1.0]:
             parts[0] = 0.5001  # MuJoCo interprets its exact default as "not given"
         geoms = list(self.geoms)

@@ -1,0 +1,83 @@
+"""Checks of the arguments of `simkit.load`, `check` and `describe`, before any file is read."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Final
+
+from simkit.argument_checks import (
+    check_function,
+    check_kind,
+    check_list,
+    check_paths,
+    check_table,
+    checked_integer,
+    wrong_value,
+)
+from simkit.loaders.spawned_models import SpawnedModel
+
+_BASES: Final = ("auto", "fixed", "floating")
+_PATH: Final = (str, os.PathLike)
+_FLAG: Final = (bool, int)
+
+
+def check_source_arguments(
+    source: object, *, resource_paths: object, xacro_args: object, package_paths: object, base: object
+) -> None:
+    """Check the arguments that every function with a source has.
+
+    Raises:
+        ArgumentTypeError: an argument has another kind than expected.
+        ArgumentValueError: the base is unknown.
+    """
+    check_source(source)
+    check_paths(resource_paths, "resource_paths")
+    check_table(xacro_args, (str, int, float), "xacro_args", "texts")
+    check_table(package_paths, _PATH, "package_paths", "paths")
+    check_kind(base, str, "base", "a text")
+    if base not in _BASES:
+        raise wrong_value("base", "'auto', 'fixed' or 'floating'", base)
+
+
+def check_source(source: object) -> None:
+    """Raise ArgumentTypeError if a source is neither a path nor a text."""
+    check_kind(source, _PATH, "source", "a path, a bare name or XML text")
+
+
+def check_load_arguments(
+    *,
+    seed: object,
+    plugin_paths: object,
+    plugins: object,
+    strict: object,
+    overrides: object,
+    sleep: object,
+    on_error: object,
+    spawn: object,
+    params_files: Any,
+    change_world: object,
+) -> int:
+    """Check the other arguments of `simkit.load`, and return the seed.
+
+    Raises:
+        ArgumentTypeError: an argument has another kind than expected.
+        ArgumentValueError: the seed is not a whole number, or `on_error` is unknown.
+    """
+    check_paths(plugin_paths, "plugin_paths")
+    check_list(plugins, object, "plugins", "plugins")
+    check_kind(strict, _FLAG, "strict", "True or False")
+    check_list(overrides, str, "overrides", "texts PATH=VALUE")
+    check_kind(sleep, _FLAG, "sleep", "True or False")
+    if on_error not in (None, "stop", "disable"):
+        raise wrong_value("on_error", "'stop' or 'disable'", on_error)
+    check_list(spawn, (str, SpawnedModel), "spawn", "texts MODEL:x,y,yaw[:name]")
+    if not isinstance(params_files, _PATH) and not _is_model_and_file(params_files):
+        check_list(params_files, (*_PATH, tuple), "params_files", "paths")
+    if change_world is not None:
+        check_function(change_world, "change_world")
+    return checked_integer(seed, "seed")
+
+
+def _is_model_and_file(value: Any) -> bool:
+    """Check for a pair of a model's name and a file."""
+    return isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], _PATH)
