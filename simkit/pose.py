@@ -160,7 +160,7 @@ class Pose:
             return other
         # `transform` and `quat_multiply` without intermediate arrays: a load multiplies thousands of poses
         if not isinstance(other, Pose):
-            return self.__rmatmul__(other)
+            return self.__rmatmul__(other)  # type: ignore[unreachable]  # for callers without types
         aw, ax, ay, az = self.quaternion.tolist()
         bw, bx, by, bz = other.quaternion.tolist()
         px, py, pz = self.position.tolist()
