@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.errors import LoadError, PluginError
+from simkit.errors import LoadError, PluginError, RenderError
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models
@@ -22,11 +22,13 @@ from simkit.plugins.discovery.make_instances import (
     add_actor_models,
     find_more_problems,
     make_all_parts,
+    report_python_plugins,
+    report_unavailable_sensors,
     report_unread,
 )
 from simkit.plugins.gz.sensors import with_sensors_colours
 from simkit.pose import Pose
-from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
+from simkit.run_spec import LoadOptions, NamedValues, PluginErrorPolicy, RunSpec, named_values
 from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
 from simkit.scene.overrides import apply_overrides
 from simkit.sensors import sensor_kinds
@@ -67,7 +69,7 @@ def load(
     plugin_paths: Sequence[Source] = (),
     plugins: Sequence[Any] = (),
     base: str = "auto",
-    xacro_args: Mapping[str, str] | None = None,
+    xacro_args: NamedValues | None = None,
     strict: bool = False,
     overrides: Sequence[str] = (),
     sleep: bool = True,
@@ -91,7 +93,7 @@ def load(
             also accepted.
         base: base of a single model: "fixed", "floating", or "auto" (floating unless a joint connects it to the world).
         xacro_args: arguments for xacro files.
-        strict: treat warnings as errors.
+        strict: treat warnings as errors, and cameras without a renderer.
         overrides: `PATH=VALUE` texts as for `--set`.
         sleep: leave bodies at rest out of the physics until something reaches them; see `docs/sleeping.md`.
         package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`.
@@ -114,6 +116,7 @@ def load(
     Raises:
         LoadError: the input has errors; the exception lists all of them.
         PluginError: a plugin raised while it was loaded.
+        RenderError: a plugin subscribes to images, but there is no renderer.
     """
     check_source_arguments(
         source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base
@@ -169,7 +172,8 @@ def load(
     simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     options: LoadOptions = {
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
-        "xacro_args": dict(xacro_args or {}), "package_paths": dict(package_paths or {}), "params_files": params_files,
+        "xacro_args": named_values(xacro_args, "xacro_args"), "package_paths": dict(package_paths or {}),
+        "params_files": params_files,
         "strict": strict, "sleep": sleep, "render_thread": render_thread, "on_error": on_error,
     }  # fmt: skip
     simulation.run_spec = RunSpec(
@@ -178,6 +182,8 @@ def load(
     )  # fmt: skip
     try:
         report_unread(parts.values())
+        if strict:
+            report_unavailable_sensors(parts.values(), diagnostics)
         diagnostics.raise_if_errors(strict)
     except BaseException:
         simulation.close()
@@ -200,11 +206,14 @@ def describe(
     source: Source,
     *,
     resource_paths: Sequence[Source] = (),
-    xacro_args: Mapping[str, str] | None = None,
+    xacro_args: NamedValues | None = None,
     package_paths: Mapping[str, Source] | None = None,
+    plugin_paths: Sequence[Source] = (),
     base: str = "auto",
 ) -> dict[str, Any]:
     """Return the resolved content of a file as plain data, as `simkit inspect --json` prints it.
+
+    The diagnostics in the result include Python plugins that are not found in `plugin_paths` or cannot be imported.
 
     Raises:
         LoadError: the file has errors.
@@ -216,6 +225,7 @@ def describe(
     resolver = Resolver([Path(p) for p in resource_paths], missing_meshes=True, package_paths=package_paths)
     scene = _scene(source, resolver, diagnostics, xacro_args, base, ())
     diagnostics.raise_if_errors()
+    report_python_plugins(scene, diagnostics, [Path(p) for p in plugin_paths])
     return describe_scene(scene, diagnostics, describe_sensor)
 
 
@@ -234,7 +244,7 @@ def check(
     *,
     resource_paths: Sequence[Source] = (),
     plugin_paths: Sequence[Source] = (),
-    xacro_args: Mapping[str, str] | None = None,
+    xacro_args: NamedValues | None = None,
     package_paths: Mapping[str, Source] | None = None,
     base: str = "auto",
 ) -> Diagnostics:
@@ -260,6 +270,8 @@ def check(
         diagnostics.extend(error.diagnostics)
     except PluginError as error:
         diagnostics.error(error.code, str(error))
+    except RenderError as error:  # a plugin subscribes to images; this is a problem of the machine, not of the file
+        diagnostics.warning(error.code, error.message, error.where)
     return diagnostics
 
 
@@ -277,7 +289,7 @@ def _scene(
     source: Source,
     resolver: Resolver,
     diagnostics: Diagnostics,
-    xacro_args: Mapping[str, str] | None,
+    xacro_args: NamedValues | None,
     base: str,
     overrides: Sequence[str],
     spawn: Sequence[str | SpawnedModel] = (),
@@ -286,7 +298,7 @@ def _scene(
         source,
         resolver=resolver,
         diagnostics=diagnostics,
-        xacro_args=dict(xacro_args or {}),
+        xacro_args=named_values(xacro_args, "xacro_args"),
         base=base,
         mesh_reader=_read_mesh,
         mjcf_parser=_mjcf_parser,
@@ -331,7 +343,7 @@ def read_scene(
     source: Source,
     *,
     resource_paths: Sequence[Source] = (),
-    xacro_args: Mapping[str, str] | None = None,
+    xacro_args: NamedValues | None = None,
     package_paths: Mapping[str, Source] | None = None,
     base: str = "auto",
     missing_meshes: bool = False,
@@ -367,7 +379,7 @@ def _model_to_spawn(
     name: str | None = None,
     pose: Pose | None = None,
     taken: Container[str] = (),
-    xacro_args: Mapping[str, str] | None = None,
+    xacro_args: NamedValues | None = None,
 ) -> SceneModel:
     check_source(source)
     scene = load_scene(

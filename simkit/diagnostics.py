@@ -149,8 +149,8 @@ def _closest(name: str, names: tuple[str, ...], least: float) -> str | None:
 
 
 def did_you_mean(name: str, allowed: Iterable[str]) -> str:
-    """Return `did you mean 'x'?`, or an empty text if no allowed name is similar."""
-    near = closest(name, allowed)
+    """Return `did you mean 'x'?`, or an empty text if no other allowed name is similar."""
+    near = closest(name, (known for known in allowed if known != name))
     return f"did you mean {near!r}?" if near else ""
 
 

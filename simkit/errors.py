@@ -13,7 +13,7 @@ SimkitError                 exit 1
 ├── PluginError             exit 4   a plugin raised
 ├── SubscriberError         exit 4   a subscriber of a topic raised
 ├── RegressionError         exit 5   a regression check failed
-└── RenderError             exit 1   there is no renderer, or it failed
+└── RenderError             exit 2   there is no renderer, or it failed
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from simkit.diagnostic_record import Diagnostic
+from simkit.diagnostic_record import NOWHERE, Diagnostic, Where
 
 
 class SimkitError(Exception):
@@ -169,8 +169,15 @@ class RegressionError(SimkitError):
 
 
 class RenderError(SimkitError):
-    """Missing or failed renderer."""
+    """Missing or failed renderer, in a run that needs images.
 
-    def __init__(self, message: str, code: str = "SK-RENDER-001") -> None:
-        super().__init__(f"{code} {message}")
-        self.code = code
+    Attributes:
+        message: problem and remedy, without code and place.
+        where: place of the camera in its file; empty if the error concerns no single camera.
+    """
+
+    exit_code: ClassVar[int] = 2
+
+    def __init__(self, message: str, code: str = "SK-RENDER-001", where: Where = NOWHERE) -> None:
+        super().__init__(f"{code} {message}" + (f" ({where})" if where.file else ""))
+        self.code, self.message, self.where = code, message, where

@@ -1,7 +1,7 @@
 """Run specification: world, seed, overrides, resources, commands, limits, topics and recording.
 
 The command line, Python, a scenario file and a bundle each make one typed, frozen and picklable `RunSpec`. The commands
-run, golden, certify, bundle, grade and plot, and `Simulation.run_spec` use it. This module imports nothing of simkit.
+run, golden, certify, bundle, grade and plot, and `Simulation.run_spec` use it. This module imports only errors.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal, Protocol, TypedDict, cast
+
+from simkit.errors import InputError
 
 FilePath = str | os.PathLike[str]
 JsonObject = dict[str, Any]
@@ -129,12 +131,39 @@ class SpawnRequest(Protocol):
     def name(self) -> str | None: ...
 
 
+NamedValues = Mapping[str, str] | Sequence[str]
+"""Values by name, or texts `NAME:=VALUE` or `NAME=VALUE`."""
+
+
+def named_values(values: NamedValues | None, option: str) -> dict[str, str]:
+    """Return values by name; `NAME:=VALUE` is the form of ROS.
+
+    Args:
+        values: mapping, texts, or None for no values.
+        option: name of the option for an error message.
+
+    Raises:
+        InputError: SK-CLI-018 a text has another form.
+    """
+    if values is None or isinstance(values, Mapping):
+        return dict(values or {})
+    found: dict[str, str] = {}
+    for text in (values,) if isinstance(values, str) else values:
+        name, equals, value = str(text).partition("=")
+        name = name.strip().removesuffix(":").strip()
+        if not equals or not name:
+            message = f"SK-CLI-018 {option}: found {text!r}; expected NAME:=VALUE or NAME=VALUE"
+            raise InputError(message, "SK-CLI-018")
+        found[name] = value
+    return found
+
+
 class SourceOptions(TypedDict, total=False):
     """Options for reading a file, shared by `simkit.load`, `check` and `describe`."""
 
     resource_paths: Sequence[FilePath]
     package_paths: Mapping[str, FilePath]
-    xacro_args: Mapping[str, str]
+    xacro_args: NamedValues
     base: str
 
 

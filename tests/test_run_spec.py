@@ -82,3 +82,20 @@ def test_a_run_ends_at_its_timeout_else_its_duration(world: Path) -> None:
     assert spec.longest == 0.1 and RunSpec("w", 0.2).longest == 0.2
     with open_scenario(spec) as sim:
         assert run_scenario(spec, sim).reason == "timeout" and sim.time == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("given", [{"arm": "left"}, ["arm:=left"], ("arm=left",), "arm:=left"])
+def test_xacro_arguments_have_the_form_of_ros_or_of_a_mapping(tmp_path: Path, given: object) -> None:
+    text = '<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arg name="arm" default="no"/>'
+    inertia = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    (tmp_path / "r.xacro").write_text(f'{text}<link name="$(arg arm)">{inertia}</link></robot>')
+    spec = RunSpec(str(tmp_path / "r.xacro"), options={"xacro_args": given})
+    with simkit.load(spec.world, **spec.load_arguments()) as sim:
+        assert list(sim.model("r").links) == ["left"]
+    if not isinstance(given, tuple):
+        (tmp_path / "s.yaml").write_text(f"world: r.xacro\nduration: 1\nxacro_args: {given!r}\n")
+        assert read_scenario(tmp_path / "s.yaml").options["xacro_args"] == {"arm": "left"}
+    with pytest.raises(
+        simkit.InputError, match="SK-CLI-018 xacro_args: found 'arm'; expected NAME:=VALUE or NAME=VALUE"
+    ):
+        simkit.load(spec.world, xacro_args=["arm"])

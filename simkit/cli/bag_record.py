@@ -19,7 +19,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
-    from simkit.cli.terminal.topic_sources import LiveFeed, ReceivedMessage
+    from simkit.cli.terminal.topic_sources import LiveFeed, ReceivedMessage, TopicEntry
     from simkit.recording.bags.writer import McapBag
 
 _DEPTH = 20_000  # queued messages of a topic while the disk is busy
@@ -62,6 +62,7 @@ def record(
     with connect_to_simulation(sim) as client:
         recording = _Recording(LiveSource(client), selection, duration)
         with Interrupts() as stop:
+            recording.subscribe()  # before the bag is created, because a topic may have no messages on this machine
             bag = open_bag(target, overwrite=force)
             try:
                 recording.run(bag, stop)
@@ -106,6 +107,7 @@ class _Recording:
         self._source, self._selection, self._duration = source, selection, duration
         self._feeds: list[LiveFeed] = []
         self._known: set[str] = set()
+        self._unlisted: dict[str, TopicEntry] = {}
         self._latched: set[str] = set()
         self._looked = -_DISCOVERY_PERIOD
         self._begun_ns: int | None = None
@@ -127,7 +129,8 @@ class _Recording:
         try:
             started_ns = self._now_ns()
             while not stop.exit_code:
-                self._subscribe(bag)
+                self.subscribe()
+                self._list_topics(bag)
                 received = self._take_messages()
                 if self._write(bag, received) or (not received and any(feed.is_over for feed in self._feeds)):
                     return
@@ -173,7 +176,7 @@ class _Recording:
                 found.append(received)
         return sorted(found, key=lambda r: int(r.time_ns))
 
-    def _subscribe(self, bag: McapBag) -> None:
+    def subscribe(self) -> None:
         """Subscribe to new topics of the selection."""
         if time.monotonic() - self._looked < _DISCOVERY_PERIOD:
             return
@@ -186,7 +189,13 @@ class _Recording:
                 self._latched.add(name)
         self._feeds.append(self._source.feed(list(fresh), _DEPTH))
         self._known |= set(fresh)
-        for name, entry in fresh.items():
+        self._unlisted |= fresh
+        for name in fresh:
             print_note(f"[INFO] [rosbag2_recorder]: Subscribed to topic '{name}'")
+
+    def _list_topics(self, bag: McapBag) -> None:
+        """Add the new topics to the bag, which lists a topic even if no message arrives."""
+        for name, entry in self._unlisted.items():
             for end in entry.publishers[:1] or entry.subscribers[:1]:
-                bag.channel(name, end.types[0], end.latched)  # the bag lists the topic even if no message arrives
+                bag.channel(name, end.types[0], end.latched)
+        self._unlisted.clear()

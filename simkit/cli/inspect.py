@@ -6,7 +6,8 @@ import json
 from collections.abc import Iterator
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import JsonObject, report_errors, stdout_console
+from simkit.cli.terminal.output import JsonObject, print_diagnostics, report_errors, stdout_console
+from simkit.diagnostics import Diagnostic
 
 
 @report_errors
@@ -15,18 +16,22 @@ def inspect(
     json_: options.Json = False,
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
 ) -> int:
     """Show the resolved content of a file."""
     from simkit.build import describe
 
-    found = describe(file, **options.source_arguments(resource_path, package_path, xacro_arg, base))
+    source = options.source_arguments(resource_path, package_path, xacro_arg, base)
+    found = describe(file, plugin_paths=plugin_path, **source)
     if json_:
         stdout_console().file.write(json.dumps(found, indent=2) + "\n")
     else:
         for line in _tree(found):
             stdout_console().print(line)
+        shown = (Diagnostic(**d) for d in found["diagnostics"] if d["severity"] != "note")
+        print_diagnostics(shown, verbose=True)
     return 2 if any(d["severity"] == "error" for d in found["diagnostics"]) else 0
 
 

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer import Argument, Option
 
+from simkit.cli.run_session import check_renderer
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, option
-from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
+from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
-from simkit.errors import InputError, RenderError
+from simkit.errors import InputError
 
 if TYPE_CHECKING:
     from simkit.plugins.play_motion.motion import Motion
@@ -106,6 +107,7 @@ def play(
 
     if picture is not None:
         pictures.check_target(picture)
+        check_renderer()
     if record is not None:
         writer.check_target(record, overwrite=force)
     source: Any = {**options.source_arguments(resource_path, package_path, xacro_arg), "params_files": params_file}
@@ -226,9 +228,5 @@ def _draw(sim: Simulation, path: Path) -> None:
     from simkit.build import render_view
     from simkit.recording.run_picture import save_picture
 
-    try:
-        save_picture(sim, path, render_view)
-    except RenderError as error:
-        print_status(f"warning: no picture: {error}")
-    else:
-        stdout_console().print(f"picture {path}")
+    save_picture(sim, path, render_view)
+    stdout_console().print(f"picture {path}")

@@ -226,7 +226,7 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
     """
     from simkit.bridges import viewer
     from simkit.build import load
-    from simkit.cli.run_session import Session, check_keyboard
+    from simkit.cli.run_session import Session, check_keyboard, check_renderer
     from simkit.cli.run_verdict import RunVerdict
     from simkit.recording import run_picture
     from simkit.recording.bags import writer
@@ -236,6 +236,7 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
         writer.check_target(spec.recording.path, overwrite=spec.recording.overwrite)
     if display.picture is not None:
         run_picture.check_target(display.picture)
+        check_renderer()
     if display.view:
         viewer.check_possible()
     check_keyboard(display)

@@ -86,13 +86,31 @@ def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
     from simkit.build import render_view
     from simkit.recording.run_picture import save_picture
 
-    try:
-        save_picture(sim, path, render_view, driven)
-    except RenderError as error:
-        stderr_console().print(f"warning: no picture: {error}", style="yellow")
-    else:
-        stdout_console().print(f"picture {path}")
-        add_to_report(picture=str(path))
+    save_picture(sim, path, render_view, driven)
+    stdout_console().print(f"picture {path}")
+    add_to_report(picture=str(path))
+
+
+def check_renderer() -> None:
+    """Check before a run whether its picture can be drawn.
+
+    Raises:
+        RenderError: SK-RENDER-001 there is no renderer.
+    """
+    from simkit.sensors.cameras.rendering.gl_context import ensure_open
+
+    ensure_open()
+
+
+def note_missing_renderer(sim: Simulation) -> None:
+    """Print a note if the simulation has cameras but this machine has no renderer."""
+    if any(sensor.needs_renderer for sensor in sim.contents.sensors.values()):
+        from simkit.sensors.cameras.rendering.gl_context import find_library
+
+        try:
+            find_library()
+        except RenderError as error:
+            print_status(f"note: {error.code} cameras have no images: {error.message}")
 
 
 def check_keyboard(display: RunDisplay) -> None:
@@ -173,6 +191,7 @@ class Session:
                 stack.enter_context(played)
             interrupts = stack.enter_context(Interrupts(self.blocked.hasten))
             recording = self._start_recording(stack)
+            note_missing_renderer(sim)
             counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
             keyboard = self._keyboard()
             begun = time.perf_counter()

@@ -8,6 +8,7 @@ from typing import Final
 import mujoco
 import numpy as np
 
+from simkit.compiler.engine_messages import user_message
 from simkit.compiler.engine_options import apply_size, choose_islands, set_extent
 from simkit.compiler.first_state import first_mass_matrix, first_state, inverse_inertia
 from simkit.compiler.lights import refine_for_lamps
@@ -194,7 +195,8 @@ def compile_spec(
         with silence_engine_warnings():
             return spec.compile()
     except ValueError as problem:
-        diagnostics.error("SK-PHYS-023", f"MuJoCo refuses the model: {problem}", world.where)
+        text, where = user_message(str(problem), spec, records, world.where)
+        diagnostics.error("SK-PHYS-023", f"MuJoCo refuses the model: {text}", where)
         diagnostics.raise_if_errors()
         raise AssertionError("unreachable") from problem
 

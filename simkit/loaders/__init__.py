@@ -28,6 +28,7 @@ from simkit.loaders.resources.xml_reader import ALLOWED_FORMATS, Document, forei
 from simkit.loaders.xacro import expand, needs_expansion
 from simkit.pose import Pose
 from simkit.registry import Kinds
+from simkit.run_spec import NamedValues, named_values
 from simkit.scene import Scene
 
 __all__ = ["Document", "LoadRequest", "Loader", "Resolver", "find_document", "load_scene", "loader_kinds"]
@@ -44,7 +45,7 @@ def load_scene(
     *,
     resolver: Resolver,
     diagnostics: Diagnostics,
-    xacro_args: Mapping[str, str] | None = None,
+    xacro_args: NamedValues | None = None,
     base: str = "auto",
     name: str | None = None,
     pose: Pose | None = None,
@@ -82,7 +83,7 @@ def load_scene(
     request = LoadRequest(
         resolver=resolver,
         diagnostics=diagnostics,
-        xacro_args=dict(xacro_args or {}),
+        xacro_args=named_values(xacro_args, "xacro_args"),
         base=base,
         name=name,
         pose=pose,
@@ -98,7 +99,7 @@ def find_document(
     source: str | os.PathLike[str],
     resolver: Resolver,
     diagnostics: Diagnostics,
-    xacro_args: Mapping[str, str] | None = None,
+    xacro_args: NamedValues | None = None,
 ) -> tuple[Document | None, bool]:
     """Parse the file that a source refers to, and expand it if it is xacro.
 
@@ -109,7 +110,7 @@ def find_document(
     document = _document(source, diagnostics)
     if document is None or not needs_expansion(document):
         return document, False
-    return expand(document, resolver.around(document.folder), dict(xacro_args or {}), diagnostics), True
+    return expand(document, resolver.around(document.folder), named_values(xacro_args, "xacro_args"), diagnostics), True
 
 
 def _document(source: str | os.PathLike[str], diagnostics: Diagnostics) -> Document | None:

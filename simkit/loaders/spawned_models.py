@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -12,6 +12,7 @@ from typing import Any, Final
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, find_document
 from simkit.pose import Pose
+from simkit.run_spec import NamedValues
 from simkit.scene import Scene, SceneModel
 
 _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -80,7 +81,7 @@ def add_spawned_models(
     resolver: Resolver,
     diagnostics: Diagnostics,
     load_model: Callable[..., SceneModel | None],
-    xacro_args: Mapping[str, str] | None = None,
+    xacro_args: NamedValues | None = None,
 ) -> Scene:
     """Return the scene with more models in its world.
 
@@ -117,7 +118,7 @@ def add_spawned_models(
     return replace(scene, worlds=(world, *scene.worlds[1:]), model=None, light=None)
 
 
-def _file_pose(source: Any, resolver: Resolver, xacro_args: Mapping[str, str] | None) -> Pose:
+def _file_pose(source: Any, resolver: Resolver, xacro_args: NamedValues | None) -> Pose:
     """Return the pose that a model's own file gives, or the origin if the file gives none."""
     if not (isinstance(source, str) and "<" in source) and Path(source).suffix in (".urdf", ".xacro", ".xml"):
         return Pose()

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from simkit.errors import SimkitError
 from simkit.msgs.message_types import Message
 from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 
@@ -15,6 +16,15 @@ if TYPE_CHECKING:
 Receiver = Callable[[Message | LazyMessage], None]
 """Callback for each message of a topic, which may be a `LazyMessage`."""
 _Label = TypeVar("_Label")
+
+
+def is_available(sim: Simulation, topic: str) -> bool:
+    """Check whether the messages of a topic can be made on this machine; images need a renderer."""
+    try:
+        sim.communication.bus.check_available(topic)
+    except SimkitError:
+        return False
+    return True
 
 
 class TopicTaps:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from simkit.recording.message_taps import Receiver, TopicTaps
+from simkit.recording.message_taps import Receiver, TopicTaps, is_available
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -81,7 +81,8 @@ class TopicCounter:
         is_read = self._is_read is not None and self._is_read(topic)
         if topic in self._rows or (topic in self._sim.communication.bus.aside and not is_read):
             return None
-        is_counted = type_name not in self._skip or is_read
+        # a topic that nothing reads is only listed if its messages cannot be made here
+        is_counted = is_read or (type_name not in self._skip and is_available(self._sim, topic))
         row = self._rows[topic] = TopicCount(topic, type_name, is_counted, self._sim.time_ns)
 
         def count(_: object) -> None:

@@ -53,6 +53,7 @@ class Sensor(Sampler):
         needs_acceleration: True if `measure` reads body accelerations or forces between bodies.
         reads_contacts: True if `measure` reads contacts. Bodies that rest on a static link with such a sensor never
             sleep.
+        needs_renderer: True if the readings are drawn images.
         has_dynamic_bias: True if the bias of this kind drifts in Gazebo, which then passes the time between samples to
             the noise.
         name, scoped, kind: names as in the file.
@@ -66,6 +67,7 @@ class Sensor(Sampler):
     kinds: ClassVar[tuple[str, ...]] = ()
     example: ClassVar[str] = ""
     belongs_to: ClassVar[tuple[str, ...]] = ("link",)
+    needs_renderer: ClassVar[bool] = False
     has_dynamic_bias: ClassVar[bool] = False
 
     options: object = None
@@ -197,7 +199,8 @@ class Sensor(Sampler):
         for product, topic in topics.items():
             self._topics.setdefault(product, topic)
             spec = self._products[product]
-            publisher = self.sim.communication.bus.advertise(topic, spec.type_name)
+            check = self.check_available if spec.needs_reading and self.needs_renderer else None
+            publisher = self.sim.communication.bus.advertise(topic, spec.type_name, check=check)
             publisher.pending = self._process_pending
             self._publishers.append((product, publisher, spec.needs_reading))
 

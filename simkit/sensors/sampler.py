@@ -118,6 +118,9 @@ class Sampler(InProcess, abc.ABC):
         """Check whether a capture is published as `product`; `latest` and `truth` show it in both cases."""
         return True
 
+    def check_available(self) -> None:
+        """Raise a SimkitError if this machine cannot make the readings; called for every reader of a reading."""
+
     @classmethod
     def make_batches(cls, sensors: Sequence[Self]) -> None:
         """Make batches of the sensors of this kind that can sample together; see `simkit.sensors.sensor_batch`."""

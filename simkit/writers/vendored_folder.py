@@ -19,6 +19,7 @@ from simkit.loaders.resources.model_folder import model_file
 from simkit.loaders.resources.uris import absolute_path
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.params import Params
+from simkit.run_spec import NamedValues
 from simkit.writers.asset_folder import companion_files
 from simkit.writers.xml_text import document as xml_text
 
@@ -226,7 +227,7 @@ def vendor(
     *,
     resource_paths: Sequence[str | os.PathLike[str]] = (),
     package_paths: Mapping[str, str | os.PathLike[str]] | None = None,
-    xacro_args: Mapping[str, str] | None = None,
+    xacro_args: NamedValues | None = None,
     base: str = "auto",
 ) -> tuple[PurePosixPath, int]:
     """Write a self-contained folder and verify that it has the same content.

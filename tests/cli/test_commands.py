@@ -202,11 +202,11 @@ def test_a_viewer_without_a_display_is_reported(world: Path, monkeypatch: pytest
     assert "SK-CLI-015" in result.stderr
 
 
-def test_without_a_renderer_the_run_succeeds_and_the_picture_is_left_out(world: Path) -> None:
+def test_without_a_renderer_a_run_with_a_picture_is_refused(world: Path) -> None:
     environment = {**os.environ, "MUJOCO_GL": "disable", "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, "-m", "simkit", "run", str(world), "--duration", "0.1", "--picture", "out.png"]
     done = subprocess.run(command, cwd=world.parent, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0
+    assert done.returncode == 2 and "simulated" not in done.stdout
     assert "SK-RENDER-001" in done.stderr
     assert not (world.parent / "out.png").exists()
 

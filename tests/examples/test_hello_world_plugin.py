@@ -19,7 +19,7 @@ def test_it_greets_at_load_and_once_a_second(capsys: pytest.CaptureFixture[str])
 
 
 def test_a_world_file_alone_does_not_run_it(capsys: pytest.CaptureFixture[str]) -> None:
-    with simkit.load(EXAMPLE / "world.sdf") as sim:
-        sim.run(1.5)
-        assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-PLUGIN-001"]
+    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-001") as refused:
+        simkit.load(EXAMPLE / "world.sdf")
+    assert "--plugin-path" in refused.value.diagnostics[-1].hint
     assert capsys.readouterr().out == ""

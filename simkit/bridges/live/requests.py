@@ -163,10 +163,9 @@ def control(request: Request) -> object:
 def subscribe(request: Request) -> object:
     """Open a subscription of the client."""
     number, topic = request.new_number(request.peer.subscriptions), request.topic()
-    subscribed = request.peer.subscriptions[number] = ClientSubscription(
-        request.peer, number, topic, request.arg("depth", int)
-    )
+    subscribed = ClientSubscription(request.peer, number, topic, request.arg("depth", int))
     request.server.feeds.add(subscribed)
+    request.peer.subscriptions[number] = subscribed
     types = (types[0] for _, end, types, _ in request.sim.communication.bus.endpoints(topic) if end.active)
     return {"topic": topic, "type": next(types, None)}
 

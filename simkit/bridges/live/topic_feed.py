@@ -30,6 +30,7 @@ class TopicFeed:
     def add(self, reader: ClientSubscription) -> None:
         """Add a subscription. Only the new subscription receives the last message of a latched topic."""
         if self._tap is None:
+            self._sim.communication.bus.check_available(self.topic)
             self._readers.append(reader)
             self._tap = self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
             return
@@ -89,8 +90,9 @@ class TopicFeeds:
         """Add a subscription to a topic."""
         feed = self._feeds.get(reader.topic)
         if feed is None:
-            feed = self._feeds[reader.topic] = TopicFeed(self._sim, reader.topic)
+            feed = TopicFeed(self._sim, reader.topic)
         feed.add(reader)
+        self._feeds[reader.topic] = feed
 
     def remove(self, reader: ClientSubscription) -> None:
         """Remove a subscription."""

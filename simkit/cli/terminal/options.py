@@ -14,7 +14,7 @@ from simkit.cli.terminal import completion
 from simkit.cli.terminal.output import P, report_errors_quietly
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.run_spec import SourceOptions
+from simkit.run_spec import SourceOptions, named_values
 
 
 def option(
@@ -76,7 +76,7 @@ ResourcePaths = Annotated[
     option("Search folder for model://, package:// and relative URIs; repeatable.", "DIR", "--resource-path"),
 ]
 PackagePaths = Annotated[list[str], option("Folder of the ROS package NAME; repeatable.", "NAME=DIR", "--package-path")]
-XacroArgs = Annotated[list[str], option("Argument of a xacro file; repeatable.", "NAME=VALUE", "--xacro-arg")]
+XacroArgs = Annotated[list[str], option("Argument of a xacro file; repeatable.", "NAME:=VALUE", "--xacro-arg")]
 Base = Annotated[
     str,
     option("Base of a bare model: fixed, floating, or auto (floating unless joined to the world).", "BASE", "--base"),
@@ -130,18 +130,12 @@ _BASES = ("auto", "fixed", "floating")
 
 
 def parse_pairs(texts: Sequence[str], option: str) -> dict[str, str]:
-    """Parse `NAME=VALUE` texts to a mapping.
+    """Parse `NAME=VALUE` or `NAME:=VALUE` texts to a mapping; ROS writes the second form.
 
     Raises:
         InputError: SK-CLI-018 a text has another form.
     """
-    found: dict[str, str] = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip():
-            raise InputError(f"SK-CLI-018 {option}: found {text!r}; expected NAME=VALUE", "SK-CLI-018")
-        found[name.strip()] = value
-    return found
+    return named_values(texts, option)
 
 
 def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:

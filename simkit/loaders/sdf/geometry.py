@@ -78,7 +78,7 @@ def _plane(element: Params) -> Geometry:
 def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | None:
     old = element.text("filename", "")
     uri = element.text("uri", old or None, required=not old)
-    scale = element.vector3("scale", (1.0, 1.0, 1.0))
+    scale = _mesh_scale(element, uri)
     if any(v == 0 for v in scale):
         element.error("SK-SDF-009", f"<mesh> {uri} has a scale of zero")
         scale = (1.0, 1.0, 1.0)
@@ -92,6 +92,17 @@ def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | No
     if path is None:
         return Mesh(Path(uri), uri, scale, name, center, missing=True)
     return Mesh(path.absolute(), uri, scale, name, center, optimization=optimization, max_hulls=most)
+
+
+def _mesh_scale(element: Params, uri: str) -> Vec3:
+    """Return the scale of a mesh; one number is used for x, y and z, with a warning."""
+    found = element.child("scale")
+    if found is None or len(found.value.split()) != 1:
+        return element.vector3("scale", (1.0, 1.0, 1.0))
+    size = element.number("scale", 1.0)
+    message = f"<mesh> {uri}: <scale> has one number, which is used for x, y and z; SDF defines three numbers"
+    found.warning("SK-MESH-017", message, f"write <scale>{size:g} {size:g} {size:g}</scale>")
+    return (size, size, size)
 
 
 def _optimization(element: Params) -> tuple[str, int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.loaders.urdf.element_attributes import extension_boolean, extension_numbers, text_attribute
@@ -32,14 +32,22 @@ class GazeboExtensions:
         """Return the block of a link or joint; an empty block if there is none."""
         return self.merged.get(name) or Params("gazebo", diagnostics=self.diagnostics)
 
-    def report_unknown(self, links: Iterable[str], joints: Iterable[str]) -> None:
-        """Warn about each reference to an unknown name; Gazebo ignores such references without a message."""
+    def report_unknown(self, links: Iterable[str], joints: Iterable[str], faulty: Container[str]) -> None:
+        """Warn about each reference to an unknown name; Gazebo ignores such references without a message.
+
+        Args:
+            links: names of the links.
+            joints: names of the joints.
+            faulty: names of elements whose errors were reported.
+        """
         self.kinds = {**dict.fromkeys(joints, "joint"), **dict.fromkeys(links, "link")}
         names = list(self.kinds)
         for name, blocks in self._blocks.items():
             if name and name not in names:
                 for block in blocks:
                     block.mark_all_read()
+                if name in faulty:
+                    continue
                 message = f"<gazebo reference={name!r}>: no link or joint has this name; it has no effect"
                 blocks[0].warning("SK-URDF-021", message, did_you_mean(name, names))
 

@@ -182,6 +182,8 @@ def _mimic(draft: RobotDraft, joint: JointDraft) -> Mimic | None:
     if not leader:
         report_missing(element, "joint", "the name of a joint", f"joint {joint.name!r}")
         return None
+    if leader in draft.faulty_joints:
+        return None
     if leader not in draft.joints:
         message = f"joint {joint.name!r} mimics {leader!r}, which does not exist; it moves freely"
         report = element.warning

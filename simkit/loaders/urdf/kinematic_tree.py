@@ -23,6 +23,9 @@ def declare_tree(draft: RobotDraft) -> None:
         joint = _joint(draft, name, element)
         if joint is not None:
             draft.joints[name] = joint
+        else:
+            draft.faulty_joints.add(name)
+            skip_element(element)
     _check_tree(draft)
 
 
@@ -87,7 +90,6 @@ def _joint(draft: RobotDraft, name: str, element: Params) -> JointDraft | None:
         draft.diagnostics.error("SK-URDF-007", message, element.where)
         return None
     if kind not in TYPES or not parent or not child:
-        element.mark_all_read()
         return None
     return JointDraft(name, element, kind, parent, child, pose)
 
@@ -131,7 +133,7 @@ def _check_tree(draft: RobotDraft) -> None:
     roots = [name for name in draft.links if name not in above]
     draft.root = next(iter(roots), next(iter(draft.links), ""))
     unjoined = [name for name in roots if name not in children_of_bad_joints]
-    if len(unjoined) > 1:
+    if len(unjoined) > 1 + len(draft.faulty_joints):  # each faulty joint may be the missing connection
         listed = ", ".join(f"{name!r} (line {draft.links[name].where.line})" for name in unjoined[:8])
         more = f" and {len(unjoined) - 8} more" if len(unjoined) > 8 else ""
         message = f"robot {draft.name!r} has {len(unjoined)} root links, but can have only one: {listed}{more}"

@@ -100,7 +100,7 @@ def build_robot(
         *(read_sdf_link(part, draft.scoped, False, windy, draft.workspace) for part in more_links),
     )
     joints = (*(read_joint(draft, j) for j in draft.joints.values()), *read_joints(more_joints, draft.scoped))
-    draft.extensions.report_unknown(draft.links, draft.joints)
+    draft.extensions.report_unknown(draft.links, draft.joints, draft.faulty_joints)
     _check_force_sensors(links, joints)
     declared = bool(read_flag(robot, "static"))
     is_static = declared if static is None else static

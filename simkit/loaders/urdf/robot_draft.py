@@ -87,6 +87,7 @@ class RobotDraft:
         pose: pose of the robot (its root link) in the world.
         scope: names that the SDF readers of the extensions look up: links, joints, frames.
         links, joints: `<link>` elements and joints by name without scope, in document order.
+        faulty_joints: names of the joints whose errors were reported; references to them are not reported again.
         links_world: pose of each link in the world.
     """
 
@@ -102,6 +103,7 @@ class RobotDraft:
     root: str = ""
     links: dict[str, Params] = field(default_factory=dict)
     joints: dict[str, JointDraft] = field(default_factory=dict)
+    faulty_joints: set[str] = field(default_factory=set)
     links_world: dict[str, Pose] = field(default_factory=dict)
 
     @property

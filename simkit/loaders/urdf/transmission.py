@@ -105,5 +105,5 @@ def _number(element: Params, name: str, default: float) -> float:
 
 def _is_known_joint(draft: RobotDraft, joint: Params, owner: str) -> None:
     name = text_attribute(joint, "name")
-    if name not in draft.joints:
+    if name not in draft.joints and name not in draft.faulty_joints:
         joint.warning("SK-URDF-025", f"{owner}: the robot has no joint {name!r}", did_you_mean(name, draft.joints))

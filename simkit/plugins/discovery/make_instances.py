@@ -5,20 +5,22 @@ Unknown kinds are reported. If a file has errors, `find_more_problems` searches 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics, did_you_mean, follows_from
-from simkit.errors import LoadError, SimkitError
+from simkit.errors import LoadError, RenderError, SimkitError
 from simkit.plugins.classic.server_services import ClassicServices
 from simkit.plugins.discovery.find_plugin_class import find_plugin
 from simkit.plugins.discovery.python_plugins import Attachment, ParentGetter, SceneEntity, attach_plugins, handle_getter
+from simkit.plugins.discovery.user_plugins import find_user_plugin
 from simkit.plugins.drives.robot_transforms import StaticTransforms
+from simkit.plugins.plugin_folders import split_python_name
 from simkit.plugins.world.clock_and_statistics import ClockPublisher, WorldStats
-from simkit.scene import SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
+from simkit.scene import Scene, SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneVisual, SceneWorld
 from simkit.sensors import sensor_kinds
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
 from simkit.sensors.unsimulated_kinds import report_sensors_without_model, report_unsimulated
@@ -230,6 +232,34 @@ def report_unread(parts: Iterable[SensorsAndPlugins]) -> None:
                 plugin.report_unread()
 
 
+def report_python_plugins(scene: Scene, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> None:
+    """Report each Python plugin of a scene that is not found or cannot be imported; no plugin is created."""
+    for plugin in _plugins_of(scene):
+        if split_python_name(plugin.filename) is not None:
+            find_user_plugin(plugin, plugin_paths, diagnostics)
+
+
+def _plugins_of(scene: Scene) -> Iterator[ScenePlugin]:
+    for world in scene.worlds:
+        yield from world.plugins
+    for top in (*(model for world in scene.worlds for model in world.models), *filter(None, (scene.model,))):
+        yield from (plugin for sensor in top.all_sensors() for plugin in sensor.plugins)
+        for model in top.all_models():
+            owners: tuple[Iterable[SceneLink | SceneJoint | SceneVisual], ...] = (model.links, model.joints)
+            owners = (*owners, *(link.visuals for link in model.links))
+            yield from (plugin for group in owners for owner in group for plugin in owner.plugins)
+            yield from model.plugins
+
+
+def report_unavailable_sensors(parts: Iterable[SensorsAndPlugins], diagnostics: Diagnostics) -> None:
+    """Warn about each sensor that this machine cannot simulate: a camera without a renderer."""
+    for sensor in (sensor for part in parts for sensor in part.sensors):
+        try:
+            sensor.check_available()
+        except RenderError as error:
+            diagnostics.warning(error.code, error.message, error.where)
+
+
 def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple[Plugin, ...]]:
     """Return the plugins that every world has: first those that run before the file's plugins, then those after."""
     from simkit.plugins.actors import ActorMover
@@ -253,7 +283,7 @@ def add_actor_models(
 FileFinder = Callable[[str, Path | None], Path | None]
 
 # engine diagnostics caused by missing parts, which are misleading for a file with errors
-_ENGINE_CODES = frozenset(("SK-PHYS-023", "SK-PHYS-025", "SK-PHYS-028"))
+_ENGINE_CODES = frozenset(("SK-JOINT-010", "SK-JOINT-016", "SK-PHYS-023", "SK-PHYS-025", "SK-PHYS-028"))
 
 _MAX_MODELS_SEARCHED = 5000
 """Limit of models for a search for further errors: the engine takes minutes for 20 000."""

@@ -5,69 +5,76 @@ from __future__ import annotations
 import ast
 import importlib.util
 import inspect
-import re
 import sys
 from collections.abc import Sequence
 from importlib.metadata import EntryPoint
 from pathlib import Path
 
-from simkit.diagnostics import Diagnostics
+from simkit.diagnostics import Diagnostics, closest, did_you_mean
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.plugins.base import Plugin
 from simkit.plugins.discovery.python_plugins import as_class, describe_allowed_plugins, has_hooks
+from simkit.plugins.gz.gz_system_plugin import line_of
+from simkit.plugins.plugin_folders import find_module, folder_help, is_inside, split_python_name
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
 from simkit.registry import entry_points_of
 from simkit.scene import ScenePlugin
 
-_CLASS = re.compile(r"^(?P<module>[A-Za-z_][\w.]*):(?P<name>[A-Za-z_]\w*)$")
-
 
 def find_user_plugin(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
-    """Return the class for `module:Class`, `file.py` or a library name, if its module is installed or allowed."""
-    if _CLASS.match(plugin.filename):
-        return _find_by_class_name(plugin, paths, diagnostics)
-    if plugin.filename.endswith(".py"):
-        return _find_by_file(plugin, paths, diagnostics)
-    return _find_by_alias(plugin, paths, diagnostics)
+    """Return the class for `module:Class`, `file.py`, `file.py:Class` or a library name.
 
-
-def _find_by_class_name(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
-    match = _CLASS.match(plugin.filename)
-    assert match is not None
+    The module must be installed or allowed. A Python plugin that is not found is an error. A library without a Python
+    plugin is not reported.
+    """
+    named = split_python_name(plugin.filename)
+    if named is None:
+        return _find_by_alias(plugin, paths, diagnostics)
     for point in entry_points_of(ENTRY_POINT_GROUP):
         if point.value.replace(" ", "") == plugin.filename:
             return _load_entry_point(point, plugin, diagnostics)
-    relative = Path(*match["module"].split("."))
-    for folder in paths:
-        for file in (folder / relative.with_suffix(".py"), folder / relative / "__init__.py"):
-            if _is_inside(file, folder):
-                module = _import_file(match["module"], file, plugin, diagnostics)
-                return _checked_class(getattr(module, match["name"], None), plugin, diagnostics) if module else None
-    message = f"plugin {plugin.filename!r}: no module {match['module']!r} in an entry point or under the plugin paths"
-    diagnostics.warning("SK-PLUGIN-001", f"{message}; it is ignored", plugin.where, _allow_hint(paths))
+    module_name, class_name = named
+    found = find_module(module_name, paths)
+    if found is None:
+        places = "under a plugin path" if module_name.endswith(".py") else "in an entry point or under a plugin path"
+        kind = "file" if module_name.endswith(".py") else "module"
+        message = f"plugin {plugin.filename!r} is not found: no {kind} {module_name!r} {places}"
+        diagnostics.error("SK-PLUGIN-001", message, plugin.where, folder_help(module_name, plugin.where, paths))
+        return None
+    module = _import_file(module_name, found[0], plugin, diagnostics)
+    if module is None:
+        return None
+    if class_name:
+        return _named_class(module, class_name, found[0], plugin, diagnostics)
+    return _only_class(module, plugin, diagnostics)
+
+
+def _named_class(
+    module: object, name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagnostics
+) -> type[Plugin] | None:
+    """Return the class of that name, or report the closest name."""
+    if hasattr(module, name):
+        return _checked_class(getattr(module, name), plugin, diagnostics)
+    names = [cls.__name__ for cls in _classes_of(module)]
+    hint = did_you_mean(name, names) or ("plugin classes: " + (", ".join(names) or "none"))
+    diagnostics.error("SK-PLUGIN-008", f"plugin {plugin.filename!r}: {file} has no class {name!r}", plugin.where, hint)
     return None
 
 
-def _find_by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
-    for folder in paths:
-        file = folder / plugin.filename
-        if _is_inside(file, folder):
-            module = _import_file(file.stem, file, plugin, diagnostics)
-            if module is None:
-                return None
-            classes = _classes_of(module)
-            matching = [c for c in classes if c.__name__ == plugin.name] or classes
-            if len(matching) == 1:
-                return as_class(matching[0])
-            whole = None if any(issubclass(c, Plugin) for c in classes) else as_class(module)
-            if whole is not None:
-                return whole
-            listed = ", ".join(c.__name__ for c in classes) or "none with a load method"
-            message = f"{plugin.filename!r} needs one plugin class, or one named {plugin.name!r}; it has: {listed}"
-            diagnostics.error("SK-PLUGIN-008", message, plugin.where)
-            return None
-    message = f"plugin file {plugin.filename!r} is not under a plugin path; it is ignored"
-    diagnostics.warning("SK-PLUGIN-001", message, plugin.where, _allow_hint(paths))
+def _only_class(module: object, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
+    """Return the only plugin class of a module, or the class with the name of the plugin."""
+    classes = _classes_of(module)
+    matching = [c for c in classes if c.__name__ == plugin.name] or classes
+    if len(matching) == 1:
+        return as_class(matching[0])
+    whole = None if any(issubclass(c, Plugin) for c in classes) else as_class(module)
+    if whole is not None:
+        return whole
+    names = [c.__name__ for c in classes]
+    listed = ", ".join(names) or "none with a load method"
+    message = f"{plugin.filename!r} needs one plugin class, or one named {plugin.name!r}; it has: {listed}"
+    hint = f'write filename="{plugin.filename}:{closest(plugin.name, names) or names[0]}"' if names else ""
+    diagnostics.error("SK-PLUGIN-008", message, plugin.where, hint)
     return None
 
 
@@ -82,7 +89,7 @@ def _find_by_alias(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diag
             return _load_entry_point(point, plugin, diagnostics)
     for folder in paths:
         for file in sorted(folder.glob("*.py")):
-            if not _is_inside(file, folder) or not names & _string_literals(file):
+            if not is_inside(file, folder) or not names & _string_literals(file):
                 continue  # import only files that contain the name
             module = _import_file(file.stem, file, plugin, diagnostics)
             for cls in _classes_of(module) if module else ():
@@ -111,10 +118,6 @@ def _string_literals(file: Path) -> set[str]:
     return {normalise(text) for text in texts if isinstance(text, str) and len(text) < 200}
 
 
-def _is_inside(file: Path, folder: Path) -> bool:
-    return file.is_file() and file.resolve().is_relative_to(folder.resolve())
-
-
 def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagnostics) -> object | None:
     """Import a file under a module name made from its path, so that it never replaces another module."""
     key = f"simkit_user_plugins.{file.resolve()}"
@@ -128,8 +131,8 @@ def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagno
         spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
         del sys.modules[key]
-        message = f"plugin {plugin.filename!r}: importing {name!r} from {file} failed: {type(error).__name__}: {error}"
-        diagnostics.error("SK-PLUGIN-008", message, plugin.where)
+        message = f"plugin {plugin.filename!r}: importing {name!r} from {file} failed{line_of(error)}"
+        diagnostics.error("SK-PLUGIN-008", f"{message}: {type(error).__name__}: {error}", plugin.where)
         return None
     return module
 
@@ -148,8 +151,3 @@ def _checked_class(found: object, plugin: ScenePlugin, diagnostics: Diagnostics)
     if cls is None:
         diagnostics.error("SK-PLUGIN-008", f"{plugin.filename!r} is not {describe_allowed_plugins()}", plugin.where)
     return cls
-
-
-def _allow_hint(paths: Sequence[Path]) -> str:
-    searched = ", ".join(str(p) for p in paths)
-    return f"searched: {searched}" if searched else "allow its folder with --plugin-path or plugin_paths"

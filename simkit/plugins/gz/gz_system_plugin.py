@@ -175,6 +175,8 @@ class GzSystem(Plugin):
 
 def line_of(error: BaseException) -> str:
     """Return the location in the user's code that raised an exception, as ` at file:line`."""
+    if isinstance(error, SyntaxError):
+        return ""  # its text has the location
     frames = [f for f in traceback.extract_tb(error.__traceback__) if not f.filename.startswith(_OWN)]
     return f" at {frames[-1].filename}:{frames[-1].lineno}" if frames else ""
 

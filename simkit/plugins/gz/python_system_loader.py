@@ -18,6 +18,7 @@ from simkit.params import Params
 from simkit.plugins.gz.gz_system_plugin import HOOKS, GzSystem, System, line_of
 from simkit.plugins.gz_python import import_hook
 from simkit.plugins.options import Options, OptionsOf, text
+from simkit.plugins.plugin_folders import find_module, folder_help
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ class PythonSystemLoader(GzSystem):
     def _find(self, params: Params) -> None:
         """Find and import the module, or report why that is not possible."""
         folders = [path.absolute() for path in (*self.plugin_paths, *folders_of_environment())]
-        found = _file_of(self._module_name, folders)
+        found = find_module(self._module_name, folders)
         if found is not None:
             self._file, folder = found
             if not has_get_system(self._file):
@@ -77,10 +78,9 @@ class PythonSystemLoader(GzSystem):
             self._import(params, None, folders)
         else:
             searched = ", ".join(map(str, folders)) or "no folder, because no folder is allowed"
-            hint = "allow its folder with --plugin-path or plugin_paths, or add it to GZ_SIM_SYSTEM_PLUGIN_PATH"
-            missing = f"no module {self._module_name!r} for PythonSystemLoader"
-            params.warning("SK-PLUGIN-080", f"{missing}; the plugin is ignored; searched: {searched}", hint)
-            params.mark_all_read()
+            message = f"no module {self._module_name!r} for PythonSystemLoader; searched: {searched}"
+            hint = folder_help(self._module_name, self.where, self.plugin_paths)
+            params.diagnostics.error("SK-PLUGIN-080", message, self.where, hint)
 
     def _import(self, params: Params, folder: Path | None, folders: list[Path]) -> None:
         added = [str(f) for f in folders if str(f) not in sys.path]
@@ -127,19 +127,6 @@ def folders_of_environment() -> list[Path]:
     """Return the existing folders in the environment variables; relative paths start at the working directory."""
     named = [part for variable in VARIABLES for part in os.environ.get(variable, "").split(os.pathsep) if part]
     return [Path(part) for part in dict.fromkeys(named) if Path(part).is_dir()]
-
-
-def _file_of(name: str, folders: list[Path]) -> tuple[Path, Path] | None:
-    """Return the file of a module and its search folder.
-
-    A symbolic link to a file outside the folder is ignored.
-    """
-    relative = Path(*name.split("."))
-    for folder in folders:
-        for file in (folder / relative / "__init__.py", folder / relative.with_suffix(".py")):
-            if file.is_file() and file.resolve().is_relative_to(folder.resolve()):
-                return file, folder
-    return None
 
 
 def _package_of(folder: Path) -> str:

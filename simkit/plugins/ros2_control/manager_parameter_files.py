@@ -181,7 +181,7 @@ def _report_no_controllers(files: Sequence[ParameterFile], node: str, diagnostic
     if names:  # an empty file has been reported
         file_names = ", ".join(file.path.name for file in files)
         message = f"{file_names} declares no controller for {node or '/'!r}: none is loaded"
-        listed = "the files have parameters for: " + ", ".join(names[:20])
-        diagnostics.warning(
-            "SK-CONTROL-003", message, Where(str(files[0].path), 1), did_you_mean(node, names) or listed
-        )
+        hint = did_you_mean(node, names) or "the files have parameters for: " + ", ".join(names[:20])
+        if node in names:
+            hint = "a controller needs a type below this name: ros__parameters: {CONTROLLER: {type: package/Class}}"
+        diagnostics.warning("SK-CONTROL-003", message, Where(str(files[0].path), 1), hint)

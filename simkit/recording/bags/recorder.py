@@ -41,6 +41,7 @@ class Recorder:
 
     Raises:
         InputError: SK-BAG-001 the bag exists; SK-BAG-002 the path is not writable.
+        RenderError: images are to be recorded, but there is no renderer.
     """
 
     def __init__(
@@ -58,6 +59,7 @@ class Recorder:
         self._sim, self._patterns, self._skip = sim, tuple(topics), tuple(skip)
         self._choose = choose
         self._count = 0
+        self._check_available()
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
         # while an image is rendered, later messages wait as bytes, so that all messages stay in order
         self._queue = MessageQueue(self._write, _serialise)
@@ -100,10 +102,27 @@ class Recorder:
             self._fail(error)
 
     def _receiver_of(self, topic: str, _: str) -> Callable[[object], None] | None:
-        if not (self._choose or self._is_selected)(topic) or matches_topic(topic, self._skip):
+        if not self._is_recorded(topic):
             return None
         sim, queue = self._sim, self._queue
         return lambda message: queue.add((topic, sim.time_ns), message)
+
+    def _check_available(self) -> None:
+        """Check before the bag is created that the messages of all recorded topics can be made."""
+        bus = self._sim.communication.bus
+        failed: list[str] = []
+        first: SimkitError | None = None
+        for topic in filter(self._is_recorded, bus.all_topics()):
+            try:
+                bus.check_available(topic)
+            except SimkitError as error:
+                failed, first = [*failed, f"--skip {topic}"], first or error
+        if first is not None:
+            first.args = (f"{first}\n    help: or leave its topics out: {' '.join(failed)}",)
+            raise first
+
+    def _is_recorded(self, topic: str) -> bool:
+        return (self._choose or self._is_selected)(topic) and not matches_topic(topic, self._skip)
 
     def _is_selected(self, topic: str) -> bool:
         if self._patterns:

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.command_queue import CommandQueue
     from simkit.runtime.communication.subscription import TopicReaders
 
+Check = Callable[[], None]
+"""Function that raises a SimkitError if an owner cannot make its messages on this machine."""
+
 
 class PublishingBus(JournalKeeper, Protocol):
     """Interface of the topic bus that a publisher needs."""
@@ -33,6 +36,7 @@ class Publisher:
     Attributes:
         last: last message of a latched topic.
         pending: function that publishes the deferred messages of the owner; None if nothing is ever deferred.
+        check: function that is called for every new reader; None if the owner can always make its messages.
     """
 
     __slots__ = (
@@ -40,6 +44,7 @@ class Publisher:
         "_publishers",
         "_readers",
         "active",
+        "check",
         "last",
         "latched",
         "owner",
@@ -56,6 +61,7 @@ class Publisher:
         self.last: Message = None
         self.active = True
         self.pending: Callable[[], None] | None = None
+        self.check: Check | None = None
 
     @property
     def wanted(self) -> bool:

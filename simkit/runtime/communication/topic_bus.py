@@ -13,7 +13,7 @@ from simkit.errors import MessageError, SimkitError
 from simkit.msgs.topic_names import TYPES_OF_DICTS
 from simkit.runtime.communication.command_queue import CommandQueue
 from simkit.runtime.communication.journal import Journal
-from simkit.runtime.communication.publisher import ExternalPublisher, Listener, Publisher, TopicSides
+from simkit.runtime.communication.publisher import Check, ExternalPublisher, Listener, Publisher, TopicSides
 from simkit.runtime.communication.subscription import (
     MAX_KEPT_MESSAGES,
     Callback,
@@ -91,13 +91,14 @@ class TopicBus:
         finally:
             self.owner = before
 
-    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
+    def advertise(self, topic: str, type_name: str, *, latched: bool = False, check: Check | None = None) -> Publisher:
         """Open a topic for publishing.
 
         Args:
             topic: name of the topic; a missing leading slash is added.
             type_name: ROS 2 type, such as `sensor_msgs/msg/Imu`.
             latched: send the last message to a later subscriber (transient local).
+            check: function that raises a SimkitError if the messages cannot be made; called for every reader.
         """
         topic = absolute_name(topic)
         self.gather(topic)
@@ -105,7 +106,10 @@ class TopicBus:
         kind = Publisher if self.owner is not None else ExternalPublisher
         sides = TopicSides(self._readers_of(topic), self._publishers.setdefault(topic, []))
         publisher = kind(self, sides, topic, type_name, latched, self.owner)
+        publisher.check = check
         self._check_type(topic, publisher)
+        if check is not None and (sides.readers.readers or sides.readers.feeds):
+            check()
         sides.publishers.append(publisher)
         self._announce(topic, type_name)
         if self.owner is None:
@@ -126,6 +130,7 @@ class TopicBus:
         topic = absolute_name(topic)
         if depth is not None:
             self.inbox.depths[topic] = max(1, depth, self.inbox.depths.get(topic, 0))
+        self.check_available(topic)
         self.gather(topic)
         self.revision += 1
         listener = Listener(topic, types, callback, self.owner)
@@ -240,6 +245,12 @@ class TopicBus:
     def latched(self) -> frozenset[str]:
         """Return the topics whose last message is kept for later subscribers."""
         return frozenset(t for t, publishers in self._publishers.items() for p in publishers if p.latched and p.active)
+
+    def check_available(self, topic: str) -> None:
+        """Raise the error of a publisher that cannot make its messages, such as a camera without a renderer."""
+        for publisher in self._publishers.get(topic, ()):
+            if publisher.active and publisher.check is not None:
+                publisher.check()
 
     def wanted(self, topic: str) -> bool:
         """Check whether a topic has subscribers."""
@@ -360,6 +371,7 @@ class TopicBus:
 
     def _add_reader(self, subscription: Subscription) -> Subscription:
         topic = subscription.topic
+        self.check_available(topic)
         self.gather(topic)
         self.revision += 1
         readers = self._readers_of(topic)

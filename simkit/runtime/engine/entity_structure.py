@@ -41,6 +41,9 @@ class AttachedSensor(Protocol):
     _topics: dict[str, str]
 
     @property
+    def check_available(self) -> None:
+        """Raise a SimkitError if this machine cannot make the readings."""
+
     def reads_contacts(self) -> bool:
         """True if the sensor needs the contacts of its bodies."""
 

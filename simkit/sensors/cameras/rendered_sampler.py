@@ -34,6 +34,7 @@ class RenderedSampler(Sensor):
         surroundings: state besides the physics for the current sample, see `capture_surroundings`.
     """
 
+    needs_renderer = True
     is_deferred = True
     options: CameraOptions
     _hidden_geoms: Sequence[int]
@@ -131,6 +132,18 @@ class RenderedSampler(Sensor):
 
     # ------------------------------------------------------------------ without a renderer
 
+    def check_available(self) -> None:
+        """Open the renderer, so that a reader of the images gets an error at once instead of no image.
+
+        Raises:
+            RenderError: there is no renderer.
+        """
+        try:
+            gl_context.ensure_open()
+        except RenderError as error:
+            message = f"camera {self.scoped!r} has no images: {error.message}"
+            raise RenderError(message, error.code, self.scene.where) from None
+
     def sample(self, tick: int) -> None:
         if self._failure is not None:
             return
@@ -216,9 +229,8 @@ class RenderedSampler(Sensor):
             return
         self._failure = error
         self._drop_samples()
-        reason = str(error).removeprefix(error.code).strip()
-        is_known = any(d.code == error.code and d.message.endswith(reason) for d in self.sim.engine.reports)
-        message = f"camera {self.scoped!r} is switched off: {reason}"
+        is_known = any(d.code == error.code and d.message.endswith(error.message) for d in self.sim.engine.reports)
+        message = f"camera {self.scoped!r} is switched off: {error.message}"
         self.sim.engine.reports.warning(error.code, message, self.scene.where)
         if not is_known:  # an error common to all cameras is logged once
             self.sim.engine.log.error("%s %s", error.code, message)

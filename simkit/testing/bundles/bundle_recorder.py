@@ -19,7 +19,7 @@ from simkit.errors import InputError, SimkitError
 from simkit.msgs import Message
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.writer import McapBag
-from simkit.recording.message_taps import TopicTaps
+from simkit.recording.message_taps import TopicTaps, is_available
 from simkit.recording.topic_counts import RENDERED
 from simkit.run_spec import JsonObject
 from simkit.runtime import Simulation
@@ -129,7 +129,9 @@ class MessageWindow:
     def _is_kept(self, topic: str, type_name: str) -> bool:
         if matches_topic(topic, self._patterns):
             return True
-        return topic not in self._sim.communication.bus.aside and type_name not in RENDERED
+        if topic in self._sim.communication.bus.aside or type_name in RENDERED:
+            return False
+        return is_available(self._sim, topic)
 
 
 class StateHashes:

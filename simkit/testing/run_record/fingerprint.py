@@ -106,8 +106,7 @@ def _renderer() -> str:
     from simkit.sensors.cameras.rendering import gl_context
 
     try:
-        with gl_context.current():
-            pass
+        gl_context.ensure_open()
     except RenderError as error:
         return f"none ({error.code})"
     return gl_context.describe_renderer() or "unknown"

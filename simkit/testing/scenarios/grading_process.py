@@ -10,7 +10,7 @@ from typing import Any
 
 from simkit.child_process import exit_immediately, exit_with_parent
 from simkit.diagnostics import Diagnostics, Where
-from simkit.errors import InputError, LoadError, PluginError, SimkitError
+from simkit.errors import InputError, LoadError, PluginError, RenderError, SimkitError
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, read_exercise
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
@@ -71,6 +71,8 @@ def _run_exercise(exercise: Exercise, variation: ExerciseRun, hand_in: Path | No
     except PluginError as error:
         place = "" if error.__cause__ is None else _error_position(error.__cause__, hand_in)
         return {"error": f"{error}{place}", "time": error.time}
+    except RenderError as error:  # the submission is not the cause: this machine cannot run the exercise
+        return {"fault": str(error), "code": error.code}
     except SimkitError as error:
         return {"error": str(error), "time": 0.0 if sim is None else sim.time}
 

@@ -14,7 +14,7 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.command_script import script_items, validate_items
-from simkit.run_spec import Check, CheckKind, JsonObject, LoadOptions, RunSpec, Tolerance
+from simkit.run_spec import Check, CheckKind, JsonObject, LoadOptions, RunSpec, Tolerance, named_values
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
 
@@ -156,6 +156,18 @@ class ScenarioReader(ValueReader):
                 self._wrong(value, "a number, a string, true or false, or a list of these", key, name)
         return found
 
+    def _xacro_arguments(self) -> dict[str, str]:
+        """Return the arguments of xacro files: a mapping, or a list of `NAME:=VALUE` texts."""
+        if isinstance(self._fields["xacro_args"], dict):
+            return self._strings("xacro_args")
+        found: dict[str, str] = {}
+        for number, text in enumerate(self._texts("xacro_args")):
+            try:
+                found |= named_values((text,), "xacro_args")
+            except InputError:
+                self._wrong(text, "NAME:=VALUE or NAME=VALUE", "xacro_args", number)
+        return found
+
     def _commands(self) -> tuple[Mapping[str, object], ...]:
         value = self._fields.get("commands", ())
         try:
@@ -202,7 +214,7 @@ class ScenarioReader(ValueReader):
         if "package_paths" in self._fields:
             found["package_paths"] = {name: folder / one for name, one in self._strings("package_paths").items()}
         if "xacro_args" in self._fields:
-            found["xacro_args"] = self._strings("xacro_args")
+            found["xacro_args"] = self._xacro_arguments()
         if "base" in self._fields:
             found["base"] = self._text("base", "auto")
             if found["base"] not in ("auto", "fixed", "floating"):

@@ -208,3 +208,12 @@ def test_a_negative_slip_is_reported_and_becomes_zero(load):
     warnings = [d for d in found if d.code == "SK-SDF-030"]
     assert [(d.severity, d.line) for d in warnings] == [("warning", 2)]
     assert "<slip1> is -0.1 and cannot be negative; 0 is used" in warnings[0].message
+
+
+def test_one_number_scales_a_mesh_along_all_axes_with_a_warning(load, tmp_path):
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    text = f'<visual name="v"><geometry><mesh><uri>{tmp_path}/a.obj</uri><scale>2</scale></mesh></geometry></visual>'
+    scene, found = load(body(text))
+    assert scene.model.links[0].visuals[0].geometry.scale == (2.0, 2.0, 2.0)
+    told = [(d.severity, d.hint) for d in found if d.code == "SK-MESH-017"]
+    assert told == [("warning", "write <scale>2 2 2</scale>")]

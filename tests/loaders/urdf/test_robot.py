@@ -392,3 +392,21 @@ def test_a_massless_root_link_with_only_planar_joints_is_fixed(load):
         assert "SK-URDF-032" in {d.code for d in sim.diagnostics}
         sim.step(10)
         assert sim.link("r::footprint").pose.position == pytest.approx((0, 0, 0))
+
+
+@pytest.mark.parametrize(("right", "wrong"), [('child link="b"', 'child link="bb"'), ("revolute", "revolut")])
+def test_a_faulty_joint_is_one_problem_and_its_consequences_are_none(load, right: str, wrong: str) -> None:
+    dynamics = '<dynamics damping="1" friction="1"/><safety_controller k_velocity="1"/>'
+    text = robot(
+        link("a") + link("b") + link("c")
+        + joint("ab", "a", "b", f'<axis xyz="0 0 1"/>{LIMIT}{dynamics}')
+        + joint("ac", "a", "c", '<axis xyz="0 0 1"/><mimic joint="ab"/>', "continuous")
+        + '<transmission name="t"><type>transmission_interface/SimpleTransmission</type><joint name="ab"/>'
+        + '<actuator name="x"/></transmission><gazebo reference="ab"><springStiffness>1</springStiffness></gazebo>'
+    )  # fmt: skip
+    text = text.replace("<child link='b'", '<child link="b"')
+    assert right in text
+    with pytest.raises(simkit.LoadError) as refused:
+        simkit.load(text.replace(right, wrong, 1))
+    told = [d for d in refused.value.diagnostics if d.severity != "note"]
+    assert [d.code for d in told] == ["SK-URDF-003" if "bb" in wrong else "SK-URDF-004"]

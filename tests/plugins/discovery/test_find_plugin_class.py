@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from simkit.diagnostics import Where
 from simkit.params import Params
 from simkit.plugins import ModelPlugin, Plugin, SensorPlugin, WorldPlugin
 from simkit.plugins.discovery.find_plugin_class import find_plugin, plugin_kinds
@@ -115,7 +117,7 @@ def test_a_file_runs_only_from_an_allowed_folder(tmp_path: Path) -> None:
     (tmp_path / "hello.py").write_text(HELLO)
     refused = named("hello.py")
     assert find_plugin(refused) is None
-    assert reported(refused) == [("SK-PLUGIN-001", "warning")]
+    assert reported(refused) == [("SK-PLUGIN-001", "error")]
     found = find_plugin(named("hello.py"), [tmp_path])
     assert found is not None and found.__name__ == "Hello"
 
@@ -140,15 +142,59 @@ def test_a_module_and_class_run_only_from_an_allowed_folder(tmp_path: Path) -> N
     (tmp_path / "mine" / "hello.py").write_text(HELLO)
     refused = named("mine.hello:Hello")
     assert find_plugin(refused) is None
-    assert reported(refused) == [("SK-PLUGIN-001", "warning")]
+    assert reported(refused) == [("SK-PLUGIN-001", "error")]
     found = find_plugin(named("mine.hello:Hello"), [tmp_path])
     assert found is not None and found.__name__ == "Hello"
+
+
+def test_a_file_may_name_its_class(tmp_path: Path) -> None:
+    (tmp_path / "two-plugins.py").write_text(HELLO + HELLO.replace("Hello", "Goodbye"))
+    for name in ("Hello", "Goodbye"):
+        found = find_plugin(named(f"two-plugins.py:{name}"), [tmp_path])
+        assert found is not None and found.__name__ == name
+
+
+@pytest.mark.parametrize("filename", ["hello.py:Helo", "hello:Helo"])
+def test_a_misspelled_class_is_an_error_with_the_closest_class_of_the_file(tmp_path: Path, filename: str) -> None:
+    (tmp_path / "hello.py").write_text(HELLO)
+    plugin = named(filename)
+    assert find_plugin(plugin, [tmp_path]) is None
+    (found,) = plugin.params.diagnostics
+    assert (found.code, found.severity, found.hint) == ("SK-PLUGIN-008", "error", "did you mean 'Hello'?")
+
+
+def test_a_missing_file_names_the_folder_to_allow(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "worlds").mkdir()
+    (tmp_path / "worlds" / "hello.py").write_text(HELLO)
+    monkeypatch.chdir(tmp_path)
+    for filename in ("hello.py", "hello.py:Hello", "hello:Hello"):
+        plugin = named(filename)
+        plugin = replace(plugin, where=Where(str(tmp_path / "worlds" / "w.sdf"), 3))
+        assert find_plugin(plugin) is None
+        (found,) = plugin.params.diagnostics
+        assert (found.code, found.severity, found.line) == ("SK-PLUGIN-001", "error", 3)
+        assert "`--plugin-path worlds`" in found.hint and "plugin_paths=['worlds']" in found.hint
+
+
+def test_a_misspelled_file_is_an_error_with_the_closest_file(tmp_path: Path) -> None:
+    (tmp_path / "hello.py").write_text(HELLO)
+    plugin = named("helo.py")
+    assert find_plugin(plugin, [tmp_path]) is None
+    (found,) = plugin.params.diagnostics
+    assert (found.severity, found.hint) == ("error", "did you mean 'hello.py'?")
+
+
+@pytest.mark.parametrize("filename", ["libmine.so:Class", "gz::sim::systems::Mine", "mine", "libmine.so"])
+def test_a_name_that_is_not_python_stays_a_warning(filename: str) -> None:
+    plugin = named(filename)
+    assert find_plugin(plugin) is None
+    assert reported(plugin) == [("SK-PLUGIN-001", "warning")]
 
 
 def test_an_importable_module_named_by_a_file_is_not_run() -> None:
     plugin = named("antigravity:Plugin")
     assert find_plugin(plugin) is None
-    assert reported(plugin) == [("SK-PLUGIN-001", "warning")]
+    assert reported(plugin) == [("SK-PLUGIN-001", "error")]
 
 
 def test_an_alias_is_found_in_allowed_folders(tmp_path: Path) -> None:

@@ -97,10 +97,10 @@ def test_a_module_next_to_the_world_is_not_run_unless_allowed(tmp_path: Path, mo
     monkeypatch.delenv("PYTHONPATH", raising=False)
     write(tmp_path, "pusher.py", "raise SystemExit('it was run')\n\ndef get_system(): ...\n")
     write(tmp_path, "w.sdf", world("pusher", "<force>500</force>"))
-    with simkit.load("w.sdf") as run:
-        assert codes(run) == ["SK-PLUGIN-080"]
-        (found,) = [d for d in run.diagnostics if d.code == "SK-PLUGIN-080"]
-        assert "--plugin-path" in found.hint and found.line == 5
+    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-080") as refused:
+        simkit.load("w.sdf")
+    (found,) = [d for d in refused.value.diagnostics if d.severity == "error"]
+    assert "`--plugin-path .`" in found.hint and found.line == 5
 
 
 def test_a_file_without_get_system_is_not_run(tmp_path: Path) -> None:
@@ -113,8 +113,8 @@ def test_a_link_out_of_the_allowed_folder_is_not_followed(tmp_path: Path) -> Non
     write(tmp_path, "outside/evil.py", "def get_system(): raise SystemExit\n")
     (tmp_path / "allowed").mkdir()
     (tmp_path / "allowed" / "evil.py").symlink_to(tmp_path / "outside" / "evil.py")
-    with simkit.load(world("evil"), plugin_paths=[tmp_path / "allowed"]) as run:
-        assert codes(run) == ["SK-PLUGIN-080"]
+    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-080"):
+        simkit.load(world("evil"), plugin_paths=[tmp_path / "allowed"])
 
 
 @pytest.mark.parametrize("name", ["../evil", "pusher.py/x", "a..b", "os;x"])

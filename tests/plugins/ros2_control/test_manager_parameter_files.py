@@ -119,3 +119,9 @@ def test_two_control_plugins_on_one_robot_are_a_warning(tmp_path: Path) -> None:
     again = '<gazebo><plugin filename="libgazebo_ros2_control.so" name="second"/></gazebo>'
     with opened(tmp_path, arm().replace("</robot>", f"{again}</robot>")) as sim:
         assert "joint 'j1' is already driven by plugin 'control'" in reported_messages(sim, "SK-CONTROL-004")[0]
+
+
+def test_a_manager_without_controllers_gets_no_suggestion_of_its_own_name(tmp_path: Path) -> None:
+    with opened(tmp_path, yaml="controller_manager:\n  ros__parameters:\n    update_rate: 100\n") as sim:
+        (found,) = [d for d in sim.diagnostics if d.code == "SK-CONTROL-003"]
+        assert found.hint.startswith("a controller needs a type below this name")

@@ -22,12 +22,13 @@ BROKEN = {
 }
 
 
-def run(script: str, broken: bool) -> subprocess.CompletedProcess[str]:
+def run(script: str, broken: bool, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
     kept = {k: v for k, v in os.environ.items() if k not in BROKEN and k != "PYOPENGL_PLATFORM"}
     environment = {**kept, "PYTHONPATH": str(ROOT), "SIMKIT_TEST_WORLD": WORLD, **(BROKEN if broken else {})}
     return subprocess.run(
         [sys.executable, "-c", textwrap.dedent(script)],
         env=environment,
+        cwd=folder,
         capture_output=True,
         text=True,
         timeout=60,
@@ -40,11 +41,11 @@ def test_other_sensors_continue_and_the_camera_reports_the_missing_renderer() ->
         """
         import os, time, simkit
         sim = simkit.load(os.environ["SIMKIT_TEST_WORLD"])
-        images = sim.subscribe("/world/w/model/m/link/l/sensor/c/image")
+        infos = sim.subscribe("/world/w/model/m/link/l/sensor/c/camera_info")
         start = time.perf_counter()
         sim.run(0.1)
         assert time.perf_counter() - start < 3, "too slow"
-        assert not images.messages
+        assert len(infos.messages) == 11
         assert sim.sensor("m::l::i").latest is not None
         try:
             sim.sensor("m::l::c").latest
@@ -140,10 +141,84 @@ def test_a_missing_renderer_stops_only_cameras(value: str) -> None:
     assert "SK-RENDER-001" in done.stdout or (value == "osmesa" and "OSMesa None" not in done.stdout)
 
 
+def test_a_subscription_to_images_is_refused_at_once_with_the_place_of_the_camera(tmp_path: Path) -> None:
+    topic = "/world/w/model/m/link/l/sensor/c/image"
+    done = run(
+        f"""
+        import os, pathlib, simkit
+        pathlib.Path("w.sdf").write_text(os.environ["SIMKIT_TEST_WORLD"])
+        def is_refused(call):
+            try:
+                call()
+            except simkit.RenderError as error:
+                return error.code == "SK-RENDER-001" and error.exit_code == 2 and "(w.sdf:3)" in str(error)
+        sim = simkit.load("w.sdf")
+        assert is_refused(lambda: sim.subscribe({topic!r}))
+        assert is_refused(lambda: sim.subscribe({topic!r}, print))
+        sim.run(0.1)
+        assert sim.diagnostics == []
+        class Viewer(simkit.WorldPlugin):
+            def load(self, parent, params):
+                self.images = self.subscribe({topic!r})
+        assert is_refused(lambda: simkit.load("w.sdf", plugins=[Viewer()]))
+        empty = simkit.load('<sdf version="1.9"><world name="w"/></sdf>')
+        images = empty.subscribe({topic!r})
+        model = os.environ["SIMKIT_TEST_WORLD"].replace('<world name="w">', "").replace("</world>", "")
+        pathlib.Path("w.sdf").write_text(model)
+        assert is_refused(lambda: empty.spawn("w.sdf"))
+        assert not empty.models
+        try:
+            simkit.load(os.environ["SIMKIT_TEST_WORLD"], strict=True)
+        except simkit.LoadError as error:
+            print([(d.code, d.line) for d in error.diagnostics])
+        """,
+        broken=True,
+        folder=tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "[('SK-RENDER-001', 3)]\n"
+
+
+COMMANDS = """
+run w.sdf --duration 0.02 --record a.mcap
+run w.sdf --duration 0.02 --record a.mcap --topic */image
+run w.sdf --duration 0.02 --strict
+run w.sdf --duration 0.02 --picture a.png
+run w.sdf --duration 0.02 --until count('/world/w/model/m/link/l/sensor/c/image')>0
+golden record w.sdf --duration 0.02 -o a
+bundle w.sdf --duration 0.02 --topic */image -o a.bundle
+plot w.sdf /world/w/model/m/link/l/sensor/c/image.width --duration 0.02 -o a.svg
+"""
+
+
+def test_every_command_that_asks_for_images_ends_before_the_run(tmp_path: Path) -> None:
+    (tmp_path / "w.sdf").write_text(WORLD)
+    done = run(
+        f"""
+        import contextlib, io, os
+        os.environ["MUJOCO_GL"], before = "disable", sorted(os.listdir())
+        from simkit.cli import app
+        for line in {COMMANDS.split(chr(10))[1:-1]!r}:
+            err = io.StringIO()
+            with contextlib.redirect_stderr(err), contextlib.redirect_stdout(io.StringIO()) as out:
+                code = app(args=line.split(), standalone_mode=False)
+            assert "simulated" not in out.getvalue()
+            print(code, err.getvalue().count("SK-RENDER-001"), sorted(os.listdir()) == before, line)
+        """,
+        broken=False,
+        folder=tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    lines = COMMANDS.split("\n")[1:-1]
+    notes = [2 if "--until" in line else 1 for line in lines]
+    assert done.stdout.splitlines() == [f"2 {n} True {line}" for n, line in zip(notes, lines, strict=True)]
+
+
 @pytest.mark.parametrize("command", ["run", "convert"])
 def test_no_command_fails_for_a_renderer_that_it_does_not_need(command: str, tmp_path: Path) -> None:
     (tmp_path / "world.sdf").write_text(WORLD)
-    more = {"run": ["--duration", "0.02", "--record", "bag.mcap"], "convert": ["-o", "other.sdf"]}
+    record = ["--duration", "0.02", "--record", "bag.mcap", "--skip", "*/c/image"]
+    more = {"run": record, "convert": ["-o", "other.sdf"]}
     done = subprocess.run(
         [sys.executable, "-m", "simkit", command, "world.sdf", *more.get(command, [])],
         env={**os.environ, "PYTHONPATH": str(ROOT), "MUJOCO_GL": "foo"},
@@ -160,8 +235,12 @@ def test_an_error_of_all_cameras_is_logged_once_and_reported_for_each() -> None:
         f"""
         import simkit
         with simkit.load({world(cameras)!r}) as sim:
-            subs = [sim.subscribe(topic) for topic in sim.topics()]
             sim.run(0.02)
+            for sensor in sim.contents.sensors.values():
+                try:
+                    sensor.latest
+                except simkit.RenderError:
+                    pass
             print(sum(d.code == "SK-RENDER-001" for d in sim.diagnostics))
         """,
         broken=True,

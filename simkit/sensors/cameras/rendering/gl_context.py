@@ -126,6 +126,17 @@ def current() -> Iterator[None]:
         yield
 
 
+def ensure_open() -> None:
+    """Open the context of the process, unless it is open.
+
+    Raises:
+        RenderError: no library provides a context; every call raises the same error without trying again.
+    """
+    if not is_open():
+        with current():
+            pass
+
+
 def is_open() -> bool:
     """Check whether a context exists; there is none before the first image and after the end."""
     return _process.context is not None
