@@ -17,7 +17,7 @@ import numpy as np
 
 from simkit.build import describe, load
 from simkit.diagnostics import Diagnostics
-from simkit.errors import InputError, SimkitError
+from simkit.errors import InputError, LoadError, SimkitError
 from simkit.loaders import Resolver
 from simkit.loaders.spawned_models import SpawnedModel, parse_spawn
 from simkit.run_spec import FilePath, LoadOptions, RunSpec, SourceOptions
@@ -114,6 +114,7 @@ def model_hash(model: mujoco.MjModel, originals: Mapping[str, object]) -> str:
 
 
 UNPACKED: Final = "SK-BUNDLE-006"
+_CODE_NOT_ALLOWED: Final = ("SK-PLUGIN-001", "SK-PLUGIN-080")
 
 
 @dataclass
@@ -227,6 +228,9 @@ class WorldStager:
             with load_packed_world(packed_run_spec(self._stage, found.file, found.spawn, found.params, spec)) as sim:
                 same = model_hash(sim.mj_model, sim.engine.originals) == loaded_model_hash(keeper)
         except (SimkitError, OSError) as error:
+            errors = [d for d in error.diagnostics if d.severity == "error"] if isinstance(error, LoadError) else []
+            if errors and all(d.code in _CODE_NOT_ALLOWED for d in errors):
+                return  # the comparison does not run the plugins of the user
             found.missing.append(f"the packed world could not be loaded: {error!s:.300}")
             return
         if not same and not spec.options.get("plugin_paths") and spec.change_world is None:
