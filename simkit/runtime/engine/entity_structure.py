@@ -40,10 +40,10 @@ class AttachedSensor(Protocol):
     scoped: str
     _topics: dict[str, str]
 
-    @property
     def check_available(self) -> None:
         """Raise a SimkitError if this machine cannot make the readings."""
 
+    @property
     def reads_contacts(self) -> bool:
         """True if the sensor needs the contacts of its bodies."""
 
