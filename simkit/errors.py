@@ -13,7 +13,8 @@ SimkitError                 exit 1
 ├── PluginError             exit 4   a plugin raised
 ├── SubscriberError         exit 4   a subscriber of a topic raised
 ├── RegressionError         exit 5   a regression check failed
-└── RenderError             exit 2   there is no renderer, or it failed
+├── RenderError             exit 2   there is no renderer, or it failed
+└── InstallationError       exit 1   MuJoCo is missing, damaged, or has another version
 """
 
 from __future__ import annotations
@@ -181,3 +182,9 @@ class RenderError(SimkitError):
     def __init__(self, message: str, code: str = "SK-RENDER-001", where: Where = NOWHERE) -> None:
         super().__init__(f"{code} {message}" + (f" ({where})" if where.file else ""))
         self.code, self.message, self.where = code, message, where
+
+
+class InstallationError(SimkitError):
+    """Missing or damaged package that simkit needs."""
+
+    code = "SK-CORE-005"

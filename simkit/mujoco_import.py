@@ -1,12 +1,27 @@
-"""First import of MuJoCo, which must not depend on a renderer."""
+"""First import of MuJoCo: independent of a renderer and of the working directory, with a check for damage."""
 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+import re
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.errors import InstallationError
 
 if TYPE_CHECKING:
     import mujoco as mujoco
+
+REQUIREMENT: Final = "mujoco>=4.0,<5"
+"""Version of MuJoCo that simkit needs, as in `pyproject.toml`."""
+
+REINSTALL: Final = f"python -m pip install --force-reinstall '{REQUIREMENT}'"
+_LIBRARY: Final = re.compile(r"\.(so|dylib|dll|pyd)(\.[\d.]+)?$")
+_VERSION: Final = re.compile(r"\d+\.\d+\.\d+")
+_is_checked = False
 
 
 def import_mujoco() -> None:
@@ -17,21 +32,101 @@ def import_mujoco() -> None:
 
     The engine's warnings are then written neither to the terminal nor to a log file in the working directory, unless
     another warning callback is already installed. The warnings of a simulation are among its diagnostics.
+
+    Raises:
+        InstallationError: SK-CORE-005 MuJoCo is missing, damaged, or has another version.
     """
+    global _is_checked
     try:
-        import mujoco
-    except Exception:
-        # the exception depends on the driver: RuntimeError, ImportError, AttributeError
-        renderer = os.environ.get("MUJOCO_GL")
-        if not renderer:
-            raise
-        os.environ["MUJOCO_GL"] = "disable"
+        mujoco = _import()
+        version = str(mujoco.__version__)
+        if version.split(".")[0] == "4" and mujoco.get_mju_user_warning() is None:
+            mujoco.set_mju_user_warning(ignore_warning)
+    except ModuleNotFoundError as error:
+        if error.name != "mujoco":
+            raise _installation_error(f"MuJoCo cannot be imported ({_first_line(error)})") from error
+        raise _installation_error("MuJoCo is not installed") from None
+    except Exception as error:
+        # the exception depends on the damage: ImportError, OSError, AttributeError, …
+        raise _installation_error(f"MuJoCo cannot be imported ({_first_line(error)})") from error
+    if _is_checked:
+        return
+    if version.split(".")[0] != "4":
+        raise _installation_error(f"MuJoCo {version} is installed, but simkit needs {REQUIREMENT}")
+    found = _damage(Path(mujoco.__file__ or "").parent, version)
+    if found:
+        raise found
+    _is_checked = True
+
+
+def _import() -> Any:
+    with nullcontext() if "mujoco" in sys.modules else _safe_path():
         try:
             import mujoco
-        finally:
-            os.environ["MUJOCO_GL"] = renderer
-    if mujoco.get_mju_user_warning() is None:
-        mujoco.set_mju_user_warning(ignore_warning)
+        except Exception:
+            # the exception depends on the driver: RuntimeError, ImportError, AttributeError
+            renderer = os.environ.get("MUJOCO_GL")
+            if not renderer:
+                raise
+            os.environ["MUJOCO_GL"] = "disable"
+            try:
+                import mujoco
+            finally:
+                os.environ["MUJOCO_GL"] = renderer
+    return mujoco
+
+
+@contextmanager
+def _safe_path() -> Iterator[None]:
+    """Start Python processes that import nothing from the working directory.
+
+    MuJoCo imports GLFW, which looks for its library in a new Python process. There, a file `types.py` of the user would
+    replace the module of the standard library, and its error would be printed.
+    """
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["PYTHONSAFEPATH"]
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
+
+
+def _damage(package: Path, version: str) -> InstallationError | None:
+    """Return an error if libraries of the package are missing, or if files of another version lie beside it."""
+    records = [record for name in ("mujoco", "mujoco_core") for record in package.parent.glob(f"{name}-*.dist-info")]
+    foreign = [record for record in records if not record.name.partition("-")[2].startswith(version)]
+    libraries = [(file, _VERSION.search(file.name)) for file in package.glob("libmujoco.*")]
+    foreign += [file for file, found in libraries if found is not None and found[0] != version]
+    if foreign:
+        names = ", ".join(file.name for file in foreign)
+        text = f"MuJoCo {version} in {package.parent} is mixed with files of another version ({names})"
+        listed = " ".join(f"'{file}'" for file in dict.fromkeys((package, *records)))
+        return _installation_error(text, f"rm -r {listed} && {REINSTALL}")
+    missing = [name for record in records for name in _listed_libraries(record) if not (package.parent / name).exists()]
+    if missing:
+        names = ", ".join(missing[:3]) + (f" and {len(missing) - 3} more" if len(missing) > 3 else "")
+        return _installation_error(f"MuJoCo {version} in {package.parent} is incomplete: {names} is missing")
+    return None
+
+
+def _listed_libraries(record: Path) -> list[str]:
+    """Return the shared libraries that a package has installed; empty if its list is missing."""
+    try:
+        lines = (record / "RECORD").read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return []
+    return [name for line in lines if _LIBRARY.search(name := line.partition(",")[0])]
+
+
+def _installation_error(problem: str, repair: str = REINSTALL) -> InstallationError:
+    return InstallationError(f"SK-CORE-005 {problem}\n    help: {repair}")
+
+
+def _first_line(error: Exception) -> str:
+    return next(iter(str(error).strip().splitlines()), type(error).__name__)
 
 
 def ignore_warning(_text: str) -> None:

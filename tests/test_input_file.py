@@ -19,6 +19,7 @@ OWN_FILES = {
     "cli/bench_figures.py": "/proc/self/statm",
     "cli/diagnostic_catalogue.py": "data of the package",
     "compiler/meshes/mesh_cache.py": "the cache of simkit",
+    "mujoco_import.py": "the list of files that pip has installed",
     "msgs/message_types.py": "data of the package",
     "plugins/authoring/plugin_reload.py": "modules that Python has imported already",
     "recording/export/bag_folder.py": "the index of a folder that an export wrote",

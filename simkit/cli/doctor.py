@@ -13,6 +13,7 @@ from typing import Any
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.output import stdout_console
+from simkit.mujoco_import import REINSTALL
 from simkit.version import __version__
 
 _PACKAGES = (
@@ -37,8 +38,18 @@ _FOLDERS = (
     "AMENT_PREFIX_PATH",
     "SIMKIT_SAVE_PATH",
 )
-_REINSTALL = "pip uninstall -y mujoco mujoco-core && pip install 'mujoco>=4.0,<5'"
 _RENDERER_TIMEOUT = 60.0  # [s]
+
+_IMPORT_ENGINE = """
+import sys
+from simkit.errors import InstallationError
+from simkit.mujoco_import import import_mujoco
+try:
+    import_mujoco()
+except InstallationError as error:
+    print(error)
+    sys.exit(1)
+"""
 
 # Graphics drivers can crash the process; in a separate process, the crash is one more result of the check.
 _DRAW = """
@@ -59,8 +70,9 @@ print("OK", describe_renderer() or "renderer", "black" if picture.max() == pictu
 def doctor(json_: options.Json = False) -> int:  # noqa: ARG001 (`report_errors_and_json` reads it)
     """Check the installation and print a remedy for each problem."""
     found: dict[str, str] = {}
-    broken = _versions(found) + _engine(found)
-    unusable = _renderer(found)
+    missing, engine = _versions(found), _engine(found)
+    broken = missing + engine
+    unusable = [] if engine else _renderer(found)
     for name, value in found.items():
         _line(name, value)
     folders = _folders()
@@ -94,31 +106,27 @@ def _versions(found: dict[str, str]) -> list[str]:
 
 
 def _engine(found: dict[str, str]) -> list[str]:
-    """Report the version of MuJoCo, and mixtures of 3.x and 4.x that an in-place upgrade can leave."""
+    """Report the version of MuJoCo and a damaged installation, such as a mixture of 3.x and 4.x."""
     versions: dict[str, str] = {}
     for name in ("mujoco", "mujoco-core"):
         try:
             versions[name] = version(name)
         except PackageNotFoundError:
-            versions[name] = ""
-    found["mujoco"] = f"{versions['mujoco'] or 'missing'} (core {versions['mujoco-core'] or 'missing'})"
-    problems = []
-    if not versions["mujoco"] or not versions["mujoco-core"] or versions["mujoco"] != versions["mujoco-core"]:
-        problems.append(
-            f"mujoco and mujoco-core are missing or have different versions, as after an upgrade from 3.x: {_REINSTALL}"
-        )
-    elif not versions["mujoco"].startswith("4."):
-        problems.append(f"simkit needs mujoco 4: {_REINSTALL}")
+            versions[name] = "missing"
+    found["mujoco"] = f"{versions['mujoco']} (core {versions['mujoco-core']})"
     probe = subprocess.run(
-        [sys.executable, "-P", "-c", "import mujoco; print(mujoco.__version__)"],
+        [sys.executable, "-P", "-c", _IMPORT_ENGINE],
         capture_output=True,
         text=True,
         check=False,
         env={**os.environ, "MUJOCO_GL": "disable"},  # a missing renderer is not a fault of the engine
     )
-    if probe.returncode:
-        problems.append(f"mujoco cannot be imported ({_last_line(probe.stderr)}): {_REINSTALL}")
-    return problems
+    if not probe.returncode:
+        return []
+    if "SK-CORE-005" in probe.stdout:
+        return [probe.stdout[probe.stdout.index("SK-CORE-005") :].strip()]
+    reason = f"signal {-probe.returncode}" if probe.returncode < 0 else _last_line(probe.stderr)
+    return [f"SK-CORE-005 MuJoCo cannot be imported ({reason})\n    help: {REINSTALL}"]
 
 
 def _renderer(found: dict[str, str]) -> list[str]:
