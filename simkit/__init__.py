@@ -12,14 +12,24 @@ with simkit.load("turtlebot3_world", seed=0) as sim:
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
 
-from simkit.errors import InputError, LoadError, MessageError, PluginError, RenderError, SimkitError, SimulationDiverged
 from simkit.version import __version__
 
+TYPE_CHECKING = False  # `typing` takes 3 ms
 if TYPE_CHECKING:
+    from typing import Any
+
     from simkit.build import check, describe, load
     from simkit.diagnostics import Diagnostic
+    from simkit.errors import (
+        InputError,
+        LoadError,
+        MessageError,
+        PluginError,
+        RenderError,
+        SimkitError,
+        SimulationDiverged,
+    )
     from simkit.params import Params
     from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
     from simkit.pose import Pose
@@ -52,11 +62,20 @@ __all__ = [
 ]
 
 # Lazy imports: MuJoCo takes most of the import time and NumPy most of the rest. Test runs that open no world do not pay
-# for either (`simkit.pytest_plugin`).
+# for either (`simkit.pytest_plugin`). The command line can handle Ctrl-C only after this file has been imported.
 _MODULES = {
     "simkit.build": ("load", "describe", "check"),
     "simkit.runtime": ("Simulation",),
     "simkit.diagnostics": ("Diagnostic",),
+    "simkit.errors": (
+        "InputError",
+        "LoadError",
+        "MessageError",
+        "PluginError",
+        "RenderError",
+        "SimkitError",
+        "SimulationDiverged",
+    ),
     "simkit.params": ("Params",),
     "simkit.pose": ("Pose",),
     "simkit.run_spec": ("RunSpec",),

@@ -31,7 +31,7 @@ SMALL_MODULES = frozenset(
         "params",
         "pose",
     }
-    | {"registry", "run_spec", "save_path", "version", "yaml_reader"}
+    | {"progress", "registry", "run_spec", "save_path", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""
 

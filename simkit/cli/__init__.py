@@ -1,83 +1,34 @@
 """Command line `simkit`: one file for each command, `cli/<command>.py`, with shared code in `cli/terminal`.
 
 A command is thin: it parses its options, calls the library and prints lines, files and an exit code. No other package
-imports this one. A command's module is imported only when the command runs.
+imports this one. A command's module is imported only when the command runs. This file imports nothing heavy, so that
+`main` can handle Ctrl-C from the first milliseconds on.
 """
 
 from __future__ import annotations
 
 import io
 import sys
-from typing import Annotated
 
-import typer
-from typer import Option
+from simkit.cli.terminal import interruption
 
-from simkit.cli.lazy_command import Commands, defer
-from simkit.version import __version__
+TYPE_CHECKING = False  # `typing` itself takes 3 ms, in which Ctrl-C would print a traceback
+if TYPE_CHECKING:
+    from simkit.cli.commands import COMMANDS, app
 
-app = typer.Typer(
-    name="simkit",
-    cls=Commands,
-    help="Robot simulator for Gazebo worlds and robots, with MuJoCo physics and ROS 2 messages.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-    context_settings={"help_option_names": ["--help", "-h"]},
-)
-COMMANDS = {
-    "run": "Run a world without a window, as fast as possible.",
-    "check": "Print all problems of a file without running it.",
-    "certify": "Verify that a run is bit-identical in different environments.",
-    "explain": "Explain a diagnostic code, with its remedy and an example.",
-    "inspect": "Show the resolved content of a file.",
-    "convert": "Convert a world or model to MJCF or to a single SDF file.",
-    "vendor": "Copy a world and all files that it uses into one folder.",
-    "bench": "Compare the speed of a world with bare MuJoCo.",
-    "grade": "Run an exercise with submitted plugins and print the results.",
-    "doctor": "Check the installation and print a remedy for each problem.",
-    "golden": "Record and compare golden runs (reference sensor outputs).",
-    "bundle": "Run a world or scenario and pack it into a repeatable bundle.",
-    "replay": "Repeat the run in a bundle and compare the results bit by bit.",
-    "bag": "Record, describe, play, export and recover bags.",
-    "plot": "Plot fields of bags, worlds and scenarios over time.",
-    "motion": "List and play the named motions of a robot.",
-    "plugin": "List, describe and create plugins.",
-    "topic": "Inspect and publish topics of a simulation or a bag.",
-    "service": "List and call the services of a running simulation.",
-    "param": "List, read and set the parameters of a running simulation.",
-    "action": "List the actions of a running simulation and send goals.",
-    "node": "List the nodes of a running simulation.",
-    "interface": "List and show the types of messages, services and actions.",
-    "model": "Show models, poses and joints of a running simulation.",
-    "tf": "Show the frames of a running simulation or of a bag.",
-}
-"""Commands and their help lines. The module of each command has the command's name and is imported on first use."""
-
-for _name, _line in COMMANDS.items():
-    defer(app, _name, _line)
-
-
-def _print_version(requested: bool) -> None:
-    if requested:
-        typer.echo(f"simkit {__version__}")
-        raise typer.Exit
-
-
-@app.callback()
-def _options(
-    version: Annotated[
-        bool, Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
-    ] = False,
-) -> None:
-    """Robot simulator for Gazebo worlds and robots, with MuJoCo physics and ROS 2 messages."""
+__all__ = ["COMMANDS", "app", "main"]
 
 
 def main() -> None:
     """Run the command line `simkit`."""
+    interruption.install()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character must not end the run
+    from simkit.cli.commands import app
+    from simkit.cli.terminal.output import output_failure_exit_code, print_error
+    from simkit.errors import SimkitError
+
     try:
         try:
             app(prog_name="simkit")  # also for `python -m simkit`, whose name has no shell completion
@@ -85,7 +36,18 @@ def main() -> None:
             for stream in (sys.stdout, sys.stderr):
                 if stream is not None:
                     stream.flush()
+    except SimkitError as error:  # from the import of a command
+        print_error(error)
+        sys.exit(error.exit_code)
     except OSError as error:  # outside of a command: the output of `--help`, `--version` and of usage errors
-        from simkit.cli.terminal.output import output_failure_exit_code
-
         sys.exit(output_failure_exit_code(error))
+    finally:
+        interruption.exit_if_interrupted()
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module 'simkit.cli' has no attribute {name!r}")
+    from simkit.cli import commands
+
+    return getattr(commands, name)

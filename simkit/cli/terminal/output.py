@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 
 import typer
 
+from simkit.cli.terminal.interruption import running_command
+from simkit.cli.terminal.task_display import displayed_tasks
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, LoadError, PluginError, SimkitError
 
@@ -185,13 +187,14 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         try:
-            code = command(*args, **kwargs)
+            with running_command(), displayed_tasks(stderr_console, quiet=bool(kwargs.get("quiet"))):
+                code = command(*args, **kwargs)
+        except KeyboardInterrupt as stopped:
+            print_status(f"interrupted {stopped}".rstrip())
+            raise typer.Exit(interrupt_exit_code(stopped)) from None
         except SimkitError as error:
             print_error(error)
             raise typer.Exit(error.exit_code) from None
-        except KeyboardInterrupt as stopped:
-            print_status(f"interrupted {stopped}".rstrip())
-            raise typer.Exit(INTERRUPTED) from None
         except OSError as error:
             if error.errno in _OUTPUT_ERRORS or error.strerror is None:
                 raise typer.Exit(output_failure_exit_code(error)) from None
@@ -225,6 +228,11 @@ def output_failure_exit_code(error: OSError) -> int:
     except OSError:
         sys.stderr = None
     return 1
+
+
+def interrupt_exit_code(stopped: KeyboardInterrupt) -> int:
+    """Return the exit code after an interrupt: 143 for SIGTERM, else 130."""
+    return getattr(stopped, "exit_code", INTERRUPTED)
 
 
 def _hang_up_exit_code() -> int:
@@ -269,8 +277,8 @@ def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]
     def run(*args: P.args, **kwargs: P.kwargs) -> int:
         try:
             return int(command(*args, **kwargs) or 0)
-        except KeyboardInterrupt:
-            return INTERRUPTED
+        except KeyboardInterrupt as stopped:
+            return interrupt_exit_code(stopped)
 
     return report_errors(run)
 
