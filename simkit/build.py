@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from simkit import progress
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import LoadError, PluginError, RenderError
 from simkit.loaders import Resolver, load_scene
@@ -167,7 +168,8 @@ def load(
 
     movable = frozenset(m.name for m in world.models if m.moved_by is not None)
     structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
-    simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
+    with progress.task("loading plugins"):
+        simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.control.write_sdf = _sdf_of
     simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     options: LoadOptions = {
@@ -294,17 +296,18 @@ def _scene(
     overrides: Sequence[str],
     spawn: Sequence[str | SpawnedModel] = (),
 ) -> Scene:
-    scene = load_scene(
-        source,
-        resolver=resolver,
-        diagnostics=diagnostics,
-        xacro_args=named_values(xacro_args, "xacro_args"),
-        base=base,
-        mesh_reader=_read_mesh,
-        mjcf_parser=_mjcf_parser,
-    )
-    if spawn:
-        scene = add_spawned_models(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
+    with progress.task("reading the world"):
+        scene = load_scene(
+            source,
+            resolver=resolver,
+            diagnostics=diagnostics,
+            xacro_args=named_values(xacro_args, "xacro_args"),
+            base=base,
+            mesh_reader=_read_mesh,
+            mjcf_parser=_mjcf_parser,
+        )
+        if spawn:
+            scene = add_spawned_models(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
     if overrides:
         diagnostics.raise_if_errors()
     of_scene = [text for text in overrides if text.startswith("scene.")]

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,30 +48,32 @@ class ChildProcesses:
 
     def run(
         self,
-        module: str,
+        module: str | Path,
         arguments: Sequence[str],
         *,
         environment: Mapping[str, str] | None = None,
         folder: Path | None = None,
         limit: float | None = None,
+        on_line: Callable[[str], None] | None = None,
     ) -> ProcessResult:
         """Run `python -m module arguments` until it ends or its time limit passes.
 
         The module must call `exit_with_parent` first.
 
         Args:
-            module: full name of the module.
+            module: full name of the module, or the path of a script.
             arguments: command-line arguments of the module.
             environment: all environment variables of the child; None for the environment of this process.
             folder: working directory of the child; None for the working directory of this process.
             limit: wall-time limit [s]; None for no limit.
+            on_line: function that receives each line of output, on another thread; lines may come in pieces.
         """
         with self._lock:
             if self._is_over:
                 return ProcessResult(-signal.SIGTERM, "")
             process = subprocess.Popen(
                 # -P: no file of the working directory shadows a module
-                [sys.executable, "-P", "-m", module, *arguments],
+                [sys.executable, "-P", *([str(module)] if isinstance(module, Path) else ["-m", module]), *arguments],
                 stdin=subprocess.PIPE,  # nothing is written; the pipe closes when this process ends
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
@@ -80,7 +82,7 @@ class ChildProcesses:
                 start_new_session=True,
             )
             self._alive.add(process)
-        tail = _OutputTail(process.stdout)
+        tail = _OutputTail(process.stdout, on_line)
         try:
             process.wait(limit)
             is_late = False
@@ -110,8 +112,8 @@ class ChildProcesses:
 class _OutputTail:
     """Thread that stores the end of a process's output; it reads all output, so that the process never blocks."""
 
-    def __init__(self, pipe: IO[bytes] | None) -> None:
-        self._pipe, self._kept = pipe, bytearray()
+    def __init__(self, pipe: IO[bytes] | None, on_line: Callable[[str], None] | None) -> None:
+        self._pipe, self._kept, self._on_line = pipe, bytearray(), on_line
         self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
 
@@ -124,6 +126,9 @@ class _OutputTail:
             return
         with self._pipe as pipe:
             while content := os.read(pipe.fileno(), _CHUNK):
+                if self._on_line is not None:
+                    for line in content.decode("utf-8", "replace").splitlines():
+                        self._on_line(line)
                 self._kept += content
                 del self._kept[:-_KEPT_BYTES]
 

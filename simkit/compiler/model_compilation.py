@@ -8,6 +8,7 @@ from typing import Final
 import mujoco
 import numpy as np
 
+from simkit import progress
 from simkit.compiler.engine_messages import user_message
 from simkit.compiler.engine_options import apply_size, choose_islands, set_extent
 from simkit.compiler.first_state import first_mass_matrix, first_state, inverse_inertia
@@ -173,6 +174,7 @@ def check_derived_numbers(model: mujoco.MjModel, diagnostics: Diagnostics, where
 
 MOST_MOVING: Final = 10_000
 """Largest number of moving links; the engine's compile time is quadratic, 7 s for 4000 free links."""
+_COMPILE_SECONDS: Final = 7.0 / 4000**2
 
 
 def compile_spec(
@@ -191,8 +193,9 @@ def compile_spec(
     apply_size(spec, sum(not o.is_visual for r in records for o in r.geoms.values()))
     if world.mjcf is None:
         choose_islands(spec, sum(len(r.root_bodies) for r in records))
+    compiling = progress.task(f"compiling {moving} moving links", expected=1.0 + _COMPILE_SECONDS * moving**2)
     try:
-        with silence_engine_warnings():
+        with silence_engine_warnings(), compiling:
             return spec.compile()
     except ValueError as problem:
         text, where = user_message(str(problem), spec, records, world.where)

@@ -10,6 +10,7 @@ from typing import Any
 
 import mujoco
 
+from simkit import progress
 from simkit.compiler import mjcf_attachment
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import remove_split_body
@@ -81,9 +82,11 @@ class SpecBuilder:
         if own:
             self.records.update({model.scoped: ModelRecord(model) for model in own})
             mjcf_attachment.attach_world(self.spec, [self.records[model.scoped] for model in own])
-        for model in world.models:
-            if model not in own:
-                self.add_model(model)
+        with progress.task("building models", len(world.models)) as task:
+            for model in world.models:
+                if model not in own:
+                    self.add_model(model)
+                task.advance()
         self._join_models()
 
     # ------------------------------------------------------------------ models

@@ -8,6 +8,7 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from simkit import progress
 from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.compiler.meshes.mesh_reader import SUFFIXES, convert_file
 from simkit.diagnostics import Diagnostics
@@ -73,6 +74,7 @@ class AssetFolder:
         if self.count > MOST_FILES:
             raise OSError(f"more than {MOST_FILES} files")
         target.parent.mkdir(parents=True, exist_ok=True)
+        progress.set_item(source.name)
         shutil.copyfile(source, target)
 
 
@@ -113,7 +115,8 @@ def write_sdf(
         InputError: SK-CLI-016 a file exists, or is not writable.
     """
     here = path.absolute().parent
-    with AtomicOutput(path, f"{path.stem}_assets", overwrite=overwrite) as staging:
+    writing = progress.task(f"writing {path.name}")
+    with AtomicOutput(path, f"{path.stem}_assets", overwrite=overwrite) as staging, writing:
         assets = AssetFolder(staging.folder)
 
         def uri_of(file: Path, uri: str) -> str:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from simkit import progress
 from simkit.errors import InputError
 from simkit.writers.atomic_output import AtomicOutput
 
@@ -46,7 +47,8 @@ def write_mjcf(builder: SpecBuilder, path: Path, *, overwrite: bool = False) -> 
     Raises:
         InputError: SK-CLI-016 a file exists or is not writable, or MuJoCo cannot read the result.
     """
-    with AtomicOutput(path, f"{path.stem}_assets", overwrite=overwrite) as staging:
+    writing = progress.task(f"writing {path.name}")
+    with AtomicOutput(path, f"{path.stem}_assets", overwrite=overwrite) as staging, writing:
         # work on a copy: file names in the spec of a running simulation would affect later spawns
         spec = builder.spec.copy()
         count = _Assets(spec, staging.folder).write()

@@ -11,6 +11,7 @@ from html import escape
 from pathlib import Path, PurePosixPath
 from urllib.parse import unquote
 
+from simkit import progress
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 from simkit.loaders import Document, Resolver, find_document
@@ -166,6 +167,7 @@ class WorldCollector:
 
     def _count(self, size: int) -> None:
         self.count, self.size = self.count + 1, self.size + size
+        progress.set_item(f"{self.count} files, {self.size / 1e6:.0f} MB")
         if self.count > MOST_FILES or self.size > MOST_BYTES:
             raise OSError(f"more than {MOST_FILES} files or {MOST_BYTES >> 30} GiB")
 
@@ -262,7 +264,8 @@ def vendor(
     try:
         stage = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.absolute().parent))
         collector = WorldCollector(resolver, stage, diagnostics)
-        main = collector.collect(document, expanded)
+        with progress.task("copying the files of the world"):
+            main = collector.collect(document, expanded)
         after = describe(stage / main, base=base)
         differs = _difference(before, after) or _file_outside(after, stage)
         if differs:

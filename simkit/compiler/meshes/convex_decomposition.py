@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import hashlib
 import importlib.util
+import math
 import os
-import subprocess
+import re
 import sys
 import tempfile
 from collections import OrderedDict
@@ -20,6 +21,8 @@ from typing import Final
 
 import numpy as np
 
+from simkit import progress
+from simkit.child_process import ChildProcesses
 from simkit.compiler.meshes.convex_pieces import (
     PRISMS_MOST,
     convex_pieces,
@@ -42,6 +45,8 @@ MOST_HULLS: Final = 256
 _SEED: Final = 0
 _WALL_LIMIT: Final = 600.0  # [s]
 _SCRIPT: Final = Path(__file__).with_name("run_coacd.py")
+_ROUND: Final = re.compile(r"\biter (\d+) ")
+_SHARE: Final = re.compile(r"\bProcessing \[([\d.]+)%\]")
 
 
 class DecompositionError(Exception):
@@ -69,9 +74,10 @@ def decompose(vertices: Floats, faces: Ints, most: int) -> list[Floats]:
         )
     with tempfile.TemporaryDirectory(prefix="simkit-") as folder:
         source, target = Path(folder) / "in.npz", Path(folder) / "out.npz"
-        settings = {"threshold": THRESHOLD, "most": min(max(1, most), MOST_HULLS), "seed": _SEED}
+        most = min(max(1, most), MOST_HULLS)
+        settings = {"threshold": THRESHOLD, "most": most, "seed": _SEED}
         np.savez(source, vertices=vertices.astype(float), faces=faces.astype(np.int32), **settings)  # type: ignore[arg-type]
-        _run(source, target)
+        _run(source, target, len(faces), most)
         try:
             with np.load(target, allow_pickle=False) as result:
                 return [np.asarray(result[f"p{i}"], float) for i in range(len(result.files))]
@@ -79,24 +85,37 @@ def decompose(vertices: Floats, faces: Ints, most: int) -> list[Floats]:
             raise DecompositionError("CoACD gave no result") from None
 
 
-def _run(source: Path, target: Path) -> None:
-    environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_DYNAMIC": "false"}
-    try:
-        done = subprocess.run(
-            [sys.executable, "-P", str(_SCRIPT), str(source), str(target)],
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=_WALL_LIMIT,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        raise DecompositionError(f"CoACD did not end within {_WALL_LIMIT:g} s") from None
-    except OSError as problem:
-        raise DecompositionError(f"CoACD could not be started: {problem.strerror}") from None
-    if done.returncode:
-        output = done.stderr.decode("utf-8", "replace").strip().splitlines()
-        raise DecompositionError(f"CoACD failed ({output[-1][:200] if output else f'exit code {done.returncode}'})")
+def _run(source: Path, target: Path, triangles: int, most: int) -> None:
+    """Run CoACD in a child process and report its progress."""
+    single_thread = {"OMP_NUM_THREADS": "1", "OMP_DYNAMIC": "false"}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), **single_thread}
+    rounds = most.bit_length() + 1  # each round divides all pieces that are not convex enough
+    with progress.task(f"decomposing {triangles} triangles into convex pieces", rounds, unit="%") as task:
+        try:
+            done = ChildProcesses().run(
+                _SCRIPT,
+                [str(source), str(target)],
+                environment=environment,
+                limit=_WALL_LIMIT,
+                on_line=lambda line: _read_progress(line, task),
+            )
+        except OSError as problem:
+            raise DecompositionError(f"CoACD could not be started: {problem.strerror}") from None
+    if done.is_late:
+        raise DecompositionError(f"CoACD did not end within {_WALL_LIMIT:g} s")
+    if done.code:
+        lines = [line for line in done.last_lines(50) if "[info]" not in line]
+        raise DecompositionError(f"CoACD failed ({lines[-1][:200] if lines else f'exit code {done.code}'})")
+
+
+def _read_progress(line: str, task: progress.Task) -> None:
+    """Read the progress from a line of CoACD's log: "iter 2 ---- waiting pool: 4" or "Processing [25.0%]"."""
+    assert task.total is not None
+    if found := _ROUND.search(line):
+        task.done = float(found[1])
+    elif found := _SHARE.search(line):
+        task.done = math.floor(task.done) + min(0.99, float(found[1]) / 100.0)
+    task.total = max(task.total, math.ceil(task.done))
 
 
 LARGEST_RATIO: Final = 1.1

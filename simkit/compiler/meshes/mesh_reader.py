@@ -15,6 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit import progress
 from simkit.compiler.meshes.collada import read_collada
 from simkit.compiler.meshes.collada_skin import bone_parts
 from simkit.compiler.meshes.companion_files import Companions
@@ -43,6 +44,7 @@ def load_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> list[MeshPa
 
     A problem of a file is reported once, however often the file is used.
     """
+    progress.set_item(mesh.file.name)
     try:
         if mesh.bone:
             return [part.scaled(mesh.scale) for part in bone_parts(mesh.file, mesh.bone)]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 from xml.parsers import expat
 
+from simkit import progress
 from simkit.diagnostics import Diagnostics, Where
 from simkit.input_file import FileTooLargeError, read_input
 from simkit.params import Params
@@ -241,6 +242,7 @@ def _parse_without_comments(data: bytes, file: str | None, diagnostics: Diagnost
 
 def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:
     """Read one XML file; return None, with an error recorded, if it cannot be read."""
+    progress.set_item(path.name)
     try:
         text = read_input(path, MAX_BYTES, allow_pipe=True)
     except FileTooLargeError as error:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from simkit import progress
 from simkit.diagnostics import Diagnostics, did_you_mean, follows_from
 from simkit.errors import LoadError, RenderError, SimkitError
 from simkit.plugins.classic.server_services import ClassicServices
@@ -89,7 +90,11 @@ class InstanceMaker:
             world: world with the models.
             plugins: further plugins, created in Python.
         """
-        parts = {model.name: self.model_parts(model) for model in world.models}
+        parts: dict[str, SensorsAndPlugins] = {}
+        with progress.task("creating sensors and plugins", len(world.models)) as task:
+            for model in world.models:
+                parts[model.name] = self.model_parts(model)
+                task.advance(model.name)
         parts[""] = self.world_parts(world)
         for attachment in attach_plugins(plugins, world, self._diagnostics):
             self._add_python_plugin(parts[attachment.top], attachment, 1)

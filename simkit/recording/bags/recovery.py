@@ -11,6 +11,7 @@ from typing import Final
 
 from simkit.errors import InputError
 from simkit.input_file import read_failure
+from simkit.progress import report_each
 from simkit.recording.bags.mcap_salvage import Loss, McapSalvage
 from simkit.recording.bags.writer import Channel, McapBag, check_target, open_bag
 from simkit.writers.atomic_output import remove_abandoned, unfinished_folder
@@ -94,7 +95,7 @@ def _nothing(text: str) -> InputError:
 
 def _copy_messages(file: Path, salvage: McapSalvage, bag: McapBag, channels: dict[object, Channel]) -> None:
     """Copy the messages of a file; `channels` has the channels of the new bag, which several files share."""
-    messages = salvage.messages()
+    messages = report_each("copying messages", salvage.messages())
     while True:
         try:
             message = next(messages, None)

@@ -7,11 +7,12 @@ import re
 import shutil
 from array import array
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from simkit import progress
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.recording.bags.bag_contents import matches_topic
@@ -218,17 +219,18 @@ def _write_topics(bag: BagReader, topics: list[BagTopic], folder: Path, options:
     origin = bag.time_origin
     start = None if options.start is None else origin + round(options.start * _NS)
     end = None if options.end is None else origin + round(options.end * _NS)
-    try:
+    with ExitStack() as stack:
+        for opened in exports.values():
+            stack.callback(opened.close)
+        task = stack.enter_context(progress.task("exporting messages", sum(t.count for t in topics)))
         for message in bag.messages(list(dict.fromkeys(t.name for t in topics)), start):
             if end is not None and message.time_ns > end:
                 break
             export = exports.get((message.topic, message.type_name))
             if export is not None:
                 export.take(message.time_ns, bag.decode(message))
-    finally:
-        for export in exports.values():
-            export.close()
-    return [export.write() for export in exports.values()]
+                task.advance(message.topic)
+    return [export.write() for export in progress.report_each("writing files", exports.values(), len(exports))]
 
 
 def _file_names(topics: list[BagTopic]) -> dict[tuple[str, str], str]:

@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, cast
 
+from simkit import progress
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
 from simkit.run_spec import JsonObject, LoadOptions, RunSpec
@@ -214,24 +215,34 @@ def certify(
     rows = [Row(chosen[0], first, streams_hash(first), True)]
     on_row = on_row or (lambda _: None)
     on_row(rows[0])
-    with ThreadPoolExecutor(max(1, jobs if apart else 1)) as pool:
+    with (
+        ThreadPoolExecutor(max(1, jobs if apart else 1)) as pool,
+        progress.task("repeating the run", len(chosen) - 1) as task,
+    ):
         try:
             outcomes = pool.map(lambda variation: runner.run(variation, ticks), chosen[1:])
             for variation, outcome in zip(chosen[1:], outcomes, strict=True):
                 rows.append(Row(variation, outcome, streams_hash(outcome), not differences(first, outcome)))
                 on_row(rows[-1])
+                task.advance()
         except BaseException:  # for Ctrl-C too; otherwise, the pool would wait for all processes
             runner.end()
             raise
     known: dict[int, Difference] = {}
-    found = [_explain_difference(row, rows[0], runner, ticks, known) for row in rows[1:] if not row.same]
+    found = []
+    different = [row for row in rows[1:] if not row.same]
+    with progress.task("searching for the plugin that differs", len(different)) as task:
+        for row in different:
+            found.append(_explain_difference(row, rows[0], runner, ticks, known))
+            task.advance()
     duration, notes = first.ticks * first.timestep, _attribute_notes(rows)
     return Certificate(scenario.title, scenario.world, duration, scenario.seed, rows, found, notes, first.fingerprint)
 
 
 def _run_reference(runner: ProcessRunner, variation: Variation) -> RunOutcome:
     """Run the reference run and return its outcome; raise an error if the run gave no result."""
-    first = runner.first(variation)
+    with progress.task("running the reference run in its own process"):
+        first = runner.first(variation)
     if first.failure is not None:
         raise first.failure
     if first.stopped:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import threading
-from collections.abc import Sequence
-from contextlib import redirect_stdout
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from simkit import progress
 from simkit.errors import SimkitError
 
 if TYPE_CHECKING:
@@ -69,7 +71,11 @@ def check_goldens(paths: Sequence[Path], options: CheckOptions, jobs: int = 1) -
     if jobs > 1 and len(folders) > 1:
         results += _check_in_parallel(list(folders), options, min(jobs, len(folders)))
     else:
-        results += [check_golden_folder(folder, options) for folder in folders]
+        with _progress(folders) as task:
+            for folder in folders:
+                task.item = folder.name
+                results.append(check_golden_folder(folder, options))
+                task.advance()
     return sorted(results, key=lambda result: result.rank)
 
 
@@ -88,8 +94,37 @@ def _check_in_parallel(folders: list[Path], options: CheckOptions, jobs: int) ->
     from concurrent.futures import ProcessPoolExecutor
 
     context = multiprocessing.get_context("spawn")  # graphics libraries do not work in a forked process
-    with ProcessPoolExecutor(jobs, context, _end_with_parent) as pool:
-        return list(pool.map(_check_in_process, folders, [options] * len(folders)))
+    results: list[CheckResult] = []
+    with ProcessPoolExecutor(jobs, context, _end_with_parent) as pool, _progress(folders) as task:
+        try:
+            with _without_interrupts():
+                found = pool.map(_check_in_process, folders, [options] * len(folders))
+            for result in found:
+                results.append(result)
+                task.advance()
+        except BaseException:  # for Ctrl-C too; otherwise, the pool would wait for all checks
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in multiprocessing.active_children():
+                process.kill()
+            raise
+    return results
+
+
+def _progress(folders: Collection[Path]) -> AbstractContextManager[progress.Task]:
+    return progress.task("checking golden runs", len(folders))
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Start child processes that ignore Ctrl-C. The terminal sends it to them too, but the parent process ends them."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # child processes inherit the mask
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _end_with_parent() -> None:

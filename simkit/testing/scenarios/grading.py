@@ -15,6 +15,7 @@ from typing import Final
 from simkit.child_process import ChildProcesses
 from simkit.errors import InputError
 from simkit.input_file import read_input
+from simkit.progress import report_each
 from simkit.run_spec import JsonObject
 from simkit.testing.junit import JunitCase
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun
@@ -143,7 +144,7 @@ def grade_all(
             for hand_in, name in zip(hand_ins, names, strict=True)
         ]
         try:
-            for hand_in, name, outcomes in submissions:
+            for hand_in, name, outcomes in report_each("grading", submissions, len(submissions)):
                 file = "" if hand_in is None else str(hand_in)
                 yield Grade(exercise, file, tuple(one.result() for one in outcomes), name)
         finally:  # cancel waiting runs and end running processes, even if the caller does not read all grades

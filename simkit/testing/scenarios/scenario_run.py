@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
+from simkit import progress
 from simkit.recording.command_script import Commands, commands_of, read_script, steady_velocity
 from simkit.run_spec import RunSpec
 
@@ -81,7 +82,9 @@ def run_scenario(
         ScenarioCommands(scenario, sim) as commands,
         Watch(sim, scenario.checks, until=scenario.until, timeout=scenario.longest, absent=absent) as watch,
         sim.control.pausing.served(),
+        progress.task(f"running {scenario.title}", scenario.longest, unit="s") as task,
     ):
+        begun = sim.engine.steps
         end = sim.engine.steps + sim.engine.clock.ticks(scenario.longest)
         slice_ = max(1, sim.engine.clock.ticks(_SLICE_SECONDS))
         reason = "timeout" if scenario.until else "duration"
@@ -91,6 +94,7 @@ def run_scenario(
             if commands.next_tick is not None:
                 stop = min(stop, max(commands.next_tick, sim.tick + 1))
             sim.control.pausing.advance(stop - sim.tick)
+            task.done = (sim.engine.steps - begun) * sim.timestep
             if on_slice is not None:
                 on_slice()
             if wall_deadline is not None and time.perf_counter() > wall_deadline:

@@ -6,10 +6,12 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from simkit import progress
+from simkit.run_spec import RunSpec
 from simkit.testing.golden.cause.edits import Change, find_changes
 from simkit.testing.golden.cause.file_changes import changes_outside_world, engine_changes
 from simkit.testing.golden.cause.first_tick import FirstDifferentTick, first_different_tick, largest_final_difference
-from simkit.testing.golden.cause.rerun import RunChangedWorld, ScenarioRerun, can_be_undone, rerun_scenario
+from simkit.testing.golden.cause.rerun import ChangeWorld, RunChangedWorld, ScenarioRerun, can_be_undone, rerun_scenario
 from simkit.testing.golden.compare.difference import Cause, Comparison, Explanation
 from simkit.testing.golden.compare.world_edits import model_edits
 from simkit.testing.run_record.record import RunRecord
@@ -97,7 +99,15 @@ def explain(
     every = [*scenario, *changes, *engine, *(c for c in beside if c.kind != "scenario")]
     proof = _Proof([n for n, change in enumerate(every) if can_be_undone(change, run)])
     if proof.tried and rerun is not None and _has_recorded_difference(comparison):
-        _prove(proof, ScenarioRerun(golden, run, comparison, every, rerun, budget_s), parted)
+        most = 2 * len(proof.tried) + 4  # a bisection of all changes, and the tests of its result
+        with progress.task("searching for the cause", most, unit="runs at most", expected=budget_s) as task:
+
+            def counted_rerun(scenario: RunSpec, change: ChangeWorld | None) -> RunRecord:
+                found = rerun(scenario, change)
+                task.advance()
+                return found
+
+            _prove(proof, ScenarioRerun(golden, run, comparison, every, counted_rerun, budget_s), parted)
     causes = _rank_causes(every, proof)
     explanation = Explanation(causes, lines=_lines(causes, proof, parted, golden, run, comparison))
     explanation.quantity = proof.quantity or ("" if parted is None else parted.quantity)
