@@ -153,6 +153,7 @@ def exit_if_interrupted() -> None:
         for stream in (sys.stdout, sys.stderr):
             with suppress(OSError, ValueError, AttributeError):
                 stream.flush()
+        atexit._run_exitfuncs()  # without it, semaphores of child processes would be reported as lost
         os._exit(128 + _handler.received)
 
 
