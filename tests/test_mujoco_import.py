@@ -22,7 +22,10 @@ STUBS = {
     "old": ("__version__ = '3.3.2'", "MuJoCo 3.3.2 is installed, but simkit needs mujoco>=4.0,<5"),
     "mixed": ("raise ImportError('generic_type: type \"MjModel\" is already registered')", "MuJoCo cannot be imported"),
     "incomplete": ("__version__ = '4.0.0'", "MuJoCo cannot be imported"),
-    "library": ("raise OSError('libmujoco.so.3.3.2: cannot open shared object file')", "(libmujoco.so.3.3.2: cannot"),
+    "unloadable": (
+        "raise OSError('libmujoco.so.3.3.2: cannot open shared object file')",
+        "(libmujoco.so.3.3.2: cannot",
+    ),
 }
 
 
