@@ -131,7 +131,7 @@ def load(
     from simkit.runtime import SensorsAndPlugins, Simulation, WorldStructure
 
     diagnostics = Diagnostics()
-    resolver = Resolver([Path(p) for p in resource_paths], package_paths=package_paths)
+    resolver = Resolver(resource_paths, package_paths=package_paths)
 
     def find_file(uri: str, folder: Path | None) -> Path | None:
         return resolver.search(uri, folder)[0]
@@ -142,7 +142,7 @@ def load(
     if change_world is not None and not diagnostics.has_errors:
         world = change_world(world)
     allowed = [Path(p) for p in plugin_paths]
-    parameter_files = _read_parameter_files(params_files, resolver, diagnostics)
+    parameter_files = _read_parameter_files(params_files, resolver, diagnostics) if params_files else ()
     if diagnostics.has_errors:
         find_more_problems(world, diagnostics, allowed, find_file)
     diagnostics.raise_if_errors()
@@ -197,8 +197,6 @@ def _read_parameter_files(
     arguments: ParameterFileArgument | Sequence[ParameterFileArgument], resolver: Resolver, diagnostics: Diagnostics
 ) -> tuple[RunParameterFile, ...]:
     """Read the parameter files of the argument `params_files`."""
-    if not arguments:
-        return ()
     from simkit.plugins.run_parameter_files import read_run_parameter_files
 
     return read_run_parameter_files(arguments, lambda uri: resolver.search(uri, None)[0], diagnostics)
@@ -220,13 +218,14 @@ def describe(
     Raises:
         LoadError: the file has errors.
     """
-    check_source_arguments(
-        source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base
+    scene, diagnostics = read_scene(
+        source,
+        resource_paths=resource_paths,
+        xacro_args=xacro_args,
+        package_paths=package_paths,
+        base=base,
+        missing_meshes=True,
     )
-    diagnostics = Diagnostics()
-    resolver = Resolver([Path(p) for p in resource_paths], missing_meshes=True, package_paths=package_paths)
-    scene = _scene(source, resolver, diagnostics, xacro_args, base, ())
-    diagnostics.raise_if_errors()
     report_python_plugins(scene, diagnostics, [Path(p) for p in plugin_paths])
     return describe_scene(scene, diagnostics, describe_sensor)
 
@@ -360,8 +359,7 @@ def read_scene(
         source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base
     )
     diagnostics = Diagnostics()
-    paths = [Path(p) for p in resource_paths]
-    resolver = Resolver(paths, missing_meshes=missing_meshes, package_paths=package_paths)
+    resolver = Resolver(resource_paths, missing_meshes=missing_meshes, package_paths=package_paths)
     scene = _scene(source, resolver, diagnostics, xacro_args, base, ())
     diagnostics.raise_if_errors()
     return scene, diagnostics
@@ -398,11 +396,9 @@ def _model_to_spawn(
     )
     diagnostics.raise_if_errors()
     models = [scene.model] if scene.model else list(scene.world.models)
-    if len(models) != 1 or models[0] is None:
+    if len(models) != 1:
         diagnostics.error("SK-LOAD-010", f"spawn needs one model, but the source has {len(models)}")
     elif models[0].name in taken:
         diagnostics.error("SK-LOAD-011", f"a model {models[0].name!r} exists already", hint="pass another name=")
     diagnostics.raise_if_errors()
-    model = models[0]
-    assert model is not None
-    return model
+    return models[0]

@@ -162,7 +162,7 @@ class HandWrittenLoop(BareEngine):
         self._integrate = mujoco.mj_Euler if self.model.opt.integrator in _EULER else mujoco.mj_implicit
         self._random = np.random.default_rng(0)
         self.latest: dict[str, object] = {}
-        types = sim.topics()
+        types = sim.communication.bus.topics()
         sensors = {sensor.topic: sensor for sensor in sim.contents.sensors.values()}
         self._sim = sim
         self._due = [(p, t, self._reader(types[t], sensors.get(t))) for t, p in periods.items()]

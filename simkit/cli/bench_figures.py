@@ -160,7 +160,7 @@ def measure_memory_growth(sim: Simulation, duration: float) -> float:
 def _topics_without_images(sim: Simulation) -> set[str]:
     """Return the topics that need no rendering. Bounding boxes of a camera, for example, need rendering."""
     drawn = {t for s in sim.contents.sensors.values() if isinstance(s, RenderedCamera) for t in s._topics.values()}
-    return {topic for topic, type_name in sim.topics().items() if type_name not in _CAMERAS} - drawn
+    return {topic for topic, type_name in sim.communication.bus.topics().items() if type_name not in _CAMERAS} - drawn
 
 
 def compare_stepping(sim: Simulation, rounds: int) -> Figure:

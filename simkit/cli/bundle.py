@@ -55,7 +55,7 @@ def bundle(
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
         recorder = BundleRecorder(sim, last, topic)
-        scenario = resolve_commands(scenario, sim.topics())
+        scenario = resolve_commands(scenario, sim.communication.bus.topics())
         failure = None
         try:
             ended = run_scenario(scenario, sim)

@@ -56,7 +56,7 @@ def certify(
     )  # fmt: skip
     if scenario.velocity is not None or scenario.script is not None:
         with open_scenario(scenario) as sim:
-            scenario = resolve_commands(scenario, sim.topics())
+            scenario = resolve_commands(scenario, sim.communication.bus.topics())
     stdout_console().print(certificate.table_header())
     report = certify_scenario(
         scenario,

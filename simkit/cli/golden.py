@@ -59,7 +59,7 @@ def record_golden(spec: RunSpec, folder: Path, *, force: bool = False) -> RunRec
         sim = open_scenario(spec)
     try:
         check_used(sim.diagnostics)
-        record = run_record(resolve_commands(spec, sim.topics()), sim=sim)
+        record = run_record(resolve_commands(spec, sim.communication.bus.topics()), sim=sim)
         if record.error is not None:
             raise record.error
         write_golden(folder, record)

@@ -209,7 +209,7 @@ def _world_series(source: str, fields: Sequence[str], request: PlotRequest) -> t
     with ExitStack() as stack:
         sim = stack.enter_context(open_scenario(scenario))
         print_diagnostics(sim.diagnostics, verbose=False)
-        topics = sim.topics()
+        topics = sim.communication.bus.topics()
         curves, counts = _curves(fields, topics, lambda _: msgs.type_store(), scenario.title)
         tap = stack.enter_context(SeriesTap(sim, curves))
         run_scenario(scenario, sim)

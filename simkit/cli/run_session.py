@@ -247,7 +247,7 @@ class Session:
     def _commands(self) -> list[Command]:
         from simkit.recording.command_script import read_script, steady_velocity
 
-        topics = self.sim.topics()
+        topics = self.sim.communication.bus.topics()
         found = []
         if self.spec.velocity is not None:
             found.append(steady_velocity(self.spec.velocity, topics))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import Any, Final
 
 from simkit.argument_checks import (
@@ -32,7 +33,10 @@ def check_source_arguments(
     """
     check_source(source)
     check_paths(resource_paths, "resource_paths")
-    check_table(xacro_args, (str, int, float), "xacro_args", "texts")
+    if xacro_args is None or isinstance(xacro_args, Mapping):
+        check_table(xacro_args, (str, int, float), "xacro_args", "texts")
+    elif not isinstance(xacro_args, str):
+        check_list(xacro_args, str, "xacro_args", "texts NAME:=VALUE")
     check_table(package_paths, _PATH, "package_paths", "paths")
     check_kind(base, str, "base", "a text")
     if base not in _BASES:

@@ -4,6 +4,15 @@ from __future__ import annotations
 
 import re
 
+from simkit.argument_checks import check_text
+
+
+def absolute_name(topic: str) -> str:
+    """Return a name with its leading slash; raise an error if it is not a text, or empty."""
+    if not topic or type(topic) is not str:
+        check_text(topic, "the name")
+    return topic if topic.startswith("/") else "/" + topic
+
 
 def valid_topic(name: str) -> str:
     """Convert a name to an absolute topic as gz-transport does.

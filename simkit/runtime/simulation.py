@@ -285,7 +285,7 @@ class Simulation(InProcess):
             MessageError: the topic is unknown, or the fields do not fit its type.
         """
         self.engine.check_open()
-        self.communication.bus.publish(topic, message)
+        self.communication.publish(topic, message)
 
     def subscribe(
         self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: CallbackPolicy = "stop"
@@ -303,9 +303,10 @@ class Simulation(InProcess):
         return self.communication.bus.subscribe(topic, callback, keep, on_error)
 
     def topics(self) -> dict[str, str]:
-        """Return the ROS type names by topic."""
+        """Return the ROS type names by topic, sorted; "" for a topic that only has subscriptions."""
         self.engine.check_open()
-        return self.communication.bus.topics()
+        bus = self.communication.bus
+        return dict(sorted(({s.topic: "" for s in bus.subscriptions()} | bus.topics()).items()))
 
     def call(self, service: str, request: Message = None) -> Message:
         """Send a request to a service and return the response.

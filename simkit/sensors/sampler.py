@@ -21,10 +21,6 @@ from simkit.sensors.sample_times import DelayedReadings, LatencyTimetable, Sampl
 _MAX_GATHERED = 64  # number of gathered captures at which samples are made from them
 
 
-def _is_always_on() -> bool:
-    return True
-
-
 class Sampler(InProcess, abc.ABC):
     """Base class of `Sensor` that takes, keeps and publishes the samples."""
 
@@ -59,7 +55,7 @@ class Sampler(InProcess, abc.ABC):
         # these flags avoid a call at every sample of a method that the kind does not override
         self._selects_ticks, self._selects_products_of_sample = self._overrides("accepts"), self._overrides("publishes")
         self._evolves = self._overrides("evolve")
-        self._is_on: Callable[[], bool] = _is_always_on
+        self._is_on: Callable[[], bool] = lambda: True
 
     def sample_only_while(self, is_on: Callable[[], bool]) -> None:
         """Sample at due times only while `is_on()` returns true; a sensor without power has no samples."""

@@ -20,7 +20,8 @@ def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[J
     """List every topic with its publishers and subscribers, including clients, sorted by name."""
     names = NodeNames(sim, clients)
     found: dict[str, JsonObject] = {
-        topic: {"name": topic, "types": [], "publishers": [], "subscribers": []} for topic in sim.topics()
+        topic: {"name": topic, "types": [], "publishers": [], "subscribers": []}
+        for topic in sim.communication.bus.topics()
     }
     for topic, endpoint, types, role in sim.communication.bus.endpoints():
         if topic not in found or not endpoint.active:

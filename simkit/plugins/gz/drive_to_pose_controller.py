@@ -86,7 +86,7 @@ class DriveToPoseController(ModelPlugin):
 
     def _warn_about_missing_plugins(self) -> None:
         """Warn if no plugin publishes the robot's pose, or if no plugin subscribes to the published speeds."""
-        topics = self.sim.topics()
+        topics = self.sim.communication.bus.topics()
         if self._robot_pose is None and self._pose_topic not in topics:
             message = f"no publisher on {self._pose_topic} gives the robot's pose, so the robot does not start"
             self._once.warn("SK-PLUGIN-132", "place", message, "add an OdometryPublisher to the model")

@@ -123,7 +123,7 @@ class TriggeredPublisher(WorldPlugin):
             # ROS's stamped pose has no fields for Gazebo's header data, so listen to the detailed status
             self.listen(topic + DETAILS, STATUS, self._on_status)
             return
-        known, twins = self.sim.topics().get(topic), [twin.ros for twin in twins_of(kind)]
+        known, twins = self.sim.communication.bus.topics().get(topic), [twin.ros for twin in twins_of(kind)]
         self.listen(topic, sorted(twins, key=lambda ros: ros != known), self._on_message)
 
     def _read_match(self, kind: type[Message], element: Params) -> MessageMatcher | None:
@@ -149,7 +149,7 @@ class TriggeredPublisher(WorldPlugin):
         message = _message(kind, element.value, element, "<output>")
         if message is None:
             return None
-        known, twins = self.sim.topics().get(topic), [twin.ros for twin in twins_of(kind)]
+        known, twins = self.sim.communication.bus.topics().get(topic), [twin.ros for twin in twins_of(kind)]
         ros = known if known in twins else twins[0]
         return _Output(self.advertise(topic, ros), message, ros)
 

@@ -86,7 +86,7 @@ class Publisher(SharedByCopies):
 
     def _connect(self, sim: Simulation, owner: Plugin | None) -> None:
         _warn_of_rate(sim, owner, self._topic, self._options)
-        known, types = sim.topics().get(self._topic), [twin.ros for twin in twins_of(self._kind)]
+        known, types = sim.communication.bus.topics().get(self._topic), [twin.ros for twin in twins_of(self._kind)]
         self._ros = known if known in types else types[0]
         with sim.communication.bus.owned_by(owner):
             self._publisher = sim.communication.bus.advertise(self._topic, self._ros)
@@ -138,7 +138,7 @@ class _Subscription:
 
     def _connect(self, sim: Simulation, owner: Plugin | None) -> None:
         _warn_of_rate(sim, owner, self.topic, self._options)
-        known, twins = sim.topics().get(self.topic), [twin.ros for twin in twins_of(self._kind)]
+        known, twins = sim.communication.bus.topics().get(self.topic), [twin.ros for twin in twins_of(self._kind)]
         types = sorted(twins, key=lambda ros: ros != known)  # the type that the topic already has is first
         called = self._on_message if owner is None else _call_as_owner(sim, owner, self.topic, self._on_message)
         with sim.communication.bus.owned_by(owner):
@@ -234,7 +234,7 @@ class Node(SharedByCopies):
         return call_service(self._simulation(), _absolute_topic(service), request, response_kind)
 
     def topic_list(self) -> list[str]:
-        return list(self._simulation().topics())
+        return list(self._simulation().communication.bus.topics())
 
     def service_list(self) -> list[str]:
         return list(self._simulation().communication.services.names())

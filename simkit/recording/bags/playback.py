@@ -12,9 +12,9 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 from simkit.msgs.message_text import message_to_dict
 from simkit.msgs.message_types import Message
+from simkit.msgs.topic_names import absolute_name
 from simkit.recording.bags.bag_contents import BagMessage, unreadable
 from simkit.recording.bags.reader import LATEST_SIMULATED_TIME, open_bag_to_read
-from simkit.runtime.communication.topic_bus import absolute_name
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation

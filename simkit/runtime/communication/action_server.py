@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.errors import ActionError, InputError, MessageError, PluginError, SimkitError, SubscriberError
+from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.subscription import Callback, Message, callback_name
-from simkit.runtime.communication.topic_bus import absolute_name
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from simkit import msgs
+from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
 from simkit.runtime.communication.action_server import ActionTable
 from simkit.runtime.communication.parameter_server import Parameter, ParameterTable
 from simkit.runtime.communication.service_server import ServiceTable
@@ -143,6 +145,16 @@ class Communication:
         """
         self._engine.check_open()
         self.live_parameters.set(node, name, value)
+
+    def publish(self, topic: str, message: Message) -> None:
+        """Publish a message; a dict for a topic that only has subscriptions gets the first type that fits.
+
+        Raises:
+            MessageError: the topic is unknown, or the fields do not fit its type.
+        """
+        if isinstance(message, Mapping) and self.bus.wanted(topic) and absolute_name(topic) not in self.bus.topics():
+            message = msgs.from_dict(list(TYPES_OF_DICTS), dict(message))
+        self.bus.publish(topic, message)
 
     @property
     def parameters(self) -> dict[str, dict[str, Parameter[Any]]]:

@@ -13,9 +13,9 @@ from collections.abc import Callable, Mapping
 from simkit import msgs
 from simkit.argument_checks import check_function, check_text
 from simkit.errors import PluginError, ServiceError, SimkitError
+from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.subscription import Message
-from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.runtime.engine.plugin_faults import call_plugin
 
 ServiceHandler = Callable[[Message], Message]

@@ -7,10 +7,10 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 from simkit import msgs
-from simkit.argument_checks import check_function, check_text, checked_integer, wrong_value
+from simkit.argument_checks import check_function, checked_integer, wrong_value
 from simkit.diagnostics import Diagnostics, name_hint
 from simkit.errors import MessageError, SimkitError
-from simkit.msgs.topic_names import TYPES_OF_DICTS
+from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.command_queue import CommandQueue
 from simkit.runtime.communication.journal import Journal
 from simkit.runtime.communication.publisher import Check, ExternalPublisher, Listener, Publisher, TopicSides
@@ -27,14 +27,6 @@ from simkit.runtime.communication.subscription import (
 from simkit.runtime.communication.topic_conflicts import find_conflict
 from simkit.runtime.communication.topic_failures import TopicFailures
 from simkit.runtime.engine.plugin_faults import is_guarded
-
-
-def absolute_name(topic: str) -> str:
-    """Return a name with its leading slash; raise an error if it is not a text, or empty."""
-    if not topic or type(topic) is not str:
-        check_text(topic, "the name")
-    return topic if topic.startswith("/") else "/" + topic
-
 
 Endpoints = list[Any]
 """Publishers of a topic, or its listeners."""
@@ -225,9 +217,8 @@ class TopicBus:
     # ------------------------------------------------------------------ lists
 
     def topics(self) -> dict[str, str]:
-        """Return the types by topic, sorted, except unlisted topics; "" for a topic that only has subscriptions."""
-        found = {t: "" for t, readers in self._readers.items() if readers.readers} | self.all_topics()
-        return {t: found[t] for t in sorted(found) if t not in self.unlisted or self.wanted(t)}
+        """Return the types by topic, sorted, except unlisted topics and topics that only have subscriptions."""
+        return {t: kind for t, kind in self.all_topics().items() if t not in self.unlisted or self.wanted(t)}
 
     def all_topics(self) -> dict[str, str]:
         """Return the ROS type names of all topics, including unlisted ones."""
@@ -308,7 +299,6 @@ class TopicBus:
         types = [t for li in self._listeners.get(topic, ()) if li.active for t in li.types]
         types += [p.type_name for p in self._publishers.get(topic, ()) if p.active]
         if isinstance(message, Mapping):
-            types = types or (list(TYPES_OF_DICTS) if self._readers_of(topic).readers else [])
             if not types:
                 raise MessageError(f"no topic {topic!r}; {name_hint(topic, self.topics())}")
             message = msgs.from_dict(list(dict.fromkeys(types)), dict(message))

@@ -10,9 +10,9 @@ from typing import Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.msgs.topic_names import absolute_name
 from simkit.run_spec import Check
 from simkit.runtime import Simulation
-from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.testing.conditions.binder import bind
 from simkit.testing.conditions.bound_expression import BoundNode, findings, value_text
 from simkit.testing.conditions.contact_query import ContactQuery

@@ -10,9 +10,9 @@ import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.msgs.topic_names import absolute_name
 from simkit.pose import Pose, Vector
 from simkit.runtime import Joint, Simulation, Subscription
-from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.runtime.contact.collision_contacts import collision_table
 from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedValue, expression_error
 

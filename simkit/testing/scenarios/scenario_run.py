@@ -137,7 +137,7 @@ class ScenarioCommands:
     """
 
     def __init__(self, scenario: RunSpec, sim: Simulation) -> None:
-        topics = sim.topics()
+        topics = sim.communication.bus.topics()
         self._commands = Commands(sim, commands_of(resolve_commands(scenario, topics).commands, topics))
         self._played: Playback | None = None
         if scenario.played_bag is not None:
