@@ -45,7 +45,7 @@ def test_a_command_of_the_page_runs(line: str, tmp_path: Path) -> None:
 
 
 def test_every_key_of_the_page_does_something() -> None:
-    table = PAGE[PAGE.index("| key |") : PAGE.index("While it runs")]
+    table = PAGE[PAGE.index("| key |") : PAGE.index("During the run, the terminal")]
     keys = [key for row in table.splitlines()[2:-2] for key in re.findall(r"`(.)`|\b(space)\b", row.split("|")[1])]
     names = [ARROWS.get(one or other, one or other) for one, other in keys]
     assert len(names) == 18
