@@ -142,7 +142,11 @@ def load(
     if change_world is not None and not diagnostics.has_errors:
         world = change_world(world)
     allowed = [Path(p) for p in plugin_paths]
-    parameter_files = _read_parameter_files(params_files, resolver, diagnostics) if params_files else ()
+    parameter_files: tuple[RunParameterFile, ...] = ()
+    if params_files:
+        from simkit.plugins.run_parameter_files import read_run_parameter_files
+
+        parameter_files = read_run_parameter_files(params_files, lambda uri: find_file(uri, None), diagnostics)
     if diagnostics.has_errors:
         find_more_problems(world, diagnostics, allowed, find_file)
     diagnostics.raise_if_errors()
@@ -191,15 +195,6 @@ def load(
         simulation.close()
         raise
     return simulation
-
-
-def _read_parameter_files(
-    arguments: ParameterFileArgument | Sequence[ParameterFileArgument], resolver: Resolver, diagnostics: Diagnostics
-) -> tuple[RunParameterFile, ...]:
-    """Read the parameter files of the argument `params_files`."""
-    from simkit.plugins.run_parameter_files import read_run_parameter_files
-
-    return read_run_parameter_files(arguments, lambda uri: resolver.search(uri, None)[0], diagnostics)
 
 
 def describe(

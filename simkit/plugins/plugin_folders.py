@@ -61,6 +61,8 @@ def folder_help(module: str, where: Where, searched: Sequence[Path]) -> str:
     """
     beside = [Path(where.file).absolute().parent] if where.file else []
     nearby = [*beside, Path.cwd(), *(Path(folder).absolute() for folder in sys.path)]
+    if module.endswith(".py") and Path(module).is_absolute():
+        nearby, module = [Path(module).parent], Path(module).name
     found = find_module(module, nearby)
     if found is not None:
         shown = _short(found[1])

@@ -18,12 +18,14 @@ from simkit.cli import app
 
 SLED = """<sdf version="1.9"><world name="ice"><model name="sled"><pose>0 0 1 0 0 0</pose><link name="base"/>
   <plugin filename="gz-sim-velocity-control-system" name="gz::sim::systems::VelocityControl"/>
-  <plugin filename="boom.py" name="Boom"/>
+  <plugin filename="libboom.so" name="Boom"/>
 </model></world></sdf>"""
 BOOM = """
 import simkit
 
 class Boom(simkit.ModelPlugin):
+    filenames = ("libboom.so",)
+
     def load(self, model, params):
         pass
 

@@ -364,7 +364,8 @@ def test_elements_of_our_own_come_out_with_their_prefix_and_mean_the_same(here: 
 
 def messages(path: str) -> dict[str, list[bytes]]:
     heard: dict[str, list[bytes]] = {}
-    with simkit.load(path, seed=3) as sim:
+    Path("absent.py").write_text("class Quiet:\n    def reset(self, *_): pass\nget_system = Quiet\n")
+    with simkit.load(path, seed=3, plugin_paths=["."]) as sim:
         for sensor in sim.contents.sensors.values():
             sim.communication.bus.tap(
                 sensor.topic, lambda m, n=sensor.scoped: heard.setdefault(n, []).append(msgs.serialize(m))

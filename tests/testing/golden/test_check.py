@@ -123,9 +123,9 @@ def test_the_worst_result_is_the_first_of_several(golden: Path, tmp_path: Path) 
     (golden.parent / "pears" / "golden.json").write_text("{")
     main = golden / "golden.json"
     main.write_text(main.read_text().replace('"seed": 0', '"seed": 1').replace('"duration": 0.5', '"duration": 0.4'))
-    code, said = simkit("golden", "check", golden.parent, "--json")
-    assert code == 2
-    found = json.loads(said)
+    done = CliRunner().invoke(app, ["golden", "check", str(golden.parent), "--json"])
+    assert done.exit_code == 2
+    found = json.loads(done.stdout)["results"]
     assert [Path(one["folder"]).name for one in found] == ["pears", "ball", "apples"]
     assert found[0]["error"]["code"] == "SK-GOLDEN-003"
     assert found[1]["differences"] and found[2]["passed"]

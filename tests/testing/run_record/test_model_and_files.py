@@ -101,4 +101,4 @@ def test_a_plugin_that_prints_forks_or_changes_the_folder_is_recorded(
     assert done.exit_code == 0, done.output
     assert (folder / "gold en" / "golden.json").is_file() and Path.cwd() == folder
     done = CliRunner().invoke(app, ["golden", "check", "gold en", "--json"])
-    assert done.exit_code == 0 and json.loads(done.stdout)[0]["passed"] and "stepping" in done.stderr
+    assert done.exit_code == 0 and json.loads(done.stdout)["passed"] and "stepping" in done.stderr
