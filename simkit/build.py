@@ -16,6 +16,7 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import LoadError, PluginError, RenderError
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
+from simkit.loaders.model_world import add_model_world
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.make_instances import (
@@ -29,7 +30,7 @@ from simkit.plugins.discovery.make_instances import (
 )
 from simkit.plugins.gz.sensors import with_sensors_colours
 from simkit.pose import Pose
-from simkit.run_spec import LoadOptions, NamedValues, PluginErrorPolicy, RunSpec, named_values
+from simkit.run_spec import EMPTY_SPACE, LoadOptions, NamedValues, PluginErrorPolicy, RunSpec, named_values
 from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
 from simkit.scene.overrides import apply_overrides
 from simkit.sensors import sensor_kinds
@@ -78,6 +79,7 @@ def load(
     render_thread: bool | None = None,
     on_error: PluginErrorPolicy | None = None,
     spawn: Sequence[str | SpawnedModel] = (),
+    model_world: str = EMPTY_SPACE,
     params_files: ParameterFileArgument | Sequence[ParameterFileArgument] = (),
     change_world: Callable[[SceneWorld], SceneWorld] | None = None,
 ) -> Simulation:
@@ -104,7 +106,10 @@ def load(
             the plugin. The argument has priority over the file (`<simkit:on_error>`) and the plugin's class. With None,
             the file or the class sets the policy; the default is "stop".
         spawn: models to add while the world is loaded: `"MODEL:x,y,yaw[:name]"` texts or `SpawnedModel` objects. MODEL
-            is a file or a bare name. Unlike models of `Simulation.spawn`, these models are still present after a reset.
+            is a file or a bare name. Each stands on what is below it, unless a height is given: `"MODEL:x,y,z,yaw"`.
+            Unlike models of `Simulation.spawn`, these models are still present after a reset.
+        model_world: world of a bare model, in which the model stands on what is below it: "ground" for level ground and
+            a sun, a file, or the bare name of a world. "none" is empty space.
         params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2.
             `"MODEL=FILE"` limits a file to one model. Models that are spawned later read these files too. Values in
             these files have priority over the files that the plugins name.
@@ -124,10 +129,11 @@ def load(
     )
     seed = check_load_arguments(
         seed=seed, plugin_paths=plugin_paths, plugins=plugins, strict=strict, overrides=overrides, sleep=sleep,
-        on_error=on_error, spawn=spawn, params_files=params_files, change_world=change_world,
+        on_error=on_error, spawn=spawn, params_files=params_files, change_world=change_world, model_world=model_world,
     )  # fmt: skip
     import_mujoco()
     from simkit.compiler import SpecBuilder
+    from simkit.compiler.standing_models import stand_models
     from simkit.runtime import SensorsAndPlugins, Simulation, WorldStructure
 
     diagnostics = Diagnostics()
@@ -136,8 +142,10 @@ def load(
     def find_file(uri: str, folder: Path | None) -> Path | None:
         return resolver.search(uri, folder)[0]
 
-    scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides, spawn)
-    world = scene.world if sleep else replace(scene.world, physics=replace(scene.world.physics, sleep=False))
+    scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides, spawn, model_world)
+    world = scene.world if diagnostics.has_errors else stand_models(scene.world, scene.standing, diagnostics)
+    if not sleep:
+        world = replace(world, physics=replace(world.physics, sleep=False))
     world = add_actor_models(world, find_file, diagnostics)
     if change_world is not None and not diagnostics.has_errors:
         world = change_world(world)
@@ -184,7 +192,7 @@ def load(
     }  # fmt: skip
     simulation.run_spec = RunSpec(
         os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
-        options=options, folder=Path.cwd(), change_world=change_world,
+        model_world=model_world, options=options, folder=Path.cwd(), change_world=change_world,
     )  # fmt: skip
     try:
         report_unread(parts.values())
@@ -289,17 +297,16 @@ def _scene(
     base: str,
     overrides: Sequence[str],
     spawn: Sequence[str | SpawnedModel] = (),
+    model_world: str = EMPTY_SPACE,
 ) -> Scene:
+    def read(source: Source, diagnostics: Diagnostics, base: str = "auto") -> Scene:
+        return load_scene(
+            source, resolver=resolver, diagnostics=diagnostics, xacro_args=named_values(xacro_args, "xacro_args"),
+            base=base, mesh_reader=_read_mesh, mjcf_parser=_mjcf_parser,
+        )  # fmt: skip
+
     with progress.task("reading the world"):
-        scene = load_scene(
-            source,
-            resolver=resolver,
-            diagnostics=diagnostics,
-            xacro_args=named_values(xacro_args, "xacro_args"),
-            base=base,
-            mesh_reader=_read_mesh,
-            mjcf_parser=_mjcf_parser,
-        )
+        scene = add_model_world(read(source, diagnostics, base), model_world, read, diagnostics)
         if spawn:
             scene = add_spawned_models(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
     if overrides:

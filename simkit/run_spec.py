@@ -23,6 +23,12 @@ JsonMapping = Mapping[str, Any]
 PluginErrorPolicy = Literal["stop", "disable"]
 """Policy for a plugin that raises: end the run, or continue without the plugin."""
 
+GROUND: Final = "ground"
+"""World of a bare model: level ground and a sun."""
+
+EMPTY_SPACE: Final = "none"
+"""World of a bare model: nothing."""
+
 NO_FILE_POSITION: Final = ""
 """Position of an item that does not come from a file."""
 
@@ -184,6 +190,7 @@ class LoadArguments(LoadOptions, total=False):
     seed: int
     overrides: Sequence[str]
     spawn: Sequence[Any]
+    model_world: str
     plugins: Sequence[object]
     change_world: Callable[[Any], Any] | None
 
@@ -212,6 +219,8 @@ class RunSpec:
         name: name in reports; empty for the world's name.
         overrides: `PATH=VALUE` texts as for `--set`.
         spawn: models to add to the world, as for `--spawn`.
+        model_world: world of a bare model: "ground" for level ground and a sun, "none" for empty space, a file
+            (relative to `folder`), or a bare name. The model stands on what is below it.
         commands: commands to send during the run: mappings as in a `--script`, each with its file position under
             "where".
         plugins: plugins made in Python, as for `simkit.load`; from Python only.
@@ -248,6 +257,7 @@ class RunSpec:
     name: str = ""
     overrides: tuple[str, ...] = ()
     spawn: tuple[str | SpawnRequest, ...] = ()
+    model_world: str = GROUND
     commands: tuple[JsonMapping, ...] = ()
     plugins: tuple[object, ...] = ()
     topics: tuple[str, ...] = ()
@@ -281,6 +291,7 @@ class RunSpec:
             seed=self.seed,
             overrides=self.overrides,
             spawn=self.spawn,
+            model_world=self.model_world_source,
             plugins=self.plugins,
             change_world=self.change_world,
         )
@@ -319,6 +330,14 @@ class RunSpec:
         if "<" in self.world:
             return self.world
         return self.world if self.beside is None else str(self.beside)
+
+    @property
+    def model_world_source(self) -> str:
+        """Argument `model_world` of `simkit.load`: the path of a file in `folder` if it exists, else `model_world`."""
+        if self.model_world in (GROUND, EMPTY_SPACE) or "<" in self.model_world:
+            return self.model_world
+        path = self.folder / self.model_world
+        return str(path) if path.is_file() else self.model_world
 
     @property
     def beside(self) -> Path | None:

@@ -11,7 +11,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import stdout_console
-from simkit.run_spec import RunSpec
+from simkit.run_spec import GROUND, RunSpec
 
 _HOUR = 3600.0
 
@@ -27,6 +27,7 @@ def bench(
     package_path: options.PackagePaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    model_world: options.ModelWorld = None,
 ) -> None:
     """Compare the speed of a world with bare MuJoCo."""
     from simkit.mujoco_import import import_mujoco
@@ -36,7 +37,11 @@ def bench(
     from simkit.cli.bench_figures import compare_with_bare_mujoco, measure_import_time, measure_memory_growth
 
     stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'goal':>8}")
-    spec = RunSpec(world, options=load_options(resource_path, package_path, xacro_arg, base, plugin_path))
+    spec = RunSpec(
+        world,
+        model_world=model_world or GROUND,
+        options=load_options(resource_path, package_path, xacro_arg, base, plugin_path),
+    )
     figures = []
     for figure in compare_with_bare_mujoco(spec, rounds=rounds):
         figures.append(figure)

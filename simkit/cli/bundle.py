@@ -27,6 +27,7 @@ def bundle(
     script: options.Script = None,
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
+    model_world: options.ModelWorld = None,
     params_file: options.ParamsFiles = [],
     last: Annotated[float, option("Seconds of messages to keep before the end.", "S", min=0)] = 10.0,
     topic: Annotated[list[str], option("Keep image topics that match this pattern, too; repeatable.", "PATTERN")] = [],
@@ -51,6 +52,7 @@ def bundle(
     scenario = scenario_spec(
         world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file),
         duration=duration, seed=seed, overrides=set_, spawn=spawn, cmd_vel=cmd_vel, script=script,
+        model_world=model_world,
     )  # fmt: skip
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)

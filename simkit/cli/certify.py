@@ -34,6 +34,7 @@ def certify(
     script: options.Script = None,
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
+    model_world: options.ModelWorld = None,
     params_file: options.ParamsFiles = [],
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
@@ -52,7 +53,7 @@ def certify(
     scenario = scenario_spec(
         world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file),
         duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn, cmd_vel=cmd_vel,
-        script=script, usual_duration=_DEFAULT_DURATION,
+        model_world=model_world, script=script, usual_duration=_DEFAULT_DURATION,
     )  # fmt: skip
     if scenario.velocity is not None or scenario.script is not None:
         with open_scenario(scenario) as sim:

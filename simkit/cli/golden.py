@@ -204,6 +204,7 @@ def record(
     skip: Annotated[list[str], option("Leave out topics that match this pattern; repeatable.", "PATTERN")] = [],
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
+    model_world: options.ModelWorld = None,
     params_file: options.ParamsFiles = [],
     cmd_vel: options.CmdVel = None,
     script: options.Script = None,
@@ -218,10 +219,10 @@ def record(
     loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file)
     spec = scenario_spec(
         world, loading, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
-        cmd_vel=cmd_vel, script=script,
+        model_world=model_world, cmd_vel=cmd_vel, script=script,
     )  # fmt: skip
     is_changed = duration is not None or seed is not None
-    if is_changed or any((topic, skip, set_, spawn, cmd_vel, script, loading)):
+    if is_changed or any((topic, skip, set_, spawn, model_world, cmd_vel, script, loading)):
         spec = replace(spec, file=None)  # the golden run itself keeps the changes to the scenario file
     found = record_golden(spec, out_, force=force)
     if found.simulation is not None:

@@ -31,6 +31,7 @@ def plot(
     duration: Annotated[float | None, option("Simulated seconds to run a world; default: 10.", "S", min=0)] = None,
     seed: options.Seed = None,
     set_: options.Overrides = [],
+    model_world: options.ModelWorld = None,
     cmd_vel: options.CmdVel = None,
     script: options.Script = None,
     resource_path: options.ResourcePaths = [],
@@ -44,6 +45,13 @@ def plot(
     sources, fields = split_sources_and_fields(arguments)
     loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
     run = partial(
-        scenario_spec, options=loading, duration=duration, seed=seed, overrides=set_, cmd_vel=cmd_vel, script=script
+        scenario_spec,
+        options=loading,
+        duration=duration,
+        seed=seed,
+        overrides=set_,
+        cmd_vel=cmd_vel,
+        script=script,
+        model_world=model_world,
     )
     draw_chart(sources, fields, PlotRequest(output, against, start, end, title, run), json_=json_)

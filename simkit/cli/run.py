@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -21,8 +22,9 @@ from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, rep
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
+from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
-from simkit.run_spec import Check, PluginErrorPolicy, Recording, RunSpec
+from simkit.run_spec import GROUND, Check, PluginErrorPolicy, Recording, RunSpec
 
 _TIME = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|min|)")
 _UNITS = {"": 1.0, "s": 1.0, "ms": 1e-3, "min": 60.0}
@@ -121,6 +123,7 @@ def run(
     name: Name = None,
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
+    model_world: options.ModelWorld = None,
     params_file: options.ParamsFiles = [],
     strict: options.Strict = False,
     view: Annotated[bool, Option("--view", help="Show the run in a viewer window.")] = False,
@@ -158,6 +161,7 @@ def run(
         name=name or "",
         overrides=tuple(set_),
         spawn=tuple(spawn),
+        model_world=model_world or GROUND,
         topics=tuple(topic),
         skip=tuple(skip),
         until=_expression(until),
@@ -218,6 +222,13 @@ def highest_pace(rtf: float | None, *, is_watched: bool) -> float | None:
     return rtf if math.isfinite(rtf) else None
 
 
+def _print_model_world(found: Iterable[Diagnostic]) -> None:
+    """Print the note about the ground of a bare model, which a user may not expect."""
+    for note in found:
+        if note.code == "SK-SPAWN-005":
+            print_status(f"note: {note.message} ({note.hint})")
+
+
 def execute(spec: RunSpec, display: RunDisplay) -> int:
     """Run a specification and return the exit code.
 
@@ -251,6 +262,8 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
             try:
                 check_used(sim.diagnostics)
                 print_diagnostics(sim.diagnostics, verbose=display.verbose)
+                if not display.verbose:
+                    _print_model_world(sim.diagnostics)
                 verdict.code = Session(spec, display, sim, blocked, verdict).execute()
             finally:
                 add_diagnostics(sim.diagnostics)

@@ -71,6 +71,7 @@ def scenario_spec(
     skip: Sequence[str] = (),
     overrides: Sequence[str] = (),
     spawn: Sequence[str] = (),
+    model_world: str | None = None,
     cmd_vel: str | None = None,
     script: Path | None = None,
     usual_duration: float = 10.0,
@@ -86,6 +87,7 @@ def scenario_spec(
         skip: topic patterns to leave out, in addition to the scenario's.
         overrides: parameter overrides, in addition to the scenario's.
         spawn: models to spawn, in addition to the scenario's.
+        model_world: world of a bare model; None for the scenario's.
         cmd_vel: constant velocity command; None for the scenario's.
         script: command script; None for the scenario's.
         usual_duration: simulated time of a world without a scenario [s].
@@ -107,6 +109,7 @@ def scenario_spec(
         skip=(*found.skip, *skip),
         overrides=(*found.overrides, *overrides),
         spawn=(*found.spawn, *spawn),
+        model_world=model_world or found.model_world,
         options={**found.options, **options},
         velocity=found.velocity if cmd_vel is None else cmd_vel,
         script=script or found.script,

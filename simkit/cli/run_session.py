@@ -14,8 +14,8 @@ from simkit.cli.run_loop import Interrupts, RunLoop
 from simkit.cli.run_options import RunDisplay
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
-from simkit.cli.terminal.json_report import add_to_report
-from simkit.cli.terminal.output import JsonObject, print_status, stderr_console, stdout_console
+from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
+from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stderr_console, stdout_console
 from simkit.errors import InputError, RenderError
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
@@ -228,9 +228,18 @@ class Session:
                     recording.close()
                 print_summary(sim, counter, recording, elapsed, quiet=display.quiet)
                 self.verdict.print_results()
+                self._report_fallen_models()
         if driven is not None and display.picture is not None:
             draw_picture(sim, display.picture, driven)
         return interrupts.exit_code or self.verdict.code
+
+    def _report_fallen_models(self) -> None:
+        """Warn of models that fell out of the world."""
+        from simkit.runtime.fallen_models import find_fallen_models
+
+        found = find_fallen_models(self.sim)
+        print_diagnostics(found, verbose=True)
+        add_diagnostics(found)
 
     def _start_recording(self, stack: ExitStack) -> Recorder | None:
         """Start the recorder that the specification requests; the stack closes it."""

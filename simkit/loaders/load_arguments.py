@@ -60,6 +60,7 @@ def check_load_arguments(
     spawn: object,
     params_files: Any,
     change_world: object,
+    model_world: object,
 ) -> int:
     """Check the other arguments of `simkit.load`, and return the seed.
 
@@ -77,6 +78,7 @@ def check_load_arguments(
     check_list(spawn, (str, SpawnedModel), "spawn", "texts MODEL:x,y,yaw[:name]")
     if not isinstance(params_files, _PATH) and not _is_model_and_file(params_files):
         check_list(params_files, (*_PATH, tuple), "params_files", "paths")
+    check_kind(model_world, str, "model_world", "'ground', 'none', a path or a bare name")
     if change_world is not None:
         check_function(change_world, "change_world")
     return checked_integer(seed, "seed")

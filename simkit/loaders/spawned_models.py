@@ -30,7 +30,8 @@ class SpawnedModel:
 
     Attributes:
         source: a bare name, a file, or XML text.
-        place: x, y, yaw; or x, y, z, yaw; or x, y, z, roll, pitch, yaw [m, rad]. None keeps the pose of the file.
+        place: x, y, yaw, for a model that stands on what is below it; or x, y, z, yaw; or x, y, z, roll, pitch, yaw
+            [m, rad]. None keeps the pose of the file; without a pose in the file it means 0, 0, 0.
         name: replaces the name in the file; None keeps that name.
     """
 
@@ -41,7 +42,8 @@ class SpawnedModel:
     def pose(self, own: Pose) -> Pose | None:
         """Return the pose in the world, or None to keep the pose of the file.
 
-        `x, y, yaw` keeps height, roll and pitch of the file's pose; `x, y, z, yaw` keeps roll and pitch.
+        `x, y, yaw` and `x, y, z, yaw` keep roll and pitch of the file's pose. `x, y, yaw` also keeps its height here;
+        the height at which the model stands needs the other models (`Scene.standing`).
 
         Args:
             own: pose that the model's own file gives.
@@ -94,7 +96,7 @@ def add_spawned_models(
         xacro_args: arguments of xacro files.
     """
     world = scene.world
-    models = list(world.models)
+    models, standing = list(world.models), list(scene.standing)
     for item in spawned_models:
         spawn = parse_spawn(item, diagnostics) if isinstance(item, str) else item
         if spawn is None:
@@ -105,7 +107,8 @@ def add_spawned_models(
             continue
         found = Diagnostics()
         own = _file_pose(spawn.source, resolver, xacro_args)
-        model = load_model(spawn.source, found, name=spawn.name, pose=spawn.pose(own), xacro_args=xacro_args)
+        pose = spawn.pose(own or Pose())
+        model = load_model(spawn.source, found, name=spawn.name, pose=pose, xacro_args=xacro_args)
         found.pass_on(diagnostics)  # plugins report problems of their parameters later; these are passed on too
         if model is None:
             continue
@@ -114,19 +117,21 @@ def add_spawned_models(
             diagnostics.error("SK-SPAWN-002", text, model.where, "give it another name: MODEL:x,y,yaw:NAME")
             continue
         models.append(model)
+        if len(spawn.place or ()) == 3 or (spawn.place is None and own is None):
+            standing.append(model.name)
     world = replace(world, models=tuple(models))
-    return replace(scene, worlds=(world, *scene.worlds[1:]), model=None, light=None)
+    return replace(scene, worlds=(world, *scene.worlds[1:]), model=None, light=None, standing=tuple(standing))
 
 
-def _file_pose(source: Any, resolver: Resolver, xacro_args: NamedValues | None) -> Pose:
-    """Return the pose that a model's own file gives, or the origin if the file gives none."""
+def _file_pose(source: Any, resolver: Resolver, xacro_args: NamedValues | None) -> Pose | None:
+    """Return the pose that a model's own file gives, or None if the file gives none."""
     if not (isinstance(source, str) and "<" in source) and Path(source).suffix in (".urdf", ".xacro", ".xml"):
-        return Pose()
+        return None
     document, _ = find_document(source, resolver, Diagnostics(), xacro_args)
     if document is None or document.root.name != "sdf":
-        return Pose()
+        return None
     for kind in ("model", "include"):
         first = next(iter(document.root.all(kind)), None)
         if first is not None:
-            return first.pose("pose")
-    return Pose()
+            return first.pose("pose") if any(child.name == "pose" for child in first.children) else None
+    return None

@@ -3,30 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import fields, is_dataclass, replace
-from typing import Any, Final, TypeVar
+from dataclasses import replace
 
 from simkit.errors import InputError
-from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import SceneLight, SceneModel, SceneWorld
-
-T = TypeVar("T")
-
-_NAME_FIELDS: Final = frozenset(
-    (
-        "scoped",
-        "canonical_link",
-        "parent_link",
-        "child_link",
-        "gearbox_reference",
-        "parent",
-        "link",
-        "attached_to",
-        "joint",
-    )
-)
-_DIRECTION_FIELDS: Final = frozenset(("direction_world", "xyz_world"))
+from simkit.scene.model_transform import transform_model
 
 
 def check_model_name(name: object) -> None:
@@ -48,8 +30,7 @@ def copy_model(model: SceneModel, name: str, pose: Pose) -> SceneModel:
     if any(nested.mjcf for nested in model.all_models()):
         message = f"SK-SERVICE-002 model {model.name!r} is in MuJoCo's own format and cannot be copied"
         raise InputError(f"{message}; spawn its file again", "SK-SERVICE-002")
-    moved = _ModelCopier(model.name, name, pose @ model.pose_world.inverse()).of(model)
-    return replace(moved, name=name)
+    return transform_model(model, name, pose @ model.pose_world.inverse())
 
 
 def present_world(
@@ -67,38 +48,3 @@ def present_world(
         replace(li, pose_world=pose, direction_world=tuple(pose.rotate(li.direction).tolist())) for li, pose in lights
     )
     return replace(world, models=placed, lights=moved_lights)
-
-
-class _ModelCopier:
-    def __init__(self, old: str, new: str, shift: Pose) -> None:
-        self._old, self._new, self._shift = old, new, shift
-
-    def of(self, value: T) -> T:
-        """Copy a part of the scene."""
-        if isinstance(value, tuple):
-            return tuple(self.of(item) for item in value)  # type: ignore[return-value]
-        if isinstance(value, Params):
-            return value.copied()  # type: ignore[return-value]
-        if not is_dataclass(value) or isinstance(value, type):
-            return value
-        changed: dict[str, Any] = {}
-        for field in fields(value):
-            before = getattr(value, field.name)
-            after = self._field(field.name, before)
-            if after is not before:
-                changed[field.name] = after
-        return replace(value, **changed) if changed else value
-
-    def _field(self, name: str, value: Any) -> Any:
-        if name in _NAME_FIELDS:
-            return self._name(value)
-        if name == "pose_world":
-            return self._shift @ value
-        if name in _DIRECTION_FIELDS:
-            return tuple(self._shift.rotate(value).tolist())
-        return self.of(value)
-
-    def _name(self, value: Any) -> Any:
-        if value == self._old or (isinstance(value, str) and value.startswith(f"{self._old}::")):
-            return self._new + value[len(self._old) :]
-        return value

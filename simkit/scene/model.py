@@ -10,7 +10,7 @@ from simkit.diagnostics import NOWHERE, Where
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.actuation import Calibration, Safety, Transmission
-from simkit.scene.geometry import Geometry, Vec3
+from simkit.scene.geometry import Geometry, Heightmap, Plane, Vec3
 from simkit.scene.mjcf_source import MjcfSource
 
 Colour = tuple[float, float, float, float]
@@ -317,6 +317,12 @@ class SceneModel:
     def all_joints(self) -> list[SceneJoint]:
         """Return the joints of this model and of all nested models."""
         return [joint for m in self.all_models() for joint in m.joints]
+
+    @property
+    def has_ground(self) -> bool:
+        """True for a model that is a ground itself: it has a plane or a height map that collides."""
+        shapes = (collision.geometry for link in self.all_links() for collision in link.collisions)
+        return any(isinstance(shape, (Plane, Heightmap)) for shape in shapes)
 
     def all_sensors(self) -> list[SceneSensor]:
         """Return every sensor on links and joints, in document order of the models."""

@@ -218,6 +218,7 @@ class Scene:
 
     Attributes:
         around: world that a bare model's file describes around the model; None if the file describes none.
+        standing: names of the models whose height is computed, so that they stand on what is below them.
     """
 
     worlds: tuple[SceneWorld, ...] = ()
@@ -225,6 +226,7 @@ class Scene:
     file: str | None = None
     light: SceneLight | None = None
     around: SceneWorld | None = None
+    standing: tuple[str, ...] = ()
 
     @property
     def world(self) -> SceneWorld:

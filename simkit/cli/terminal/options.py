@@ -99,6 +99,15 @@ Spawns = Annotated[
         "Spawn a model, by name or file; repeatable.", "MODEL:x,y,yaw[:name]", "--spawn", complete=completion.worlds
     ),
 ]
+ModelWorld = Annotated[
+    str | None,
+    option(
+        "World of a bare model: a file, a name, or none for empty space; default: level ground and a sun.",
+        "NAME|none|FILE",
+        "--world",
+        complete=completion.worlds,
+    ),
+]
 CmdVel = Annotated[str | None, option("Send a constant velocity: m/s forward, rad/s left.", "V,W", "--cmd-vel")]
 Script = Annotated[Path | None, option("Script of timed commands.", "FILE.yaml", "--script")]
 Seed = Annotated[int | None, option("Seed of all random streams.", "N", "--seed", min=0)]

@@ -19,7 +19,7 @@ from typing import IO, Final
 
 from simkit.errors import InputError
 from simkit.input_file import open_input
-from simkit.run_spec import JsonObject
+from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject
 from simkit.testing.bundles.manifest import BAG, BROKEN, COMMANDS, PAGE, Manifest, read_manifest
 
 MAX_FILES: Final = 20_000
@@ -29,7 +29,7 @@ _MAX_INDEX_BYTES: Final = 16 << 20  # limit for the list of files at the end of 
 _MAX_LINE_BYTES: Final = 256 << 20  # limit for one entry of the journal
 # A small archive may unpack to 64 MiB. A larger one may unpack to at most 200 times its size on disk.
 _ALWAYS_ALLOWED_BYTES, _MAX_RATIO = 64 << 20, 200
-FOLDERS: Final = ("world", "spawn", "models", "params", "code")
+FOLDERS: Final = ("world", "model_world", "spawn", "models", "params", "code")
 _BAD_NAME, _TOO_LARGE = "SK-BUNDLE-003", "SK-BUNDLE-004"
 _NAME: Final = re.compile(r"[^\x00-\x1f\x7f\\:*?\"<>|]+")
 _END: Final = struct.Struct("<4s4H2LH")
@@ -169,6 +169,7 @@ class Bundle:
             raise self._broken(f"{missing!r:.80} is missing in the archive or in {PAGE}")
         named: dict[str, Iterable[str]] = {
             "world": [manifest.world],
+            "model_world": {manifest.model_world} - {GROUND, EMPTY_SPACE},
             "spawn": {model.file for model in manifest.spawn},
             "params": {file for _, file in manifest.params},
             "models": manifest.models.values(),

@@ -9,7 +9,7 @@ import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,7 +20,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
 from simkit.loaders import Resolver
 from simkit.loaders.spawned_models import SpawnedModel, parse_spawn
-from simkit.run_spec import FilePath, LoadOptions, RunSpec, SourceOptions
+from simkit.run_spec import EMPTY_SPACE, GROUND, FilePath, LoadOptions, RunSpec, SourceOptions
 from simkit.testing.bundles.manifest import PackedModel
 from simkit.writers.vendored_folder import vendor
 
@@ -52,9 +52,10 @@ def packed_run_spec(
         world: World file, as in the manifest.
         spawn: Spawned models, as in the manifest.
         params: Parameter files, as in the manifest.
-        original: Specification with the seed, overrides and options of the run.
+        original: Specification with the seed, overrides, options and model's world of the run.
         code: Folders of plugins whose code may run.
     """
+    around = original.model_world
     options: LoadOptions = {
         "base": original.options.get("base", "auto"),
         "sleep": original.options.get("sleep", True),
@@ -66,6 +67,7 @@ def packed_run_spec(
         str(folder / world),
         seed=original.seed,
         overrides=original.overrides,
+        model_world=around if around in (GROUND, EMPTY_SPACE) else str(folder / around),
         spawn=tuple(SpawnedModel(folder / one.file, one.place, one.name) for one in spawn),
         options=options,
     )
@@ -122,6 +124,7 @@ class StagedWorld:
     """Files of a run that were copied to the stage folder."""
 
     file: str
+    model_world: str = EMPTY_SPACE
     spawn: list[PackedModel] = field(default_factory=list)
     params: list[tuple[str, str]] = field(default_factory=list)
     models: dict[str, str] = field(default_factory=dict)
@@ -175,6 +178,10 @@ class WorldStager:
         found = StagedWorld(
             self._copy_with_references(self._spec.world, "world", base=self._spec.options.get("base", "auto"))
         )
+        around = self._spec.model_world_source
+        found.model_world = (
+            around if around in (GROUND, EMPTY_SPACE) else self._copy_with_references(around, "model_world")
+        )
         for number, one in enumerate(self._spec.spawn):
             spawn = parse_spawn(one, Diagnostics()) if isinstance(one, str) else one
             if spawn is not None:
@@ -225,7 +232,11 @@ class WorldStager:
         """Compare the packed world with the world of the run, because files may have been edited during the run."""
         spec = self._spec
         try:
-            with load_packed_world(packed_run_spec(self._stage, found.file, found.spawn, found.params, spec)) as sim:
+            with load_packed_world(
+                packed_run_spec(
+                    self._stage, found.file, found.spawn, found.params, replace(spec, model_world=found.model_world)
+                )
+            ) as sim:
                 same = model_hash(sim.mj_model, sim.engine.originals) == loaded_model_hash(keeper)
         except (SimkitError, OSError) as error:
             errors = [d for d in error.diagnostics if d.severity == "error"] if isinstance(error, LoadError) else []

@@ -214,6 +214,7 @@ def _world_fields(spec: RunSpec, world: StagedWorld) -> JsonObject:
         "on_error": spec.options.get("on_error"),
         "overrides": spec.overrides,
         "spawn": tuple(world.spawn),
+        "model_world": world.model_world,
         "params": tuple(world.params),
         "models": world.models,
         "code": tuple(sorted(world.code)),

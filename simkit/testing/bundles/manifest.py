@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from simkit.errors import InputError, SimkitError
-from simkit.run_spec import JsonMapping, JsonObject, LoadOptions, PluginErrorPolicy, RunSpec
+from simkit.run_spec import EMPTY_SPACE, JsonMapping, JsonObject, LoadOptions, PluginErrorPolicy, RunSpec
 
 if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
@@ -106,6 +106,7 @@ class Manifest:
         base: Mounting of a bare model, as in `simkit.load`.
         seed, overrides, sleep, on_error: Arguments of `simkit.load`.
         spawn: Models that were spawned into the world during loading.
+        model_world: World of a bare model: "ground", "none", or a file in the bundle.
         params: Parameter files, as pairs of a model name (empty for all models) and a file.
         models: Models that were spawned during the run: requested source -> file in the bundle.
         code: Files of the user's plugins.
@@ -135,6 +136,7 @@ class Manifest:
     missing: tuple[str, ...]
     fingerprint: Mapping[str, str]
     end: RunEnd
+    model_world: str = EMPTY_SPACE
     seconds: float = 0.0
     topics: tuple[str, ...] = ()
     first: int = 0
@@ -149,7 +151,8 @@ class Manifest:
         options: LoadOptions = {"base": self.base, "sleep": self.sleep}
         if self.on_error in ("stop", "disable"):
             options["on_error"] = cast(PluginErrorPolicy, self.on_error)
-        return RunSpec(self.world, seed=self.seed, name=self.name, overrides=self.overrides, options=options)
+        return RunSpec(self.world, seed=self.seed, name=self.name, overrides=self.overrides, options=options,
+                       model_world=self.model_world)  # fmt: skip
 
     def text(self) -> str:
         """Return the manifest as JSON; equal manifests give equal texts."""
@@ -272,6 +275,7 @@ def _parse_manifest(reader: _ManifestReader) -> Manifest:
         code=reader.texts("code"),
         missing=reader.texts("missing"),
         fingerprint=reader.text_mapping("fingerprint"),
+        model_world=reader.optional("model_world", reader.text) or EMPTY_SPACE,
         seconds=reader.time("seconds"),
         topics=reader.texts("topics"),
         first=reader.count("first"),

@@ -16,7 +16,7 @@ from typing import Any, Final, cast
 from simkit import progress
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
-from simkit.run_spec import JsonObject, LoadOptions, RunSpec
+from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject, LoadOptions, RunSpec
 from simkit.testing.certify.certificate import Certificate, Difference, Row, streams_hash
 from simkit.testing.certify.child_run import ChildRequest, run_child
 from simkit.testing.certify.code_hints import hints_in
@@ -145,10 +145,19 @@ def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
     if options.get("params_files"):
         given = options["params_files"]
         options["params_files"] = [_absolute_file(g) for g in ([given] if isinstance(given, (str, Path)) else given)]
+    around = scenario.model_world_source
+    around = around if around in (GROUND, EMPTY_SPACE) else _absolute_file(around)
     spawn = tuple(_absolute_file(text, ":") for text in scenario.spawn)
     folder, file = scenario.folder.absolute(), scenario.file and scenario.file.absolute()
     return replace(
-        scenario, world=source, options=cast(LoadOptions, options), spawn=spawn, folder=folder, file=file, plugins=()
+        scenario,
+        world=source,
+        model_world=around,
+        spawn=spawn,
+        options=cast(LoadOptions, options),
+        folder=folder,
+        file=file,
+        plugins=(),
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any, Final, cast
 
 import numpy as np
 
-from simkit.run_spec import Check, JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
+from simkit.run_spec import EMPTY_SPACE, GROUND, Check, JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
 from simkit.testing.golden.compare.tolerances import storage_step
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
@@ -50,6 +50,8 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
     if scenario.spawn:
         found["spawn"] = [_move_spawn(str(text), lambda p: place(p) if Path(scenario.folder, p).exists() else p)
                           for text in scenario.spawn]  # fmt: skip
+    if scenario.model_world != EMPTY_SPACE:
+        found["model_world"] = _move_file(scenario.model_world, place, scenario.folder)
     if scenario.commands:
         found["commands"] = [{k: _plain_value(v) for k, v in one.items() if k != "where"} for one in scenario.commands]
     if scenario.play:
@@ -92,6 +94,8 @@ def decode_scenario(plain: JsonMapping, folder: Path) -> RunSpec:
     given["spawn"] = tuple(
         _move_spawn(str(text), lambda p: place(p) if Path(place(p)).exists() else p) for text in plain.get("spawn", ())
     )
+    # golden runs of older versions have no such key: their models are in empty space
+    given["model_world"] = _move_file(str(plain.get("model_world", EMPTY_SPACE)), place, folder)
     given["play"] = str(plain.get("play", ""))
     given["commands"] = tuple({**one, "where": "commands"} for one in plain.get("commands", ()))
     given["tolerances"] = tuple(Tolerance(**_known_fields(one, Tolerance)) for one in plain.get("tolerances", ()))
@@ -122,6 +126,12 @@ def relative_path(path: Path, folder: Path) -> str:
         return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
     except ValueError:
         return path.resolve().as_posix()
+
+
+def _move_file(text: str, place: Callable[[str], str], folder: Path) -> str:
+    """Replace the path of an existing file in a folder; return the name of a world unchanged."""
+    is_name = text in (GROUND, EMPTY_SPACE) or "<" in text
+    return place(text) if not is_name and Path(folder, text).is_file() else text
 
 
 def _move_spawn(text: str, place: Callable[[str], str]) -> str:

@@ -14,7 +14,7 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.command_script import script_items, validate_items
-from simkit.run_spec import Check, CheckKind, JsonObject, LoadOptions, RunSpec, Tolerance, named_values
+from simkit.run_spec import GROUND, Check, CheckKind, JsonObject, LoadOptions, RunSpec, Tolerance, named_values
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
 
@@ -29,7 +29,7 @@ _CHECKS: Final[dict[str, CheckKind]] = {
 _READING_KEYS: Final = ("resource_paths", "package_paths", "xacro_args", "base")
 _LOADING_KEYS: Final = ("plugin_paths", "params_files", *_READING_KEYS)
 KEYS: Final = (
-    *("world", "name", "duration", "seed", "set", "spawn", "commands", "play", "play_topics", "topics"),
+    *("world", "name", "duration", "seed", "set", "spawn", "model_world", "commands", "play", "play_topics", "topics"),
     *("skip", "tolerances", "statistics", "state", "model", "picture", "until", "timeout", "wall_timeout"),
     *_CHECKS,
     *_LOADING_KEYS,
@@ -121,6 +121,7 @@ class ScenarioReader(ValueReader):
             name=self._text("name", ""),
             overrides=self._overrides(),
             spawn=tuple(resolve_spawn_file(self._document.path.parent, one) for one in self._texts("spawn")),
+            model_world=self._text("model_world", GROUND),
             commands=self._commands(),
             play=str(self._fields.get("play", "")),
             play_topics=self._texts("play_topics"),
