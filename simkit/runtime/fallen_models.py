@@ -15,6 +15,12 @@ if TYPE_CHECKING:
 _FREE_FALL: Final = 0.01
 """Largest relative difference of an acceleration to gravity in free fall."""
 
+_GROUND_HINT: Final = (
+    "give the world a ground: <include><uri>model://ground_plane</uri></include>; a model alone has one without "
+    "--world none"
+)
+_COLLISION_HINT: Final = "its links have no <collision>, so that no ground can carry it: add one to the lowest links"
+
 
 def find_fallen_models(sim: Simulation) -> Diagnostics:
     """Return a warning for each top-level model that is farther below everything else than the world's extent.
@@ -40,8 +46,7 @@ def find_fallen_models(sim: Simulation) -> Diagnostics:
             f"{name} fell out of the world{since}: it is at z = {height:.4g} m at t = {sim.time:.2f} s, and everything "
             f"else is above {lowest:.4g} m",
             model.scene.where,
-            "give the world a ground: <include><uri>model://ground_plane</uri></include>, or for a model alone run it "
-            "without --world none",
+            _GROUND_HINT if any(s.collisions for s in model.scene.all_links()) else _COLLISION_HINT,
         )
     return found
 

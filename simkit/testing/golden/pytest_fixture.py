@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import pytest
 
 from simkit.errors import InputError
-from simkit.run_spec import JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
+from simkit.run_spec import EMPTY_SPACE, JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
 from simkit.testing.golden.cause import explain
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
@@ -37,6 +37,7 @@ _NUMBERS: Final = ("absolute", "relative", "share", "image", "ssim")  # numeric 
 _SCENARIO_ARGUMENTS: Final = (
     "overrides",
     "spawn",
+    "model_world",
     "plugins",
 )  # arguments of `simkit.load` that are fields of a scenario
 
@@ -211,7 +212,8 @@ class SensorRegression:
         loaded = what.run_spec
         world = loaded.world if loaded is not None else str(what.world.where.file if what.world.where else "")
         folder = loaded.folder if loaded is not None else self._place.beside
-        return RunSpec(world or what.world.name, seed=what.seed, folder=folder), what
+        around = EMPTY_SPACE if loaded is None else loaded.model_world
+        return RunSpec(world or what.world.name, seed=what.seed, model_world=around, folder=folder), what
 
     def _require_golden(self, place: Path) -> None:
         from simkit.testing.golden.store import is_golden
