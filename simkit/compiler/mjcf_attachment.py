@@ -63,10 +63,11 @@ def attach_world(spec: mujoco.MjSpec, records: Iterable[ModelRecord]) -> None:
     """Attach the file of the world itself, once for all its models, without a prefix for its names."""
     records = list(records)
     child = _mjcf_source(records[0].scene).document()
+    has_total_mass = child.compiler.settotalmass > 0.0  # before the loop, because write_masses clears it
     for record in records:
         source = _mjcf_source(record.scene)
         adaptation.rename_lights(child, source)
-        if child.compiler.settotalmass > 0.0:
+        if has_total_mass:
             adaptation.write_masses(child, source)
         record.root_bodies += source.roots
         _bind_elements(record, record.scene, "", "")
@@ -110,6 +111,9 @@ def attach_model(
     wrapper = f"{model.scoped}{_MARK}" if record.movable and WORLD in source.bodies.values() else ""
     with silence_engine_warnings():
         spec.attach(child, prefix=prefix, frame=_attachment_frame(spec, record, source, prefix, wrapper, holder))
+    for skin in spec.skins:  # MuJoCo renames the files in memory, but not their users among the skins
+        if skin.name.startswith(prefix) and f"{prefix}{skin.file}" in spec.assets:
+            skin.file = f"{prefix}{skin.file}"
     if record.movable and not wrapper:
         for root in source.roots:
             spec.body(f"{prefix}{root}").mocap = True

@@ -306,27 +306,31 @@ def _textured_cylinder(radius: float, half: float) -> tuple[Floats, Ints, Floats
 
 LARGEST: Final = 4097
 _LARGEST_FILE: Final = 256 << 20
+_TIFF_WIDTH: Final = 256
+_TIFF_HEIGHT: Final = 257
 _FORMATS: Final = ("PNG", "JPEG", "TIFF", "BMP", "TGA", "GIF", "PPM", "WEBP")
 
 
 def heightmap_rows(shape: Heightmap) -> Floats:
     """Return the heights in an image as rows from -y to +y, scaled so that the highest value is 1, as in Gazebo.
 
-    8-bit and 16-bit images and TIFF with floating-point numbers are supported; colours are converted to brightness.
+    8-bit and 16-bit images and TIFF with numbers of 32 or 64 bits are supported; colours are converted to brightness.
 
     Raises:
         MeshFileError: the file is not such an image, or is too large; the size is checked before decoding.
     """
-    from PIL import Image
+    from PIL import Image, UnidentifiedImageError
 
     try:
         content = read_input(shape.file, _LARGEST_FILE)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with Image.open(io.BytesIO(content), formats=_FORMATS) as image:
-                if image.width > LARGEST or image.height > LARGEST:
-                    raise MeshFileError(f"is {image.width}×{image.height}; at most {LARGEST}×{LARGEST} is supported")
-                grey = _grey_values(image)
+            try:
+                with Image.open(io.BytesIO(content), formats=_FORMATS) as image:
+                    _check_image_size(image.width, image.height)
+                    grey = _grey_values(image)
+            except UnidentifiedImageError:
+                grey = _wide_tiff_values(content)
     except MeshFileError:
         raise
     except OSError as problem:
@@ -340,6 +344,44 @@ def heightmap_rows(shape: Heightmap) -> Floats:
         raise MeshFileError("has NaN or infinite heights")
     most = float(np.abs(grey).max()) if float(grey.max()) <= 0.0 else float(grey.max())
     return np.ascontiguousarray(grey[::-1]) / (most if most > 0.0 else 1.0)
+
+
+def _check_image_size(width: int, height: int) -> None:
+    if width > LARGEST or height > LARGEST:
+        raise MeshFileError(f"is {width}×{height}; at most {LARGEST}×{LARGEST} is supported")
+
+
+def _wide_tiff_values(content: bytes) -> Floats:
+    """Return the values of a grey TIFF with numbers of 64 bits, which Pillow does not read.
+
+    Raises:
+        OSError: the file is not a TIFF.
+        ValueError: its encoding is not supported, or the file is damaged.
+        MeshFileError: the file is too large; the size is checked before decoding.
+    """
+    from PIL.TiffImagePlugin import PREFIXES, ImageFileDirectory_v2
+
+    if not content.startswith(tuple(PREFIXES)):
+        raise OSError("it is not a PNG, JPEG or TIFF image")
+    header = ImageFileDirectory_v2(content[: 16 if content[2] == 43 or content[3] == 43 else 8])
+    stream = io.BytesIO(content)
+    stream.seek(header.next)
+    header.load(stream)
+    if not {_TIFF_WIDTH, _TIFF_HEIGHT} <= set(header):
+        raise ValueError("the TIFF file is damaged")
+    _check_image_size(int(header[_TIFF_WIDTH]), int(header[_TIFF_HEIGHT]))
+    import cv2
+
+    log = cv2.utils.logging
+    level = log.getLogLevel()
+    log.setLogLevel(log.LOG_LEVEL_SILENT)  # OpenCV writes about damaged files to the terminal
+    try:
+        values = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_UNCHANGED)
+    finally:
+        log.setLogLevel(level)
+    if values is None or values.ndim != 2:
+        raise ValueError("its TIFF encoding is not supported")
+    return np.asarray(values, float)
 
 
 def _grey_values(image: PilImage) -> Floats:

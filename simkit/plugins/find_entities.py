@@ -13,6 +13,7 @@ from simkit.plugins.options import Options, text
 from simkit.scene import SceneJoint, SceneLink, SceneModel
 
 T = TypeVar("T")
+_TWO_AXES = ("universal", "revolute2")
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -24,7 +25,10 @@ if TYPE_CHECKING:
 def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
     """Return a joint of the model; None after an error. The name is plain, or scoped from the world or the model."""
     joints = scene.all_joints()
-    found = _find_by_suffix(scene.scoped, name, {j.scoped: j for j in joints})
+    table = {j.scoped: j for j in joints}
+    found = _find_by_suffix(scene.scoped, name, table)
+    if found is None and _find_by_suffix(scene.scoped, name, {link.scoped: link for link in scene.all_links()}):
+        found = _find_by_suffix(scene.scoped, f"{name}_joint", table)  # the loader renames a joint with a link's name
     if found is None:
         _report_unknown("joint", name, scene, (j.name for j in joints), params)
     return found
@@ -92,9 +96,15 @@ def _report_unknown(what: str, name: str, scene: SceneModel, names: Iterable[str
 
 
 def find_axis_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
-    """Return a joint with one degree of freedom by its name; None after an error."""
+    """Return a joint of which the plugin uses one axis, by its name; None after an error.
+
+    Of a universal or revolute2 joint this is the first axis, as in Gazebo, with a warning.
+    """
     joint = find_joint(scene, name, params)
-    if joint is not None and len(joint.axes) != 1:
+    if joint is not None and joint.type in _TWO_AXES:
+        text = f"joint {name!r} is {joint.type}; the plugin uses only its first axis, as in Gazebo"
+        params.warning("SK-PLUGIN-003", text, "a joint with one axis says which motion is meant")
+    elif joint is not None and len(joint.axes) != 1:
         params.error("SK-PLUGIN-003", f"joint {name!r} is {joint.type}; the plugin needs a joint with one axis")
         return None
     return joint

@@ -83,10 +83,11 @@ def _block_of_unknown(sensor: SceneSensor) -> Block:
 
 
 def _sweep(prefix: str, block: Params, samples: int) -> Block:
+    low, high = sorted((block.number("min_angle", 0.0), block.number("max_angle", 0.0)))
     return {
         f"{prefix}_samples": block.integer("samples", samples, minimum=1),
-        f"{prefix}_min": block.number("min_angle", 0.0),
-        f"{prefix}_max": block.number("max_angle", 0.0),
+        f"{prefix}_min": low,
+        f"{prefix}_max": high,
     }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 
 import mujoco
 import numpy as np
@@ -95,6 +96,30 @@ def test_heights_below_zero_keep_their_share(tmp_path):
     Image.fromarray(np.array([[-5.0, 0.0], [5.0, 10.0]], np.float32)).save(tmp_path / "deep.tif")
     rows = heightmap_rows(Heightmap(tmp_path / "deep.tif", "deep.tif"))
     np.testing.assert_allclose(rows, [[0.5, 1.0], [-0.5, 0.0]])
+
+
+def wide_tiff(rows: np.ndarray) -> bytes:
+    """Return a TIFF file of 64-bit floating-point numbers."""
+    data, (height, width) = rows.astype("<f8").tobytes(), rows.shape
+    tags = [(256, width), (257, height), (258, 64), (259, 1), (262, 1), (273, 8), (277, 1), (278, height)]
+    tags += [(279, len(data)), (339, 3)]
+    directory = b"".join(struct.pack("<HHII", tag, 4 if tag in (273, 278, 279) else 3, 1, v) for tag, v in tags)
+    header = b"II*\0" + struct.pack("<I", 8 + len(data))
+    return header + data + struct.pack("<H", len(tags)) + directory + struct.pack("<I", 0)
+
+
+def test_a_tiff_with_numbers_of_64_bits_is_read(tmp_path, capfd):
+    heights = np.array([[0.0, 25.0], [50.0, 100.0]])
+    (tmp_path / "h.tif").write_bytes(wide_tiff(heights))
+    np.testing.assert_array_equal(heightmap_rows(Heightmap(tmp_path / "h.tif", "h.tif")), [[0.5, 1.0], [0.0, 0.25]])
+    (tmp_path / "cut.tif").write_bytes(wide_tiff(heights)[:60])
+    with pytest.raises(MeshFileError, match="damaged"):
+        heightmap_rows(Heightmap(tmp_path / "cut.tif", "cut.tif"))
+    small, large = struct.pack("<HHII", 256, 3, 1, 2), struct.pack("<HHII", 256, 4, 1, 1 << 30)
+    (tmp_path / "wide.tif").write_bytes(wide_tiff(heights).replace(small, large))
+    with pytest.raises(MeshFileError, match="at most"):
+        heightmap_rows(Heightmap(tmp_path / "wide.tif", "wide.tif"))
+    assert capfd.readouterr().err == ""
 
 
 def test_a_heightmap_on_what_moves_is_an_error(make, tmp_path):

@@ -39,7 +39,7 @@ _SEARCH_VARIABLES = (
 )
 _SCHEMES = ("model", "package", "file")
 _CACHE_VARIABLES = ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH")
-_NOT_FOUND_CODES = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
+NOT_FOUND_CODES = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
 _PATH_HINT = "add its folder with --resource-path or SIMKIT_RESOURCE_PATH"
 
 
@@ -99,7 +99,7 @@ class Resolver:
             path = None
         reported = []
         for problem in found:
-            is_missing = self.missing_meshes or problem.code in _NOT_FOUND_CODES or is_path_of_other_machine(uri)
+            is_missing = self.missing_meshes or problem.code in NOT_FOUND_CODES or is_path_of_other_machine(uri)
             if problem.severity == "error" and is_missing:
                 effect = "; the shape is left out of drawing and contacts"
                 problem = replace(problem, severity="warning", message=problem.message + effect)

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Container
+from typing import Literal
+
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 
@@ -35,11 +39,36 @@ def read_name(element: Params, diagnostics: Diagnostics, version: tuple[int, int
     return name[:LONGEST_NAME]
 
 
+class FreeNames:
+    """Names `name_0`, `name_1`, ... for repeated names, as Gazebo Classic numbers models.
+
+    Args:
+        taken: names that are in use.
+    """
+
+    def __init__(self, taken: Container[str]) -> None:
+        self._taken = taken
+        self._numbers: dict[str, itertools.count[int]] = {}
+
+    def next(self, name: str) -> str:
+        """Return the next numbered name that is not in use."""
+        numbers = self._numbers.setdefault(name, itertools.count())
+        return next(free for i in numbers if (free := f"{name}_{i}") not in self._taken)
+
+
 def named_elements(
-    elements: list[Params], owner: str, diagnostics: Diagnostics, version: tuple[int, int] = (1, 12)
+    elements: list[Params],
+    owner: str,
+    diagnostics: Diagnostics,
+    version: tuple[int, int] = (1, 12),
+    repeated: Literal["error", "renamed", "left out"] = "error",
 ) -> list[tuple[str, Params]]:
-    """Return the elements that have a name, with their names; a repeated name is an error."""
+    """Return the elements that have a name, with their names.
+
+    A repeated name is an error, or a warning where Gazebo continues: the element gets another name or is left out.
+    """
     found: dict[str, Params] = {}
+    free = FreeNames({element.attributes.get("name", "").strip() for element in elements})
     if len(elements) > MOST_SIBLINGS:
         text = f"{owner} has {len(elements)} <{elements[0].name}> elements; the limit is {MOST_SIBLINGS}"
         diagnostics.error("SK-XML-002", text, elements[MOST_SIBLINGS].where)
@@ -50,7 +79,15 @@ def named_elements(
             continue
         if name in found:
             text = f"{owner} has two <{element.name}> named {name!r} (the other at line {found[name].where.line})"
-            diagnostics.error("SK-SDF-002", text, element.where)
+            if repeated == "renamed":
+                other = free.next(name)
+                found[other] = element
+                diagnostics.warning("SK-SDF-002", f"{text}; this one is named {other!r}", element.where)
+            elif repeated == "left out":
+                element.mark_all_read()
+                diagnostics.warning("SK-SDF-002", f"{text}; this one is left out", element.where)
+            else:
+                diagnostics.error("SK-SDF-002", text, element.where)
         else:
             found[name] = element
     return list(found.items())

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from simkit.diagnostics import did_you_mean
+from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.bundled_models import builtin_model, turtlebot3_uri
 from simkit.loaders.resources.model_folder import model_file
+from simkit.loaders.resources.uri_resolver import NOT_FOUND_CODES
 from simkit.loaders.resources.xml_reader import parse_text
 from simkit.loaders.sdf.entity_names import read_name
 from simkit.loaders.sdf.experimental_params import BLOCK, apply_changes
@@ -15,6 +16,7 @@ from simkit.loaders.sdf.load_context import EntitySource, SdfFile, Workspace, po
 from simkit.params import Params
 
 _ENTITIES = ("model", "light", "actor")
+_MOST_LISTED = 30
 
 
 def read_inline_entity(element: Params, file: SdfFile, workspace: Workspace) -> EntitySource | None:
@@ -115,15 +117,47 @@ def _open_include(uri: str, include: Params, file: SdfFile, workspace: Workspace
     if path is None:
         text = builtin_model(uri)
         if text is not None:
+            workspace.has_found = True
             root = parse_text(text, diagnostics, uri)
             return None if root is None else workspace.file(root, None, (*file.chain, uri))
-        path = resolver.resolve(uri, place.where, diagnostics, file.folder)
+        found = Diagnostics()
+        path = resolver.resolve(uri, place.where, found, file.folder)
+        is_missing = path is None and all(problem.code in NOT_FOUND_CODES for problem in found)
+        workspace.missing += [(uri, problem) for problem in found if is_missing]
+        diagnostics.extend(() if is_missing else found)
     if path is not None and path.is_dir():
         path = model_file(path, place.where, diagnostics)
     if path is None:
         return None
+    workspace.has_found = True
     workspace.places[uri, file.folder] = path
     return workspace.open(path, place.where, file.chain)
+
+
+def report_missing(workspace: Workspace, is_world: bool) -> None:
+    """Report the includes that are not found.
+
+    In a world with other includes they are left out with one warning for each cause, because Gazebo continues without
+    them. Otherwise each is an error.
+    """
+    diagnostics = workspace.diagnostics
+    if not (is_world and workspace.has_found):
+        diagnostics.extend(problem for _, problem in workspace.missing)
+        return
+    for code in dict.fromkeys(problem.code for _, problem in workspace.missing):
+        same = [(uri, problem) for uri, problem in workspace.missing if problem.code == code]
+        first = same[0][1]
+        lines: dict[str, list[str]] = {}
+        for uri, problem in same:
+            place = str(problem.line) if problem.file == first.file else f"{problem.file}:{problem.line}"
+            lines.setdefault(uri, []).append(place)
+        message = first.message
+        if len(lines) > 1:
+            listed = [f"{uri} (line {', '.join(places[:5])})" for uri, places in lines.items()]
+            more = f" and {len(listed) - _MOST_LISTED} more" if len(listed) > _MOST_LISTED else ""
+            message = f"{len(listed)} included models are not found: {', '.join(listed[:_MOST_LISTED])}{more}"
+        effect = "; the world runs without " + ("it" if len(lines) == 1 else "them")
+        diagnostics.warning(code, message + effect, Where(first.file, first.line), first.hint)
 
 
 def _only_entity(file: SdfFile, uri: str, include: Params, workspace: Workspace) -> Params | None:

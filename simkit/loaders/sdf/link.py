@@ -11,7 +11,7 @@ from simkit.loaders.sdf.geometry import read_geometry
 from simkit.loaders.sdf.inertial import read_inertial
 from simkit.loaders.sdf.light import read_lights
 from simkit.loaders.sdf.load_context import NamedElement, Workspace
-from simkit.loaders.sdf.material import read_material
+from simkit.loaders.sdf.material import read_material, read_transparency
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensors
 from simkit.loaders.sdf.surface import read_surface
@@ -123,7 +123,7 @@ def _visual(part: NamedElement, element: Params, name: str, link: str, workspace
         pose_link=part.pose_of(element, what),
         geometry=shape,
         material=read_material(element, part.file, workspace),
-        transparency=element.number("transparency", 0.0, minimum=0.0, maximum=1.0),
+        transparency=read_transparency(element),
         cast_shadows=element.boolean("cast_shadows", True),
         visibility_flags=element.integer("visibility_flags", -1, minimum=-1, maximum=0xFFFFFFFF) & 0xFFFFFFFF,
         laser_retro=element.number("laser_retro", 0.0),

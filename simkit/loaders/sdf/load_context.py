@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
-from simkit.diagnostics import Diagnostics, Where
+from simkit.diagnostics import Diagnostic, Diagnostics, Where
 from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, MjcfParser
 from simkit.loaders.resources.model_folder import NEWEST_SDF, sdf_version
 from simkit.loaders.resources.uri_resolver import Resolver
@@ -22,6 +22,7 @@ from simkit.scene import SceneModel
 
 MAX_INCLUDE_DEPTH = 32
 MAX_MODELS = 20_000
+_SHAPES = ("collision", "visual")
 
 
 class IncludedModel(abc.ABC):
@@ -82,6 +83,8 @@ class Workspace:
         reported: names of missing textures and meshes that have been reported, because each is reported once.
         changed: models that an include has changed, for the report on unused elements.
         places: files found so far, by URI and by the folder of the file that names them.
+        missing: URIs of includes that are not found, each with its error.
+        has_found: True if an include was found.
         loaders, mjcf_parser: the same as in the `LoadRequest`.
     """
 
@@ -91,6 +94,8 @@ class Workspace:
     changed: list[Params] = field(default_factory=list)
     mesh_reader: MeshReader | None = None
     places: dict[tuple[str, Path | None], Path] = field(default_factory=dict)
+    missing: list[tuple[str, Diagnostic]] = field(default_factory=list)
+    has_found: bool = False
     models: int = 0
     unknown_materials: set[str] = field(default_factory=set)
     reported: set[str] = field(default_factory=set)
@@ -188,9 +193,12 @@ class NamedElement:
     file: SdfFile
 
     def named(self, kind: str) -> list[tuple[str, Params]]:
-        """Return the children of a kind with their names; an invalid or repeated name is an error."""
-        owner = f"{self.frame.kind} {self.name!r}"
-        return named_elements(self.element.all(kind), owner, self.element.diagnostics, self.file.version)
+        """Return the children of a kind with their names; an invalid name is an error.
+
+        A repeated name is a warning: a shape gets another name, anything else is left out, as in Gazebo Classic.
+        """
+        owner, repeated = f"{self.frame.kind} {self.name!r}", "renamed" if kind in _SHAPES else "left out"
+        return named_elements(self.element.all(kind), owner, self.element.diagnostics, self.file.version, repeated)
 
     def pose_of(self, inner: Params, what: str) -> Pose:
         """Return the pose of an element inside a link (or joint) in that link's frame.

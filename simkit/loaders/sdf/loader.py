@@ -8,7 +8,7 @@ from typing import ClassVar
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.resources.loader import Loader, LoadRequest
 from simkit.loaders.resources.xml_reader import Document
-from simkit.loaders.sdf.include import read_include, read_inline_entity
+from simkit.loaders.sdf.include import read_include, read_inline_entity, report_missing
 from simkit.loaders.sdf.light import read_light
 from simkit.loaders.sdf.load_context import EntitySource, SdfFile, Workspace
 from simkit.loaders.sdf.model import build_model, declare_model, place_model
@@ -29,6 +29,7 @@ class SdfLoader(Loader):
         folder = document.folder or request.resolver.base
         file = workspace.file(document.root, folder, chain)
         scene = _read(file, document, request, workspace)
+        report_missing(workspace, is_world=bool(scene.worlds))
         for root in workspace.roots.values():
             report_unread(root)
         for model in workspace.changed:

@@ -55,6 +55,16 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
     )
 
 
+def read_transparency(block: Params, default: float = 0.0) -> float:
+    """Return the transparency of a visual; a number outside 0 to 1 is limited with a warning, as in Gazebo."""
+    value = block.number("transparency", default)
+    limited = min(1.0, max(0.0, value))
+    if value != limited:
+        text = f"found <transparency>{value:g}</transparency>; expected a number from 0 to 1; {limited:g} is used"
+        block.child_or_self("transparency").warning("SK-PARAM-008", text)
+    return limited
+
+
 def _has_content(block: Params, name: str) -> bool:
     found = block.child(name)
     return found is not None and bool(found.value)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable
 from dataclasses import replace
 
-from simkit.loaders.sdf.entity_names import named_elements, scoped
+from simkit.diagnostics import Diagnostics, Where
+from simkit.loaders.sdf.entity_names import FreeNames, named_elements, scoped
 from simkit.loaders.sdf.frames import MODEL, WORLD, Frame, Scope, world_pose
 from simkit.loaders.sdf.include import read_include, read_inline_entity
 from simkit.loaders.sdf.joint import joint_link_name, read_joints
@@ -57,7 +59,7 @@ def register_frame(frame: Frame, scope: Scope, version: tuple[int, int]) -> None
 def _declare_content(draft: ModelDraft, element: Params, file: SdfFile, scope: Scope, workspace: Workspace) -> None:
     owner, names = f"model {draft.source.name!r}", draft.scoped
     draft.links += declare_elements(element, "link", owner, names, file, scope)
-    for source in model_sources(element, file, workspace):
+    for source in rename_repeated(list(model_sources(element, file, workspace)), owner, workspace.diagnostics):
         if source.element.name != "model":
             _report_non_model(source, workspace)
         elif source.merge:
@@ -86,6 +88,22 @@ def model_sources(element: Params, file: SdfFile, workspace: Workspace) -> Itera
             yield source
 
 
+def rename_repeated(sources: list[EntitySource], owner: str, diagnostics: Diagnostics) -> list[EntitySource]:
+    """Return the sources with another name for each model whose name an earlier model has, with a warning."""
+    free = FreeNames({source.name for source in sources})
+    first: dict[str, EntitySource] = {}
+    renamed = []
+    for source in sources:
+        if source.element.name == "model" and not source.merge:
+            existing = first.setdefault(source.name, source)
+            if existing is not source:
+                text = f"{owner} has two models named {source.name!r} (the other at {existing.where})"
+                source = replace(source, name=free.next(source.name))
+                diagnostics.warning("SK-SDF-002", f"{text}; this one is named {source.name!r}", source.where)
+        renamed.append(source)
+    return renamed
+
+
 def declare_elements(
     element: Params, kind: str, owner: str, outer: str, file: SdfFile, scope: Scope
 ) -> list[NamedElement]:
@@ -100,7 +118,10 @@ def declare_elements(
         scope: scope that receives the names.
     """
     parts = []
-    for name, found in named_elements(element.all(kind), owner, scope.diagnostics, file.version):
+    named = named_elements(element.all(kind), owner, scope.diagnostics, file.version)
+    siblings = {name for name, _ in named}
+    for written, found in named:
+        name = _distinct_name(written, kind, siblings, scope, found.where)
         pose, base = read_pose(found)
         attached = ""
         if kind == "joint":
@@ -113,6 +134,21 @@ def declare_elements(
         register_frame(frame, scope, file.version)
         parts.append(NamedElement(name, found, frame, scope, file))
     return parts
+
+
+def _distinct_name(name: str, kind: str, siblings: set[str], scope: Scope, where: Where) -> str:
+    """Return the name of a link, joint or frame; `name_joint` if an element of another kind has that name.
+
+    The suffixes are those of libsdformat.
+    """
+    existing = scope.names.get(name)
+    if existing is None or existing.kind == kind:
+        return name
+    numbers = itertools.chain(("",), itertools.count())
+    free = next(n for i in numbers if (n := f"{name}_{kind}{i}") not in scope.names and n not in siblings)
+    text = f"{kind} {name!r} has the same name as a {existing.kind} (line {existing.where.line})"
+    scope.diagnostics.warning("SK-SDF-024", f"{text}; it is named {free!r}, as in Gazebo", where)
+    return free
 
 
 def _report_non_model(source: EntitySource, workspace: Workspace) -> None:

@@ -20,6 +20,7 @@ from simkit.loaders.sdf.model import (
     place_model,
     read_frames,
     register_frame,
+    rename_repeated,
 )
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.population import population_sources
@@ -105,24 +106,27 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
 def _entity_sources(
     element: Params, world: str, states: list[Params], file: SdfFile, workspace: Workspace
 ) -> list[EntitySource]:
-    """Return models, lights and actors: written, included, populated, and added or removed by a saved state."""
+    """Return models, lights and actors: written, included, populated, and added or removed by a saved state.
+
+    A model of a repeated name gets another name, as in Gazebo Classic.
+    """
     diagnostics = workspace.diagnostics
     found: list[EntitySource] = []
     for kind in ("light", "actor"):
-        named = named_elements(element.all(kind), "the world", diagnostics, file.version)
+        named = named_elements(element.all(kind), "the world", diagnostics, file.version, "left out")
         found += [entity_source(e, name, file) for name, e in named]
     found += model_sources(element, file, workspace)
     for population in element.all("population"):
         found += population_sources(population, world, file, workspace)
     for block in inserted_blocks(states):
         found += model_sources(block, file, workspace)
-        named = named_elements(block.all("light"), "the saved state", diagnostics, file.version)
+        named = named_elements(block.all("light"), "the saved state", diagnostics, file.version, "left out")
         found += [entity_source(e, name, file) for name, e in named]
     deleted = deleted_names(states)
     for source in found:
         if source.name in deleted:
             source.element.mark_all_read()
-    return [source for source in found if source.name not in deleted]
+    return rename_repeated([source for source in found if source.name not in deleted], "the world", diagnostics)
 
 
 def _add_entity(source: EntitySource, content: _WorldContent, workspace: Workspace) -> None:
@@ -131,8 +135,9 @@ def _add_entity(source: EntitySource, content: _WorldContent, workspace: Workspa
     if kind != "model":
         entities = content.lights if kind == "light" else content.actors
         if any(entity.name == source.name for entity in entities):
-            text = f"the world has two {kind}s named {source.name!r}"
-            workspace.diagnostics.error("SK-SDF-002", text, source.where)
+            source.element.mark_all_read()
+            text = f"the world has two {kind}s named {source.name!r}; this one is left out"
+            workspace.diagnostics.warning("SK-SDF-002", text, source.where)
         else:
             entities.append(source)
     elif source.merge:

@@ -188,7 +188,8 @@ def _mimic(draft: RobotDraft, joint: JointDraft) -> Mimic | None:
         message = f"joint {joint.name!r} mimics {leader!r}, which does not exist; it moves freely"
         report = element.warning
     elif draft.joints[leader].type in _NO_MIMIC:
-        message = f"joint {joint.name!r} mimics {leader!r}, which is a {draft.joints[leader].type} joint"
+        message = f"joint {joint.name!r} mimics {leader!r}, a {draft.joints[leader].type} joint; it moves freely"
+        report = element.warning
     elif joint.type in _NO_MIMIC:
         element.warning("SK-URDF-015", f"{joint.type} joint {joint.name!r}: <mimic> has no effect")
         return None

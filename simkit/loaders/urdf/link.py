@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from simkit.loaders.sdf.inertial import MOMENT_NAMES, rotated_moments
 from simkit.loaders.sdf.light import read_lights
+from simkit.loaders.sdf.material import read_transparency
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensors
 from simkit.loaders.sdf.surface import read_surface
@@ -177,7 +178,7 @@ def _visuals(
         for block in blocks:
             scene_visual = replace(
                 scene_visual,
-                transparency=block.number("transparency", scene_visual.transparency, minimum=0.0, maximum=1.0),
+                transparency=read_transparency(block, scene_visual.transparency),
                 cast_shadows=block.boolean("cast_shadows", scene_visual.cast_shadows),
                 visibility_flags=block.integer("visibility_flags", scene_visual.visibility_flags) & 0xFFFFFFFF,
                 laser_retro=block.number("laser_retro", scene_visual.laser_retro),

@@ -32,8 +32,9 @@ def _added_elements(draft: RobotDraft, kind: str) -> list[NamedElement]:
     for name, element in named_elements(elements, owner, draft.diagnostics, draft.file.version):
         existing = draft.scope.names.get(name)
         if existing is not None:
-            message = f"<gazebo>: {kind} {name!r} has the same name as a {existing.kind} (line {existing.where.line})"
-            element.error("SK-URDF-002", message)
+            text = f"<gazebo>: {kind} {name!r} has the same name as a {existing.kind} (line {existing.where.line})"
+            element.mark_all_read()
+            element.warning("SK-URDF-002", f"{text}; this one is left out, as in Gazebo")
             continue
         pose, base = read_pose(element)
         attached = joint_link_name(element, "child") if kind == "joint" else element.attribute("attached_to")

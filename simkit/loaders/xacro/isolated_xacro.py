@@ -19,7 +19,9 @@ XacroModule = Any
 
 _LOCK = threading.Lock()
 _COUNT = itertools.count()
-_DEFAULT = r"\$\{.*?\}|\$\(.*?\)|(?:'[^']*'|\"[^\"]*\"|[^\s'\"])+|"
+# a quote between quotes, as in ''', which the original pattern finds by trying all endings
+_QUOTED_QUOTE = r"[^\s'\"]*'.*?'(?=\s|$)|[^\s'\"]*\".*?\"(?=\s|$)"
+_DEFAULT = r"\$\{.*?\}|\$\(.*?\)|(?:'[^']*'|\"[^\"]*\"|[^\s'\"])+|" + _QUOTED_QUOTE + "|"
 MACRO_ARGUMENT = re.compile(r"^\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(" + _DEFAULT + r")(?:\s+|$)(.*)", re.DOTALL)
 """Pattern of a macro's parameter with its default. The original pattern in xacro can take exponential time."""
 

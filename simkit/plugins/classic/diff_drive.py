@@ -23,6 +23,7 @@ from simkit.plugins.drives.odometry import (
     DeadReckoning,
     odometry_message,
     rolling_twist,
+    wheel_angles,
 )
 from simkit.plugins.drives.odometry_noise import (
     EquivalentWheelAngles,
@@ -308,7 +309,7 @@ class GazeboRosDiffDrive(CommandedDrive):
 
     def _first_angles(self) -> tuple[float, float]:
         left, right = self._wheels[:2]
-        return float(left.position), float(right.position)
+        return wheel_angles(left, right)
 
 
 class SkidSteerOptions(CommonDiffDriveOptions):

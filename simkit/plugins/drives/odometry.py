@@ -91,7 +91,7 @@ def rolling_twist(wheels: Sequence[Joint], radius: float, separation: float) -> 
         radius: Radius of the wheels [m].
         separation: Distance between the wheels [m].
     """
-    left, right = (float(wheel.velocity) * radius for wheel in wheels[:2])
+    left, right = (float(np.ravel(wheel.velocity)[0]) * radius for wheel in wheels[:2])
     return BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, (right - left) / separation))
 
 
@@ -225,15 +225,15 @@ class WheelOdometry(TravelOdometry):
 
 
 def wheel_angles(left: Joint, right: Joint) -> tuple[float, float]:
-    """Return the angles of two single-axis joints [rad]; faster than `Joint.position`, for use at every step."""
+    """Return the angles of two joints about their first axes [rad], faster than `Joint.position`."""
     qpos = left._physics.data.qpos
-    return qpos.item(left._one_qpos), qpos.item(right._one_qpos)
+    return qpos.item(left._first_qpos), qpos.item(right._first_qpos)
 
 
 def joint_angles(joints: Sequence[Joint]) -> Angles:
-    """Return the angles of single-axis joints [rad]; as fast as `wheel_angles`, but for any number of joints."""
+    """Return the angles of any number of joints about their first axes [rad], as fast as `wheel_angles`."""
     qpos: Vector = joints[0]._physics.data.qpos
-    return tuple(qpos.item(joint._one_qpos) for joint in joints)
+    return tuple(qpos.item(joint._first_qpos) for joint in joints)
 
 
 def command_of(message: Any) -> tuple[float, float] | None:

@@ -21,6 +21,7 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.find_entities import find_axis_joint, find_named_link
 from simkit.plugins.fluids.link_forces import moving_data
+from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3
 from simkit.runtime.engine.physics_step import CONTROL
 
@@ -269,7 +270,7 @@ class LiftDragBase(ModelPlugin):
             self._joint_name = "" if joint is None else joint.scoped
 
     def load(self, parent: Model, params: Params) -> None:
-        self._joint = self.sim.joint(self._joint_name) if self._joint_name else None
+        self._joint = JointAxis(self.sim.joint(self._joint_name)) if self._joint_name else None
 
     def before_step(self) -> None:
         """Apply lift, drag and moment to the link for the next step."""
@@ -279,7 +280,7 @@ class LiftDragBase(ModelPlugin):
             return
         data = moving_data(sim)
         arm, velocity, axes = self._motion(data, body)
-        angle = float(self._joint.position) if self._joint is not None else 0.0
+        angle = self._joint.position if self._joint is not None else 0.0
         force, moment = self._aerofoil.load(_turned_back(axes, velocity), angle)
         if not (any(force) or any(moment)):
             return

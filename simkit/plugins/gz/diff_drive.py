@@ -146,7 +146,7 @@ class DriveFleet:
     def __init__(self, drives: Sequence[DiffDrive]) -> None:
         self._drives, self._sim = list(drives), drives[0].sim
         self._physics = self._sim.engine.physics
-        self._wheels = np.array([wheel._one_qpos for drive in drives for wheel in drive._pair], dtype=np.intp)
+        self._wheels = np.array([wheel._first_qpos for drive in drives for wheel in drive._pair], dtype=np.intp)
         self._rows: list[Vector] = []
         self._odometries = [drive._odometry for drive in drives]
         for odometry in self._odometries:

@@ -56,6 +56,7 @@ class Joint(Handle):
         self._is_ball = len(self._dofs) == 3 and len(self._qpos) == 1
         self._is_floating = self.type == "floating"
         self._one_qpos = int(self._qpos[0]) if len(self._qpos) == len(self._dofs) == 1 else -1
+        self._first_qpos = int(self._qpos[0]) if len(self._qpos) else -1
         self._one_dof = int(self._dofs[0]) if len(self._dofs) == 1 else -1
         self._body = int(self._physics.model.dof_bodyid[self._dofs[0]]) if len(self._dofs) else 0
 

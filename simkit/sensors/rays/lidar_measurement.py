@@ -279,9 +279,9 @@ def _read_sweep(params: Params, samples: int) -> Sweep:
     low = params.number("min_angle", 0.0, minimum=-_MAX_ANGLE, maximum=_MAX_ANGLE)
     high = params.number("max_angle", 0.0, minimum=-_MAX_ANGLE, maximum=_MAX_ANGLE)
     if high < low:
-        params.error(
-            "SK-PARAM-002", f"found angles from {low:g} to {high:g}; expected a <max_angle> of at least <min_angle>"
-        )
+        text = f"found angles from {low:g} to {high:g}; expected a <max_angle> of at least <min_angle>"
+        params.warning("SK-PARAM-008", f"{text}; the two are exchanged")
+        low, high = high, low
     return Sweep(count, low, high)
 
 

@@ -394,3 +394,27 @@ def test_a_pose_given_by_the_caller_places_the_file_s_world() -> None:
     assert scene.model is not None
     assert scene.model.links[0].pose_world.position == pytest.approx((5, 0, 1))
     assert scene.model.links[0].scoped == "other::base"
+
+
+def test_a_total_mass_counts_for_all_bodies_beside_a_static_geom():
+    text = """<mujoco><compiler settotalmass="14"/><worldbody><geom type="plane" size="1 1 1"/>
+      <body pos="0 0 1"><freejoint/><geom size=".1"/>
+      <body name="arm"><joint axis="0 1 0"/><geom size=".1"/></body></body></worldbody></mujoco>"""
+    with simkit.load(text) as sim:
+        assert sim.mj_model.body_mass.sum() == pytest.approx(14.0)
+        assert sim.mj_model.body("arm").mass[0] == pytest.approx(7.0)
+
+
+def test_the_file_of_a_skin_is_found(tmp_path):
+    vertices, faces = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4"), np.array([[0, 1, 2]], "<i4")
+    bone = struct.pack("<40s", b"b") + np.array([0, 0, 0, 1, 0, 0, 0], "<f4").tobytes() + struct.pack("<i", 3)
+    bone += np.arange(3, dtype="<i4").tobytes() + np.ones(3, "<f4").tobytes()
+    content = struct.pack("<4i", 3, 0, 1, 1) + vertices.tobytes() + faces.tobytes() + bone
+    (tmp_path / "cloth.skn").write_bytes(content)
+    (tmp_path / "m.xml").write_text(
+        """<mujoco><asset><skin name="s" file="cloth.skn"/></asset>
+        <worldbody><body name="b"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
+    )
+    with simkit.load(tmp_path / "m.xml") as sim:
+        assert sim.mj_model.nskin == 1
+        assert sim.mj_model.nskinvert == 3

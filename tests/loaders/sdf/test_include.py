@@ -155,3 +155,28 @@ def test_a_missing_mesh_is_a_warning_that_lists_the_searched_paths(load, write):
         str(path.parent / "meshes" / "x.dae") in missing.message
         and "the shape is left out of drawing and contacts" in missing.message
     )
+
+
+def test_missing_includes_are_warnings_in_a_world_with_others(load, write):
+    root = write("models/box/model.sdf", BOX).parents[1]
+    missing = "".join(
+        f"<include><uri>{uri}</uri></include>\n"
+        for uri in ("model://lamp", "model://tree", "model://tree", "https://fuel.gazebosim.org/1.0/o/models/Nobody")
+    )
+    world = f'<sdf version="1.9"><world name="w">\n{missing}{{}}</world></sdf>'
+    scene, found = load(world.format("<include><uri>model://box</uri></include>"), (root,))
+    assert [m.name for m in scene.world.models] == ["box"]
+    reported = {d.code: d for d in found}
+    assert {d.severity for d in reported.values() if d.code.startswith("SK-URI")} == {"warning"}
+    assert "model://lamp (line 2), model://tree (line 3, 4)" in reported["SK-URI-001"].message
+    assert "Nobody is not on this machine" in reported["SK-URI-002"].message
+
+    _, found = load(world.format(""), (root,))
+    assert [d.line for d in found if d.severity == "error"] == [2, 3, 4, 5]
+
+
+def test_a_missing_include_of_a_bare_model_is_an_error(load, write):
+    root = write("models/box/model.sdf", BOX).parents[1]
+    includes = "<include><uri>model://box</uri></include><include><uri>model://lamp</uri></include>"
+    _, found = load(f'<sdf version="1.9"><model name="m">{includes}</model></sdf>', (root,))
+    assert [d.code for d in found if d.severity == "error"] == ["SK-URI-001"]

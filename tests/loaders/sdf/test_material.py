@@ -193,3 +193,12 @@ def test_a_missing_mesh_is_reported_once_even_if_used_repeatedly(tmp_path):
     text = f'<sdf version="1.9"><model name="m"><static>true</static><link name="l">{parts}</link></model></sdf>'
     load_scene(text, resolver=Resolver([tmp_path]), diagnostics=found, xacro_args={})
     assert [d.code for d in found] == ["SK-URI-001"]
+
+
+def test_a_transparency_outside_its_range_is_limited_with_a_warning(load):
+    visual = "<visual name='v'><transparency>{}</transparency><geometry><sphere/></geometry></visual>"
+    for written, used in ((100, 1.0), (-0.5, 0.0)):
+        text = f'<sdf version="1.9"><model name="m"><link name="l">{visual.format(written)}</link></model></sdf>'
+        scene, found = load(text)
+        assert scene.model.links[0].visuals[0].transparency == used
+        assert [d.code for d in found if d.severity != "note"] == ["SK-PARAM-008"]

@@ -142,7 +142,7 @@ def test_unusual_names_are_accepted(load, name):
         ('<link name="a::b"/>', "SK-SDF-003"),
         ('<link name="world"/>', "SK-SDF-003"),
         ('<link name="__x__"/>', "SK-SDF-003"),
-        ('<frame name="l"/>', "SK-SDF-002"),
+        ('<frame name="f"/><frame name="f"/>', "SK-SDF-002"),
         ('<frame name="f"><pose>nan 0 0 0 0 0</pose></frame>', "SK-PARAM-002"),
         ('<frame name="f"><pose>1e308 0 0 0 0 0</pose></frame>', "SK-PARAM-002"),
         ('<frame name="f"><pose>inf 0 0 0 0 0</pose></frame>', "SK-PARAM-002"),

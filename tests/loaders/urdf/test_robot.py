@@ -410,3 +410,25 @@ def test_a_faulty_joint_is_one_problem_and_its_consequences_are_none(load, right
         simkit.load(text.replace(right, wrong, 1))
     told = [d for d in refused.value.diagnostics if d.severity != "note"]
     assert [d.code for d in told] == ["SK-URDF-003" if "bb" in wrong else "SK-URDF-004"]
+
+
+def test_a_joint_that_mimics_a_fixed_joint_moves_freely_with_a_warning(load):
+    text = robot(
+        link("a")
+        + link("b")
+        + link("c")
+        + joint("ab", "a", "b", "", "fixed")
+        + joint("bc", "b", "c", LIMIT + '<mimic joint="ab"/>')
+    )
+    scene, found = load(text)
+    assert not errors(found)
+    assert with_code(found, "SK-URDF-015")[0].severity == "warning"
+    assert scene.model.joints[1].axes[0].mimic is None
+
+
+def test_a_gazebo_joint_that_repeats_a_joint_of_the_robot_is_left_out(load):
+    extra = """<gazebo><joint name="ab" type="prismatic"><parent>a</parent><child>b</child>
+      <axis><xyz>0 1 0</xyz></axis></joint></gazebo>"""
+    scene, found = load(robot(link("a") + link("b") + joint("ab", "a", "b") + extra))
+    assert [(j.name, j.type) for j in scene.model.joints] == [("ab", "revolute")]
+    assert [(d.code, d.severity) for d in found if d.severity != "note"] == [("SK-URDF-002", "warning")]

@@ -405,3 +405,18 @@ def test_expansions_leave_no_modules_and_do_not_share_state_between_threads(writ
     assert names == {i: f"l{i}" for i in range(len(files))}
     assert minidom.Element.writexml is before
     assert {m for m in sys.modules if "simkit_xacro" in m} == modules
+
+
+def test_defaults_with_quotes_have_the_values_of_xacro_itself(write):
+    import xacro as original
+
+    for default in ("'''", "''", "'a b'", "^|'q'", "x'''", "'a'b'c'"):
+        content = (
+            f'<xacro:macro name="m" params="n:={default} k:=1"><a b="[${{n}}]" c="${{k}}"/></xacro:macro><xacro:m/>'
+        )
+        file = write("r.xacro", xacro(content))
+        document, found = expanded(file)
+        assert document is not None, [d.message for d in found]
+        wanted = original.process_file(str(file)).getElementsByTagName("a")[0]
+        (element,) = document.root.children
+        assert element.attributes == {"b": wanted.getAttribute("b"), "c": "1"}

@@ -100,3 +100,14 @@ def test_a_rate_above_that_of_steps_is_every_step():
         drive(sim, 0.5, 0.3, 0.2)
         found.append(sim.mj_data.qpos.tobytes())
     assert found[0] == found[1]
+
+
+def test_the_first_axis_of_universal_joints_is_used_with_a_warning():
+    second = "<axis2><xyz>0 0 1</xyz><limit><lower>0</lower><upper>0</upper></limit></axis2>"
+    text = car(plugin()).replace('type="continuous"', 'type="universal"')
+    text = text.replace("<xyz>0 1 0</xyz></axis></joint>", f"<xyz>0 1 0</xyz></axis>{second}</joint>")
+    sim = simkit.load(world(text))
+    assert len([d for d in sim.diagnostics if (d.code, d.severity) == ("SK-PLUGIN-003", "warning")]) == 4
+    drive(sim, 0.5, 0.0, 4.0)
+    assert sim.joint("car::rr_joint").velocity[0] * 0.1 == pytest.approx(0.5, abs=0.02)
+    assert sim.link("car::base").linear_velocity[0] == pytest.approx(0.5, abs=0.03)

@@ -163,7 +163,17 @@ def test_bad_parameters_are_reported_together() -> None:
       <range><min>2</min><max>1</max></range></lidar>"""
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(world(sensor("lidar", bad)))
-    assert [d.code for d in caught.value.diagnostics if d.severity == "error"] == ["SK-PARAM-002"] * 3
+    assert [d.code for d in caught.value.diagnostics if d.severity == "error"] == ["SK-PARAM-002"] * 2
+
+
+def test_exchanged_angles_of_a_scan_are_put_in_order_with_a_warning() -> None:
+    text = world(sensor("lidar", block(low=2.27, high=-2.27)))
+    with simkit.load(text) as sim:
+        assert "SK-PARAM-008" in {d.code for d in sim.diagnostics if d.severity == "warning"}
+        messages = sim.subscribe(TOPIC + "lidar")
+        sim.run(0.02)
+    message = messages.messages[-1]
+    assert (message.angle_min, message.angle_max) == pytest.approx((-2.27, 2.27))
 
 
 def test_a_lidar_on_a_moved_static_model_moves_along() -> None:
