@@ -237,8 +237,8 @@ class JointWriter:
 
     # ------------------------------------------------------------------ loops
 
-    def add_loop_joint(self, joint: SceneJoint) -> None:
-        """Add a joint that closes a loop.
+    def add_loop_joint(self, joint: SceneJoint, reason: str = "closes a loop") -> None:
+        """Add a joint that closes a loop, or another joint outside the tree for a `reason`.
 
         The joint moves a twin of its child link, and a weld fixes the twin to the link. The joint therefore has a
         coordinate, limits, dynamics and drives like any other joint. The twin receives a fraction of the link's mass.
@@ -256,7 +256,7 @@ class JointWriter:
         weld, thread = f"{joint.scoped}#loop", f"{joint.scoped}#thread"
         anchor = at.inverse() @ joint.pose_world
         self.couplings.weld(weld, twin, self._body_name(carrier), anchor.position, damping=LOOP_DAMPING)
-        message = f"joint {joint.scoped} closes a loop: it is held by a constraint"
+        message = f"joint {joint.scoped} {reason}: it is held by a constraint"
         self.diagnostics.note("SK-PHYS-020", message, joint.where)
         self._bind(
             replace(

@@ -78,7 +78,7 @@ class ModelWriter:
             elif joint.type == "gearbox":
                 self.joints.add_gearbox(joint)
             else:
-                self.joints.add_loop_joint(joint)
+                self.joints.add_loop_joint(joint, "connects two models")
                 self._exclude(joint, links)
         self._unbind_links(links)
 

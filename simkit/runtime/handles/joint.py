@@ -13,6 +13,7 @@ from simkit.argument_checks import checked_number, checked_vector, wrong_value
 from simkit.errors import InputError
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
+from simkit.runtime.handles import joined_models
 from simkit.runtime.handles import joint_mechanics as mechanics
 from simkit.runtime.handles.handle import Handle
 
@@ -147,12 +148,14 @@ class Joint(Handle):
     def set_position(self, position: float | Sequence[float] | Vector) -> None:
         """Set the present position of the joint. Poses that are read afterwards include the change.
 
-        Joints that mimic the joint follow.
+        Joints that mimic the joint follow. A joint between two models that closes no loop moves one of them: the child,
+        or the parent if the child is connected to the world.
 
         Raises:
             InputError: the joint closes a loop.
         """
         values = self.check_position(position)
+        side = joined_models.loose_side(self._engine, self._binding) if self._binding.is_loop else None
         qpos = self._physics.data.qpos
         if self._is_floating:
             mechanics.set_relative_pose(self._engine, self._binding, Pose(values[:3], values[3:]))
@@ -165,6 +168,8 @@ class Joint(Handle):
             qpos[self._qpos] = values
         for f in self._binding.followers:
             qpos[f.qpos] = self._physics.model.qpos0[f.qpos] + f.offset + f.ratio * values[f.axis]
+        if side is not None:
+            joined_models.align_poses(self._engine, self._binding, side)
         mechanics.update_loop_joints(self._engine)
         self._physics.changed_body(STALE, self._body)
 
@@ -186,12 +191,15 @@ class Joint(Handle):
         self._check()
         self._check_settable()
         values = self._shaped(velocity, self.dof, "velocity")
+        side = joined_models.loose_side(self._engine, self._binding) if self._binding.is_loop else None
         if self._is_floating:
             mechanics.set_relative_velocity(self._engine, self._binding, values)
         else:
             self._physics.data.qvel[self._dofs] = self._from_joint(values)
         for follower in self._binding.followers:
             self._physics.data.qvel[follower.dof] = follower.ratio * values[follower.axis]
+        if side is not None:
+            joined_models.align_velocities(self._engine, self._binding, side)
         mechanics.update_loop_joints(self._engine)
         self._physics.changed_body(VELOCITY, self._body)
 
@@ -297,7 +305,7 @@ class Joint(Handle):
         return checked_vector(values, f"{noun} of joint {self.scoped!r}", count)
 
     def _check_settable(self) -> None:
-        if self._binding.is_loop:
+        if self._binding.is_loop and joined_models.loose_side(self._engine, self._binding) is None:
             raise InputError(
                 f"joint {self.scoped!r} closes a loop: it follows the other joints of the loop; set those",
                 "SK-JOINT-012",

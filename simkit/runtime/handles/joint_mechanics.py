@@ -175,7 +175,7 @@ def update_loop_joints(engine: EngineState) -> None:
         dofs, columns, spread = _loop_jacobian(engine, binding)
         data.qvel[dofs] = 0.0
         link = engine.names.link(binding.carried).body
-        velocity = _body_velocity(engine, link) - _body_velocity(engine, binding.moved_body)
+        velocity = body_velocity(engine, link) - body_velocity(engine, binding.moved_body)
         data.qvel[dofs] = spread @ np.linalg.lstsq(columns, velocity, rcond=None)[0]
         engine.physics.changed_body(STALE, binding.moved_body)
 
@@ -206,7 +206,8 @@ def _loop_error(engine: EngineState, binding: JointBinding) -> Vector:
     return np.concatenate([data.xpos[link] - data.xpos[twin], turn])
 
 
-def _body_velocity(engine: EngineState, body: int) -> Vector:
+def body_velocity(engine: EngineState, body: int) -> Vector:
+    """Return the velocity of a body's origin [m/s] and its angular velocity [rad/s], world frame, shape (6,)."""
     model, data = engine.mj_model, engine.mj_data
     jacobian = np.zeros((6, model.nv))
     mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
