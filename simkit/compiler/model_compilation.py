@@ -70,7 +70,8 @@ def add_idle_armature(
             continue
         if not joint:
             text = f"link {link} moves freely without mass, and the links on its joints do not give it any inertia"
-            diagnostics.error("SK-JOINT-010", text, binding.scene.where, "give the link an <inertial>, or fix it")
+            hint = "give the link an <inertial>, or load the model with base='fixed'"
+            diagnostics.error("SK-JOINT-010", text, binding.scene.where, hint)
             continue
         armature = _give_armature(spec, model, body)
         is_changed = is_changed or bool(armature)

@@ -212,8 +212,8 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
     try:
         return reader.read(data)
     except expat.ExpatError as error:
-        stripped = _without_comments(data)
-        root = None if stripped is None else _parse_without_comments(stripped, file, diagnostics)
+        stripped = _lenient_text(data)
+        root = None if stripped is None else _parse_lenient_text(stripped, file, diagnostics)
         message, where = expat.ErrorString(error.code), Where(file, error.lineno + reader.offset)
         if root is not None:
             diagnostics.warning("SK-XML-004", f"not strictly valid XML, but accepted: {message}", where)
@@ -226,14 +226,19 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
     return None
 
 
-def _without_comments(data: bytes) -> bytes | None:
-    """Return the text without comments and declaration, which lenient readers ignore; None if both are missing."""
-    plain = _COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), data)
+def _lenient_text(data: bytes) -> bytes | None:
+    """Return the text as lenient readers see it: without comments and declaration, and up to the first zero byte.
+
+    None if this is the whole text. In UTF-16, zero bytes are parts of letters.
+    """
+    is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<"))
+    plain = data if is_wide else data.partition(b"\0")[0]
+    plain = _COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), plain)
     plain = _DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), plain)
     return plain if plain != data else None
 
 
-def _parse_without_comments(data: bytes, file: str | None, diagnostics: Diagnostics) -> Params | None:
+def _parse_lenient_text(data: bytes, file: str | None, diagnostics: Diagnostics) -> Params | None:
     try:
         return _TreeBuilder(file, diagnostics).read(data)
     except (expat.ExpatError, _RefusedDocument, LookupError, ValueError):

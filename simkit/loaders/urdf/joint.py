@@ -22,7 +22,8 @@ from simkit.scene import Axis, Calibration, Mimic, Safety, SceneJoint
 from simkit.scene.geometry import Vec3, vec3
 
 _NO_LIMIT = 1e15
-_NO_MIMIC = ("fixed", "floating", "planar")
+_NO_MIMIC = ("fixed", "floating", "planar", "ball")
+_NO_AXES = ("fixed", "floating", "ball")
 _FIXED_DEFAULTS = ("preserveFixedJoint", "disableFixedJointLumping")  # no effect: simkit never merges links
 
 
@@ -54,10 +55,10 @@ def read_joint(draft: RobotDraft, joint: JointDraft) -> SceneJoint:
 
 
 def _axes(draft: RobotDraft, joint: JointDraft, pose: Pose, extension: Params) -> tuple[Axis, ...]:
-    """Return one axis; for a planar joint x and y of its plane and the normal; none for fixed and floating joints."""
+    """Return one axis; for a planar joint x and y of its plane and the normal; none for the types without axes."""
     element = joint.element
     mimic = _mimic(draft, joint)
-    if joint.type in ("fixed", "floating"):
+    if joint.type in _NO_AXES:
         for unused in ("axis", "limit", "dynamics"):
             found = element.child(unused)
             if found is not None:

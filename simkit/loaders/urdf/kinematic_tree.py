@@ -78,7 +78,11 @@ def _elements_by_name(draft: RobotDraft, kind: str) -> dict[str, Params]:
 def _joint(draft: RobotDraft, name: str, element: Params) -> JointDraft | None:
     """Return a joint with its type and two links; None, with errors recorded, if one of these is invalid."""
     kind = text_attribute(element, "type")
-    if kind not in TYPES:
+    if kind == "spherical":
+        message = f"joint {name!r} has type 'spherical', which only PyBullet knows; it is a ball joint without limits"
+        draft.diagnostics.warning("SK-URDF-004", message, element.where)
+        kind = "ball"
+    elif kind not in TYPES:
         hint = did_you_mean(kind, TYPES)
         problem = f"has unknown type {kind!r}" if kind else "needs type="
         message = f"joint {name!r} {problem}; known are {', '.join(TYPES)}"
@@ -89,7 +93,7 @@ def _joint(draft: RobotDraft, name: str, element: Params) -> JointDraft | None:
         message = f"joint {name!r} joins link {parent!r} with itself"
         draft.diagnostics.error("SK-URDF-007", message, element.where)
         return None
-    if kind not in TYPES or not parent or not child:
+    if kind not in (*TYPES, "ball") or not parent or not child:
         return None
     return JointDraft(name, element, kind, parent, child, pose)
 

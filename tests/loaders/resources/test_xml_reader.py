@@ -49,3 +49,12 @@ def test_depth_and_number_of_elements_are_limited(monkeypatch):
     monkeypatch.setattr(xml_reader, "MAX_ELEMENTS", 10)
     assert parse_text("<a>" + "<b/>" * 20 + "</a>", found) is None
     assert {d.code for d in found} == {"SK-XML-002"}
+
+
+def test_bytes_after_a_zero_byte_are_ignored_with_a_warning():
+    found = Diagnostics()
+    root = parse_text(b'<robot name="r"><link name="a"/></robot>\r\n\0 rest', found)
+    assert root is not None
+    assert [c.attribute("name") for c in root.children] == ["a"]
+    assert [(d.code, d.severity) for d in found] == [("SK-XML-004", "warning")]
+    assert parse_text(b'<robot name="r">\0<link name="a"/></robot>', Diagnostics()) is None

@@ -432,3 +432,12 @@ def test_a_gazebo_joint_that_repeats_a_joint_of_the_robot_is_left_out(load):
     scene, found = load(robot(link("a") + link("b") + joint("ab", "a", "b") + extra))
     assert [(j.name, j.type) for j in scene.model.joints] == [("ab", "revolute")]
     assert [(d.code, d.severity) for d in found if d.severity != "note"] == [("SK-URDF-002", "warning")]
+
+
+def test_a_spherical_joint_of_pybullet_is_a_ball_joint(load):
+    text = robot(link("a") + link("b") + joint("ab", "a", "b", '<axis xyz="0 0 1"/>' + LIMIT, "spherical"))
+    scene, found = load(text)
+    assert (scene.model.joints[0].type, scene.model.joints[0].axes) == ("ball", ())
+    assert with_code(found, "SK-URDF-004")[0].severity == "warning"
+    with simkit.load(text) as sim:
+        assert sim.joint("r::ab").dof == 3
