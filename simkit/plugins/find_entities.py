@@ -27,7 +27,9 @@ def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | Non
     joints = scene.all_joints()
     table = {j.scoped: j for j in joints}
     found = _find_by_suffix(scene.scoped, name, table)
-    if found is None and _find_by_suffix(scene.scoped, name, {link.scoped: link for link in scene.all_links()}):
+    if found is None and _find_by_suffix(
+        scene.scoped, name, dict.fromkeys((link.scoped for link in scene.all_links()), True)
+    ):
         found = _find_by_suffix(scene.scoped, f"{name}_joint", table)  # the loader renames a joint with a link's name
     if found is None:
         _report_unknown("joint", name, scene, (j.name for j in joints), params)

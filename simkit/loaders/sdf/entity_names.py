@@ -11,6 +11,8 @@ from simkit.params import Params
 
 LONGEST_NAME = 1000
 MOST_SIBLINGS = 100_000
+Repeated = Literal["error", "renamed", "left out"]
+"""Treatment of an element whose name an earlier sibling has."""
 
 
 def scoped(*parts: str) -> str:
@@ -61,7 +63,7 @@ def named_elements(
     owner: str,
     diagnostics: Diagnostics,
     version: tuple[int, int] = (1, 12),
-    repeated: Literal["error", "renamed", "left out"] = "error",
+    repeated: Repeated = "error",
 ) -> list[tuple[str, Params]]:
     """Return the elements that have a name, with their names.
 

@@ -13,7 +13,7 @@ from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, Mjc
 from simkit.loaders.resources.model_folder import NEWEST_SDF, sdf_version
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document, parse_file
-from simkit.loaders.sdf.entity_names import named_elements
+from simkit.loaders.sdf.entity_names import Repeated, named_elements
 from simkit.loaders.sdf.frames import Frame, Scope, pose_base
 from simkit.loaders.sdf.version_upgrade import modernise, nest_flattened_models
 from simkit.params import Params
@@ -197,7 +197,8 @@ class NamedElement:
 
         A repeated name is a warning: a shape gets another name, anything else is left out, as in Gazebo Classic.
         """
-        owner, repeated = f"{self.frame.kind} {self.name!r}", "renamed" if kind in _SHAPES else "left out"
+        owner = f"{self.frame.kind} {self.name!r}"
+        repeated: Repeated = "renamed" if kind in _SHAPES else "left out"
         return named_elements(self.element.all(kind), owner, self.element.diagnostics, self.file.version, repeated)
 
     def pose_of(self, inner: Params, what: str) -> Pose:
