@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -30,7 +30,15 @@ from simkit.plugins.discovery.make_instances import (
 )
 from simkit.plugins.gz.sensors import with_sensors_colours
 from simkit.pose import Pose
-from simkit.run_spec import EMPTY_SPACE, LoadOptions, NamedValues, PluginErrorPolicy, RunSpec, named_values
+from simkit.run_spec import (
+    EMPTY_SPACE,
+    LoadOptions,
+    NamedValues,
+    PackagePaths,
+    PluginErrorPolicy,
+    RunSpec,
+    named_values,
+)
 from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
 from simkit.scene.overrides import apply_overrides
 from simkit.sensors import sensor_kinds
@@ -75,7 +83,7 @@ def load(
     strict: bool = False,
     overrides: Sequence[str] = (),
     sleep: bool = True,
-    package_paths: Mapping[str, Source] | None = None,
+    package_paths: PackagePaths | None = None,
     render_thread: bool | None = None,
     on_error: PluginErrorPolicy | None = None,
     spawn: Sequence[str | SpawnedModel] = (),
@@ -99,7 +107,7 @@ def load(
         strict: treat warnings as errors, and cameras without a renderer.
         overrides: `PATH=VALUE` texts as for `--set`.
         sleep: leave bodies at rest out of the physics until something reaches them; see `docs/sleeping.md`.
-        package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`.
+        package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`; or a list of workspaces.
         render_thread: draw camera images on a second thread in parallel to the physics; the images have the same bits.
             The default is True if the process may use two processor cores or more.
         on_error: policy for a plugin that raises: "stop" ends the run with a PluginError, "disable" continues without
@@ -186,7 +194,7 @@ def load(
     simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     options: LoadOptions = {
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
-        "xacro_args": named_values(xacro_args, "xacro_args"), "package_paths": dict(package_paths or {}),
+        "xacro_args": named_values(xacro_args, "xacro_args"), "package_paths": package_paths or {},
         "params_files": params_files,
         "strict": strict, "sleep": sleep, "render_thread": render_thread, "on_error": on_error,
     }  # fmt: skip
@@ -210,7 +218,7 @@ def describe(
     *,
     resource_paths: Sequence[Source] = (),
     xacro_args: NamedValues | None = None,
-    package_paths: Mapping[str, Source] | None = None,
+    package_paths: PackagePaths | None = None,
     plugin_paths: Sequence[Source] = (),
     base: str = "auto",
 ) -> dict[str, Any]:
@@ -249,7 +257,7 @@ def check(
     resource_paths: Sequence[Source] = (),
     plugin_paths: Sequence[Source] = (),
     xacro_args: NamedValues | None = None,
-    package_paths: Mapping[str, Source] | None = None,
+    package_paths: PackagePaths | None = None,
     base: str = "auto",
 ) -> Diagnostics:
     """Return every problem of a file, including those of compiling it and of loading its plugins.
@@ -348,7 +356,7 @@ def read_scene(
     *,
     resource_paths: Sequence[Source] = (),
     xacro_args: NamedValues | None = None,
-    package_paths: Mapping[str, Source] | None = None,
+    package_paths: PackagePaths | None = None,
     base: str = "auto",
     missing_meshes: bool = False,
 ) -> tuple[Scene, Diagnostics]:

@@ -164,11 +164,39 @@ def named_values(values: NamedValues | None, option: str) -> dict[str, str]:
     return found
 
 
+PackagePaths = Mapping[str, FilePath] | Sequence[FilePath]
+"""Folders of ROS packages by name, or a list of workspaces and of texts `NAME=DIR`."""
+
+
+def split_package_paths(paths: PackagePaths | None) -> tuple[dict[str, Path], list[Path]]:
+    """Return the folders of packages by name, and the workspaces, which are folders without a name."""
+    if isinstance(paths, Mapping):
+        return {name: Path(path).expanduser() for name, path in paths.items()}, []
+    named: dict[str, Path] = {}
+    workspaces: list[Path] = []
+    for item in (paths,) if isinstance(paths, str) else paths or ():
+        name, equals, path = str(item).partition("=")
+        name = name.strip().removesuffix(":").strip()
+        if isinstance(item, str) and equals and name and "/" not in name:
+            named[name] = Path(path).expanduser()
+        else:
+            workspaces.append(Path(item).expanduser())
+    return named, workspaces
+
+
+def change_package_paths(paths: PackagePaths, change: Callable[[FilePath], FilePath]) -> PackagePaths:
+    """Return the same packages and workspaces with every folder replaced."""
+    if isinstance(paths, Mapping):
+        return {name: change(path) for name, path in paths.items()}
+    named, workspaces = split_package_paths(paths)
+    return [*(f"{name}={change(path)}" for name, path in named.items()), *map(change, workspaces)]
+
+
 class SourceOptions(TypedDict, total=False):
     """Options for reading a file, shared by `simkit.load`, `check` and `describe`."""
 
     resource_paths: Sequence[FilePath]
-    package_paths: Mapping[str, FilePath]
+    package_paths: PackagePaths
     xacro_args: NamedValues
     base: str
 

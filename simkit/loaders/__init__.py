@@ -92,7 +92,9 @@ def load_scene(
         mjcf_parser=mjcf_parser,
         loaders=kinds,
     )
-    return kinds[root.name]().load(document, request)
+    scene = kinds[root.name]().load(document, request)
+    resolver.report_choices(Where(root.where.file), diagnostics)
+    return scene
 
 
 def find_document(

@@ -37,7 +37,10 @@ def check_source_arguments(
         check_table(xacro_args, (str, int, float), "xacro_args", "texts")
     elif not isinstance(xacro_args, str):
         check_list(xacro_args, str, "xacro_args", "texts NAME:=VALUE")
-    check_table(package_paths, _PATH, "package_paths", "paths")
+    if isinstance(package_paths, Mapping) or package_paths is None:
+        check_table(package_paths, _PATH, "package_paths", "paths")
+    else:
+        check_paths(package_paths, "package_paths")
     check_kind(base, str, "base", "a text")
     if base not in _BASES:
         raise wrong_value("base", "'auto', 'fixed' or 'floating'", base)

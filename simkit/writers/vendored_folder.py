@@ -20,7 +20,7 @@ from simkit.loaders.resources.model_folder import model_file
 from simkit.loaders.resources.uris import absolute_path
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.params import Params
-from simkit.run_spec import NamedValues
+from simkit.run_spec import NamedValues, PackagePaths
 from simkit.writers.asset_folder import companion_files
 from simkit.writers.xml_text import document as xml_text
 
@@ -228,7 +228,7 @@ def vendor(
     describe: Callable[..., dict[str, object]],
     *,
     resource_paths: Sequence[str | os.PathLike[str]] = (),
-    package_paths: Mapping[str, str | os.PathLike[str]] | None = None,
+    package_paths: PackagePaths | None = None,
     xacro_args: NamedValues | None = None,
     base: str = "auto",
 ) -> tuple[PurePosixPath, int]:
@@ -239,7 +239,7 @@ def vendor(
         target: folder to write; must be new or empty.
         describe: `simkit.describe`.
         resource_paths: search folders for URIs.
-        package_paths: ROS package -> folder.
+        package_paths: ROS package -> folder, or workspaces.
         xacro_args: arguments of a xacro file.
         base: base of a bare model: fixed, floating or auto.
 

@@ -75,7 +75,10 @@ ResourcePaths = Annotated[
     list[Path],
     option("Search folder for model://, package:// and relative URIs; repeatable.", "DIR", "--resource-path"),
 ]
-PackagePaths = Annotated[list[str], option("Folder of the ROS package NAME; repeatable.", "NAME=DIR", "--package-path")]
+PackagePaths = Annotated[
+    list[str],
+    option("Workspace of ROS packages, or folder of the package NAME; repeatable.", "[NAME=]DIR", "--package-path"),
+]
 XacroArgs = Annotated[list[str], option("Argument of a xacro file; repeatable.", "NAME:=VALUE", "--xacro-arg")]
 Base = Annotated[
     str,
@@ -166,7 +169,7 @@ def source_arguments(
     """Return the options for reading a file as keyword arguments."""
     return {
         "resource_paths": resource_paths,
-        "package_paths": parse_pairs(package_paths, "--package-path"),
+        "package_paths": tuple(package_paths),
         "xacro_args": parse_pairs(xacro_args, "--xacro-arg"),
         "base": validate_word("--base", base, _BASES),
     }

@@ -1,60 +1,27 @@
-"""Search for a ROS package without ROS: in folders given by the user, around the file, and below the search paths."""
+"""Index of ROS packages without ROS: in folders given by the user, around a file, and below the search paths."""
 
 from __future__ import annotations
 
 import os
 import re
+import time
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import takewhile
 from pathlib import Path
+from typing import Final
 
 from simkit.input_file import read_input
-from simkit.loaders.resources.uris import is_file, is_private
+from simkit.loaders.resources.project_folder import enclosing_project
+from simkit.loaders.resources.uris import is_file, is_folder, is_private, is_top_folder
 
-_PARENT_LEVELS = 6  # folders above a file that are searched for its package.xml
-_SEARCH_DEPTH = 4  # levels of folders below a search path
-_MAX_FOLDERS = 20_000
+_PARENT_LEVELS: Final = 6  # folders above a file that are searched for its package.xml
+_SEARCH_DEPTH: Final = 5  # levels of folders below a search path: workspace/src/repository/group/package
+_MAX_FOLDERS: Final = 20_000
+_MAX_SECONDS: Final = 5.0
+_OTHER_FOLDERS: Final = frozenset(("build", "log", "node_modules", "__pycache__", "site-packages", "dist-packages"))
+_IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _NAME = re.compile(rb"<name>\s*([A-Za-z0-9_.-]+)\s*</name>")
-
-
-def package_folders(
-    name: str,
-    explicit: Mapping[str, Path],
-    around: Iterable[Path],
-    paths: Iterable[Path],
-    below: dict[Path, dict[str, Path]],
-    near: dict[tuple[str, Path], tuple[Path, ...]],
-) -> Iterator[Path]:
-    """Yield folders that can be the package, the most likely first; they need not exist.
-
-    The order: the folder given by the user; the package that contains the file, its siblings, and packages near these
-    siblings; the search paths; packages further below the search paths.
-
-    Args:
-        name: name of the package.
-        explicit: folders given by the user, by package name.
-        around: folders of the files that refer to the package.
-        paths: folders to search.
-        below: cache of the packages below each search path; this function fills it.
-        near: cache of the candidates around a folder, by package name and folder; this function fills it.
-    """
-    if not name or "/" in name or name in (".", ".."):
-        return
-    if name in explicit:
-        yield explicit[name]
-    for folder in dict.fromkeys(around):
-        if (name, folder) not in near:
-            near[name, folder] = tuple(_nearby_packages(name, folder))
-        yield from near[name, folder]
-    paths = list(dict.fromkeys(paths))
-    for path in paths:
-        yield path / name
-        if path.name == name or package_name(path) == name:
-            yield path
-    for path in paths:
-        if path not in below:
-            below[path] = _packages_below(path)
-        if name in below[path]:
-            yield below[path][name]
 
 
 def enclosing_package(folder: Path) -> Path | None:
@@ -65,62 +32,238 @@ def enclosing_package(folder: Path) -> Path | None:
     return None
 
 
-def package_name(folder: Path) -> str:
-    """Return the name in a folder's `package.xml`, or an empty text if there is none."""
-    file = folder / "package.xml"
+@dataclass
+class _Area:
+    """Packages below one folder.
+
+    Attributes:
+        by_name: name in `package.xml` -> folders, sources before installed copies, then the nearest to the top.
+        is_complete: false if the search ended at a limit.
+    """
+
+    by_name: dict[str, list[Path]] = field(default_factory=dict)
+    is_complete: bool = True
+
+    @property
+    def folders(self) -> Iterator[Path]:
+        """All packages."""
+        return (folder for folders in self.by_name.values() for folder in folders)
+
+
+class PackageIndex:
+    """Packages by the name in their `package.xml`. Each folder is searched once, when a name requires it.
+
+    Args:
+        named: folders given by the user, by package name.
+        workspaces: folders given by the user whose packages are searched before all others.
+        paths: folders that are searched last.
+
+    Attributes:
+        notes: description of each decision that was made for a file that was found, by package name.
+    """
+
+    def __init__(self, named: Mapping[str, Path], workspaces: Iterable[Path], paths: Iterable[Path]) -> None:
+        self.named, self.workspaces, self.paths = dict(named), tuple(workspaces), tuple(dict.fromkeys(paths))
+        self.notes: dict[str, str] = {}
+        self._areas: dict[Path, _Area] = {}
+        self._names: dict[Path, str] = {}
+        self._places: dict[Path, tuple[Path, ...]] = {}
+        self._reasons: dict[str, dict[Path, str]] = {}  # package name -> folder that was offered -> reason to tell
+
+    # ------------------------------------------------------------------ search
+
+    def candidates(self, name: str, around: Iterable[Path]) -> Iterator[Path]:
+        """Yield folders that can be the package, the most likely first; they need not exist.
+
+        The name in `package.xml` counts. Only if no package has this name, the name of a folder counts, then a name in
+        other capital letters, then the only package whose name has the same end.
+
+        Args:
+            name: name of the package.
+            around: folders of the files that refer to the package.
+        """
+        if not name or "/" in name or name in (".", ".."):
+            return
+        around = tuple(dict.fromkeys(around))
+        is_found = False
+        for folder in self._exact(name, around):
+            is_found = is_found or is_folder(folder)
+            yield folder
+        if not is_found:
+            yield from self._folders_of_that_name(name, around)
+            yield from self._similar(name, around)
+
+    def members(self, name: str, member: str, around: Iterable[Path]) -> Iterator[Path]:
+        """Yield the package `name_member`: `package://moveit_resources/panda_description` was once a folder."""
+        for folder in self._exact(f"{name}_{member}", tuple(dict.fromkeys(around))):
+            self._offer(name, folder, f"the package {name} has no {member}; {self._shown(folder)} is used")
+            yield folder
+
+    def packages(self, around: Iterable[Path]) -> Iterator[Path]:
+        """Yield all packages in the workspaces given by the user, around the files, and below the search paths."""
+        for place in self._all_places(tuple(dict.fromkeys(around))):
+            yield from self._area(place).folders
+
+    def confirm(self, name: str, found: Path) -> bool:
+        """Record the decision that led to a file; return false if the file is in no folder that was offered."""
+        for folder, reason in self._reasons.get(name, {}).items():
+            if folder == found or folder in found.parents:
+                if reason:
+                    self.notes.setdefault(name, reason)
+                return True
+        return False
+
+    def unfinished(self) -> list[Path]:
+        """Return the folders whose search ended at a limit."""
+        return [place for place, area in self._areas.items() if not area.is_complete]
+
+    # ------------------------------------------------------------------ candidates
+
+    def _exact(self, name: str, around: tuple[Path, ...]) -> Iterator[Path]:
+        """Yield the packages with this name, nearest first."""
+        if name in self.named:
+            yield self._offer(name, self.named[name])
+        places = [*self.workspaces, *(place for folder in around for place in self._around(folder))]
+        for place in dict.fromkeys(places):
+            yield from self._same_name(name, place, around)
+        for path in self.paths:
+            direct = path / name
+            if self._name_of(direct) in ("", name):
+                yield self._offer(name, direct)
+            if name in (self._name_of(path), path.name) and self._name_of(path) in ("", name):
+                yield self._offer(name, path)
+        for path in self.paths:
+            yield from self._same_name(name, path, around)
+
+    def _same_name(self, name: str, place: Path, around: tuple[Path, ...]) -> Iterator[Path]:
+        """Yield the packages of one name below a folder; the one nearest to the file is first, with a note."""
+        folders = self._area(place).by_name.get(name, ())
+        home = around[0] if around else place
+        ordered = sorted(folders, key=lambda folder: (_is_copy(folder), -_common_levels(folder, home)))
+        sources = [folder for folder in ordered if not _is_copy(folder)] or ordered[:1]
+        others = ", ".join(str(folder) for folder in sources[1:4])
+        reason = f"several packages are named {name}: {ordered[0]} is used, not {others}" if others else ""
+        for folder in ordered:
+            yield self._offer(name, folder, reason)
+
+    def _folders_of_that_name(self, name: str, around: tuple[Path, ...]) -> Iterator[Path]:
+        """Yield the packages whose folder has this name, and such a folder beside the package of the file."""
+        for folder in self.packages(around):
+            if folder.name == name:
+                yield self._offer(name, folder, f"no package is named {name}; {self._shown(folder)} is used")
+        for folder in around:
+            home = enclosing_package(folder)
+            if home is not None and not is_private(home.parent / name):
+                yield self._offer(name, home.parent / name)
+        for path in self.paths:
+            yield self._offer(name, path / name)
+
+    def _similar(self, name: str, around: tuple[Path, ...]) -> Iterator[Path]:
+        """Yield the only package with this name in other capital letters, else the only one with the same end."""
+        packages = list(dict.fromkeys(self.packages(around)))
+        folded = [f for f in packages if name.casefold() in (self._name_of(f).casefold(), f.name.casefold())]
+        similar = folded or [f for f in packages if self._has_same_end(name, f)]
+        if len({self._name_of(folder) for folder in similar}) == 1:
+            for folder in similar:
+                yield self._offer(name, folder, f"no package is named {name}; {self._shown(folder)} is used")
+
+    def _has_same_end(self, name: str, folder: Path) -> bool:
+        """Check whether a name has the prefix of a group, such as `moveit_resources_`, and the other name lacks it."""
+        own = self._name_of(folder)
+        if "_" in name and own.endswith(f"_{name}"):
+            return True
+        groups = (parent.name for parent in folder.parents[:2])
+        return any(name == f"{group}_{own}" for group in groups)
+
+    def _offer(self, name: str, folder: Path, reason: str = "") -> Path:
+        self._reasons.setdefault(name, {}).setdefault(folder, reason)
+        return folder
+
+    def _shown(self, folder: Path) -> str:
+        return f"the package {self._name_of(folder)} in {folder}"
+
+    # ------------------------------------------------------------------ folders
+
+    def _all_places(self, around: tuple[Path, ...]) -> Iterator[Path]:
+        nearby = (place for folder in around for place in self._around(folder))
+        yield from dict.fromkeys((*self.workspaces, *nearby, *self.paths))
+
+    def _around(self, folder: Path) -> tuple[Path, ...]:
+        """Return the folders around a file to search: its package, then the workspace or the folders above.
+
+        A file outside a package and outside a repository has only its own folder.
+        """
+        if folder not in self._places:
+            home = enclosing_package(folder) or enclosing_project(folder)
+            above = [] if home is None else list(takewhile(lambda p: not is_top_folder(p), home.parents[:4]))
+            source = next((number for number, parent in enumerate(above) if parent.name == "src"), None)
+            above = above[:3] if source is None else above[source : source + 2]
+            self._places[folder] = (home or folder, *above)
+        return self._places[folder]
+
+    def _area(self, place: Path) -> _Area:
+        if place not in self._areas:
+            self._areas[place] = self._search(place)
+        return self._areas[place]
+
+    def _search(self, place: Path) -> _Area:
+        """Search the packages in and below a folder, level by level."""
+        area, level, count = _Area(), [place], 0
+        end = time.monotonic() + _MAX_SECONDS
+        for _ in range(_SEARCH_DEPTH + 1):
+            below: list[Path] = []
+            for folder in level:
+                name = self._name_of(folder)
+                if name:
+                    area.by_name.setdefault(name, []).append(folder)
+                elif folder in self._areas:  # a folder of a file that was searched before
+                    for own, folders in self._areas[folder].by_name.items():
+                        area.by_name.setdefault(own, []).extend(folders)
+                    continue
+                children = _subfolders(folder)
+                count += len(children)
+                if count > _MAX_FOLDERS or time.monotonic() > end:
+                    area.is_complete = False
+                    return area
+                # a package can hold packages beside its own folders, which are not searched further
+                below += [child for child in children if not name or is_file(child / "package.xml")]
+            level = below
+        return area
+
+    def _name_of(self, folder: Path) -> str:
+        """Return the name in a folder's `package.xml`, its folder's name if there is none in it, else an empty text."""
+        if folder not in self._names:
+            self._names[folder] = _read_name(folder)
+        return self._names[folder]
+
+
+def _read_name(folder: Path) -> str:
+    if not is_file(folder / "package.xml"):
+        return ""
     try:
-        found = _NAME.search(read_input(file, 65536))
+        found = _NAME.search(read_input(folder / "package.xml", 65536))
     except OSError:
         return ""
-    return "" if found is None else found.group(1).decode()
+    return folder.name if found is None else found.group(1).decode()
 
 
-def _nearby_packages(name: str, folder: Path) -> Iterator[Path]:
-    """Yield candidates near a file: the package that contains it, a sibling, and packages up to three levels above."""
-    home = enclosing_package(folder)
-    if home is None:
-        return
-    if home.name == name or package_name(home) == name:
-        yield home
-    if not is_private(home.parent / name):
-        yield home.parent / name
-    for above in home.parents[:3]:
-        if len(above.parts) < 3:
-            return
-        direct = above / name
-        if is_file(direct / "package.xml"):
-            yield direct
-        try:
-            repositories = sorted(p for p in above.iterdir() if not p.name.startswith("."))[:500]
-        except OSError:
-            continue
-        yield from (r / name for r in repositories if is_file(r / name / "package.xml"))
+def _subfolders(folder: Path) -> list[Path]:
+    """Return the folders in a folder that can hold packages; `src` is first and `install` is last."""
+    try:
+        with os.scandir(folder) as entries:
+            names = [
+                e.name for e in entries if not e.name.startswith(".") and e.name not in _OTHER_FOLDERS and e.is_dir()
+            ]
+    except OSError:
+        return []
+    names.sort(key=lambda name: (name == "install", name != "src", name))
+    return [folder / name for name in names]
 
 
-def _packages_below(path: Path) -> dict[str, Path]:
-    """Return every package below a folder by its name, as ROS searches `ROS_PACKAGE_PATH`.
+def _is_copy(folder: Path) -> bool:
+    """Check whether a package is an installed copy (`share/NAME`), or whether colcon or catkin ignores it."""
+    return folder.parent.name == "share" or any(is_file(folder / marker) for marker in _IGNORE_MARKERS)
 
-    If several packages have the same name, the nearest one is returned.
-    """
-    found: dict[str, Path] = {}
-    level, seen = [path], 0
-    for _ in range(_SEARCH_DEPTH):
-        below: list[Path] = []
-        for folder in level:
-            try:
-                with os.scandir(folder) as entries:
-                    children = sorted(e.path for e in entries if e.is_dir() and not e.name.startswith("."))
-            except OSError:
-                continue
-            for child in map(Path, children):
-                seen += 1
-                if seen > _MAX_FOLDERS:
-                    return found
-                if is_file(child / "package.xml"):
-                    for name in (package_name(child), child.name):
-                        if name:
-                            found.setdefault(name, child)
-                else:
-                    below.append(child)
-        level = below
-    return found
+
+def _common_levels(one: Path, other: Path) -> int:
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(one.parts, other.parts, strict=False)))

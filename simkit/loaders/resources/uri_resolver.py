@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import replace
 from itertools import chain
@@ -11,8 +11,10 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
+from simkit.errors import InputError
 from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
-from simkit.loaders.resources.ros_packages import enclosing_package, package_folders
+from simkit.loaders.resources.project_folder import readable_folder
+from simkit.loaders.resources.ros_packages import PackageIndex, enclosing_package
 from simkit.loaders.resources.uris import (
     absolute_path,
     first_existing,
@@ -28,6 +30,7 @@ from simkit.loaders.resources.uris import (
     package_uri,
     sibling_names,
 )
+from simkit.run_spec import PackagePaths, split_package_paths
 
 _SEARCH_VARIABLES = (
     "SIMKIT_RESOURCE_PATH",
@@ -35,11 +38,13 @@ _SEARCH_VARIABLES = (
     "IGN_GAZEBO_RESOURCE_PATH",
     "SDF_PATH",
     "GAZEBO_MODEL_PATH",
+    "GAZEBO_RESOURCE_PATH",
     "ROS_PACKAGE_PATH",
 )
 _SCHEMES = ("model", "package", "file")
 _CACHE_VARIABLES = ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH")
 NOT_FOUND_CODES = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
+_MEDIA = ("Media/models", "media/models", "Media", "media")  # folders of a package that Gazebo Classic searches
 _PATH_HINT = "add its folder with --resource-path or SIMKIT_RESOURCE_PATH"
 
 
@@ -52,7 +57,8 @@ class Resolver:
         missing_meshes: reports any unusable mesh as a warning only, even if its URI is refused. This setting allows
             inspecting a file without its meshes.
         anywhere: allows absolute paths and `..` outside these folders.
-        package_paths: folder of each ROS package that the caller knows; searched before all other folders.
+        package_paths: folder of each ROS package that the caller knows, or workspaces with such packages; searched
+            before all other folders.
     """
 
     def __init__(
@@ -62,18 +68,24 @@ class Resolver:
         base: Path | None = None,
         missing_meshes: bool = False,
         anywhere: bool = False,
-        package_paths: Mapping[str, str | os.PathLike[str]] | None = None,
+        package_paths: PackagePaths | None = None,
     ) -> None:
         self.base, self.missing_meshes, self.anywhere = base, missing_meshes, anywhere
-        self.packages = {name: absolute_path(Path(p).expanduser()) for name, p in (package_paths or {}).items()}
         self._found: dict[str, Path] = {}
-        self._below: dict[Path, dict[str, Path]] = {}
-        self._near: dict[tuple[str, Path], tuple[Path, ...]] = {}
         found = [Path(p).expanduser() for p in paths]
         for variable in _SEARCH_VARIABLES:
             found += [Path(p) for p in os.environ.get(variable, "").split(os.pathsep) if p]
         found += [Path(p) / "share" for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
         self.paths: tuple[Path, ...] = tuple(dict.fromkeys(absolute_path(p) for p in found))
+        named, workspaces = split_package_paths(package_paths)
+        for folder in workspaces:
+            if not folder.is_dir():
+                message = f"SK-CLI-018 package path: found {str(folder)!r}; expected NAME=DIR or a folder that exists"
+                raise InputError(message, "SK-CLI-018")
+        self.packages = PackageIndex(
+            {name: absolute_path(p) for name, p in named.items()}, [absolute_path(p) for p in workspaces], self.paths
+        )
+        self._reported: set[str] = set()
 
     def around(self, folder: Path | None) -> Resolver:
         """Return a resolver with the folder of the loaded file as its base, unless this resolver already has a base."""
@@ -82,6 +94,14 @@ class Resolver:
         near = copy(self)
         near.base = folder
         return near
+
+    def report_choices(self, where: Where, diagnostics: Diagnostics) -> None:
+        """Record a note for each package that was found under another name or more than once, once per package."""
+        hint = "choose another one with --package-path NAME=DIR"
+        for name, reason in self.packages.notes.items():
+            if name not in self._reported:
+                diagnostics.note("SK-URI-011", reason, where, hint)
+        self._reported.update(self.packages.notes)
 
     # ------------------------------------------------------------------ URIs
 
@@ -117,7 +137,7 @@ class Resolver:
         """
         found, places = self.search(uri, relative_to)
         if found is not None:
-            if is_relocated(uri, found):
+            if self._is_elsewhere(uri, found):
                 message = f"{uri} does not exist; {found} is used instead"
                 diagnostics.note("SK-URI-010", message, where)
             return found
@@ -137,13 +157,26 @@ class Resolver:
             near = did_you_mean(name, self._nearby_names(relative_to)) if scheme in ("model", "package") else ""
             folder, tried = self.find_package(name, relative_to) if scheme == "package" else (None, [])
             if scheme == "package" and folder is None:
-                message = f"{uri}: the package {name!r} is not found{format_searched(tried)}"
-                hint = f"give its folder: --package-path {name}=DIR"
+                message = f"{uri}: the package {name!r} is not found{self.format_searched_packages(tried)}"
+                hint = f"give its folder, --package-path {name}=DIR, or its workspace, --package-path DIR"
                 diagnostics.error("SK-URI-009", message, where, f"{near} or {hint}" if near else hint)
             else:
                 message = f"{uri} is not found{format_searched(places)}"
                 diagnostics.error("SK-URI-001", message, where, near or _PATH_HINT)
         return None
+
+    def format_searched_packages(self, places: list[Path]) -> str:
+        """Format the searched paths for a message about a package, with the searches that ended at a limit."""
+        unfinished = ", ".join(str(place) for place in self.packages.unfinished())
+        return format_searched(places) + (f"; the search below {unfinished} ended at its limit" if unfinished else "")
+
+    def _is_elsewhere(self, uri: str, found: Path) -> bool:
+        """Check whether a file was found in another folder than its URI names, for a reason that is not yet noted."""
+        scheme, _, rest = package_uri(uri).partition("://")
+        name = rest.split("/")[0]
+        if scheme in ("package", "model") and self.packages.confirm(name, found):
+            return False
+        return name not in found.parts if scheme == "package" else is_relocated(uri, found)
 
     def find_package(self, name: str, relative_to: Path | None) -> tuple[Path | None, list[Path]]:
         """Return the folder of a ROS package, and every searched path.
@@ -152,14 +185,18 @@ class Resolver:
         """
         if not is_bare_name(name):
             return None, []
-        around = [absolute_path(f) for f in (relative_to, self.base) if f is not None]
-        tried = list(package_folders(name, self.packages, around, self.paths, self._below, self._near))
+        tried = list(self.packages.candidates(name, self._around(relative_to)))
         for bundle in bundled_folders("assets"):
             tried += [bundle / name, *sorted(bundle.glob(f"*/{name}"))]
         folder, unique = first_existing([t for t in tried if is_folder(t)] or tried)
         if folder is not None:
             self._found[name] = folder
+            self.packages.confirm(name, folder)
         return folder, unique
+
+    def _around(self, relative_to: Path | None) -> list[Path]:
+        """Return the folder of the file that contains a URI, and that of the loaded file."""
+        return [absolute_path(f) for f in (relative_to, self.base) if f is not None]
 
     def search(self, uri: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
         """Return the path that `resolve` finds, and all searched paths (None for a URI outside the folders)."""
@@ -180,7 +217,8 @@ class Resolver:
             return None, None
         named = self._model_candidates(rest, relative_to)
         if scheme == "model":
-            return first_existing(chain(named, self._package_candidates(rest, relative_to)))
+            packages = self._package_candidates(rest, relative_to)
+            return first_existing(chain(named, packages, self._models_of_packages(rest, relative_to)))
         renamed = self._renamed_checkout_candidates(rest, relative_to)
         return first_existing(chain(self._package_candidates(rest, relative_to), named, renamed))
 
@@ -211,11 +249,27 @@ class Resolver:
             yield from sorted(bundle.glob(f"*/{name}/")) if not inside and name.replace("_", "").isalnum() else ()
 
     def _package_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for `package://name/...` in the package of that name."""
+        """Yield candidates for `package://name/...` in the package of that name, then in a package of its group."""
         name, _, inside = rest.strip("/").partition("/")
-        around = [absolute_path(f) for f in (relative_to, self.base) if f is not None]
-        for folder in package_folders(name, self.packages, around, self.paths, self._below, self._near):
+        around = self._around(relative_to)
+        for folder in self.packages.candidates(name, around):
             yield folder / inside
+        member, _, inside = inside.partition("/")
+        for folder in self.packages.members(name, member, around) if inside else ():
+            yield folder / inside
+
+    def _models_of_packages(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+        """Yield candidates for `model://name/...` in the folders `models` of packages, which packages export."""
+        name, _, inside = rest.strip("/").partition("/")
+        for package in self.packages.packages(self._around(relative_to)):
+            if not is_private(package / "models" / name):
+                yield package / "models" / name / inside
+
+    def _media_candidates(self, text: str, relative_to: Path | None) -> Iterator[Path]:
+        """Yield candidates for a relative path in the folders `Media` of search paths and packages."""
+        if ".." not in Path(text).parts:
+            roots = chain(self.paths, self.packages.packages(self._around(relative_to)))
+            yield from (root / media / text for root in roots for media in _MEDIA)
 
     def _renamed_checkout_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield candidates for `package://name/a/b`: the path `a/b` in the folders above the file.
@@ -254,7 +308,8 @@ class Resolver:
         if not self.anywhere:
             limits = [absolute_path(r) for r in (*roots, *bundled_folders("assets"))]
             limits += [package for f in folders if (package := enclosing_package(absolute_path(f))) is not None]
-            limits += [*self.packages.values(), *self._found.values()]
+            limits += [readable_folder(absolute_path(f)) for f in folders]
+            limits += [*self.packages.named.values(), *self.packages.workspaces, *self._found.values()]
             kept = [c for c in candidates if any(c == limit or limit in c.parents for limit in limits)]
             if not any(is_existing(c) for c in kept) and Path(text).is_absolute() and ".." not in Path(text).parts:
                 moved = self._find_relocated(Path(text), relative_to)
@@ -263,7 +318,9 @@ class Resolver:
             if candidates and not kept:
                 return None, None
             candidates = kept
-        return first_existing(candidates)
+        media = () if Path(text).is_absolute() else self._media_candidates(text, relative_to)
+        found, places = first_existing(chain(candidates, media))
+        return found, candidates if found is None else places
 
     def _fuel_candidates(self, uri: str) -> Iterator[Path]:
         """Yield candidates for a Fuel URL in Gazebo's caches, then a folder of that name in the resource folders."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 _MANIFESTS = ("model.config", "model.sdf", "package.xml", "manifest.xml")
-_ASSETS = ("materials", "media", "meshes", "textures")
+_ASSETS = ("assets", "materials", "media", "mesh", "meshes", "stl", "stls", "textures")
 
 
 def package_uri(uri: str) -> str:
@@ -24,10 +24,7 @@ def package_uri(uri: str) -> str:
 
 
 def is_relocated(uri: str, found: Path) -> bool:
-    """Check whether the file of an absolute path or of a package was found in another folder than the URI names."""
-    scheme, _, rest = uri.partition("://")
-    if scheme == "package":
-        return rest.split("/")[0] not in found.parts
+    """Check whether the file of an absolute path was found in another folder than the path names."""
     plain = Path(unquote(uri.removeprefix("file://")))
     return plain.is_absolute() and absolute_path(plain) != absolute_path(found)
 
@@ -47,13 +44,19 @@ def leaves_folder(rest: str) -> bool:
     return rest.split("/")[0] in ("..", ".")
 
 
+def is_top_folder(folder: Path) -> bool:
+    """Check for the home folder and the two highest levels of the file system, which are never searched."""
+    home = Path.home()
+    return len(folder.parts) < 3 or folder in (home, home.resolve())
+
+
 def is_private(folder: Path) -> bool:
     """Check whether a folder exists, but a file near it must not read it by its name.
 
     A model, a package, and a folder with meshes or textures may be read. The home folder and the two highest levels of
     the file system are always private.
     """
-    if len(folder.parts) < 3 or folder == Path.home():
+    if is_top_folder(folder):
         return True
     is_open = any(is_file(folder / name) for name in _MANIFESTS) or any(is_folder(folder / name) for name in _ASSETS)
     return not is_open and is_existing(folder)

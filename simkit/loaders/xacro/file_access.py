@@ -105,10 +105,9 @@ class FileAccess:
             found, tried = self.resolver.find_package(name, folder)
             self._packages[name] = f"package://{name}" if found is None else str(found)
             if found is None:
-                folders = ", ".join(str(p) for p in tried[:6])
                 message = f"$(find {name}): the package is not found; package://{name} is used"
-                searched = f"; searched {folders}" if folders else ""
-                hint = f"give its folder: --package-path {name}=DIR"
+                searched = self.resolver.format_searched_packages(tried)
+                hint = f"give its folder, --package-path {name}=DIR, or its workspace, --package-path DIR"
                 self.diagnostics.note("SK-XACRO-007", message + searched, self._where(), hint)
         return self._packages[name]
 

@@ -16,7 +16,7 @@ from typing import Any, Final, cast
 from simkit import progress
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
-from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject, LoadOptions, RunSpec
+from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject, LoadOptions, RunSpec, change_package_paths
 from simkit.testing.certify.certificate import Certificate, Difference, Row, streams_hash
 from simkit.testing.certify.child_run import ChildRequest, run_child
 from simkit.testing.certify.code_hints import hints_in
@@ -141,7 +141,7 @@ def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
     for name in {*_FOLDERS} & options.keys():
         options[name] = [absolute(place) for place in options[name]]
     if options.get("package_paths"):
-        options["package_paths"] = {name: absolute(place) for name, place in dict(options["package_paths"]).items()}
+        options["package_paths"] = change_package_paths(options["package_paths"], absolute)
     if options.get("params_files"):
         given = options["params_files"]
         options["params_files"] = [_absolute_file(g) for g in ([given] if isinstance(given, (str, Path)) else given)]

@@ -11,7 +11,17 @@ from typing import Any, Final, cast
 
 import numpy as np
 
-from simkit.run_spec import EMPTY_SPACE, GROUND, Check, JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
+from simkit.run_spec import (
+    EMPTY_SPACE,
+    GROUND,
+    Check,
+    JsonMapping,
+    JsonObject,
+    LoadOptions,
+    RunSpec,
+    Tolerance,
+    change_package_paths,
+)
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
 from simkit.testing.golden.compare.tolerances import storage_step
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
@@ -146,7 +156,7 @@ def _move_option(name: str, value: Any, place: Callable[[object], str]) -> objec
         several = [value] if isinstance(value, (str, os.PathLike)) else list(value)
         return [_move_params_file(str(one), place) for one in several]
     if name == "package_paths":
-        return {key: place(one) for key, one in dict(value).items()}
+        return _plain_value(change_package_paths(value, place))
     return _plain_value(value)
 
 

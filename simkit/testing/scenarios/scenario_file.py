@@ -14,7 +14,17 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.command_script import script_items, validate_items
-from simkit.run_spec import GROUND, Check, CheckKind, JsonObject, LoadOptions, RunSpec, Tolerance, named_values
+from simkit.run_spec import (
+    GROUND,
+    Check,
+    CheckKind,
+    JsonObject,
+    LoadOptions,
+    RunSpec,
+    Tolerance,
+    change_package_paths,
+    named_values,
+)
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
 
@@ -157,6 +167,10 @@ class ScenarioReader(ValueReader):
                 self._wrong(value, "a number, a string, true or false, or a list of these", key, name)
         return found
 
+    def _named_or_listed(self, key: str) -> dict[str, str] | tuple[str, ...]:
+        """Return the texts of a mapping, or of a list."""
+        return self._strings(key) if isinstance(self._fields[key], dict) else tuple(self._texts(key))
+
     def _xacro_arguments(self) -> dict[str, str]:
         """Return the arguments of xacro files: a mapping, or a list of `NAME:=VALUE` texts."""
         if isinstance(self._fields["xacro_args"], dict):
@@ -213,7 +227,9 @@ class ScenarioReader(ValueReader):
         if "params_files" in self._fields:
             found["params_files"] = tuple(_resolve_params_file(folder, one) for one in self._texts("params_files"))
         if "package_paths" in self._fields:
-            found["package_paths"] = {name: folder / one for name, one in self._strings("package_paths").items()}
+            found["package_paths"] = change_package_paths(
+                self._named_or_listed("package_paths"), lambda one: folder / one
+            )
         if "xacro_args" in self._fields:
             found["xacro_args"] = self._xacro_arguments()
         if "base" in self._fields:

@@ -68,6 +68,21 @@ def test_all_keys_of_a_scenario_are_read(tmp_path):
     assert found.commands[0]["at"] == 1 and found.commands[0]["where"].endswith("drop.yaml:13")
 
 
+def test_package_paths_can_be_a_list_whose_folders_keep_their_place_in_golden_runs_and_certificates(tmp_path):
+    from simkit.testing.certify.certification import _with_absolute_paths
+    from simkit.testing.golden.record_encoding import decode_scenario, encode_scenario
+
+    found = scenario(tmp_path, "world: ball.sdf\npackage_paths: [../ws, arm=robot]\n")
+    expected = [f"arm={tmp_path / 'robot'}", tmp_path / ".." / "ws"]
+    assert found.options["package_paths"] == expected
+    assert _with_absolute_paths(found).options["package_paths"] == [str(path) for path in expected]
+    golden = tmp_path / "golden" / "drop"
+    data = encode_scenario(found, golden)
+    assert data["options"] == {"package_paths": ["arm=../../robot", "../../../ws"]}
+    again = decode_scenario(data, golden).options["package_paths"]
+    assert again == [f"arm={golden}/../../robot", f"{golden}/../../../ws"]
+
+
 def test_commands_can_be_in_a_script_file(tmp_path):
     (tmp_path / "push.yaml").write_text("- {at: 0.5, topic: /push, message: {data: 1}}\n")
     found = scenario(tmp_path, "world: ball.sdf\ncommands: push.yaml\n")
