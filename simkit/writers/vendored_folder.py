@@ -22,6 +22,7 @@ from simkit.loaders.resources.xml_reader import parse_file
 from simkit.params import Params
 from simkit.run_spec import NamedValues, PackagePaths
 from simkit.writers.asset_folder import companion_files
+from simkit.writers.mjcf_files import mjcf_files
 from simkit.writers.xml_text import document as xml_text
 
 MOST_FILES = 50_000
@@ -63,11 +64,21 @@ class WorldCollector:
         self.home = path.parent
         name = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}.urdf" if expanded else path.name
         self.resolver = self.resolver.around(self.home)
-        target = PurePosixPath(name)
+        levels = self._levels_above(document, path.parent)
+        self.home = path.parents[levels]
+        target = PurePosixPath(path.parent.relative_to(self.home).as_posix()) / name
         self._done[path] = target
         self._copy_licences(self.home, PurePosixPath())
+        if levels and not any((self.folder / name).exists() for name in _MANIFESTS):
+            manifest = f"<model><name>{escape(path.stem)}</name><sdf>{escape(target.as_posix())}</sdf></model>\n"
+            self._write_bytes(PurePosixPath("model.config"), manifest.encode())
         self._write_document(target, document, path, expanded)
         return target
+
+    def _levels_above(self, document: Document, folder: Path) -> int:
+        """Return how many levels above its folder an MJCF file refers to; its text keeps these references."""
+        sources = mjcf_files(document.root, folder, self.resolver) if document.root.name == "mujoco" else {}
+        return max((_relative(source, folder).split("/").count("..") for source in sources), default=0)
 
     # ------------------------------------------------------------------ files
 
@@ -203,23 +214,12 @@ class WorldCollector:
 
     def _mjcf_files(self, root: Params, folder: Path, here: PurePosixPath) -> None:
         """Collect the files of an MJCF file; they keep their relative positions."""
-        below: dict[str, str] = {}
-        for compiler in root.all("compiler"):
-            below |= {k: v for k, v in compiler.attributes.items() if k in ("meshdir", "texturedir", "assetdir")}
-        folders = ["", below.get("assetdir", ""), below.get("meshdir", ""), below.get("texturedir", "")]
-        for element, _ in _elements(root):
-            for key, reference in element.attributes.items():
-                if not key.startswith("file"):
-                    continue
-                for inside in folders:
-                    source = absolute_path(folder / inside / reference)
-                    if source.is_file() and source.is_relative_to(folder):
-                        target = here / inside / reference
-                        document = parse_file(source, Diagnostics()) if source.suffix == ".xml" else None
-                        if document is not None:
-                            self._write_document(target, document, source)
-                        else:
-                            self._copy(source, target)
+        for source, document in mjcf_files(root, folder, self.resolver).items():
+            target = here / _relative(source, folder)
+            if document is None:
+                self._copy(source, target)
+            else:
+                self._write_bytes(target, document.text)
 
 
 def vendor(

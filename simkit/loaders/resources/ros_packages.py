@@ -68,6 +68,8 @@ class PackageIndex:
         self._areas: dict[Path, _Area] = {}
         self._names: dict[Path, str] = {}
         self._places: dict[Path, tuple[Path, ...]] = {}
+        self._fallbacks: dict[tuple[str, tuple[Path, ...]], tuple[Path, ...]] = {}
+        self._searched_count, self._searched_seconds = 0, 0.0  # of all folders that the user did not give
         self._reasons: dict[str, dict[Path, str]] = {}  # package name -> folder that was offered -> reason to tell
 
     # ------------------------------------------------------------------ search
@@ -90,8 +92,10 @@ class PackageIndex:
             is_found = is_found or is_folder(folder)
             yield folder
         if not is_found:
-            yield from self._folders_of_that_name(name, around)
-            yield from self._similar(name, around)
+            if (name, around) not in self._fallbacks:
+                found = dict.fromkeys((*self._folders_of_that_name(name, around), *self._similar(name, around)))
+                self._fallbacks[name, around] = tuple(found)
+            yield from self._fallbacks[name, around]
 
     def members(self, name: str, member: str, around: Iterable[Path]) -> Iterator[Path]:
         """Yield the package `name_member`: `package://moveit_resources/panda_description` was once a folder."""
@@ -140,8 +144,10 @@ class PackageIndex:
         folders = self._area(place).by_name.get(name, ())
         home = around[0] if around else place
         ordered = sorted(folders, key=lambda folder: (_is_copy(folder), -_common_levels(folder, home)))
-        sources = [folder for folder in ordered if not _is_copy(folder)] or ordered[:1]
-        others = ", ".join(str(folder) for folder in sources[1:4])
+        others = ""
+        if len(ordered) > 1:
+            sources = {folder.resolve(): folder for folder in reversed(ordered) if not _is_copy(folder)}
+            others = ", ".join(str(folder) for folder in [*reversed(sources.values())][1:4])
         reason = f"several packages are named {name}: {ordered[0]} is used, not {others}" if others else ""
         for folder in ordered:
             yield self._offer(name, folder, reason)
@@ -207,9 +213,14 @@ class PackageIndex:
         return self._areas[place]
 
     def _search(self, place: Path) -> _Area:
-        """Search the packages in and below a folder, level by level."""
-        area, level, count = _Area(), [place], 0
-        end = time.monotonic() + _MAX_SECONDS
+        """Search the packages in and below a folder, level by level.
+
+        Each folder of the user has the full limits; all folders around the files share them.
+        """
+        area, level = _Area(), [place]
+        is_given = place in self.workspaces or place in self.paths
+        count, seconds = (0, 0.0) if is_given else (self._searched_count, self._searched_seconds)
+        begin = time.monotonic() - seconds
         for _ in range(_SEARCH_DEPTH + 1):
             below: list[Path] = []
             for folder in level:
@@ -222,12 +233,14 @@ class PackageIndex:
                     continue
                 children = _subfolders(folder)
                 count += len(children)
-                if count > _MAX_FOLDERS or time.monotonic() > end:
-                    area.is_complete = False
-                    return area
+                area.is_complete = count <= _MAX_FOLDERS and time.monotonic() - begin <= _MAX_SECONDS
+                if not area.is_complete:
+                    break
                 # a package can hold packages beside its own folders, which are not searched further
                 below += [child for child in children if not name or is_file(child / "package.xml")]
-            level = below
+            level = below if area.is_complete else []
+        if not is_given:
+            self._searched_count, self._searched_seconds = count, time.monotonic() - begin
         return area
 
     def _name_of(self, folder: Path) -> str:

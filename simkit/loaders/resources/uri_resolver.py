@@ -185,14 +185,15 @@ class Resolver:
         """
         if not is_bare_name(name):
             return None, []
-        tried = list(self.packages.candidates(name, self._around(relative_to)))
-        for bundle in bundled_folders("assets"):
-            tried += [bundle / name, *sorted(bundle.glob(f"*/{name}"))]
-        folder, unique = first_existing([t for t in tried if is_folder(t)] or tried)
-        if folder is not None:
-            self._found[name] = folder
-            self.packages.confirm(name, folder)
-        return folder, unique
+        bundled = (path for assets in bundled_folders("assets") for path in (assets / name, *assets.glob(f"*/{name}")))
+        tried: dict[Path, None] = {}
+        for folder in chain(self.packages.candidates(name, self._around(relative_to)), bundled):
+            tried[folder] = None
+            if is_folder(folder):
+                self._found[name] = folder
+                self.packages.confirm(name, folder)
+                return folder, list(tried)
+        return None, list(tried)
 
     def _around(self, relative_to: Path | None) -> list[Path]:
         """Return the folder of the file that contains a URI, and that of the loaded file."""
@@ -262,8 +263,9 @@ class Resolver:
         """Yield candidates for `model://name/...` in the folders `models` of packages, which packages export."""
         name, _, inside = rest.strip("/").partition("/")
         for package in self.packages.packages(self._around(relative_to)):
-            if not is_private(package / "models" / name):
-                yield package / "models" / name / inside
+            folder = package / "models" / name
+            if is_folder(folder) and not is_private(folder):
+                yield folder / inside
 
     def _media_candidates(self, text: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield candidates for a relative path in the folders `Media` of search paths and packages."""

@@ -184,7 +184,7 @@ def test_a_search_is_made_once_and_ends_at_its_limit(package, used, monkeypatch,
     content, found = used(ROBOT, MESH.format("sensors"))
     assert content == ""
     (problem,) = with_code(found, "SK-URI-009")
-    assert f"the search below {file.parents[3]} ended at its limit" in problem.message
+    assert f"the search below {file.parents[3]}, {file.parents[4]} ended at its limit" in problem.message
 
 
 # ---------------------------------------------------------------------- models and media of packages

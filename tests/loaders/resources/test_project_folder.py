@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import simkit
+
 STL = b"\0" * 80 + struct.pack("<I", 4)
 for _corners in ("0 0 0 0 1 0 1 0 0", "0 0 0 1 0 0 0 0 1", "1 0 0 0 1 0 0 0 1", "0 0 0 0 0 1 0 1 0"):
     STL += struct.pack("<12fH", 0, 0, 0, *map(float, _corners.split()), 0)
@@ -114,3 +116,25 @@ def test_a_texture_folder_upwards_is_read(write, uri_codes):
     text = """<mujoco><compiler texturedir="../textures"/><asset><texture name="t" type="2d" file="t.png"/></asset>
     <worldbody><geom size="1"/></worldbody></mujoco>"""
     assert uri_codes(write("p/xml/r.xml", text)) == []
+
+
+def test_a_vendored_mjcf_file_keeps_the_files_above_its_folder(write, tmp_path):
+    """The included file uses the folder of meshes that the main file names, and is not in a folder of either."""
+    from simkit.writers.vendored_folder import vendor
+
+    write("project/.git")
+    write("project/shapes/m.stl", STL)
+    write("project/secret.stl", STL)
+    write("secret.stl", STL)
+    part = '<mujoco><asset><mesh name="m" file="m.stl"/></asset></mujoco>'
+    write("project/parts/part.xml", part)
+    main = """<mujoco><compiler meshdir="../../shapes"/><include file="../../parts/part.xml"/>
+    <worldbody><body><geom type="mesh" mesh="m"/></body></worldbody></mujoco>"""
+    file = write("project/robots/arm/arm.xml", main)
+    place, count = vendor(str(file), tmp_path / "copy", simkit.describe)
+    assert place.as_posix() == "robots/arm/arm.xml" and count == 4
+    files = {
+        path.relative_to(tmp_path / "copy").as_posix() for path in (tmp_path / "copy").rglob("*") if path.is_file()
+    }
+    assert files == {"robots/arm/arm.xml", "parts/part.xml", "shapes/m.stl", "model.config"}
+    assert simkit.describe(tmp_path / "copy")["worlds"] == simkit.describe(file)["worlds"]
