@@ -173,7 +173,7 @@ class Resolver:
     def _is_elsewhere(self, uri: str, found: Path) -> bool:
         """Check whether a file was found in another folder than its URI names, for a reason that is not yet noted."""
         scheme, _, rest = package_uri(uri).partition("://")
-        name = rest.split("/")[0]
+        name = rest.strip("/").split("/")[0]
         if scheme in ("package", "model") and self.packages.confirm(name, found):
             return False
         return name not in found.parts if scheme == "package" else is_relocated(uri, found)
