@@ -171,12 +171,12 @@ def load(
     builder.parameter_files = parameter_files
     builder.files_read += [item.file.path for item in parameter_files]
     parts = make_all_parts(world, builder, diagnostics, allowed, plugins)
-    if parameter_files and not diagnostics.has_errors:  # `parts` does not contain plugins whose parameters have errors
-        from simkit.plugins.run_parameter_files import report_unused_parameter_files
+    has_controls = parameter_files or any(model.controls for top in world.models for model in top.all_models())
+    if has_controls and not diagnostics.has_errors:  # `parts` does not contain plugins whose parameters have errors
+        from simkit.plugins.run_parameter_files import report_unused_control
 
-        report_unused_parameter_files(
-            parameter_files, [plugin for part in parts.values() for plugin, _ in part.plugins], world, diagnostics
-        )
+        made = [plugin for part in parts.values() for plugin, _ in part.plugins]
+        report_unused_control(parameter_files, made, world, diagnostics)
     diagnostics.raise_if_errors(strict)
     compiled = builder.compile()
     diagnostics.raise_if_errors(strict)

@@ -253,7 +253,8 @@ class Plugin(abc.ABC):
             on_change=on_change,
             owner=self,
         )
-        return declare_at(self, parameter, self.params, element or name)
+        argument = self.ros.values_with(name, self.sim.engine.structure.builder)
+        return declare_at(self, parameter, argument or self.params, name if argument else element or name)
 
     def random(self, channel: str, width: int = 1) -> RandomStream:
         """Return a random stream of this plugin.
@@ -321,6 +322,8 @@ class Plugin(abc.ABC):
     def report_unread(self) -> None:
         """Warn about elements of the file that the plugin did not read; done after `load`."""
         report_unread(self.params, f"plugin {self.name!r}", getattr(self, "system", self) or self)
+        if not self.reads_parameter_files:
+            self.ros.arguments.report_unused(f"plugin {self.name!r}", self.params.diagnostics)
 
     def _setup(self, sim: Simulation, source: ScenePlugin | None = None) -> None:
         """Connect the instance to its simulation; done before `load`."""

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit.plugins.ros_arguments import RosArguments
 
-_RULE = re.compile(r"^(?P<from>[^=]+?):=(?P<to>.+)$")
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.plugins.ros_parameter_block import ParameterBlock
 
 
 def is_ros_1(params: Params, names: Iterable[str]) -> bool:
@@ -26,6 +30,9 @@ class RosNames(SharedByCopies):
         namespace: namespace such as `tb3` or `/tb3`; may be empty.
         remappings: target name by source name; all names are expanded before they are compared.
         params: parameters of the plugin; invalid names are reported at their line.
+
+    Attributes:
+        arguments: arguments of the node, as after `--ros-args`.
     """
 
     def __init__(
@@ -35,36 +42,65 @@ class RosNames(SharedByCopies):
         remappings: Mapping[str, str] = MappingProxyType({}),
         params: Params | None = None,
     ) -> None:
-        self.node = node
-        self._params = params
+        self.node, self._original_node = node, node  # rules for a node use its name without remapping
+        self._params, self._remappings = params, remappings
+        self.arguments = RosArguments(None)
+        self._set_namespace(namespace)
+
+    def _set_namespace(self, namespace: str) -> None:
         self.namespace = "/" + namespace.strip("/") if namespace.strip("/") else ""
-        self._rules = {self._expand(a): self._expand(b) for a, b in remappings.items()}
+        rules = [*self.arguments.remappings_of(self._original_node), *self._remappings.items()]
+        self._rules = {self._expand(source): self._expand(target) for source, target in reversed(rules)}
 
     @classmethod
     def from_params(cls, params: Params, node: str) -> RosNames:
         """Read the `<ros>` block of ROS 2 plugins, or `<robotNamespace>` of ROS 1 plugins."""
-        remappings: dict[str, str] = {}
         namespace = params.text("robotNamespace", "")
         ros = params.child("ros")
-        if ros is None:
-            return cls(node, namespace, params=params)
-        namespace = ros.text("namespace", namespace)
-        for element in ros.all("remapping") + ros.all("argument"):
-            for word in element.value.split():
-                rule = _RULE.match(word)
-                if rule is None:
-                    if word not in {"--ros-args", "-r", "--remap"}:
-                        allowed = "from:=to" if element.name == "remapping" else "a remapping from:=to"
-                        element.error(
-                            "SK-PARAM-002", f"found <{element.name}>{word}</{element.name}>; expected {allowed}"
-                        )
-                    continue
-                source, target = rule["from"], rule["to"]
-                if source in {"__ns", "__node", "__name"}:
-                    namespace, node = (target, node) if source == "__ns" else (namespace, target)
-                else:
-                    remappings[source.removeprefix(node + ":")] = target
-        return cls(node, namespace, remappings, params)
+        if ros is not None:
+            namespace = ros.text("namespace", namespace)
+        names = cls(node, namespace, params=params)
+        names.arguments = RosArguments(ros)
+        special = names.arguments.special_names(node)
+        names.node = special.get("__node", special.get("__name", node))
+        names._set_namespace(special.get("__ns", namespace))
+        return names
+
+    def in_namespace(self, namespace: str) -> RosNames:
+        """Return the names of the same node, with the same arguments, in another namespace."""
+        names = RosNames(self.node, namespace, self._remappings, self._params)
+        names.arguments = self.arguments
+        names._set_namespace(namespace)
+        return names
+
+    def values_with(self, name: str, builder: SpecBuilder) -> ParameterBlock | None:
+        """Return the parameters of the node in the arguments; None if there is no value for the parameter `name`."""
+        if self._params is None:
+            return None
+        file = self._params.where.file
+        folder = Path(file).resolve().parent if file else None
+
+        def find(uri: str) -> Path | None:
+            try:
+                path = builder.find_file(uri, folder)
+            except (OSError, ValueError):  # the URI is not a valid file name
+                return None
+            builder.files_read += [path] if path is not None and path.is_file() else []
+            return path if path is not None and path.is_file() else None
+
+        return self.arguments.values_of(f"{self.namespace}/{self.node}", name, find, self._params.diagnostics)
+
+    def topic_of_node(self, name: str, node: str) -> str:
+        """Return the name of a topic in another node of the plugin, such as a controller: `~/x` becomes `node/x`.
+
+        Rules with a private source (`~/x:=y`) and rules for this node (`node:x:=y`) apply to the node. All other rules
+        apply when the result is given to `topic`.
+        """
+        full = self._expand(name, node)
+        for source, target in self.arguments.remappings_of(node, only_own=True):
+            if self._expand(source, node) == full:
+                return self._expand(target, node)
+        return f"{node}/{name[2:]}" if name.startswith("~/") else name
 
     def topic(self, name: str) -> str:
         """Return the absolute, remapped topic of `name` (`odom`, `/odom` or `~/odom`) without invalid characters."""
@@ -79,7 +115,7 @@ class RosNames(SharedByCopies):
             self._params.diagnostics.warning("SK-PLUGIN-012", message, self._params.where)
         return clean
 
-    def _expand(self, name: str) -> str:
+    def _expand(self, name: str, node: str = "") -> str:
         if name == "~" or name.startswith("~/"):
-            return f"{self.namespace}/{self.node}{name[1:]}"
+            return f"{self.namespace}/{node or self.node}{name[1:]}"
         return name if name.startswith("/") else f"{self.namespace}/{name}"

@@ -133,6 +133,13 @@ class ParameterFiles:
                 if inner is not None and inner.below is not None:
                     yield inner
 
+    def nodes_below(self, namespace: str) -> Iterator[str]:
+        """Yield the plain names of the nodes of a namespace that the files name without a wildcard, in file order."""
+        names = (pattern.rpartition("/")[2] for file in self.files for pattern, _ in file.nodes)
+        for name in dict.fromkeys(name for name in names if "*" not in name):
+            if any(node_matches(p, f"{namespace}/{name}") for file in self.files for p, _ in file.nodes if name in p):
+                yield name
+
     def node_names(self) -> list[str]:
         """Return the plain names of all nodes in the files, as suggestions for a misspelt name."""
         return [pattern.rpartition("/")[2] for file in self.files for pattern, _ in file.nodes]
@@ -170,6 +177,18 @@ def read_parameter_file(path: Path, diagnostics: Diagnostics) -> ParameterFile |
         message = f"{path.name}: no node has {PARAMETERS!r}, but {misspelt!r} occurs; the file is read as a ROS 1 file"
         diagnostics.warning("SK-CONTROL-003", message, root.where, near)
     return ParameterFile(path, root=root)
+
+
+def parse_parameter(name: str, text: str, where: Where, diagnostics: Diagnostics) -> Entry | None:
+    """Return a block with one parameter from a text such as that after `-p name:=`; None after an error."""
+    try:
+        node = _compose_yaml(text)
+        reader = _EntryReader(where.file or "", diagnostics, merges_blocks=True, first_line=where.line or 1)
+        value = Entry(where) if node is None else reader.entry(node, 0)
+    except (yaml.YAMLError, RecursionError, _FileTooLarge):
+        diagnostics.error("SK-PARAM-002", f"found {text[:200]!r} for parameter {name!r}; expected a YAML value", where)
+        return None
+    return _expand_dotted_keys(Entry(where, below={name: value}))
 
 
 def _all_keys(entry: Entry) -> Iterator[str]:
@@ -220,7 +239,7 @@ def _parse_file(path: Path, diagnostics: Diagnostics) -> Entry | None:
         return None
     try:
         node = _compose_yaml(text)
-        reader = _EntryReader(str(path), diagnostics)
+        reader = _EntryReader(str(path), diagnostics, merges_blocks=PARAMETERS in text)
         return Entry(Where(str(path), 1)) if node is None else reader.entry(node, 0)
     except (yaml.YAMLError, RecursionError, _FileTooLarge) as error:
         mark = getattr(error, "problem_mark", None)
@@ -251,16 +270,25 @@ class _FileTooLarge(Exception):
 
 
 class _EntryReader:
-    """Converter from YAML nodes to entries."""
+    """Converter from YAML nodes to entries.
 
-    def __init__(self, file: str, diagnostics: Diagnostics) -> None:
-        self._file, self._diagnostics, self._count = file, diagnostics, 0
+    Args:
+        file: path of the file.
+        diagnostics: collector of the problems.
+        merges_blocks: whether blocks with the same name are merged, as rcl does; PyYAML, which ROS 1 uses, keeps only
+            the last block.
+        first_line: line of the file in which the text begins.
+    """
+
+    def __init__(self, file: str, diagnostics: Diagnostics, *, merges_blocks: bool, first_line: int = 1) -> None:
+        self._file, self._diagnostics, self._merges_blocks = file, diagnostics, merges_blocks
+        self._first_line, self._count = first_line, 0
 
     def entry(self, node: yaml.Node, depth: int) -> Entry:
         self._count += 1
         if self._count > _MOST_NODES or depth > _DEEPEST:
             raise _FileTooLarge("it has too many values, or is nested too deeply")
-        where = Where(self._file, node.start_mark.line + 1, self._count)
+        where = Where(self._file, node.start_mark.line + self._first_line, self._count)
         if isinstance(node, yaml.MappingNode):
             return Entry(where, below=self._block(node, depth))
         if isinstance(node, yaml.SequenceNode):
@@ -273,7 +301,7 @@ class _EntryReader:
         for key, value in node.value:
             name = str(getattr(key, "value", ""))
             if not name or not isinstance(getattr(key, "value", None), str):
-                where = Where(self._file, key.start_mark.line + 1)
+                where = Where(self._file, key.start_mark.line + self._first_line)
                 found = "an empty name" if not name else "a list or block as a name"
                 self._diagnostics.error("SK-CONTROL-002", f"found {found}; expected a text", where)
                 continue
@@ -281,13 +309,20 @@ class _EntryReader:
             if key.tag == _MERGE:
                 merged = {**self._merged(entry, key), **merged}
                 continue
-            entry.where = Where(self._file, key.start_mark.line + 1, entry.where.serial)
-            if name in below:
-                first = below[name].where.line
-                message = f"{name!r} occurs twice, first in line {first}; the later value is used"
-                self._diagnostics.warning("SK-CONTROL-004", message, entry.where)
-            below[name] = entry
+            entry.where = Where(self._file, key.start_mark.line + self._first_line, entry.where.serial)
+            below[name] = self._with_repeated(below[name], entry, name) if name in below else entry
         return {**merged, **below}
+
+    def _with_repeated(self, first: Entry, later: Entry, name: str) -> Entry:
+        """Return the entry of a key that occurs twice: merged blocks in ROS 2's layout, otherwise the later value."""
+        if self._merges_blocks and first.below is not None and later.below is not None:
+            below = dict(first.below)
+            for key, entry in later.below.items():
+                below[key] = self._with_repeated(below[key], entry, key) if key in below else entry
+            return Entry(first.where, below=below)
+        message = f"{name!r} occurs twice, first in line {first.where.line}; the later value is used"
+        self._diagnostics.warning("SK-CONTROL-004", message, later.where)
+        return later
 
     def _merged(self, entry: Entry, key: yaml.Node) -> dict[str, Entry]:
         """Return the entries that the key `<<` merges, from one block or a list of blocks.
@@ -297,7 +332,7 @@ class _EntryReader:
         found: dict[str, Entry] = {}
         for item in [entry] if entry.items is None else entry.items:
             if item.below is None:
-                where = Where(self._file, key.start_mark.line + 1)
+                where = Where(self._file, key.start_mark.line + self._first_line)
                 self._diagnostics.error("SK-CONTROL-002", "found a value after '<<'; expected a block", where)
             found = {**(item.below or {}), **found}
         return found

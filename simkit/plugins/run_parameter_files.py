@@ -6,15 +6,20 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.plugins.ros_parameter_files import ParameterFile, read_parameter_file
 
 if TYPE_CHECKING:
+    from simkit.params import Params
     from simkit.runtime.engine.entity_structure import AttachedPlugin
     from simkit.scene import SceneModel, SceneWorld
 
+_PLUGIN_EXAMPLE: Final = (
+    '<gazebo><plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">'
+    "<parameters>FILE.yaml</parameters></plugin></gazebo>"
+)
 ParameterFileArgument = str | os.PathLike[str] | tuple[str, str | os.PathLike[str]]
 """Path of a file, text `MODEL=FILE`, or a pair of model name and path."""
 
@@ -107,10 +112,10 @@ def _closest_file_name(text: str) -> str:
         return ""
 
 
-def report_unused_parameter_files(
-    given: Iterable[RunParameterFile], plugins: Iterable[AttachedPlugin], world: SceneWorld, diagnostics: Diagnostics
+def report_unused_control(
+    given: Iterable[RunParameterFile], plugins: Sequence[AttachedPlugin], world: SceneWorld, diagnostics: Diagnostics
 ) -> None:
-    """Warn about parameter files of a run that no plugin reads.
+    """Warn about parameter files of a run that no plugin reads, and about `<ros2_control>` without a control plugin.
 
     Args:
         given: parameter files of the run.
@@ -118,6 +123,7 @@ def report_unused_parameter_files(
         world: world with its models.
         diagnostics: collector of the warnings.
     """
+    _report_unloaded_controllers(plugins, world, diagnostics)
     models = [model for top in world.models for model in top.all_models()]
     with_hosts = {plugin.scoped for plugin in plugins if plugin.reads_parameter_files}
     hosts = [model for model in models if model.scoped in with_hosts]
@@ -133,3 +139,21 @@ def report_unused_parameter_files(
             message = f"no plugin reads {name}: {owner} has {'no' if file.model else 'a'} control plugin"
             hint = "add libgazebo_ros_control.so, libgazebo_ros2_control.so or gz_ros2_control to the robot"
         diagnostics.warning("SK-CONTROL-060", message, where, hint)
+
+
+def _report_unloaded_controllers(
+    plugins: Iterable[AttachedPlugin], world: SceneWorld, diagnostics: Diagnostics
+) -> None:
+    """Warn about each model with joints in `<ros2_control>` and without a plugin that drives joints."""
+    driven = {plugin.scoped.partition("::")[0] for plugin in plugins if plugin.drives}
+    for top in world.models:
+        blocks = [block for model in top.all_models() for block in model.controls if _has_commands(block)]
+        if blocks and top.name not in driven:
+            message = f"model {top.name!r} has <ros2_control>, but no plugin that runs a controller manager"
+            message = f"{message}: no controller is loaded, and nothing drives the joints"
+            diagnostics.warning("SK-CONTROL-061", message, blocks[0].where, f"add {_PLUGIN_EXAMPLE}")
+
+
+def _has_commands(block: Params) -> bool:
+    """Check whether a joint of `<ros2_control>` has a command interface."""
+    return any(element.name == "command_interface" for joint in block.children for element in joint.children)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from simkit.diagnostics import did_you_mean
@@ -23,7 +24,6 @@ from simkit.plugins.ros2_control.manager_parameter_files import (
     report_unused_parameters,
 )
 from simkit.plugins.ros2_control.transmissions import transmissions_of
-from simkit.plugins.ros_names import RosNames
 from simkit.plugins.ros_parameter_block import ParameterBlock
 from simkit.plugins.ros_parameter_files import ParameterFiles, read_parameter_file
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 UPDATE_RATE: Final = 100.0
 """Default update rate of a controller manager [Hz]."""
 _PARAMS_FILE_HINT: Final = "--params-file FILE, params_files=[FILE] in Python"
+_CONFIG_FOLDERS: Final = ("config", "../config")
 _ROS_1_NODE: Final = "gazebo_ros_control"
 
 
@@ -76,10 +77,14 @@ class ControlPlugin(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         transmissions = transmissions_of(scene, [*scene.controls, *params.all("ros2_control")])
         self.hardware = Hardware.of(describe_hardware(scene, params), scene, params.diagnostics, transmissions)
-        self._manager_name = self.options.controller_manager_name or "controller_manager"
+        renamed = self.ros.node if self.ros.node != self.name else "controller_manager"
+        self._manager_name = self.options.controller_manager_name or renamed
         run_files = [entry.file for entry in builder.parameter_files if entry.is_for(scene)]
+        find = partial(find_plugin_file, self, builder=builder, places=_CONFIG_FOLDERS)
+        argument_files = self.ros.arguments.parameter_files(find, params.diagnostics)
         files = [
-            *self._read_files(params, builder, has_run_files=bool(run_files)),
+            *self._read_files(params, builder, has_other_files=bool(run_files or argument_files)),
+            *argument_files,
             *self._adapted_run_files(run_files, params),
         ]
         self.files = ParameterFiles(files)
@@ -169,11 +174,11 @@ class ControlPlugin(ModelPlugin):
             namespace, name = self.ros.namespace, self._manager_name
             yield adapt_to_manager(file, namespace, name, params.diagnostics, is_ros_1=self.is_ros_1)
 
-    def _read_files(self, params: Params, builder: SpecBuilder, *, has_run_files: bool) -> Iterator[ParameterFile]:
+    def _read_files(self, params: Params, builder: SpecBuilder, *, has_other_files: bool) -> Iterator[ParameterFile]:
         elements = params.all("parameters")
         for element in elements:
             for uri in [element.value] if element.value.startswith("$(") else element.value.split():
-                path = find_plugin_file(self, uri, builder, ("config", "../config"))
+                path = find_plugin_file(self, uri, builder, _CONFIG_FOLDERS)
                 if path is None:
                     message = (
                         f"the controllers' parameter file {uri[:200]} is not found: none of its controllers is loaded"
@@ -184,12 +189,12 @@ class ControlPlugin(ModelPlugin):
                 read = read_parameter_file(path, params.diagnostics)
                 if read is not None:
                     yield read
-        if not has_run_files and not any(element.value for element in elements):
+        if not has_other_files and not any(element.value for element in elements):
             message = f"plugin {self.name!r} names no parameter file: no controller is loaded"
             hint = (
                 f"give the file that the ROS launch file loads: {_PARAMS_FILE_HINT}; or name it in <simkit:parameters>"
             )
-            params.diagnostics.note("SK-CONTROL-018", message, self.where, hint)
+            params.diagnostics.warning("SK-CONTROL-018", message, self.where, hint)
 
     # ------------------------------------------------------------------ run time
 
@@ -217,7 +222,7 @@ class ControlPlugin(ModelPlugin):
         node = f"{self.ros.namespace}/{self._manager_name}"
         if f"{node}/list_controllers" not in self.sim.communication.services.names():
             return
-        self.ros = RosNames(self.name, f"{self.ros.namespace}/{model}", params=params)
+        self.ros = self.ros.in_namespace(f"{self.ros.namespace}/{model}")
         message = (
             f"a controller manager {node!r} exists already: the manager of {model!r}, its controllers and their topics "
         )
@@ -284,7 +289,7 @@ class GazeboRosControl(ControlPlugin):
 
     def _default_to_model_namespace(self, model: str, params: Params) -> None:
         if not params.has("robotNamespace"):  # the default namespace is the model's name
-            self.ros = RosNames(self.name, model, params=params)
+            self.ros = self.ros.in_namespace(model)
 
     def mark_ignored_elements(self, params: Params) -> None:
         for name in ("robotSimType", "legacyModeNS", "robotParam", "eStopTopic", "joints"):

@@ -156,7 +156,7 @@ class Controller(SharedByCopies, abc.ABC):
 
     def topic(self, name: str) -> str:
         """Return a name in the controller's node: `~/state` becomes `<controller>/state`."""
-        return f"{self.name}/{name[2:]}" if name.startswith("~/") else name
+        return self.plugin.ros.topic_of_node(name, self.name)
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """Create a publisher, like `Plugin.advertise`, in the controller's node."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import fnmatch
 import functools
+import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +16,7 @@ from simkit.params import Params
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.controller import Controller, ControllerEndpoints
 from simkit.plugins.ros2_control.hardware import Hardware
-from simkit.plugins.ros_parameter_files import ParameterFiles
+from simkit.plugins.ros_parameter_files import Entry, ParameterFiles
 from simkit.registry import Kinds
 
 if TYPE_CHECKING:
@@ -26,6 +28,11 @@ KNOWN_PARAMETERS: Final[Mapping[str, Sequence[str]]] = tomllib.loads(
     Path(__file__).with_name("known_parameters.toml").read_text(encoding="utf-8")
 )
 """Names of the parameters that every controller or the manager has, by the kind of node."""
+UNSUPPORTED_CONTROLLERS: Final[Sequence[Mapping[str, Any]]] = tomllib.loads(
+    Path(__file__).with_name("unsupported_controllers.toml").read_text(encoding="utf-8")
+)["unsupported"]
+"""Controllers of ROS 2 that do not exist here: patterns of their types, the reason, and what to use instead."""
+_CLASS: Final = re.compile(r"\w+/[\w:]+")
 State = Literal["unconfigured", "inactive", "active"]
 
 
@@ -38,6 +45,15 @@ def controller_kinds() -> Mapping[str, type[Controller]]:
         return own
 
     return Kinds("simkit.plugins.ros2_control.controllers", GROUP, Controller, names)  # type: ignore[type-abstract]
+
+
+def _reason_for_unknown(kind: str) -> str:
+    """Describe why a controller type does not exist, and which type to use instead."""
+    for group in UNSUPPORTED_CONTROLLERS:
+        if any(fnmatch.fnmatchcase(kind, pattern) for pattern in group["types"]):
+            return f"is not supported: {group['reason']}; instead: {group['use']}"
+    near = did_you_mean(kind, controller_kinds())
+    return f"is not known; {near or 'the table of controllers in docs/ros2_control.md lists the known types'}"
 
 
 @dataclass(slots=True)
@@ -95,12 +111,23 @@ class ControllerManager(SharedByCopies):
 
     def declared(self) -> dict[str, str]:
         """Return the type of each controller that the files declare, in the order of the files."""
-        found: dict[str, str] = {}
+        return {name: kind.text for name, kind in self.declarations().items()}
+
+    def declarations(self) -> dict[str, Entry]:
+        """Return the entry with the type of each controller.
+
+        The type stands below the name of the controller in the manager's node, or in the controller's own node, where
+        the spawner of ros2_control looks for it. The entries of the manager's node come first.
+        """
         own = self.files.of_node(self.node)
-        for name, entry in (own.below or {}).items() if own is not None else ():
-            kind = (entry.below or {}).get("type")
-            if kind is not None and kind.text:
-                found[name] = kind.text
+        kinds = {name: (entry.below or {}).get("type") for name, entry in (own.below or {}).items()} if own else {}
+        found = {name: kind for name, kind in kinds.items() if kind is not None and kind.text}
+        for name in self.files.nodes_below(self.namespace):
+            entry = self.files.of_node(f"{self.namespace}/{name}")
+            kind = (entry.below or {}).get("type") if entry is not None else None
+            # nodes that are not controllers may have a parameter `type` too, but not the name of a class
+            if name not in (*found, self.name) and kind is not None and _CLASS.fullmatch(kind.text):
+                found[name] = kind
         return found
 
     # ------------------------------------------------------------------ life cycle
@@ -120,9 +147,7 @@ class ControllerManager(SharedByCopies):
             return f"the 'type' param was not defined for '{name}'"
         cls = controller_kinds().get(kind)
         if cls is None:
-            kinds = controller_kinds()
-            near = did_you_mean(kind, kinds) or "types: " + ", ".join(kinds)
-            return f"controller '{name}' (type '{kind}') is not known; {near}"
+            return f"controller '{name}' (type '{kind}') {_reason_for_unknown(kind)}"
         params = self._parameters(name)
         controller = cls(name, self.plugin, params, self.hardware)
         controller.endpoints = self._endpoints.setdefault(name, controller.endpoints)
@@ -310,6 +335,7 @@ class ControllerManager(SharedByCopies):
     def _declaration_location(self, name: str) -> Where:
         own = self.files.of_node(self.node)
         entry = (own.below or {}).get(name) if own is not None else None
+        entry = entry or self.declarations().get(name)
         return self.plugin.where if entry is None else entry.where
 
     def update(self, now_ns: int) -> None:

@@ -121,15 +121,25 @@ def report_high_rates(manager: ControllerManager, rate: float | None, diagnostic
 
 
 def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, str], diagnostics: Diagnostics) -> None:
-    """Report unknown node names in the files that are similar to the name of a controller."""
+    """Report nodes that look like controllers, but have an unknown name, another namespace or no type."""
+    own_node = manager.files.of_node(manager.node)
+    reported_there = (own_node.below or {}) if own_node is not None else {}
     known = {manager.name, manager.plugin.name, *declared, "**", "*"}
     for file in manager.files.files:
         for pattern, entry in file.nodes:
-            name = pattern.rpartition("/")[2]
-            near = did_you_mean(name, declared)
-            if name not in known and near:
+            name, below = pattern.rpartition("/")[2], entry.below or {}
+            if name in known:
+                continue
+            own, near = f"{manager.namespace}/{name}", did_you_mean(name, declared)
+            if not node_matches(pattern, own) and ("type" in below or near):
+                message = f"{file.path.name} has parameters for {pattern!r}, outside the manager's namespace"
+                hint = f"write {own} or /**/{name} instead of {pattern.strip('/')}"
+                diagnostics.warning("SK-CONTROL-019", message, entry.where, hint)
+            elif near:
                 message = f"{file.path.name} has parameters for {name!r}, which no controller manager declares"
                 diagnostics.warning("SK-CONTROL-019", message, entry.where, near)
+            elif name not in reported_there and any(key in below for key in _CONTROLLER_PARAMETERS):
+                _report_no_type(name, entry, diagnostics)
 
 
 def _report_in_manager(
