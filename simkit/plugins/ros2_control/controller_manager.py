@@ -176,7 +176,13 @@ class ControllerManager(SharedByCopies):
         controller.update_rate = params.integer("update_rate", 0, minimum=0)
         controller.configure()
         commands, states = controller.command_interfaces(), controller.state_interfaces()
-        if params.diagnostics.error_count == before:
+        has_errors = params.diagnostics.error_count > before
+        if not has_errors and self._diagnostics is not None and self._is_for_other_robot([*commands, *states]):
+            joints = ", ".join(dict.fromkeys(name.rpartition("/")[0] for name in (*commands, *states)))
+            message = f"controller {name!r} is not loaded: the robot has none of its joints and sensors ({joints})"
+            self.reports.warning("SK-CONTROL-012", message, params.where)
+            return message
+        if not has_errors:
             self._check_interfaces(controller, commands, self.hardware.commands.names, "command")
             self._check_interfaces(controller, states, self.hardware.states.names, "state")
         params.report_unread("SK-CONTROL-011", f"controller {name!r}")
@@ -188,6 +194,18 @@ class ControllerManager(SharedByCopies):
         controller.commands = self.hardware.commands.select(commands)
         loaded.state = "inactive"
         return ""
+
+    def _is_for_other_robot(self, interfaces: Sequence[str]) -> bool:
+        """Check whether the robot has no part of a controller, but parts of other controllers of the same files.
+
+        Files for several robots declare controllers of which a launch file starts some. A misspelt joint is different:
+        the robot has other joints of that controller, or no other controller.
+        """
+        known = {name.rpartition("/")[0] for name in (*self.hardware.commands.names, *self.hardware.states.names)}
+        owners = {name.rpartition("/")[0] for name in interfaces}
+        is_similar = any(did_you_mean(owner, known) for owner in owners)
+        others = [loaded for loaded in self.controllers.values() if loaded.state == "active"]
+        return bool(owners and others) and not owners & known and not is_similar
 
     def _check_interfaces(self, controller: Controller, names: Sequence[str], known: Sequence[str], kind: str) -> None:
         for name in dict.fromkeys(names):

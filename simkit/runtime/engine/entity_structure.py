@@ -106,6 +106,10 @@ class AttachedPlugin(Protocol):
     _failed: tuple[str, Exception] | None
 
     @property
+    def drives(self) -> bool:
+        """True if the plugin drives joints."""
+
+    @property
     def reads_parameter_files(self) -> bool:
         """True if the plugin reads the parameter files of the run."""
 

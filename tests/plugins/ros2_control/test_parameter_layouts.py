@@ -172,3 +172,15 @@ class Gain(simkit.ModelPlugin):
         with simkit.load(files(tmp_path, robot), plugin_paths=[tmp_path]) as sim:
             assert sim.call("/gain/get_parameters", {"names": ["gain"]}).values[0].double_value == value
             assert len(reported_messages(sim, "SK-PARAM-003")) == unused
+
+
+def test_a_controller_of_another_robot_in_the_same_file_is_a_warning_and_a_misspelt_joint_an_error(
+    tmp_path: Path,
+) -> None:
+    other = f"\nspine: {{ros__parameters: {{type: {FORWARD}, joints: [lift_column]}}}}"
+    with opened(tmp_path, yaml=OWN_TYPE + other) as sim:
+        assert states(sim)["arm_controller"] == "active"
+        (message,) = reported_messages(sim, "SK-CONTROL-012")
+        assert message.endswith("the robot has none of its joints and sensors (lift_column)")
+    with pytest.raises(simkit.LoadError, match="SK-CONTROL-012"):
+        opened(tmp_path, yaml=OWN_TYPE + other.replace("[lift_column]", "[j1, lift_column]"))

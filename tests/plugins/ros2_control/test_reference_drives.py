@@ -1,0 +1,171 @@
+"""Steering and mecanum drives of ros2_control on wheels: distance and yaw that were asked for, and the odometry."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import simkit
+from tests.plugins.ros2_control.control_robots import interfaces, reported_messages
+
+TOPICS = ("/base/reference", "/base/odometry")
+RADIUS, BASE, TRACK = 0.1, 0.5, 0.4
+LINK = """<link name="{name}">{shape}<inertial><mass value="{mass}"/>
+<inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial></link>"""
+JOINT = """<joint name="{name}" type="continuous"><origin xyz="{xyz}"/><parent link="{parent}"/><child link="{child}"/>
+<axis xyz="{axis}"/></joint>"""
+GROUND = """<sdf version="1.9"><world name="lab"><include><uri>{uri}</uri></include>
+<model name="ground"><static>true</static>
+<link name="l"><collision name="c"><geometry><plane/></geometry></collision></link></model></world></sdf>"""
+SHAPE = '<collision><geometry><sphere radius="0.1"/></geometry></collision>'
+ROLLERS = """<gazebo reference="{name}"><collision><surface><friction><ode><mu>1</mu><mu2>0</mu2>
+<fdir1 gz:expressed_in="chassis">{direction}</fdir1></ode></friction></surface></collision></gazebo>"""
+
+
+def wheel(name: str, x: float, y: float, *, steered: bool = False) -> str:
+    """Return a wheel at the chassis; a steered wheel is on a vertical joint `<name>_steering`."""
+    parent, place, found = "chassis", f"{x} {y} {RADIUS}", ""
+    if steered:
+        found = LINK.format(name=f"{name}_fork", shape="", mass=0.5, i=0.01)
+        joint = JOINT.format(name=f"{name}_steering", xyz=place, parent="chassis", child=f"{name}_fork", axis="0 0 1")
+        parent, place, found = f"{name}_fork", "0 0 0", found + joint
+    axle = JOINT.format(name=f"{name}_wheel", xyz=place, parent=parent, child=name, axis="0 1 0")
+    return found + LINK.format(name=name, shape=SHAPE, mass=1, i=0.005) + axle
+
+
+def drive(
+    folder: Path, wheels: str, driven: list[str], steered: list[str], kind: str, values: str
+) -> simkit.Simulation:
+    """Load a base on the ground with one controller called `base`."""
+    hardware = "".join(f'<joint name="{j}_wheel">{interfaces(("velocity",))}</joint>' for j in driven)
+    hardware += "".join(f'<joint name="{j}_steering">{interfaces(("position",))}</joint>' for j in steered)
+    chassis = LINK.format(name="chassis", shape="", mass=10, i=0.5)
+    chassis = chassis.replace("<inertial>", '<inertial><origin xyz="0.2 0 0.1"/>')
+    robot = f"""<robot name="base" xmlns:gz="http://gazebosim.org/schema">{chassis}{wheels}
+<ros2_control name="base" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+{hardware}</ros2_control>
+<gazebo><plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
+<parameters>base.yaml</parameters></plugin></gazebo></robot>"""
+    (folder / "base.urdf").write_text(robot, encoding="utf-8")
+    (folder / "base.yaml").write_text(f"base: {{ros__parameters: {{type: {kind}, {values}}}}}", encoding="utf-8")
+    (folder / "lab.sdf").write_text(GROUND.format(uri=folder / "base.urdf"), encoding="utf-8")
+    return simkit.load(folder / "lab.sdf")
+
+
+def steering(folder: Path, kind: str, values: str = "") -> simkit.Simulation:
+    """Load a base with an axle at x = 0 and an axle at x = 0.5 m; `kind` names its kinematics."""
+    rear = wheel("right", 0, -TRACK / 2) + wheel("left", 0, TRACK / 2)
+    sizes = f"wheelbase: {BASE}, traction_wheels_radius: {RADIUS}, traction_track_width: {TRACK}"
+    if kind == "ackermann":
+        front = wheel("fr", BASE, -TRACK / 2, steered=True) + wheel("fl", BASE, TRACK / 2, steered=True)
+        names = "traction_joints_names: [right_wheel, left_wheel], steering_joints_names: [fr_steering, fl_steering]"
+        values = f"{names}, {sizes}, steering_track_width: {TRACK}, {values}"
+        controller = "ackermann_steering_controller/AckermannSteeringController"
+        return drive(folder, rear + front, ["right", "left"], ["fr", "fl"], controller, values)
+    driven = ["f"] if kind == "front drive" else ["right", "left"]
+    names = f"traction_joints_names: [{', '.join(f'{j}_wheel' for j in driven)}], steering_joints_names: [f_steering]"
+    controller = "tricycle_steering_controller/TricycleSteeringController"
+    front = wheel("f", BASE, 0, steered=True)
+    return drive(folder, rear + front, driven, ["f"], controller, f"{names}, {sizes}, {values}")
+
+
+def send(sim: simkit.Simulation, ahead: float, turn: float, left: float = 0.0, topic: str = TOPICS[0]) -> None:
+    twist = {"linear": {"x": ahead, "y": left}, "angular": {"z": turn}}
+    sim.publish(topic, simkit.msgs.make("geometry_msgs/msg/TwistStamped", twist=twist))
+
+
+def driven_pose(
+    sim: simkit.Simulation, ahead: float, turn: float, left: float = 0.0, topics: tuple[str, str] = TOPICS
+) -> tuple[list[float], list[float]]:
+    """Drive for 4 s; return x, y [m] and yaw [rad] of the base and of its odometry."""
+    odometry = sim.subscribe(topics[1], keep=1)
+    sim.run(0.2)
+    for _ in range(8):
+        send(sim, ahead, turn, left, topics[0])
+        sim.run(0.5)
+    link, message = sim.link("base::chassis"), odometry.messages[-1].pose.pose
+    x, y, _ = link.pose.position
+    w, _, _, z = link.pose.quaternion
+    measured = [message.position.x, message.position.y, 2 * math.atan2(message.orientation.z, message.orientation.w)]
+    return [float(x), float(y), 2 * math.atan2(float(z), float(w))], measured
+
+
+@pytest.mark.parametrize("kind", ["ackermann", "front drive", "rear drive"])
+@pytest.mark.parametrize(("ahead", "turn"), [(0.3, 0.0), (0.3, 0.3), (-0.3, 0.3)])
+def test_a_steered_base_drives_the_distance_and_the_angle_that_were_asked_for(
+    tmp_path: Path, kind: str, ahead: float, turn: float
+) -> None:
+    with steering(tmp_path, kind) as sim:
+        found, measured = driven_pose(sim, ahead, turn)
+    yaw = turn * 4
+    wanted = [ahead / turn * math.sin(yaw), ahead / turn * (1 - math.cos(yaw)), yaw] if turn else [ahead * 4, 0, 0]
+    # the wheels start and are steered within some hundredths of a second
+    assert found == pytest.approx(wanted, abs=0.06)
+    assert measured == pytest.approx(found, abs=0.03)
+
+
+def test_a_tricycle_with_front_drive_turns_in_place(tmp_path: Path) -> None:
+    with steering(tmp_path, "front drive", "reduce_wheel_speed_until_steering_reached: true") as sim:
+        found, _ = driven_pose(sim, 0.0, 0.4)
+    assert found == pytest.approx([0, 0, 1.6], abs=0.1)
+
+
+def test_after_the_timeout_the_base_stops_and_stays_steered(tmp_path: Path) -> None:
+    with steering(tmp_path, "ackermann", "reference_timeout: 0.3") as sim:
+        send(sim, 0.3, 0.3)
+        sim.run(1.0)
+        inner, outer = (float(sim.joint(f"base::{name}_steering").position) for name in ("fl", "fr"))
+        # the middle of the axle turns about a point 1 m to the left: tan = 0.5/(1 ∓ 0.2)
+        assert (inner, outer) == pytest.approx((math.atan(0.5 / 0.8), math.atan(0.5 / 1.2)), abs=0.01)
+        before = sim.link("base::chassis").pose.position
+        sim.run(1.0)
+        assert sim.link("base::chassis").pose.position == pytest.approx(before, abs=2e-3)
+
+
+def test_names_of_earlier_releases_give_the_same_motion(tmp_path: Path) -> None:
+    values = f"front_steering: true, rear_wheels_radius: {RADIUS}, front_wheels_radius: {RADIUS}, wheelbase: {BASE}, "
+    values += "rear_wheels_names: [right_wheel, left_wheel], front_wheels_names: [f_steering], wheel_track: 0.4"
+    wheels = wheel("right", 0, -TRACK / 2) + wheel("left", 0, TRACK / 2) + wheel("f", BASE, 0, steered=True)
+    controller = "tricycle_steering_controller/TricycleSteeringController"
+    with drive(tmp_path, wheels, ["right", "left"], ["f"], controller, values) as sim:
+        found, _ = driven_pose(sim, 0.3, 0.0)
+        assert not reported_messages(sim, "SK-CONTROL-011")
+    assert found == pytest.approx([1.2, 0, 0], abs=0.04)
+
+
+@pytest.mark.parametrize(
+    ("ahead", "left", "turn", "spelling"),
+    [(0.3, 0, 0, "ros"), (0, 0.3, 0, "ros"), (0, 0, 0.4, "ros"), (0.2, 0.2, 0, "husarion")],
+)
+def test_a_mecanum_base_moves_forward_sideways_and_in_place(
+    tmp_path: Path, ahead: float, left: float, turn: float, spelling: str
+) -> None:
+    places = {"fl": (0.25, 0.2, "1 -1 0"), "fr": (0.25, -0.2, "1 1 0"), "rl": (-0.25, 0.2, "1 1 0")}
+    places["rr"] = (-0.25, -0.2, "1 -1 0")
+    wheels = "".join(wheel(n, x, y) + ROLLERS.format(name=n, direction=d) for n, (x, y, d) in places.items())
+    names = {"front_left": "fl", "front_right": "fr", "rear_left": "rl", "rear_right": "rr"}
+    if spelling == "husarion":
+        values = ", ".join(f"{place}_wheel_name: {joint}_wheel" for place, joint in names.items())
+        values += f", cmd_vel_timeout: 1.0, wheel_radius: {RADIUS}, wheel_separation_x: 0.5, wheel_separation_y: 0.4"
+    else:
+        values = ", ".join(f"{place}_wheel_command_joint_name: {joint}_wheel" for place, joint in names.items())
+        sizes = f"wheels_radius: {RADIUS}, sum_of_robot_center_projection_on_X_Y_axis: 0.45"
+        values += f", reference_timeout: 1.0, kinematics: {{{sizes}}}"
+    controller = "mecanum_drive_controller/MecanumDriveController"
+    topics = ("/base/cmd_vel", "/base/odom") if spelling == "husarion" else ("/base/reference", "/base/odometry")
+    with drive(tmp_path, wheels, list(places), [], controller, values) as sim:
+        found, measured = driven_pose(sim, ahead, turn, left, topics)
+    assert found == pytest.approx([4 * ahead, 4 * left, 4 * turn], abs=0.06)
+    assert measured == pytest.approx(found, abs=0.04)
+
+
+def test_a_wrong_number_of_joints_and_missing_sizes_are_errors(tmp_path: Path) -> None:
+    values = "traction_joints_names: [right_wheel], steering_joints_names: [fr_steering, fr_steering]"
+    wheels = wheel("right", 0, 0) + wheel("fr", BASE, 0, steered=True)
+    controller = "ackermann_steering_controller/AckermannSteeringController"
+    with pytest.raises(simkit.LoadError) as caught:
+        drive(tmp_path, wheels, ["right"], ["fr"], controller, values)
+    codes = [d.code for d in caught.value.diagnostics if d.severity == "error"]
+    assert codes.count("SK-CONTROL-040") == 2 and "SK-CONTROL-041" in codes and "SK-PARAM-001" in codes
