@@ -177,9 +177,10 @@ class ControllerManager(SharedByCopies):
         controller.configure()
         commands, states = controller.command_interfaces(), controller.state_interfaces()
         has_errors = params.diagnostics.error_count > before
-        if not has_errors and self._diagnostics is not None and self._is_for_other_robot([*commands, *states]):
-            joints = ", ".join(dict.fromkeys(name.rpartition("/")[0] for name in (*commands, *states)))
-            message = f"controller {name!r} is not loaded: the robot has none of its joints and sensors ({joints})"
+        missing = [n for n in commands if n not in self.hardware.commands.names]
+        missing += [n for n in states if n not in self.hardware.states.names]
+        if missing and not has_errors and self._diagnostics is not None and self._is_for_other_robot(commands, states):
+            message = f"controller {name!r} is not loaded: the robot does not have {', '.join(dict.fromkeys(missing))}"
             self.reports.warning("SK-CONTROL-012", message, params.where)
             return message
         if not has_errors:
@@ -195,17 +196,19 @@ class ControllerManager(SharedByCopies):
         loaded.state = "inactive"
         return ""
 
-    def _is_for_other_robot(self, interfaces: Sequence[str]) -> bool:
-        """Check whether the robot has no part of a controller, but parts of other controllers of the same files.
+    def _is_for_other_robot(self, commands: Sequence[str], states: Sequence[str]) -> bool:
+        """Check whether a controller belongs to another robot or variant, and other controllers drive this robot.
 
-        Files for several robots declare controllers of which a launch file starts some. A misspelt joint is different:
-        the robot has other joints of that controller, or no other controller.
+        A launch file starts only some controllers of a file: the robot has none of the joints of this controller, with
+        no similar names, or other controllers drive all its joints. Other missing interfaces are mistakes.
         """
         known = {name.rpartition("/")[0] for name in (*self.hardware.commands.names, *self.hardware.states.names)}
-        owners = {name.rpartition("/")[0] for name in interfaces}
-        is_similar = any(did_you_mean(owner, known) for owner in owners)
-        others = [loaded for loaded in self.controllers.values() if loaded.state == "active"]
-        return bool(owners and others) and not owners & known and not is_similar
+        driven = {name.rpartition("/")[0] for name in self.hardware.owners}
+        wanted = {name.rpartition("/")[0] for name in commands}
+        owners = wanted | {name.rpartition("/")[0] for name in states}
+        is_unknown = not owners & known and not any(did_you_mean(owner, known) for owner in owners)
+        has_others = any(loaded.state == "active" for loaded in self.controllers.values())
+        return has_others and (is_unknown or bool(wanted and wanted <= driven))
 
     def _check_interfaces(self, controller: Controller, names: Sequence[str], known: Sequence[str], kind: str) -> None:
         for name in dict.fromkeys(names):

@@ -181,6 +181,10 @@ def test_a_controller_of_another_robot_in_the_same_file_is_a_warning_and_a_missp
     with opened(tmp_path, yaml=OWN_TYPE + other) as sim:
         assert states(sim)["arm_controller"] == "active"
         (message,) = reported_messages(sim, "SK-CONTROL-012")
-        assert message.endswith("the robot has none of its joints and sensors (lift_column)")
+        assert "'spine' is not loaded: the robot does not have lift_column/position" in message
+    velocity = "velocity_controllers/JointGroupVelocityController"
+    by_velocity = f"\nfast: {{ros__parameters: {{type: {velocity}, joints: [j1]}}}}"
+    with opened(tmp_path, yaml=OWN_TYPE + by_velocity) as sim:
+        assert "the robot does not have j1/velocity" in reported_messages(sim, "SK-CONTROL-012")[0]
     with pytest.raises(simkit.LoadError, match="SK-CONTROL-012"):
         opened(tmp_path, yaml=OWN_TYPE + other.replace("[lift_column]", "[j1, lift_column]"))
