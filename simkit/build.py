@@ -195,8 +195,7 @@ def load(
     options: LoadOptions = {
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
         "xacro_args": named_values(xacro_args, "xacro_args"), "package_paths": package_paths or {},
-        "params_files": params_files,
-        "strict": strict, "sleep": sleep, "render_thread": render_thread, "on_error": on_error,
+        "params_files": params_files, "strict": strict, "sleep": sleep, "render_thread": render_thread, "on_error": on_error,
     }  # fmt: skip
     simulation.run_spec = RunSpec(
         os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
@@ -285,16 +284,6 @@ def check(
     except RenderError as error:  # a plugin subscribes to images; this is a problem of the machine, not of the file
         diagnostics.warning(error.code, error.message, error.where)
     return diagnostics
-
-
-def render_view(simulation: Simulation, width: int, height: int, **view: Any) -> Any:
-    """Draw an image of a simulation from any viewpoint.
-
-    See `simkit.sensors.cameras.rendering.overview_image.render_view`.
-    """
-    from simkit.sensors.cameras.rendering import overview_image
-
-    return overview_image.render_view(simulation, width, height, **view)
 
 
 def _scene(

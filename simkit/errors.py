@@ -24,6 +24,8 @@ from typing import Any, ClassVar
 
 from simkit.diagnostic_record import NOWHERE, Diagnostic, Where
 
+_MOST_LISTED = 100  # problems in the text of a LoadError
+
 
 class SimkitError(Exception):
     """Base class of all errors that simkit raises on purpose."""
@@ -80,7 +82,10 @@ class LoadError(InputError):
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics: tuple[Diagnostic, ...] = tuple(diagnostics)
         errors = [d for d in self.diagnostics if d.severity == "error"] or list(self.diagnostics)
-        super().__init__("\n".join(str(d) for d in errors), errors[0].code if errors else "SK-LOAD-001")
+        lines = [str(d) for d in errors[:_MOST_LISTED]]
+        if len(errors) > _MOST_LISTED:
+            lines.append(f"and {len(errors) - _MOST_LISTED} more problems; `diagnostics` has all of them")
+        super().__init__("\n".join(lines), errors[0].code if errors else "SK-LOAD-001")
 
 
 class MessageError(InputError):

@@ -139,7 +139,7 @@ def main(arguments: list[str]) -> None:
     pictures: list[Any] = []
 
     def watch(sim: simkit.Simulation) -> None:
-        from simkit.build import render_view
+        from simkit.sensors.cameras.rendering.overview_image import render_view
 
         view = {"eye": (1.6, -2.2, 1.7), "target": (0.0, 0.1, 0.6), "vertical_fov": 0.75}
         pictures.append(render_view(sim, 400, 300, **view))

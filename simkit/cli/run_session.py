@@ -83,8 +83,8 @@ def _topic_dict(row: TopicCount) -> JsonObject:
 
 def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
     """Draw the scene at the end, with the driven path."""
-    from simkit.build import render_view
     from simkit.recording.run_picture import save_picture
+    from simkit.sensors.cameras.rendering.overview_image import render_view
 
     save_picture(sim, path, render_view, driven)
     stdout_console().print(f"picture {path}")

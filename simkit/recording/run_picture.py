@@ -69,7 +69,7 @@ def save_picture(sim: Simulation, path: Path, render: Render, driven: DrivenPath
     Args:
         sim: simulation to draw.
         path: image file to write.
-        render: function that draws a view of a simulation; `simkit.build.render_view`.
+        render: function that draws a view of a simulation: `render_view` of the cameras' `overview_image`.
         driven: paths to draw.
 
     Raises:

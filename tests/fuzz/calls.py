@@ -115,7 +115,7 @@ def odd_values() -> list[Any]:
         b"\xff",
         object(),
         Disguised(),
-        print,
+        len,
         lambda *_: True,
         lambda: 1,
         simkit.Pose(),

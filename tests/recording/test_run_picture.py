@@ -10,10 +10,10 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.build import render_view
 from simkit.errors import InputError, RenderError
 from simkit.pose import Pose
 from simkit.recording.run_picture import DrivenPath, check_target, save_picture, scan_points
+from simkit.sensors.cameras.rendering.overview_image import render_view
 
 WORLD = """
 <sdf version="1.9"><world name="w"><gravity>0 0 0</gravity>

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from simkit.pose import Vector, quat_conjugate, quat_rotate
 from simkit.testing.conditions import value_types as kinds
 from simkit.testing.conditions.bound_expression import (
@@ -94,7 +96,8 @@ def _distance(binder: ExpressionBinder, call: Call) -> BoundNode:
         if len(a) != len(b):
             raise UndecidedValue(f"{source} compares lists of {len(a)} and {len(b)} numbers")
         gap = a - b
-        return math.sqrt(float(gap.dot(gap)))
+        with np.errstate(over="ignore"):  # the distance of points that are 1e308 m apart is infinite
+            return math.sqrt(float(gap.dot(gap)))
 
     return BoundNode(call, kinds.NUMBER, value, tuple(parts))
 
