@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import os
 from collections.abc import Callable, Container, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -180,7 +180,6 @@ def load(
     diagnostics.raise_if_errors(strict)
     compiled = builder.compile()
     diagnostics.raise_if_errors(strict)
-
     load_model = partial(_model_to_spawn, resolver=resolver)
 
     def make_parts(model: SceneModel, builder: SpecBuilder, diagnostics: Diagnostics) -> SensorsAndPlugins:
@@ -195,7 +194,8 @@ def load(
     options: LoadOptions = {
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
         "xacro_args": named_values(xacro_args, "xacro_args"), "package_paths": package_paths or {},
-        "params_files": params_files, "strict": strict, "sleep": sleep, "render_thread": render_thread, "on_error": on_error,
+        "params_files": params_files, "strict": strict, "sleep": sleep, "render_thread": render_thread,
+        "on_error": on_error,
     }  # fmt: skip
     simulation.run_spec = RunSpec(
         os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
@@ -259,10 +259,7 @@ def check(
     package_paths: PackagePaths | None = None,
     base: str = "auto",
 ) -> Diagnostics:
-    """Return every problem of a file, including those of compiling it and of loading its plugins.
-
-    A problem of the file never raises an exception.
-    """
+    """Return every problem of a file, also of compiling it and of loading its plugins; the file raises no exception."""
     from simkit.compiler.lint import lint_world
 
     diagnostics = Diagnostics()
@@ -317,10 +314,9 @@ def _spawned_reader(resolver: Resolver) -> Any:
     """Return a function that reads a model for `spawn`; for a model with errors, it records them and returns None."""
 
     def read(source: Source, diagnostics: Diagnostics, **options: Any) -> SceneModel | None:
-        try:
+        with suppress(LoadError):
             return _model_to_spawn(source, diagnostics, resolver=resolver, **options)
-        except LoadError:
-            return None
+        return None
 
     return read
 
