@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -152,3 +155,14 @@ def test_options_say_how_a_file_is_read(here: Path) -> None:
     wrong = run("arm.xacro", "--base", "flaoting")
     assert wrong.exit_code == 2
     assert "did you mean 'floating'?" in wrong.stderr
+
+
+def test_a_reader_that_ends_does_not_change_the_exit_code(tmp_path: Path) -> None:
+    (tmp_path / "bad.sdf").write_text('<sdf version="1.9"><world name="w"><model/></world></sdf>')
+    for words, code in ((["plugin", "list"], 0), (["check", str(tmp_path / "bad.sdf")], 2)):
+        reader, writer = os.pipe()
+        os.close(reader)
+        command = [sys.executable, "-m", "simkit", *words]
+        done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+        os.close(writer)
+        assert (done.returncode, done.stderr) == (code, ""), words

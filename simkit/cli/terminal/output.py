@@ -77,6 +77,13 @@ def _console(*, is_error: bool) -> Console:
             for segment in super().render(renderable, options):
                 yield segment if segment.control else segment._replace(text=printable(segment.text))
 
+        def on_broken_pipe(self) -> None:
+            """Discard the remaining output, so that the command ends with its own exit code; rich alone would exit."""
+            self.quiet = True
+            sink = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(sink, self.file.fileno())
+            os.close(sink)
+
     stream = sys.stderr if is_error else sys.stdout
     return PrintableConsole(
         stderr=is_error,
