@@ -247,9 +247,26 @@ class Session:
 
         spec, bag = self.spec, self.spec.recording
         if bag is None:
+            self._check_selected_topics()
             return None
         recorder = Recorder(self.sim, bag.path, overwrite=bag.overwrite, topics=spec.topics, skip=spec.skip)
         return stack.enter_context(recorder)
+
+    def _check_selected_topics(self) -> None:
+        """Check that the topics of --topic have messages, and note that only a recording uses the option.
+
+        Raises:
+            RenderError: SK-RENDER-001 images are selected, but there is no renderer.
+        """
+        from simkit.recording.bags.bag_contents import matches_topic
+
+        spec, bus = self.spec, self.sim.communication.bus
+        if not spec.topics:
+            return
+        for topic in bus.all_topics():
+            if matches_topic(topic, spec.topics) and not matches_topic(topic, spec.skip):
+                bus.check_available(topic)
+        print_status("note: --topic selects the topics of a recording; this run has none, because --record is missing")
 
     # ------------------------------------------------------------------ commands
 

@@ -182,6 +182,7 @@ def test_a_subscription_to_images_is_refused_at_once_with_the_place_of_the_camer
 COMMANDS = """
 run w.sdf --duration 0.02 --record a.mcap
 run w.sdf --duration 0.02 --record a.mcap --topic */image
+run w.sdf --duration 0.02 --topic */image
 run w.sdf --duration 0.02 --strict
 run w.sdf --duration 0.02 --picture a.png
 run w.sdf --duration 0.02 --until count('/world/w/model/m/link/l/sensor/c/image')>0
