@@ -306,7 +306,7 @@ class McapFile:
         Raises:
             ValueError, struct.error, DamagedRecord: the message is damaged.
         """
-        channel, _, time_ns, _ = MESSAGE_HEAD.unpack_from(body)
+        channel, _, time_ns, _ = Fields(body).numbers(MESSAGE_HEAD)
         self._definitions.channel(channel)
         if time_ns > LATEST_TIME:
             raise DamagedRecord(position, f"a message has the time {time_ns} ns; the latest of ROS 2 is {LATEST_TIME}")

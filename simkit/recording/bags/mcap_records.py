@@ -97,7 +97,7 @@ def is_latched(profiles: str) -> bool:
 
 
 class Fields:
-    """Reader of the fields of a record's body. It raises ValueError or struct.error if a field exceeds the body."""
+    """Reader of the fields of a record's body. It raises ValueError if a field exceeds the body."""
 
     def __init__(self, body: bytes | memoryview) -> None:
         self._body, self._at = memoryview(body), 0
@@ -105,6 +105,8 @@ class Fields:
     def numbers(self, layout: str | struct.Struct) -> tuple[int, ...]:
         """Return numbers in the layout of the module `struct`."""
         layout = struct.Struct(layout) if isinstance(layout, str) else layout
+        if layout.size > len(self._body) - self._at:
+            raise ValueError(f"a record of {len(self._body)} bytes is too short for its fields")
         found: tuple[int, ...] = layout.unpack_from(self._body, self._at)
         self._at += layout.size
         return found

@@ -144,7 +144,7 @@ class McapSalvage:
         if opcode != MESSAGE:
             self._definitions.add(opcode, body)
             return
-        number, _, time_ns, publish_ns = MESSAGE_HEAD.unpack_from(body)
+        number, _, time_ns, publish_ns = Fields(body).numbers(MESSAGE_HEAD)
         channel = self._definitions.channel(number)
         if time_ns > LATEST_TIME:
             raise ValueError(f"a message has the time {time_ns} ns; the latest of ROS 2 is {LATEST_TIME}")
@@ -192,7 +192,9 @@ class McapSalvage:
         head = self._file.read(HEAD_SIZE + 16)
         if len(head) < HEAD_SIZE + 16 or head[0] != CHUNK:
             return False, None, None
-        start, last = Fields(head[HEAD_SIZE:]).numbers("<QQ")
+        length, start, last = Fields(head[1:]).numbers("<QQQ")
+        if length < 16:  # the times are bytes of the next record
+            return True, None, None
         return (True, start, last) if start <= last <= LATEST_TIME else (True, None, None)
 
     def _next_record(self, position: int) -> int:

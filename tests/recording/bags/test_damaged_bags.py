@@ -81,6 +81,16 @@ def test_a_chunk_with_a_lying_length_hides_no_other_chunk(tmp_path: Path) -> Non
     assert 14 <= found.messages < 20 and max(_values(tmp_path / "saved.mcap")) == 19.0
 
 
+def test_a_chunk_without_content_has_no_times_and_a_short_reason(tmp_path: Path) -> None:
+    content = Made().content()
+    at, _ = chunks(content)[0]
+    path = _write(tmp_path / "run.mcap", content[:at] + struct.pack("<BQ", 6, 0) + content[at:])
+    found = recover_bag(path, tmp_path / "saved.mcap")
+    assert found.loss_lines() == [
+        f"run.mcap: lost a chunk of 9 bytes at byte {at} (a record of 0 bytes is too short for its fields)"
+    ]
+
+
 def test_the_channels_of_a_damaged_first_chunk_come_from_the_end_of_the_file(tmp_path: Path) -> None:
     path = _write(tmp_path / "run.mcap", with_damaged_chunk(Made().content(), 0))
     recover_bag(path, tmp_path / "saved.mcap")
