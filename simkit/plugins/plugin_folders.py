@@ -60,7 +60,9 @@ def folder_help(module: str, where: Where, searched: Sequence[Path]) -> str:
         searched: allowed folders.
     """
     beside = [Path(where.file).absolute().parent] if where.file else []
-    nearby = [*beside, Path.cwd(), *(Path(folder).absolute() for folder in sys.path)]
+    nearby = [*beside, Path.cwd()]
+    if module.partition(".")[0] not in sys.stdlib_module_names:  # a module of Python has no plugins
+        nearby += [Path(folder).absolute() for folder in sys.path]
     if module.endswith(".py") and Path(module).is_absolute():
         nearby, module = [Path(module).parent], Path(module).name
     found = find_module(module, nearby)

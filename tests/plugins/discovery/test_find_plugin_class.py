@@ -122,6 +122,13 @@ def test_a_file_runs_only_from_an_allowed_folder(tmp_path: Path) -> None:
     assert found is not None and found.__name__ == "Hello"
 
 
+def test_a_module_of_python_is_no_folder_to_allow() -> None:
+    refused = named("json:Nope")
+    assert find_plugin(refused) is None
+    (found,) = refused.params.diagnostics
+    assert "allow the folder of the file with --plugin-path DIR" in found.hint
+
+
 def test_a_file_cannot_climb_out_of_the_allowed_folder(tmp_path: Path) -> None:
     (tmp_path / "allowed").mkdir()
     (tmp_path / "outside.py").write_text("raise SystemExit('was run')")
