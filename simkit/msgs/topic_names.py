@@ -9,7 +9,7 @@ from simkit.argument_checks import check_text
 
 def absolute_name(topic: str) -> str:
     """Return a name with its leading slash; raise an error if it is not a text, or empty."""
-    if not topic or type(topic) is not str:
+    if type(topic) is not str or not topic:
         check_text(topic, "the name")
     return topic if topic.startswith("/") else "/" + topic
 

@@ -155,6 +155,8 @@ def test_an_error_becomes_a_diagnostic_with_its_place_and_remedy() -> None:
     (found,) = error_diagnostics(InputError("SK-CLI-011 drive.yaml:3: no list\n    help: write a list", "SK-CLI-011"))
     assert (found.code, found.file, found.line, found.message) == ("SK-CLI-011", "drive.yaml", 3, "no list")
     assert found.hint == "write a list"
+    (found,) = error_diagnostics(InputError("drive.yaml:3: SK-CLI-011 no list", "SK-CLI-011"))
+    assert (found.file, found.line, found.message) == ("drive.yaml", 3, "no list")
     (found,) = error_diagnostics(PluginError("p", "load", 0.0, "w.sdf:7", "oops"))
     assert (found.file, found.line) == ("w.sdf", 7)
     (found,) = error_diagnostics(SimulationDiverged("arm::elbow", 1.5, "a smaller step"))

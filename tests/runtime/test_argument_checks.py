@@ -45,6 +45,7 @@ WRONG_TYPES: dict[str, Call] = {
     "spawn pose": lambda sim: sim.spawn(SPAWNED, pose=(0, 0, 1)),
     "remove": lambda sim: sim.remove([1]),
     "subscribe": lambda sim: sim.subscribe(None),
+    "array as topic": lambda sim: sim.subscribe(np.zeros(2)),
     "callback": lambda sim: sim.subscribe("/x", 3),
     "publish topic": lambda sim: sim.publish(None, {}),
     "offer": lambda sim: sim.offer("/s", "std_srvs/srv/Trigger", None),

@@ -109,6 +109,7 @@ def error_diagnostics(error: BaseException) -> list[Diagnostic]:
     else:
         message = str(error) if isinstance(error, SimkitError) else f"{type(error).__name__}: {error}"
     message, _, hint = message.removeprefix(code).strip().partition("\n    help: ")
+    message = message.replace(f": {code} ", ": ", 1)  # the code follows the place of the problem
     place = _FILE_AND_LINE.match(str(getattr(error, "where", None) or message))
     file, line = (place["file"], int(place["line"])) if place else (None, None)
     if place and message.startswith(f"{place[0]}: "):
