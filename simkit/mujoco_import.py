@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import sys
@@ -48,7 +49,10 @@ def import_mujoco() -> None:
         raise _installation_error("MuJoCo is not installed") from None
     except Exception as error:
         # the exception depends on the damage: ImportError, OSError, AttributeError, …
-        raise _installation_error(f"MuJoCo cannot be imported ({_first_line(error)})") from error
+        repair = REINSTALL
+        if os.strerror(errno.EMFILE) in str(error):
+            repair = "allow more open files: ulimit -n 1024"
+        raise _installation_error(f"MuJoCo cannot be imported ({_first_line(error)})", repair) from error
     if _is_checked:
         return
     if version.split(".")[0] != "4":

@@ -54,6 +54,12 @@ def test_a_command_without_a_sound_engine_prints_the_repair(name: str, tmp_path:
     assert first.startswith("error: SK-CORE-005") and reason in first and second == f"    help: {REPAIR}"
 
 
+def test_too_few_file_handles_are_no_reason_to_reinstall(tmp_path: Path) -> None:
+    stub = package(tmp_path, "import errno, os\nraise OSError(errno.EMFILE, os.strerror(errno.EMFILE))")
+    found = run("-m", "simkit", "check", "turtlebot3_empty", cwd=tmp_path, stub=stub)
+    assert found.returncode == 1 and found.stderr.endswith("help: allow more open files: ulimit -n 1024\n")
+
+
 def test_loading_and_importing_a_command_raise_the_same_error(tmp_path: Path) -> None:
     stub = package(tmp_path, STUBS["old"][0])
     program = (
