@@ -27,6 +27,8 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
         return None
     script = block.block("script")
     name = script.text("name", "") or (script.value.split("/", 1)[1] if "/" in script.value else "")
+    if name == "__default__":  # SDF's text for an element without a value, which tools write into saved worlds
+        name = ""
     ogre, places = _script_material(name, script, file, workspace)
     script_colours = _script_colours(name, ogre)
     diffuse = read_colour(block, "diffuse", script_colours.get("diffuse", _WHITE))

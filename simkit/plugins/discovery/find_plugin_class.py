@@ -45,6 +45,8 @@ def find_plugin(
         parent: kind of entity that the plugin is attached to; a class for another kind is ignored. With "any", a plugin
             with an empty scope is attached to the world, and the entity of any other plugin is unknown.
     """
+    if plugin.filename == "__default__":  # SDF's text for an attribute without a value; Gazebo loads nothing either
+        return None
     found = diagnostics if diagnostics is not None else plugin.params.diagnostics
     kinds = plugin_kinds()
     cls = next((kinds[alias] for alias in aliases(plugin) if alias in kinds), None)

@@ -141,6 +141,11 @@ def test_incomplete_scripts_are_read_as_far_as_possible(read, name, diffuse):
     assert not diagnostics
 
 
+def test_the_default_text_of_sdf_is_no_material(read):
+    material, diagnostics = read(script("__default__", []))
+    assert material.diffuse == (1, 1, 1, 1) and not diagnostics
+
+
 def test_a_hidden_or_missing_script_causes_a_note(read):
     assert [c for c, *_ in read(script("Own/Hidden"))[1]] == ["SK-SDF-021"]
     assert [c for c, *_ in read(script("Own/Base", ["model://nowhere/scripts"]))[1]] == ["SK-SDF-021"]

@@ -86,6 +86,11 @@ def test_an_unknown_plugin_is_a_warning_with_the_closest_known_name() -> None:
     assert "'libgazebo_ros_diff_drive.so'" in found.hint
 
 
+def test_the_default_text_of_sdf_is_no_unknown_plugin() -> None:
+    plugin = named("__default__", "__default__")
+    assert find_plugin(plugin) is None and reported(plugin) == []
+
+
 def test_a_dissimilar_name_still_gets_the_closest_name() -> None:
     plugin = named("libgazebo_tutorials.so")
     assert find_plugin(plugin) is None
