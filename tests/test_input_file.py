@@ -22,7 +22,6 @@ OWN_FILES = {
     "mujoco_import.py": "the list of files that pip has installed",
     "msgs/message_types.py": "data of the package",
     "plugins/authoring/plugin_reload.py": "modules that Python has imported already",
-    "recording/export/bag_folder.py": "the index of a folder that an export wrote",
     "registry.py": "modules of the package",
     "sensors/presets/preset.py": "data of the package",
     "testing/bundles/bundle_writer.py": "a temporary folder of simkit",

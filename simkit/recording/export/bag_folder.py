@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 from simkit import progress
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.input_file import read_input_text
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.reader import BagTopic, open_bag_to_read
 from simkit.recording.export.images import MessageWriter, NpzFile, PngFiles, VideoFile
@@ -54,8 +55,8 @@ def check_folder(path: Path, *, overwrite: bool) -> None:
 
 def _is_export(path: Path) -> bool:
     try:
-        return bool(json.loads((path / INDEX).read_text(encoding="utf-8"))["made_by"] == _MARK)
-    except (OSError, ValueError, KeyError, TypeError):
+        return bool(json.loads(read_input_text(path / INDEX))["made_by"] == _MARK)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
 
 

@@ -260,6 +260,14 @@ def test_lists_too_wide_for_a_spreadsheet_are_left_out_and_reported(tmp_path: Pa
     assert np.load(tmp_path / "all" / "map.npz")["data"].shape == (1, 20_000)
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_a_folder_whose_index_is_a_pipe_is_not_replaced_and_does_not_block(tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    os.mkfifo(tmp_path / "out" / "index.json")
+    with pytest.raises(InputError, match="SK-BAG-013"):
+        export_bag(written(tmp_path / "a.mcap", *SCANS), tmp_path / "out", ExportOptions(overwrite=True))
+
+
 def test_an_export_replaces_only_an_export_and_only_with_overwrite(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS)
     export_bag(bag, tmp_path / "out", ExportOptions())
