@@ -96,7 +96,7 @@ def test_the_rounds_of_a_convex_decomposition_become_a_share() -> None:
 @pytest.mark.slow
 def test_a_decomposition_reports_its_triangles_and_its_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     trimesh, _ = pytest.importorskip("trimesh"), pytest.importorskip("coacd")
-    monkeypatch.setenv("SIMKIT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("SIMKIT_CACHE_DIR", str(tmp_path / "cache"))
     corner = trimesh.util.concatenate(
         [
             trimesh.creation.box((0.31, 0.1, 0.1)),

@@ -143,7 +143,7 @@ class Battery(ModelPlugin):
                 break
             if isinstance(other, Battery) and (other.scoped, other.battery) == (self.scoped, self.battery):
                 message = f"plugin {self.name!r}: the model already has a battery {self.battery!r}"
-                self.params.error("SK-PARAM-002", f"{message}; expected another <battery_name>")
+                self.params.error("SK-PARAM-002", f"{message}; expected a <battery_name> that no other battery has")
                 return ""
         self._state = self.advertise(valid_topic(f"{base}/state"), STATE)
         publish_while_subscribed(self, self._state, _RATE, "tell")

@@ -31,7 +31,7 @@ class IncludedModel(abc.ABC):
     Attributes:
         version: SDF version of `frames`.
         frames: an `<sdf>` with the model's links, joints and frames, to which the including file can refer.
-        fixed_content: code, reason and hint of the error for an include that merges or changes the model.
+        fixed_content: error (code, reason, hint) to report if an `<include>` merges or changes a model of this format.
     """
 
     version: ClassVar[tuple[int, int]]

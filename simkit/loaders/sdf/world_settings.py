@@ -17,7 +17,7 @@ _LONGEST = 100.0  # longest step [s]; larger numbers are mistakes
 
 
 def read_physics(world: Params) -> tuple[Physics, Vec3]:
-    """Return the default physics profile, and gravity [m/s²] from the world or (before 1.6) from that profile."""
+    """Return the default physics profile, and gravity [m/s²] from the world or (before SDF 1.6) from that profile."""
     profiles = world.all("physics")
     chosen = next((p for p in profiles if p.attribute("default", "false").lower() in ("true", "1")), None)
     if chosen is None and profiles:

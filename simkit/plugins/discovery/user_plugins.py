@@ -62,7 +62,7 @@ def _named_class(
 
 
 def _only_class(module: object, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
-    """Return the only plugin class of a module, or the class with the name of the plugin."""
+    """Return the only plugin class of a module; if there are several, the class with the name of the plugin."""
     classes = _classes_of(module)
     matching = [c for c in classes if c.__name__ == plugin.name] or classes
     if len(matching) == 1:

@@ -189,7 +189,7 @@ def drain() -> None:
 
 
 def end() -> None:
-    """Finish the queued jobs and stop the render thread for good."""
+    """Finish the queued jobs and stop the render thread permanently."""
     _thread.end()
 
 

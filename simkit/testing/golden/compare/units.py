@@ -47,7 +47,7 @@ def _first_match(rows: Sequence[Sequence[str]], type_name: str, field: str, othe
 
 
 def period_of(type_name: str, field: str) -> float:
-    """Return the period of an angle in its unit; 0 for other fields.
+    """Return a full turn in the unit of an angle (360 or 2π); 0 for other fields.
 
     The position of a joint counts full rotations and therefore has no period.
     """
