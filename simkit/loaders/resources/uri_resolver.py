@@ -166,7 +166,7 @@ class Resolver:
         return None
 
     def format_searched_packages(self, places: list[Path]) -> str:
-        """Format the searched paths for a message about a package, and the searches that stopped at a limit of folders or time."""
+        """Format the searched paths for a message about a package, and the searches that stopped at a limit."""
         unfinished = ", ".join(str(place) for place in self.packages.unfinished())
         return format_searched(places) + (f"; the search below {unfinished} ended at its limit" if unfinished else "")
 
