@@ -68,6 +68,8 @@ def make(type_name: str, /, **fields: FieldValue) -> Message:
     Raises:
         MessageError: the type or a field is unknown (the message suggests the closest name), or a value does not match.
     """
+    if not isinstance(type_name, str):
+        raise NoMessageError(f"the type of a message must be a text, got {type_name!r:.60}")
     return _builder_of()(type_name).build(fields)
 
 

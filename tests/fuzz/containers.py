@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import io
 import json
@@ -141,11 +142,11 @@ def damaged_tree(tree: Any, chance: random.Random) -> Any:
     for _ in range(chance.choice((1, 1, 1, 2, 3))):
         places = list(_places(tree))
         if not places:
-            return chance.choice(ODD_VALUES)
+            return copy.deepcopy(chance.choice(ODD_VALUES))
         holder, key = chance.choice(places)
         kind = chance.randrange(10)
         if kind <= 4:
-            holder[key] = chance.choice(ODD_VALUES)
+            holder[key] = copy.deepcopy(chance.choice(ODD_VALUES))  # later changes must not reach the table
         elif kind == 5:
             del holder[key]
         elif kind == 6:

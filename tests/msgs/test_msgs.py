@@ -169,3 +169,10 @@ def test_a_message_with_a_broken_field_is_an_error_of_the_message() -> None:
 def test_importing_the_messages_does_not_import_the_type_store() -> None:
     code = "import sys, simkit.msgs; print('rosbags' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "False\n"
+
+
+@pytest.mark.parametrize("kind", [1, None, {}, ("std_msgs/msg/Bool",)])
+def test_a_type_that_is_not_a_text_is_an_error_of_simkit_and_a_type_error(kind: object) -> None:
+    with pytest.raises(MessageError, match="the type of a message must be a text") as raised:
+        msgs.make(kind)  # type: ignore[arg-type]
+    assert isinstance(raised.value, TypeError)
