@@ -9,27 +9,31 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.errors import ArgumentTypeError, ArgumentValueError
-from simkit.pose import Pose, Vector
 
 _LONGEST_SHOWN: Final = 80  # characters of a value in a message
 
 
 def wrong_type(name: str, expected: str, found: object) -> ArgumentTypeError:
     """Return the error for an argument of a wrong kind."""
-    return ArgumentTypeError(f"{name} must be {expected}, got {_shown(found)} ({type(found).__name__})")
+    return ArgumentTypeError(f"{name} must be {expected}, got {shown(found)} ({type(found).__name__})")
 
 
 def wrong_value(name: str, expected: str, found: object) -> ArgumentValueError:
     """Return the error for an argument of the right kind with a value that is not allowed."""
-    return ArgumentValueError(f"{name} must be {expected}, got {_shown(found)}")
+    return ArgumentValueError(f"{name} must be {expected}, got {shown(found)}")
 
 
-def _shown(value: object) -> str:
+def shown(value: object) -> str:
+    """Return the text of a value in a message: one line, shortened, also for a value without a text."""
     if isinstance(value, int) and not isinstance(value, bool) and abs(value) >= 10**20:
         return f"a whole number of {value.bit_length()} bits"  # the text of a large number may be refused by Python
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # noqa: BLE001 (Python refuses a text of large numbers, and an object of the caller may raise)
+        return "a value that cannot be shown"
     return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
 
 
@@ -112,25 +116,18 @@ def _real(value: object, name: str, allowed: str) -> Any:
     return value
 
 
-def checked_vector(value: object, name: str, count: int = 3) -> Vector:
+def checked_vector(value: object, name: str, count: int = 3) -> npt.NDArray[np.float64]:
     """Return finite numbers as an array of shape (count,)."""
     allowed = f"{count} finite {'number' if count == 1 else 'numbers'}"
     try:
         found = np.asarray(value)
         if value is None or found.dtype.kind not in "iufO":
             raise TypeError
-        array: Vector = found.astype(np.float64)
-    except TypeError:
-        raise wrong_type(name, allowed, value) from None
+        array: npt.NDArray[np.float64] = found.astype(np.float64)
     except (ValueError, OverflowError):  # lists of different lengths, numbers beyond the floats
         raise wrong_value(name, allowed, value) from None
+    except Exception:  # noqa: BLE001 (an object of the caller may raise any error)
+        raise wrong_type(name, allowed, value) from None
     if array.shape != (count,) or not all(map(math.isfinite, array.tolist())):
         raise wrong_value(name, allowed, value)
     return array
-
-
-def checked_pose(value: object) -> Pose:
-    """Return a pose, or raise an error for what is none; a pose has finite numbers."""
-    if not isinstance(value, Pose):
-        raise ArgumentTypeError(f"a pose is a simkit.Pose, such as simkit.Pose((0, 0, 1)), got {_shown(value)}")
-    return value

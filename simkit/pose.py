@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Any, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit.errors import ArgumentTypeError, ArgumentValueError
+from simkit.argument_checks import checked_number, checked_vector, shown, wrong_value
+from simkit.errors import ArgumentTypeError
 
 Vector = npt.NDArray[np.float64]
 VectorLike = Sequence[float] | Vector
 _set = object.__setattr__
-_POSE_NUMBERS: Final = "needs a position of 3 numbers and a quaternion (w, x, y, z) of 4 numbers"
 
 
 def _floats(values: VectorLike) -> list[float]:
@@ -90,14 +90,19 @@ def quat_to_matrix(q: VectorLike) -> Vector:
     )
 
 
-def _checked_point(values: VectorLike) -> VectorLike:
-    """Return 3 numbers unchanged."""
+def _rotate_argument(q: Vector, vector: VectorLike) -> Vector:
+    """Return `quat_rotate(q, vector)`; an argument of a caller that is not a vector is an error of simkit."""
     try:
-        if len(values) == 3:
-            return values
-    except TypeError:
-        raise ArgumentTypeError(f"a vector has 3 numbers, got {values!r}") from None
-    raise ArgumentValueError(f"a vector has 3 numbers, got {values!r}")
+        return quat_rotate(q, vector)
+    except Exception:
+        checked_vector(vector, "the vector")
+        raise
+
+
+def _raise_pose_error(position: object, quaternion: object) -> NoReturn:
+    checked_vector(position, "the position of a pose")
+    checked_vector(quaternion, "the quaternion (w, x, y, z) of a pose", 4)
+    raise wrong_value("the quaternion of a pose", "4 numbers with a finite norm that is not zero", quaternion)
 
 
 class Pose:
@@ -116,14 +121,14 @@ class Pose:
         try:
             p = np.array(position, dtype=np.float64)
             q = np.array(quaternion, dtype=np.float64)
-        except (TypeError, ValueError, OverflowError) as error:
-            raise ArgumentTypeError(f"Pose {_POSE_NUMBERS}, got {position!r}, {quaternion!r}: {error}") from None
+        except Exception:  # noqa: BLE001 (an object of the caller may raise any error)
+            _raise_pose_error(position, quaternion)
         if p.shape != (3,) or q.shape != (4,):
-            raise ArgumentValueError(f"Pose {_POSE_NUMBERS}, got {position!r}, {quaternion!r}")
+            _raise_pose_error(position, quaternion)
         norm = math.sqrt(q.dot(q))
         x, y, z = p.tolist()
         if not (1e-12 < norm < math.inf and math.isfinite(x) and math.isfinite(y) and math.isfinite(z)):
-            raise ArgumentValueError(f"Pose needs finite numbers and a quaternion that is not zero, got {p}, {q}")
+            _raise_pose_error(p, q)
         if abs(norm - 1.0) > 1e-15:
             q = q / norm
         p.setflags(write=False)
@@ -139,8 +144,10 @@ class Pose:
         """Create a pose from a position [m] and fixed-axis roll, pitch and yaw [rad]."""
         try:
             quaternion = quat_from_rpy(roll, pitch, yaw)
-        except (TypeError, ValueError):  # a text, an infinite angle
-            raise ArgumentValueError(f"roll, pitch and yaw must be finite numbers, got {(roll, pitch, yaw)}") from None
+        except Exception:  # a text, an infinite angle
+            for name, angle in (("roll", roll), ("pitch", pitch), ("yaw", yaw)):
+                checked_number(angle, name, unit="rad")
+            raise
         return cls((x, y, z), quaternion)
 
     @property
@@ -183,7 +190,7 @@ class Pose:
     __array_ufunc__ = None  # an array on the left leaves the product to `__rmatmul__`
 
     def __rmatmul__(self, other: object) -> Pose:
-        raise ArgumentTypeError(f"a pose is a simkit.Pose, such as simkit.Pose((0, 0, 1)), got {other!r}")
+        return checked_pose(other)
 
     def inverse(self) -> Pose:
         w, x, y, z = self.quaternion.tolist()
@@ -197,11 +204,11 @@ class Pose:
 
     def rotate(self, vector: VectorLike) -> Vector:
         """Rotate a free vector from this frame to the parent's axes."""
-        return quat_rotate(self.quaternion, _checked_point(vector))
+        return _rotate_argument(self.quaternion, vector)
 
     def transform(self, point: VectorLike) -> Vector:
         """Transform a point [m] from this frame to the parent's frame."""
-        return self.position + quat_rotate(self.quaternion, _checked_point(point))
+        return self.position + _rotate_argument(self.quaternion, point)
 
     def as_list(self) -> list[float]:
         """Return the pose as [x, y, z, qw, qx, qy, qz]."""
@@ -238,6 +245,13 @@ def _make_pose(position: tuple[float, float, float], quaternion: tuple[float, fl
     _set(pose, "position", p)
     _set(pose, "quaternion", q)
     return pose
+
+
+def checked_pose(value: object) -> Pose:
+    """Return a pose, or raise ArgumentTypeError for any other value; a pose has finite numbers."""
+    if not isinstance(value, Pose):
+        raise ArgumentTypeError(f"a pose is a simkit.Pose, such as simkit.Pose((0, 0, 1)), got {shown(value)}")
+    return value
 
 
 IDENTITY = Pose()

@@ -6,9 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from simkit.argument_checks import checked_pose
 from simkit.errors import InputError
-from simkit.pose import Pose, quat_conjugate, quat_multiply
+from simkit.pose import Pose, checked_pose, quat_conjugate, quat_multiply
 from simkit.runtime.communication.journal import journaled
 from simkit.runtime.engine.physics_state import STALE
 from simkit.runtime.handles.entity_handles import EntityHandles

@@ -24,6 +24,16 @@ ORIGIN = (0.0, 0.0, 0.0)
 NAN = (math.nan, 0.0, 0.0)
 
 
+class Raising:
+    """Object that raises an error if it is converted or printed."""
+
+    def __getattr__(self, name: str) -> object:
+        raise RuntimeError(name)
+
+    def __repr__(self) -> str:
+        raise RuntimeError
+
+
 @pytest.fixture(scope="module")
 def open_sim() -> Iterator[simkit.Simulation]:
     with simkit.load(WORLD) as sim:
@@ -60,7 +70,14 @@ WRONG_TYPES: dict[str, Call] = {
     "limit": lambda sim: setattr(sim.joint("b::j"), "upper", None),
     "rate": lambda sim: sim.sensor("b::l::imu").set_rate("x"),
     "gravity": lambda sim: setattr(sim, "gravity", "x"),
+    "velocity raises": lambda sim: sim.model("b").set_velocity(Raising()),
     "pose product": lambda _: simkit.Pose() @ 3,
+    "pose text": lambda _: simkit.Pose(("x", 0, 0)),
+    "pose raises": lambda _: simkit.Pose((0, 0, 0), Raising()),
+    "angle": lambda _: simkit.Pose.from_rpy(0, 0, 0, b"1", 0, 0),
+    "angle range": lambda _: simkit.Pose.from_rpy(0, 0, 0, 0, range(3), 0),
+    "position of an angle": lambda _: simkit.Pose.from_rpy(Raising(), 0, 0, 0, 0, 0),
+    "vector of texts": lambda _: simkit.Pose().rotate(("x", 0, 0)),
     "load None": lambda _: simkit.load(None),
     "load number": lambda _: simkit.load(123),
     "describe": lambda _: simkit.describe(None),
@@ -93,6 +110,14 @@ WRONG_VALUES: dict[str, Call] = {
     "limit": lambda sim: setattr(sim.joint("b::j"), "effort_limit", -1),
     "pose NaN": lambda _: simkit.Pose(NAN),
     "pose length": lambda _: simkit.Pose((1, 2)),
+    "pose zero": lambda _: simkit.Pose(ORIGIN, (0, 0, 0, 0)),
+    "pose huge": lambda _: simkit.Pose((10**5000, 0, 0)),
+    "angle huge": lambda _: simkit.Pose.from_rpy(0, 0, 0, 10**5000, 0, 0),
+    "angle infinite": lambda _: simkit.Pose.from_rpy(0, 0, 0, 0, 0, math.inf),
+    "vector to rotate": lambda _: simkit.Pose().rotate(3),
+    "point None": lambda _: simkit.Pose().transform((0, None, 0)),
+    "vector length": lambda _: simkit.Pose().rotate((1, 2)),
+    "point huge": lambda _: simkit.Pose().transform((10**5000, 0, 0)),
     "seed": lambda _: simkit.load(WORLD, seed=1.5),
     "base": lambda _: simkit.load(WORLD, base="flying"),
 }

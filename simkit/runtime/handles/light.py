@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import mujoco
 
-from simkit.argument_checks import check_kind, checked_pose
+from simkit.argument_checks import check_kind
 from simkit.compiler.lights import drawn_fields, drawn_position
-from simkit.pose import IDENTITY, Pose, Vector
+from simkit.pose import IDENTITY, Pose, Vector, checked_pose
 from simkit.runtime.handles.handle import Handle
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
-from simkit.argument_checks import check_kind, checked_pose, checked_vector
+from simkit.argument_checks import check_kind, checked_vector
 from simkit.errors import InputError
-from simkit.pose import IDENTITY, Pose, Vector, VectorLike, quat_conjugate, quat_rotate
+from simkit.pose import IDENTITY, Pose, Vector, VectorLike, checked_pose, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
 from simkit.runtime.handles.handle import Handle
 from simkit.runtime.handles.joint_mechanics import update_loop_joints

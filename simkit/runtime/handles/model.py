@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit.argument_checks import check_kind, checked_pose, checked_vector
+from simkit.argument_checks import check_kind, checked_vector
 from simkit.compiler import LinkBinding
-from simkit.pose import IDENTITY, Pose, VectorLike, quat_conjugate, quat_rotate
+from simkit.pose import IDENTITY, Pose, VectorLike, checked_pose, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import STALE, VELOCITY
 from simkit.runtime.handles.handle import Handle, look_up
 from simkit.runtime.handles.joint import Joint
