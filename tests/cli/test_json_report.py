@@ -56,6 +56,14 @@ def report(*words: object) -> tuple[dict[str, Any], int, str]:
     return found, result.exit_code, result.stderr
 
 
+def test_a_plugin_folder_that_does_not_exist_is_a_usage_error(world: Path) -> None:
+    found, code, words = report("run", world, "--duration", 0.1, "--plugin-path", "nowhere")
+    assert code == 2
+    assert found["diagnostics"][0]["code"] == "SK-CLI-018"
+    assert "'nowhere' does not exist" in found["diagnostics"][0]["message"]
+    assert "--plugin-path" in words
+
+
 def test_a_run_reports_its_topics_state_recording_and_conditions(world: Path) -> None:
     found, code, words = report(
         "run", world, "--duration", 1, "--record", "out.mcap", "--assert", "time > 0.5", "--assert", "time > 2"

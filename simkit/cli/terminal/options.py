@@ -84,7 +84,10 @@ Base = Annotated[
     str,
     option("Base of a bare model: fixed, floating, or auto (floating unless joined to the world).", "BASE", "--base"),
 ]
-PluginPaths = Annotated[list[Path], option("Folder of Python plugins to allow; repeatable.", "DIR", "--plugin-path")]
+PluginPaths = Annotated[
+    list[Path],
+    Option("--plugin-path", help="Folder of Python plugins to allow; repeatable.", metavar="DIR", exists=True),
+]
 ParamsFiles = Annotated[
     list[str],
     option(
