@@ -4,22 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from simkit import msgs
 from simkit.bridges.live.protocol import JsonObject, LiveClosed, message_frame
 from simkit.bridges.live.server_link import ServerLink
+from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_types import Message
-
-if TYPE_CHECKING:
-    from simkit.runtime.communication.action_server import GoalStatus
-
-
-def _goal_statuses() -> type[GoalStatus]:
-    # imported late: the runtime imports the physics engine, which a client does not need
-    from simkit.runtime.communication.action_server import GoalStatus
-
-    return GoalStatus
 
 
 class Received(NamedTuple):
@@ -148,7 +139,7 @@ class LiveGoal:
     def __init__(self, link: ServerLink, number: int, on_feedback: Callable[[Message], None] | None) -> None:
         self._link, self.number, self._on_feedback = link, number, on_feedback
         self.action, self.id = "", 0
-        self.status: GoalStatus = _goal_statuses().UNKNOWN
+        self.status = GoalStatus.UNKNOWN
         self.result: Message | None = None
         self.feedback: Message | None = None
         self.reason = ""
@@ -156,12 +147,12 @@ class LiveGoal:
     @property
     def is_done(self) -> bool:
         """True if the goal was rejected, succeeded, was cancelled or aborted."""
-        return self.status.name in ("REJECTED", "SUCCEEDED", "CANCELED", "ABORTED")
+        return self.status.is_final
 
     @property
     def is_accepted(self) -> bool:
         """True if the action accepted the goal; stays True after the end of the goal."""
-        return self.status.name not in ("UNKNOWN", "REJECTED")
+        return self.status not in (GoalStatus.UNKNOWN, GoalStatus.REJECTED)
 
     def wait(self, timeout: float | None = None) -> bool:
         """Wait for the end of the goal; return False after the timeout [s, wall time]."""
@@ -169,7 +160,7 @@ class LiveGoal:
 
     def wait_accepted(self, timeout: float | None = None) -> bool:
         """Wait until the goal is accepted or rejected; return False after the timeout [s, wall time]."""
-        return self._link.wait(lambda: self.status.name != "UNKNOWN", timeout)
+        return self._link.wait(lambda: self.status is not GoalStatus.UNKNOWN, timeout)
 
     def cancel(self) -> None:
         """Request the cancellation of the goal. The action may ignore the request."""
@@ -183,6 +174,6 @@ class LiveGoal:
             if self._on_feedback is not None:
                 self._on_feedback(message)
             return
-        self.status, self.reason = _goal_statuses()(int(update["status"])), str(update.get("reason", ""))
+        self.status, self.reason = GoalStatus(int(update["status"])), str(update.get("reason", ""))
         if message is not None:
             self.result = message

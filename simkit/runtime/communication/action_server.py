@@ -9,12 +9,12 @@ The plugin receives goals and cancel requests between two steps, in the order in
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.errors import ActionError, InputError, MessageError, PluginError, SimkitError, SubscriberError
+from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.subscription import Callback, Message, callback_name
@@ -28,25 +28,6 @@ EndCallback = Callable[["GoalHandle"], None]
 """Function that receives a goal that has ended."""
 GoalCallback = Callable[["GoalHandle"], None]
 CancelCallback = Callable[["GoalHandle"], bool | None]
-
-
-class GoalStatus(enum.IntEnum):
-    """Status of a goal. The numbers are those of `action_msgs/msg/GoalStatus`; REJECTED is simkit's own.
-
-    A goal is UNKNOWN until it reaches its plugin. It is UNKNOWN again after a restore to a time before it was sent.
-    """
-
-    REJECTED = -1
-    UNKNOWN = 0
-    ACCEPTED = 1
-    EXECUTING = 2
-    CANCELING = 3
-    SUCCEEDED = 4
-    CANCELED = 5
-    ABORTED = 6
-
-
-_FINAL_STATES = frozenset({GoalStatus.REJECTED, GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED})
 
 
 class GoalHandle:
@@ -76,7 +57,7 @@ class GoalHandle:
     @property
     def is_done(self) -> bool:
         """True if the goal was rejected, succeeded, was cancelled or aborted."""
-        return self.status in _FINAL_STATES
+        return self.status.is_final
 
     @property
     def is_active(self) -> bool:

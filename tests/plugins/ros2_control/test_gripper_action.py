@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from control_robots import ALL, arm, interfaces, opened, reported_messages
 
+from simkit.msgs.goal_status import GoalStatus
 from simkit.plugins.ros2_control.controllers import gripper_action
-from simkit.runtime.communication.action_server import GoalStatus
 from tests.plugins.ros2_control.perfect_joints import PerfectJoints, host
 
 ACTION = "/arm_controller/gripper_cmd"

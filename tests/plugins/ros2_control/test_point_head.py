@@ -12,9 +12,9 @@ import pytest
 import simkit
 from simkit import msgs
 from simkit.errors import InputError
+from simkit.msgs.goal_status import GoalStatus
 from simkit.plugins.ros2_control.head_pointing import HeadJoints, pixel_goal, pixel_ray
 from simkit.pose import Pose
-from simkit.runtime.communication.action_server import GoalStatus
 
 ACTION = "/head_controller/point_head_action"
 YAML = """

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.runtime.communication.action_server import GoalStatus
+from simkit.msgs.goal_status import GoalStatus
 from tests.plugins.ros2_control.perfect_joints import trajectory
 
 FOLLOW = "/arm_controller/follow_joint_trajectory"

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from simkit.runtime.communication.action_server import GoalStatus
+from simkit.msgs.goal_status import GoalStatus
 from tests.plugins.ros2_control.followers import FOLLOW, TOPIC, arm, codes, send
 from tests.plugins.ros2_control.perfect_joints import trajectory
 

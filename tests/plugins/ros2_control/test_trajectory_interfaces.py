@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from simkit.msgs.goal_status import GoalStatus
 from simkit.plugins.ros2_control.controllers import joint_trajectory_kinds
-from simkit.runtime.communication.action_server import GoalStatus
 from tests.plugins.ros2_control.followers import arm, codes, send
 from tests.plugins.ros2_control.perfect_joints import trajectory
 

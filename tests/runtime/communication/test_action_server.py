@@ -8,7 +8,7 @@ import pytest
 
 import simkit
 from simkit.errors import ActionError, MessageError, PluginError, SubscriberError
-from simkit.runtime.communication.action_server import GoalStatus
+from simkit.msgs.goal_status import GoalStatus
 
 EMPTY = '<sdf version="1.9"><world name="w"/></sdf>'
 FIBONACCI = "example_interfaces/action/Fibonacci"

@@ -9,12 +9,12 @@ import numpy as np
 
 from simkit import msgs
 from simkit.errors import InputError
+from simkit.msgs.goal_status import GoalStatus
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.head_pointing import HeadJoints, frame_link, frame_pose, is_moved_by_joint
 from simkit.plugins.ros2_control.trajectory import SECOND
 from simkit.plugins.ros_parameter_block import read_names
 from simkit.pose import Pose, Vector
-from simkit.runtime.communication.action_server import GoalStatus
 
 if TYPE_CHECKING:
     from simkit.msgs import PointHead_Goal, PointStamped
