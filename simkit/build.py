@@ -295,8 +295,8 @@ def _scene(
 ) -> Scene:
     def read(source: Source, diagnostics: Diagnostics, base: str = "auto") -> Scene:
         return load_scene(
-            source, resolver=resolver, diagnostics=diagnostics, xacro_args=named_values(xacro_args, "xacro_args"),
-            base=base, mesh_reader=_read_mesh, mjcf_parser=_mjcf_parser,
+            source, resolver=resolver, diagnostics=diagnostics, xacro_args=xacro_args, base=base,
+            mesh_reader=_read_mesh, mjcf_parser=_mjcf_parser,
         )  # fmt: skip
 
     with progress.task("reading the world"):

@@ -50,7 +50,7 @@ def _shape_with_asset(
         names = (geom.meshname, geom.hfieldname, geom.material)
         if owner is None or not any(n and (n == name or name.startswith(n.replace("#", "_"))) for n in names):
             continue
-        shapes: tuple[SceneCollision | SceneVisual, ...] = ()
-        shapes = (*links[owner.link].collisions, *links[owner.link].visuals) if owner.link in links else shapes
+        link = links.get(owner.link)
+        shapes: Sequence[SceneCollision | SceneVisual] = () if link is None else (*link.collisions, *link.visuals)
         return next((shape for shape in shapes if shape.scoped == owner.scoped), None)
     return None
