@@ -198,16 +198,17 @@ class ContactLaw:
     def _has_fast(self, data: mujoco.MjData) -> bool:
         """Check whether a freely moving body is so fast that a hit within the window matters."""
         velocities = data.qvel
-        if velocities.dot(velocities) <= FAST_SPEED * FAST_SPEED:  # no body can be fast
+        if np.vdot(velocities, velocities) <= FAST_SPEED * FAST_SPEED:  # no body can be fast
             return False
         return bool((np.abs(velocities[self._free]) > FAST_SPEED).any())
 
     def _is_quiet(self, data: mujoco.MjData) -> bool:
         """Check whether all constraints are nearly at rest and no reference separates bodies fast."""
         velocity, reference = data.efc_vel, data.efc_aref
-        if velocity.dot(velocity) > QUIET_SPEED * QUIET_SPEED:
+        # `vdot` gives the bits of `dot`, but no warning for an overflow: the engine reports the divergence
+        if np.vdot(velocity, velocity) > QUIET_SPEED * QUIET_SPEED:
             return False
-        return bool(reference.dot(reference) < self._least_reference)
+        return bool(np.vdot(reference, reference) < self._least_reference)
 
     def _find(
         self, data: mujoco.MjData, closing: list[float] | None, residual: Any = None

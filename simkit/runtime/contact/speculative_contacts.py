@@ -140,7 +140,7 @@ class FastBodyDetector:
         if data is not self._data:  # the same object at every check; its arrays keep their addresses
             self._data, self._velocities_now = data, data.qvel
         terms = _multiply(self._velocities_now, self._rooted, self._terms)
-        if terms.dot(terms) <= 1.0 or self._is_slow(self._velocities_now):
+        if np.vdot(terms, terms) <= 1.0 or self._is_slow(self._velocities_now):
             return False
         return self._has_fast_pair(data)
 

@@ -313,7 +313,7 @@ class PhysicsState:
     def _is_pushed(self) -> bool:
         """Check whether controls changed so much since the last check that wheels may begin to slip."""
         change = (self.data.ctrl - self._probed) * self._push
-        if change.dot(change) <= _MIN_PUSH * _MIN_PUSH:
+        if np.vdot(change, change) <= _MIN_PUSH * _MIN_PUSH:
             return False
         self._probed[:] = self.data.ctrl
         return True

@@ -212,7 +212,7 @@ def _velocity_limiter(engine: Engine, joints: Sequence[LimitedJoint]) -> Task:
     def hold(tick: int) -> None:
         velocities = physics.data.qvel
         found = velocities * shares
-        if found.dot(found) < _LIMIT_SHARE:  # then no velocity exceeds its limit
+        if np.vdot(found, found) < _LIMIT_SHARE:  # then no velocity exceeds its limit
             return
         for index in np.flatnonzero(np.abs(velocities[dofs]) > limits).tolist():
             owners[index].clamp_velocity(tick)

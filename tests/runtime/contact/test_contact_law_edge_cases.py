@@ -68,3 +68,14 @@ def test_a_ball_that_rolls_into_a_wall_stops_in_every_step_of_a_window(phase: in
             sim.step()
             slowest = min(slowest, float(sim.link("b::l").linear_velocity[0]))
         assert -0.06 < slowest < 0.01
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("velocity", [1e155, 1e300])
+def test_a_velocity_whose_square_overflows_diverges_without_a_warning_of_numpy(velocity: float) -> None:
+    box = body("box", "<box><size>1 1 1</size></box>", "0 0 0.5 0 0 0")
+    with simkit.load(world(PLANE, box)) as sim:
+        sim.step(5)
+        sim.model("box").set_velocity((velocity, velocity, velocity))
+        with pytest.raises(simkit.SimulationDiverged):
+            sim.step()
