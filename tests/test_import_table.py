@@ -26,6 +26,7 @@ SMALL_MODULES = frozenset(
         "diagnostics",
         "errors",
         "input_file",
+        "interrupts",
         "msgs",
         "mujoco_import",
         "params",

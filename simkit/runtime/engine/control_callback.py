@@ -18,6 +18,8 @@ from typing import Final
 
 import mujoco
 
+from simkit.interrupts import defer_interrupts
+
 _Control = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
 
 
@@ -38,7 +40,7 @@ class _Callback:
         self._is_busy = True
         try:
             self._call()
-        except BaseException as error:  # noqa: BLE001 - also an interrupt
+        except BaseException as error:  # noqa: BLE001 - for example SystemExit in a plugin
             self.error = error
         finally:
             self._is_busy = False
@@ -109,10 +111,11 @@ def call_before_forces(data: mujoco.MjData, call: Callable[[], None]) -> Iterato
         call: function that may change the contacts and the references of constraints of these data.
     """
     address, callback = int(data._address), _Callback(call)
-    _CONTROL.add(address, callback)
-    try:
-        yield
-    finally:
-        _CONTROL.remove(address)
+    with defer_interrupts():
+        _CONTROL.add(address, callback)
+        try:
+            yield
+        finally:
+            _CONTROL.remove(address)
     if callback.error is not None:
         raise callback.error

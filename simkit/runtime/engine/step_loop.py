@@ -82,10 +82,10 @@ class StepLoop:
         if self.is_running:
             message = "the simulation is already stepping; a hook, a callback or a second thread cannot step it"
             raise InputError(message, "SK-CORE-003")
-        self.is_running, self._is_served, self._halts = True, is_served, False
-        self._target = target
-        self._idle.clear()
-        try:
+        try:  # an interrupt can arrive after any of the next lines
+            self.is_running, self._is_served, self._halts = True, is_served, False
+            self._target = target
+            self._idle.clear()
             self._run()
         finally:
             self.is_running = self._is_served = self._halts = False

@@ -19,6 +19,7 @@ from typing import Any, Protocol
 import mujoco
 
 from simkit.errors import RenderError
+from simkit.interrupts import defer_interrupts
 from simkit.runtime.engine.step_loop import stop_other_loops
 from simkit.sensors.cameras.rendering import render_thread
 
@@ -66,7 +67,7 @@ class _ProcessContext:
 
     @contextmanager
     def current(self) -> Iterator[None]:
-        with render_thread.defer_interrupts(), self.lock:
+        with defer_interrupts(), self.lock:
             if self.failure is not None:
                 raise self.failure
             if self.context is None:

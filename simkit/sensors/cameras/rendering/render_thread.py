@@ -3,39 +3,13 @@
 from __future__ import annotations
 
 import os
-import signal
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from types import FrameType
+from collections.abc import Callable
 from typing import Any
 
 from simkit.errors import RenderError
-
-ReceivedSignals = list[tuple[int, FrameType | None]]
-
-
-@contextmanager
-def defer_interrupts() -> Iterator[ReceivedSignals]:
-    """Defer interrupts until the block ends, and yield the list of received interrupts.
-
-    Inside a call of the graphics library, ctypes would turn the interrupt into an error of that library. Inside a wait
-    for a lock, an interrupt would appear as an error about a lock that no thread holds.
-    """
-    received: ReceivedSignals = []
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield received
-        return
-    signal.signal(signal.SIGINT, lambda number, frame: received.append((number, frame)))
-    try:
-        yield received
-    finally:
-        signal.signal(signal.SIGINT, before)
-        for number, frame in received:
-            before(number, frame)
-
+from simkit.interrupts import defer_interrupts
 
 _MAX_WAITING = 8  # an image needs two jobs: drawing it, and making its messages
 _WAIT_INTERVAL = 0.05  # [s] interval of the checks for an interrupt

@@ -333,14 +333,18 @@ class Renderer:
 
 
 _renderers: weakref.WeakKeyDictionary[Simulation, Renderer] = weakref.WeakKeyDictionary()
+_abandoned: list[Renderer] = []
+"""Renderers of simulations that were not closed. A finalizer does not free them: it would wait, and lose interrupts."""
 
 
 def renderer_of(sim: Simulation) -> Renderer:
     """Return the renderer of a simulation, which all its cameras share."""
     found = _renderers.get(sim)
     if found is None:
+        while _abandoned:
+            _free_quietly(_abandoned.pop())
         found = _renderers[sim] = Renderer(Appearance.of(sim.world))
-        weakref.finalize(sim, _free_quietly, found).atexit = False
+        weakref.finalize(sim, _abandoned.append, found).atexit = False
     return found
 
 
