@@ -230,12 +230,11 @@ def test_a_list_can_hold_names_and_workspaces_and_a_name_has_priority(package, u
     assert used("here/r.urdf", MESH.format("sensors"), paths)[0] == "a/sensors"
 
 
-def test_all_functions_take_a_workspace_and_the_command_line_too(package, write, tmp_path, capsys, monkeypatch):
-    from simkit.cli import main
+def test_all_functions_take_a_workspace_and_the_command_line_too(package, write, tmp_path, capsys):
+    from simkit.cli import app
 
     def command(*arguments: object) -> None:
-        monkeypatch.setattr("sys.argv", ["simkit", *map(str, arguments)])
-        main()
+        app([str(a) for a in arguments])
 
     package("ws/src/group/sensors")
     mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
