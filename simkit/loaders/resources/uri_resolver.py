@@ -13,6 +13,7 @@ from urllib.parse import unquote
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
 from simkit.errors import InputError
 from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
+from simkit.loaders.resources.fuel_cache import LOCK_NAME, LockEntry, cached_versions, parse_fuel_url, read_lock
 from simkit.loaders.resources.project_folder import readable_folder
 from simkit.loaders.resources.ros_packages import PackageIndex, enclosing_package
 from simkit.loaders.resources.uris import (
@@ -25,7 +26,6 @@ from simkit.loaders.resources.uris import (
     is_path_of_other_machine,
     is_private,
     is_relocated,
-    is_small_integer,
     leaves_folder,
     package_uri,
     sibling_names,
@@ -42,7 +42,6 @@ _SEARCH_VARIABLES = (
     "ROS_PACKAGE_PATH",
 )
 _SCHEMES = ("model", "package", "file")
-_CACHE_VARIABLES = ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH")
 NOT_FOUND_CODES = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
 _MEDIA = ("Media/models", "media/models", "Media", "media")  # folders of a package that Gazebo Classic searches
 _PATH_HINT = "add its folder with --resource-path or SIMKIT_RESOURCE_PATH"
@@ -72,6 +71,7 @@ class Resolver:
     ) -> None:
         self.base, self.missing_meshes, self.anywhere = base, missing_meshes, anywhere
         self._found: dict[str, Path] = {}
+        self._locks: dict[Path | None, dict[str, LockEntry]] = {}
         found = [Path(p).expanduser() for p in paths]
         for variable in _SEARCH_VARIABLES:
             found += [Path(p) for p in os.environ.get(variable, "").split(os.pathsep) if p]
@@ -326,32 +326,21 @@ class Resolver:
 
     def _fuel_candidates(self, uri: str) -> Iterator[Path]:
         """Yield candidates for a Fuel URL in Gazebo's caches, then a folder of that name in the resource folders."""
-        server, _, rest = unquote(uri).partition("://")[2].partition("/")
-        parts = [p for p in rest.split("/") if p]
-        if parts and parts[0].replace(".", "").isdigit():
-            parts = parts[1:]
-        if len(parts) < 3 or ".." in parts:
+        url = parse_fuel_url(uri)
+        if url is None:
             return
-        owner, kind, name, *tail = parts
-        version = tail[0] if tail else "tip"
-        inside = Path(*tail[2:]) if len(tail) > 2 and tail[1] == "files" else Path()
-        for cache in _fuel_caches():
-            for folder in (cache / server / owner / kind / name, cache / server / owner.lower() / kind / name.lower()):
-                versions = sorted(
-                    (p for p in folder.glob("*") if is_small_integer(p.name)), key=lambda p: int(p.name), reverse=True
-                )
-                yield from (v / inside for v in versions if version in ("tip", v.name))
-                if not versions:
-                    yield folder / version / inside
+        locked = self._lock().get(url.key)
+        yield from (folder / url.inside for folder in cached_versions(url, locked and locked.version))
+        name, inside = url.name, url.inside
         for root in self.paths:
             yield from (root / folder / inside for folder in dict.fromkeys((name, name.replace(" ", "_").lower())))
+
+    def _lock(self) -> dict[str, LockEntry]:
+        """Return the entries of the file `simkit.lock` beside the loaded file."""
+        if self.base not in self._locks:
+            self._locks[self.base] = {} if self.base is None else read_lock(self.base / LOCK_NAME)
+        return self._locks[self.base]
 
     def _nearby_names(self, relative_to: Path | None) -> Iterable[str]:
         for root in (*self.paths, *([relative_to.parent] if relative_to else [])):
             yield from (name for name in sibling_names(root / "any") if is_folder(root / name))
-
-
-def _fuel_caches() -> list[Path]:
-    named = [Path(p) for v in _CACHE_VARIABLES for p in os.environ.get(v, "").split(os.pathsep) if p]
-    home = Path.home()
-    return [*named, home / ".gz" / "fuel", home / ".ignition" / "fuel"]

@@ -8,8 +8,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import re
-import stat
 import struct
 import zipfile
 import zlib
@@ -21,31 +19,22 @@ from simkit.errors import InputError
 from simkit.input_file import open_input
 from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject
 from simkit.testing.bundles.manifest import BAG, BROKEN, COMMANDS, PAGE, Manifest, read_manifest
+from simkit.writers import zip_checks
+from simkit.writers.zip_checks import MAX_FILES
 
-MAX_FILES: Final = 20_000
 MAX_BYTES: Final = 2 << 30
 _MAX_PAGE_BYTES: Final = 64 << 20  # limit for bundle.json
-_MAX_INDEX_BYTES: Final = 16 << 20  # limit for the list of files at the end of the ZIP archive
 _MAX_LINE_BYTES: Final = 256 << 20  # limit for one entry of the journal
-# A small archive may unpack to 64 MiB. A larger one may unpack to at most 200 times its size on disk.
-_ALWAYS_ALLOWED_BYTES, _MAX_RATIO = 64 << 20, 200
 FOLDERS: Final = ("world", "model_world", "spawn", "models", "params", "code")
 _BAD_NAME, _TOO_LARGE = "SK-BUNDLE-003", "SK-BUNDLE-004"
-_NAME: Final = re.compile(r"[^\x00-\x1f\x7f\\:*?\"<>|]+")
-_END: Final = struct.Struct("<4s4H2LH")
 
 
 def name_fault(name: str) -> str:
     """Return the reason why a bundle must not contain a file of this name; empty if the name is allowed."""
+    problem = zip_checks.name_fault(name)
+    if problem:
+        return problem
     parts = name.split("/")
-    if name.startswith("/") or not name:
-        return "is an absolute path" if name else "is empty"
-    if not _NAME.fullmatch(name):
-        return "has characters that a bundle does not allow in file names"
-    if any(part in ("", ".", "..") for part in parts):
-        return "leads out of its folder"
-    if len(name) > 1000 or any(len(part.encode(errors="replace")) > 240 for part in parts):
-        return "is too long"
     if name not in (PAGE, COMMANDS, BAG, "error.txt") and (parts[0] not in FOLDERS or len(parts) < 2):
         return "is not a file that a bundle can contain"
     return ""
@@ -140,27 +129,10 @@ class Bundle:
 
     def _check_files(self) -> None:
         infos = self._zip.infolist()
-        total = sum(info.file_size for info in infos)
-        if len(infos) > MAX_FILES:
-            raise self._too_large(f"has {len(infos)} files; the limit is {MAX_FILES}")
-        if total > MAX_BYTES:
-            raise self._too_large(f"would unpack to {total >> 20} MiB; the limit is {MAX_BYTES >> 20} MiB")
-        if total > max(_ALWAYS_ALLOWED_BYTES, _MAX_RATIO * self.path.stat().st_size):
-            raise self._too_large(f"would unpack to {total >> 20} MiB, more than {_MAX_RATIO} times its size")
-        seen: dict[str, str] = {}
-        folders: set[str] = set()
-        for info in infos:
-            problem = name_fault(info.filename) or _kind_fault(info)
-            folded = info.filename.casefold()
-            if not problem and folded in seen:
-                problem = f"is a duplicate (of {seen[folded]!r:.80})"
-            if problem:
-                raise InputError(f"{_BAD_NAME} {self.path}: the file {info.filename!r:.80} {problem}", _BAD_NAME)
-            seen[folded] = info.filename
-            folders.update(str(parent).casefold() for parent in PurePosixPath(info.filename).parents)
-        both = sorted(folders & seen.keys())
-        if both:
-            raise InputError(f"{_BAD_NAME} {self.path}: {both[0]!r:.80} is both a file and a folder", _BAD_NAME)
+        if problem := zip_checks.size_fault(infos, self.path.stat().st_size, MAX_BYTES):
+            raise self._too_large(problem)
+        if problem := zip_checks.files_fault(infos, name_fault):
+            raise InputError(f"{_BAD_NAME} {self.path}: {problem}", _BAD_NAME)
 
     def _check_manifest(self) -> None:
         manifest, there = self.manifest, {info.filename for info in self._zip.infolist()} - {PAGE}
@@ -252,18 +224,6 @@ def open_bundle(path: str | os.PathLike[str]) -> Bundle:
     return Bundle(path)
 
 
-def _kind_fault(info: zipfile.ZipInfo) -> str:
-    """Return the reason why a bundle must not contain an entry of this kind; empty if the kind is allowed."""
-    kind = stat.S_IFMT(info.external_attr >> 16)
-    if kind not in (0, stat.S_IFREG):
-        return "is a link or not a regular file"
-    if info.flag_bits & 1:
-        return "is encrypted"
-    if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        return "uses an unsupported compression method"
-    return ""
-
-
 def _check_index(path: Path) -> None:
     """Check the size of the ZIP archive's list of files before the list is read.
 
@@ -272,15 +232,11 @@ def _check_index(path: Path) -> None:
     """
     try:
         with open_input(path) as file:
-            size = file.seek(0, os.SEEK_END)
-            file.seek(max(0, size - (1 << 16) - _END.size))
-            tail = file.read()
+            problem, is_large = zip_checks.index_fault(file)
     except (OSError, ValueError) as error:  # a ValueError means that the path contains a null character
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{BROKEN} cannot read {path}: {reason}", BROKEN) from None
-    at = tail.rfind(b"PK\5\6")
-    if at < 0 or len(tail) - at < _END.size:
-        raise InputError(f"{BROKEN} {path} is not a simkit bundle (not a ZIP archive, or truncated)", BROKEN)
-    _, _, _, _, count, length, offset, _ = _END.unpack_from(tail, at)
-    if count > MAX_FILES or length > _MAX_INDEX_BYTES or offset == 0xFFFFFFFF:
+    if is_large:
         raise InputError(f"{_TOO_LARGE} {path} has more files than a bundle may have ({MAX_FILES})", _TOO_LARGE)
+    if problem:
+        raise InputError(f"{BROKEN} {path} is not a simkit bundle ({problem})", BROKEN)
