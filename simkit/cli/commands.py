@@ -27,6 +27,7 @@ COMMANDS = {
     "inspect": "Show the resolved content of a file.",
     "convert": "Convert a world or model to MJCF or to a single SDF file.",
     "vendor": "Copy a world and all files that it uses into one folder.",
+    "fetch": "Download the models that a world names on Fuel servers.",
     "bench": "Compare the speed of a world with bare MuJoCo.",
     "grade": "Run an exercise with submitted plugins and print the results.",
     "doctor": "Check the installation and print a remedy for each problem.",

@@ -92,7 +92,7 @@ class WorldCollector:
         if expanded:
             self._write_bytes(target, xml_text(_replace_in_tree(document.root, changes)).encode())
         else:
-            self._write_bytes(target, _replace_uris(document.text, changes))
+            self._write_bytes(target, replace_uris(document.text, changes))
 
     def _collect_file(self, path: Path) -> PurePosixPath:
         """Collect a file of any kind with the files that it names; return its path in the folder."""
@@ -187,8 +187,8 @@ class WorldCollector:
     def _uri_changes(self, root: Params, folder: Path, here: PurePosixPath) -> Iterator[tuple[str, str]]:
         """Yield each URI of a file with its new path, relative to `here`."""
         seen: set[str] = set()
-        for element, parent in _elements(root):
-            for reference in _file_references(element, parent):
+        for element, parent in file_elements(root):
+            for reference in file_references(element, parent):
                 if reference in seen:
                     continue
                 collected = self._collected_path(reference, element, parent, folder)
@@ -284,7 +284,7 @@ def vendor(
     return main, collector.count
 
 
-def _elements(root: Params) -> Iterator[tuple[Params, str]]:
+def file_elements(root: Params) -> Iterator[tuple[Params, str]]:
     """Yield every element with the name of its parent."""
     stack = [(root, "")]
     while stack:
@@ -293,7 +293,7 @@ def _elements(root: Params) -> Iterator[tuple[Params, str]]:
         stack += [(child, element.name) for child in reversed(element.children)]
 
 
-def _file_references(element: Params, parent: str) -> Iterator[str]:
+def file_references(element: Params, parent: str) -> Iterator[str]:
     """Yield the texts of an element that may be file names."""
     is_include = element.name == "uri" and parent == "include"
     is_text = bool(element.value) and not element.children and len(element.value) < 1000
@@ -309,7 +309,7 @@ def _may_be_file(text: str) -> bool:
     return "\n" not in text and ("://" in text or "/" in text or bool(_FILE_SUFFIX.search(text)))
 
 
-def _replace_uris(text: bytes, changes: Mapping[str, str]) -> bytes:
+def replace_uris(text: bytes, changes: Mapping[str, str]) -> bytes:
     """Replace each URI in a file's text, where it is the whole text of an element or attribute."""
     for old, new in changes.items():
         for spelling in dict.fromkeys((old, escape(old, quote=False), escape(old))):

@@ -71,6 +71,7 @@ def test_names_are_completed(line: str, offered: list[str], yard: Any) -> None:
         "bench",
         "convert",
         "vendor",
+        "fetch",
         "bundle",
         "certify",
         "golden record",

@@ -112,7 +112,8 @@ class LockEntry:
 def parse_fuel_url(uri: str) -> FuelUrl | None:
     """Parse the URL of a model, a world or a file on a Fuel server; return None for any other URI."""
     scheme, separator, rest = uri.strip().partition("://")
-    host, *parts = (unquote(part) for part in rest.split("/") if part)
+    host, _, path = rest.partition("/")
+    parts = [unquote(part) for part in path.split("/") if part]
     if scheme.lower() not in ("http", "https") or not separator or not _HOST.fullmatch(host):
         return None
     if any(part in (".", "..") or _UNUSABLE.search(part) or "/" in part or len(part.encode()) > 240 for part in parts):

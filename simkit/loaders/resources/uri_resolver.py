@@ -1,8 +1,9 @@
-"""Resolver of URIs in input files to paths on this machine. Nothing is downloaded from a network."""
+"""Resolver of URIs in input files to paths on this machine. Nothing is downloaded here."""
 
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import replace
@@ -145,7 +146,9 @@ class Resolver:
         scheme, _, rest = uri.partition("://")
         if uri.startswith(("http://", "https://")):
             message = f"{uri} is not on this machine and nothing is downloaded{format_searched(places)}"
-            hint = f"load it once in Gazebo (simkit reads Gazebo's cache), or {_PATH_HINT}"
+            world = shlex.quote(where.file) if where.file and Path(where.file).is_file() else "WORLD"
+            fetch = f"download it with `simkit fetch {world}`" if parse_fuel_url(uri) else "download it by hand"
+            hint = f"{fetch}, or {_PATH_HINT}"
             diagnostics.error("SK-URI-002", message, where, hint)
         elif places is None:
             diagnostics.error("SK-URI-003", f"{uri} is outside the resource folders", where, _PATH_HINT)
@@ -330,7 +333,7 @@ class Resolver:
         if url is None:
             return
         locked = self._lock().get(url.key)
-        yield from (folder / url.inside for folder in cached_versions(url, locked and locked.version))
+        yield from (folder / url.inside for folder in cached_versions(url, locked.version if locked else None))
         name, inside = url.name, url.inside
         for root in self.paths:
             yield from (root / folder / inside for folder in dict.fromkeys((name, name.replace(" ", "_").lower())))

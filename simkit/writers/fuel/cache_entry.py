@@ -1,0 +1,190 @@
+"""Folders of models and worlds in the cache: unpacked, recorded with their checksum, and put in place at once."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from io import BufferedRandom
+from pathlib import Path, PurePosixPath
+
+from simkit import progress
+from simkit.diagnostics import Diagnostics
+from simkit.input_file import open_input, read_input_text
+from simkit.loaders.resources.bundled_models import builtin_model
+from simkit.loaders.resources.fuel_cache import TIP, FuelUrl
+from simkit.loaders.resources.uris import leaves_folder
+from simkit.loaders.resources.xml_reader import parse_file
+from simkit.writers import zip_checks
+from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
+from simkit.writers.fuel.download import DownloadError
+from simkit.writers.vendored_folder import file_elements, replace_uris
+
+BAD_ARCHIVE = "SK-FETCH-004"
+STAGE = ".simkit-fetch"
+_RECORD = ".simkit-fetch.json"
+_CHUNK = 1 << 20  # [bytes]
+
+
+@dataclass(frozen=True)
+class Record:
+    """Checksum and size [bytes] of the ZIP archive from which a folder of the cache was unpacked."""
+
+    sha256: str
+    size: int
+
+
+@contextmanager
+def exclusive_file(path: Path) -> Iterator[BufferedRandom]:
+    """Open a file for reading and appending, when no other process or thread has it open this way."""
+    while True:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("a+b") as file:
+            _wait_for_lock(file)
+            if _is_same_file(file, path):  # else another process has removed it
+                yield file
+                return
+
+
+def _is_same_file(file: BufferedRandom, path: Path) -> bool:
+    with suppress(FileNotFoundError):
+        return os.path.samestat(os.fstat(file.fileno()), path.stat())
+    return False
+
+
+def _wait_for_lock(file: BufferedRandom) -> None:
+    """Lock a file until it is closed. Windows and some file systems have no such lock."""
+    if os.name == "nt":
+        return
+    import fcntl
+
+    with suppress(OSError):
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            with progress.task("waiting for another simkit fetch"):
+                fcntl.flock(file, fcntl.LOCK_EX)
+
+
+def archive_record(file: BufferedRandom) -> Record:
+    """Return the checksum and the size of an archive."""
+    file.seek(0)
+    digest = hashlib.file_digest(file, "sha256").hexdigest()
+    return Record(digest, file.seek(0, os.SEEK_END))
+
+
+def store(file: BufferedRandom, record: Record, url: FuelUrl, cache: Path, most: int) -> Path:
+    """Unpack an archive and put its folder into the cache; an older folder of the same version is replaced.
+
+    Args:
+        file: the archive.
+        record: its checksum and size.
+        url: URL of the resource with the number of its version.
+        cache: folder of the cache.
+        most: largest sum of the unpacked sizes [bytes].
+
+    Raises:
+        DownloadError: SK-FETCH-004 the archive is damaged or dangerous.
+        OSError: the cache is not writable.
+    """
+    target = url.folders(cache)[0] / url.version
+    remove_abandoned(cache / STAGE, "unpacked")
+    stage = unfinished_folder(cache / STAGE, "unpacked")
+    try:
+        new = stage / "new"
+        new.mkdir()
+        _unpack(file, new, record.size, most)
+        _resolve_model_uris(new, url)
+        content = {"sha256": record.sha256, "size": record.size, "content": _content_hash(new)}
+        (new / _RECORD).write_text(json.dumps(content) + "\n", encoding="utf-8")
+        new.chmod(0o777 & ~current_umask())
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if target.exists():
+            target.rename(stage / "old")
+        new.rename(target)
+    finally:
+        shutil.rmtree(stage, ignore_errors=True)
+    return target
+
+
+def read_record(folder: Path) -> Record | None:
+    """Return the record of a folder in the cache; None if Gazebo stored the folder, or if its files have changed."""
+    try:
+        found = json.loads(read_input_text(folder / _RECORD, 1 << 16))
+        record = Record(str(found["sha256"]), int(found["size"]))
+        return record if found["content"] == _content_hash(folder) else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _content_hash(folder: Path) -> str:
+    """Return a hash of the names and the contents of all files in a folder."""
+    digest = hashlib.sha256()
+    for path in sorted(p for p in folder.rglob("*") if not p.is_dir()):
+        name = path.relative_to(folder).as_posix()
+        if name != _RECORD:
+            with open_input(path) as file:
+                digest.update(f"{len(name)} {name} {hashlib.file_digest(file, 'sha256').hexdigest()}\n".encode())
+    return digest.hexdigest()
+
+
+def _unpack(file: BufferedRandom, folder: Path, size: int, most: int) -> None:
+    """Write the files of an archive below a folder, after all names and sizes are checked."""
+    problem, is_large = zip_checks.index_fault(file)
+    if problem:
+        raise _bad_archive(f"it {'has' if is_large else 'is'} {problem}")
+    try:
+        with zipfile.ZipFile(file) as archive:
+            infos = [info for info in archive.infolist() if not info.is_dir()]
+            folders = [info.filename.rstrip("/") for info in archive.infolist() if info.is_dir()]
+            bad = next((f"the folder {n!r:.80} {fault}" for n in folders if (fault := zip_checks.name_fault(n))), "")
+            if problem := zip_checks.size_fault(archive.infolist(), size, most):
+                raise _bad_archive(f"it {problem}")
+            if problem := bad or zip_checks.files_fault(infos):
+                raise _bad_archive(problem)
+            for info in infos:
+                target = folder.joinpath(*PurePosixPath(info.filename).parts)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                with archive.open(info) as source, target.open("xb") as output:
+                    shutil.copyfileobj(source, output, _CHUNK)
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError) as error:
+        raise _bad_archive(f"it is damaged: {error}") from None
+
+
+def _bad_archive(reason: str) -> DownloadError:
+    hint = "nothing of it is stored; tell the owner of the model, or try again later"
+    return DownloadError(BAD_ARCHIVE, f"the archive is refused: {reason:.300}", hint)
+
+
+def _resolve_model_uris(folder: Path, url: FuelUrl) -> None:
+    """Replace `model://NAME/...` in the SDF files by Fuel URLs, as Gazebo does when it stores a model.
+
+    A name on Fuel is a model of the same owner, and the folder in the cache has the number of a version as its name.
+    """
+    for path in sorted(folder.rglob("*.sdf")):
+        document = parse_file(path, Diagnostics())
+        if document is None:
+            continue
+        texts = {element.value for element, _ in file_elements(document.root) if element.value.startswith("model://")}
+        changes = {text: str(new) for text in sorted(texts) if (new := _fuel_url(text, folder, url)) is not None}
+        if changes:
+            path.write_bytes(replace_uris(document.text, changes))
+
+
+def _fuel_url(text: str, folder: Path, url: FuelUrl) -> FuelUrl | None:
+    """Return the Fuel URL of a `model://` URI in a downloaded model; None if the URI stays as it is."""
+    rest = text.removeprefix("model://").strip("/")
+    name, _, inside = rest.partition("/")
+    if builtin_model(text) is not None or not name or leaves_folder(rest):
+        return None
+    if (folder / rest).exists():
+        return replace(url, inside=rest)
+    if name.lower() == url.name.lower() or (inside and (folder / inside).exists()):
+        return replace(url, inside=inside)
+    return replace(url, kind="models", name=name, version=TIP, inside=inside)

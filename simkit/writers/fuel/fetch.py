@@ -1,0 +1,335 @@
+"""Download of everything that a world names on Fuel servers, with a lock file beside the world."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, replace
+from io import BufferedRandom
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from simkit import progress
+from simkit.diagnostics import Diagnostics, Where
+from simkit.errors import InputError
+from simkit.loaders import Resolver, find_document
+from simkit.loaders.resources.bundled_models import bundled_folders
+from simkit.loaders.resources.fuel_cache import (
+    LOCK_NAME,
+    TIP,
+    FuelUrl,
+    LockEntry,
+    cached_versions,
+    fuel_caches,
+    parse_fuel_url,
+    read_lock,
+)
+from simkit.run_spec import NamedValues
+from simkit.writers.atomic_output import write_atomically
+from simkit.writers.fuel.cache_entry import STAGE, Record, archive_record, exclusive_file, read_record, store
+from simkit.writers.fuel.download import (
+    MISSING,
+    NETWORK,
+    TOO_LARGE,
+    Connection,
+    Download,
+    DownloadError,
+    remote_size,
+)
+from simkit.writers.fuel.references import Reference, ReferenceSearch
+
+OTHER_CONTENT = "SK-FETCH-005"
+_UNPACKED_RATIO = 4  # the files of an archive may have this many times the limit of the archive
+_MOST_RESOURCES = 2000
+_MOST_LISTED = 30
+
+
+@dataclass(frozen=True)
+class FetchOptions:
+    """Options of a download.
+
+    Attributes:
+        server: server to use instead of the servers in the URLs; empty for these.
+        connection: rules for connections.
+        max_size: largest archive [bytes].
+        max_total: largest sum of all archives of one run [bytes].
+        update: replaces locked and cached resources by the newest versions of the server.
+        dry_run: downloads and writes nothing.
+    """
+
+    server: str = ""
+    connection: Connection = field(default_factory=Connection)
+    max_size: int = 2 * 10**9
+    max_total: int = 10 * 10**9
+    update: bool = False
+    dry_run: bool = False
+
+
+@dataclass(frozen=True)
+class FetchedResource:
+    """One model or world that a world names.
+
+    Attributes:
+        url: its URL, as it was first named.
+        state: `fetched`, `in the cache`, `on this machine` (a folder of the search path) or `to fetch` (a dry run).
+        version: version number, if it is known.
+        size: size of the archive [bytes], if it is known.
+        folder: its folder on this machine; None in a dry run.
+        record: checksum of its archive; None if simkit did not download it.
+    """
+
+    url: FuelUrl
+    state: str
+    version: int | None = None
+    size: int | None = None
+    folder: Path | None = None
+    record: Record | None = None
+
+
+@dataclass
+class FetchReport:
+    """Result of a download.
+
+    Attributes:
+        resources: every resource that was found, in the order of the files.
+        diagnostics: problems.
+        lock: lock file that was written; None if it did not change.
+    """
+
+    resources: list[FetchedResource] = field(default_factory=list)
+    diagnostics: Diagnostics = field(default_factory=Diagnostics)
+    lock: Path | None = None
+
+    @property
+    def exit_code(self) -> int:
+        """0 if all is there; 2 if something is missing or refused; 1 if only the network failed."""
+        codes = {d.code for d in self.diagnostics if d.severity == "error"}
+        return 0 if not codes else 1 if codes == {NETWORK} else 2
+
+
+def fetch(
+    source: str,
+    options: FetchOptions,
+    *,
+    resource_paths: Iterable[Path] = (),
+    package_paths: Iterable[str] = (),
+    xacro_args: NamedValues | None = None,
+) -> FetchReport:
+    """Download the models, worlds and files that a world names into the cache, and write `simkit.lock` beside it.
+
+    Args:
+        source: file or bundled name of a world or model, or a Fuel URL.
+        options: server, limits and kind of the download.
+        resource_paths: search folders for URIs.
+        package_paths: ROS package -> folder as `NAME=DIR`, or workspaces.
+        xacro_args: arguments of a xacro file.
+
+    Raises:
+        LoadError: the source cannot be read.
+        InputError: SK-FETCH-007 the lock file is invalid; SK-CLI-016 the cache is not writable.
+    """
+    report = FetchReport()
+    resolver = Resolver(list(resource_paths), missing_meshes=True, package_paths=tuple(package_paths))
+    search = ReferenceSearch(resolver, report.diagnostics)
+    lock_folder = Path.cwd()
+    url = parse_fuel_url(source)
+    if url is not None:
+        first = [Reference(url.resource, Where(source))]
+    else:
+        document, _ = find_document(source, resolver, report.diagnostics, xacro_args)
+        report.diagnostics.raise_if_errors()
+        assert document is not None
+        if document.folder is not None and not _is_bundled(document.folder):
+            lock_folder = document.folder
+        search.resolver = resolver.around(document.folder)
+        first = list(search.of_document(document))
+    fetcher = _Fetcher(options, search, report, read_lock(lock_folder / LOCK_NAME))
+    try:
+        fetcher.run(first)
+        if not options.dry_run:
+            report.lock = fetcher.write_lock(lock_folder / LOCK_NAME)
+    except OSError as error:
+        place = error.filename or fuel_caches()[0]
+        raise InputError(f"SK-CLI-016 cannot write {place}: {error.strerror or error}", "SK-CLI-016") from None
+    return report
+
+
+def _is_bundled(folder: Path) -> bool:
+    return any(folder.is_relative_to(place) for kind in ("worlds", "assets") for place in bundled_folders(kind))
+
+
+class _Fetcher:
+    """Download of resources and of the resources that these name."""
+
+    def __init__(
+        self, options: FetchOptions, search: ReferenceSearch, report: FetchReport, lock: Mapping[str, LockEntry]
+    ) -> None:
+        self.options, self.search, self.report, self.lock = options, search, report, lock
+        self.cache = fuel_caches()[0]
+        self._found: dict[str, FetchedResource | None] = {}
+        self._left = options.max_total
+        self._unreachable: dict[str, tuple[DownloadError, list[Reference]]] = {}
+
+    def run(self, references: Iterable[Reference]) -> None:
+        """Fetch the references, and what the fetched files name."""
+        waiting = deque(references)
+        with progress.task("fetching models", len(waiting)) as task:
+            while waiting:
+                reference = waiting.popleft()
+                key = reference.url.resource.key
+                if key not in self._found:
+                    task.item = reference.url.title
+                    found = self._found[key] = self._resource(reference)
+                    if found is not None:
+                        self.report.resources.append(found)
+                        self._found.setdefault(replace(found.url, version=str(found.version)).key, found)
+                        waiting.extend(() if found.folder is None else self.search.of_folder(found.folder))
+                self._check_file(reference, self._found[key])
+                task.advance()
+                task.total = task.done + len(waiting)
+        self._report_unreachable()
+
+    def write_lock(self, path: Path) -> Path | None:
+        """Add the checksums of the resources to the lock file; return its path if it changed."""
+        before = read_lock(path)  # another process may have written it since
+        entries = dict(before)
+        for found in self.report.resources:
+            if found.record is not None and found.version is not None:
+                url = str(found.url)
+                same = before.get(found.url.key)
+                entry = LockEntry(found.url.title, url, found.version, found.record.sha256, found.record.size)
+                entries[found.url.key] = replace(entry, url=same.url, name=same.name) if same else entry
+        if entries == before:
+            return None
+        content = {"format": 1, "entries": [asdict(entries[key]) for key in sorted(entries)]}
+        write_atomically(path, (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode())
+        return path
+
+    def _resource(self, reference: Reference) -> FetchedResource | None:
+        """Find or download one resource; return None, with an error recorded, if this is not possible."""
+        url = reference.url.resource
+        if len(self.report.resources) >= _MOST_RESOURCES:
+            self._error(reference, DownloadError(TOO_LARGE, f"the world names more than {_MOST_RESOURCES} resources"))
+            return None
+        entry = None if self.options.update else self.lock.get(url.key)
+        found = (None if self.options.update else self._cached(url, entry)) or self._local(url)
+        if found is not None:
+            return found
+        version = str(entry.version) if entry is not None else ""
+        address = url.address(self.options.server, version)
+        server = "://".join(urlsplit(address)[:2])
+        if server in self._unreachable:
+            self._unreachable[server][1].append(reference)
+            return None
+        try:
+            self.options.connection.check(address)
+            if self.options.dry_run:
+                remote, size = remote_size(address, self.options.connection)
+                return FetchedResource(url, "to fetch", remote, size)
+            return self._download(url, address, entry)
+        except DownloadError as error:
+            if error.is_unreachable:
+                self._unreachable[server] = (error, [reference])
+            else:
+                self._error(reference, error)
+            return None
+
+    def _cached(self, url: FuelUrl, entry: LockEntry | None) -> FetchedResource | None:
+        """Return the resource in the cache; None if it is not there, or if it is not what the lock file lists."""
+        folder = next((f for f in cached_versions(url, entry.version if entry else None) if f.is_dir()), None)
+        if folder is None:
+            return None
+        record = read_record(folder)
+        if entry is not None and record != Record(entry.sha256, entry.size):
+            return None
+        version = int(folder.name) if folder.name != TIP else None
+        return FetchedResource(url, "in the cache", version, record.size if record else None, folder, record)
+
+    def _local(self, url: FuelUrl) -> FetchedResource | None:
+        """Return the resource in a folder of the search path."""
+        path, _ = self.search.resolver.search(str(url), None)
+        if path is None or not path.is_dir() or any(path.is_relative_to(cache) for cache in fuel_caches()):
+            return None
+        return FetchedResource(url, "on this machine", None, None, path)
+
+    def _download(self, url: FuelUrl, address: str, entry: LockEntry | None) -> FetchedResource:
+        name = hashlib.sha256(address.encode()).hexdigest()[:32]
+        part, notes = self.cache / STAGE / f"{name}.part", self.cache / STAGE / f"{name}.json"
+        limit = min(self.options.max_size, self._left)
+        with exclusive_file(part) as file:
+            found = None if self.options.update else self._cached(url, entry)  # from another process, meanwhile
+            is_finished = True
+            try:
+                if found is None:
+                    with progress.task(f"downloading {url.title}", unit="MB") as task:
+                        run = Download(address, file, notes, limit, self.options.connection, self._is_needed(url), task)
+                        version, is_complete = run.run()
+                        found = self._stored(url, file, version, entry) if is_complete else self._known(url, version)
+            except BaseException as error:  # also an interruption
+                is_refused = isinstance(error, DownloadError) and error.code != NETWORK
+                is_finished = is_refused or not file.seek(0, os.SEEK_END)
+                raise
+            finally:
+                if is_finished:  # else the next run continues with this file
+                    for path in (notes, part):
+                        with suppress(OSError):
+                            path.unlink(missing_ok=True)
+        assert found is not None
+        return found
+
+    def _is_needed(self, url: FuelUrl) -> Callable[[int | None], bool]:
+        """Return a function that checks whether a version must be downloaded to update the cache."""
+        return lambda version: not self.options.update or self._known(url, version) is None
+
+    def _known(self, url: FuelUrl, version: int | None) -> FetchedResource | None:
+        if version is None:
+            return None
+        found = self._cached(replace(url, version=str(version)), None)
+        return replace(found, url=url) if found is not None and found.record is not None else None
+
+    def _stored(
+        self, url: FuelUrl, file: BufferedRandom, version: int | None, entry: LockEntry | None
+    ) -> FetchedResource:
+        """Check a downloaded archive, and put it into the cache."""
+        record = archive_record(file)
+        wanted = entry.version if entry is not None else None if url.version == TIP else int(url.version)
+        if wanted is not None and version not in (None, wanted):
+            message = f"the server sent version {version} instead of {wanted}"
+            raise DownloadError(OTHER_CONTENT, message, "try again later, or take the newest: --update")
+        if entry is not None and record != Record(entry.sha256, entry.size):
+            message = (
+                f"the archive is not the one in {LOCK_NAME}: SHA-256 {record.sha256[:16]}… and {record.size} bytes, "
+                f"instead of {entry.sha256[:16]}… and {entry.size} bytes"
+            )
+            raise DownloadError(OTHER_CONTENT, message, "if this change is intended, accept it with --update")
+        self._left -= record.size
+        number = wanted or version or 1  # as Gazebo, if the server tells no version
+        most = _UNPACKED_RATIO * self.options.max_size
+        folder = store(file, record, replace(url, version=str(number)), self.cache, most)
+        return FetchedResource(url, "fetched", number, record.size, folder, record)
+
+    def _check_file(self, reference: Reference, found: FetchedResource | None) -> None:
+        """Report a file that a URL names, but that the resource does not have."""
+        inside = reference.url.inside
+        if inside and found is not None and found.folder is not None and not (found.folder / inside).exists():
+            version = f" version {found.version}" if found.version else ""
+            message = f"{found.url.title}{version} has no file {inside}"
+            self._error(
+                reference,
+                DownloadError(MISSING, message, "check the path in the URL, or take the newest version: --update"),
+            )
+
+    def _error(self, reference: Reference, error: DownloadError) -> None:
+        self.report.diagnostics.error(error.code, f"{reference.url}: {error}", reference.where, error.hint)
+
+    def _report_unreachable(self) -> None:
+        """Report each server that gave no answer, with all resources that are missing."""
+        for error, references in self._unreachable.values():
+            urls = list(dict.fromkeys(str(r.url.resource) for r in references))
+            more = f" and {len(urls) - _MOST_LISTED} more" if len(urls) > _MOST_LISTED else ""
+            message = f"{error}; not fetched: {', '.join(urls[:_MOST_LISTED])}{more}"
+            self.report.diagnostics.error(error.code, message, references[0].where, error.hint)
