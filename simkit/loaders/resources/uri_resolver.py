@@ -146,9 +146,7 @@ class Resolver:
         scheme, _, rest = uri.partition("://")
         if uri.startswith(("http://", "https://")):
             message = f"{uri} is not on this machine and nothing is downloaded{format_searched(places)}"
-            world = shlex.quote(where.file) if where.file and Path(where.file).is_file() else "WORLD"
-            fetch = f"download it with `simkit fetch {world}`" if parse_fuel_url(uri) else "download it by hand"
-            hint = f"{fetch}, or {_PATH_HINT}"
+            hint = f"{download_hint(uri, where)}, or {_PATH_HINT}"
             diagnostics.error("SK-URI-002", message, where, hint)
         elif places is None:
             diagnostics.error("SK-URI-003", f"{uri} is outside the resource folders", where, _PATH_HINT)
@@ -347,3 +345,11 @@ class Resolver:
     def _nearby_names(self, relative_to: Path | None) -> Iterable[str]:
         for root in (*self.paths, *([relative_to.parent] if relative_to else [])):
             yield from (name for name in sibling_names(root / "any") if is_folder(root / name))
+
+
+def download_hint(uri: str, where: Where) -> str:
+    """Return how to get the file of a URL that is not on this machine; empty for any other URI."""
+    if not uri.startswith(("http://", "https://")):
+        return ""
+    world = shlex.quote(where.file) if where.file and is_file(Path(where.file)) else "WORLD"
+    return f"download it with `simkit fetch {world}`" if parse_fuel_url(uri) else "download it by hand"

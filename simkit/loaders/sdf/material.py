@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 from simkit.diagnostics import closest, did_you_mean
+from simkit.loaders.resources.uri_resolver import download_hint
 from simkit.loaders.sdf.gazebo_materials import gazebo_colours, gazebo_materials
 from simkit.loaders.sdf.load_context import SdfFile, Workspace
 from simkit.loaders.sdf.material_script import OgreMaterial, find_material, find_texture
@@ -139,6 +140,6 @@ def _report_missing_texture(what: str, element: Params, workspace: Workspace) ->
     """Record one warning for each missing texture, even if several visuals use it."""
     if what not in workspace.reported:
         workspace.reported.add(what)
-        workspace.diagnostics.warning(
-            "SK-URI-006", f"{what} is not found; the visual is drawn without the texture", element.where
-        )
+        message = f"{what} is not found; the visual is drawn without the texture"
+        hint = download_hint(element.value, element.where)
+        workspace.diagnostics.warning("SK-URI-006", message, element.where, hint)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import hashlib
 import shutil
 from concurrent.futures import ThreadPoolExecutor
+from io import BytesIO
 from pathlib import Path
 from threading import Barrier
 from typing import Any
 
 import pytest
+from PIL import Image
 
 import simkit
 from simkit.writers.fuel.fetch import FetchOptions, fetch
@@ -108,6 +110,22 @@ def test_files_of_models_are_found_by_url_and_by_model_uri(fuel: Fuel) -> None:
         f"{fuel.url}/1.0/o/models/Cup/1/files/meshes/cup.obj"
         in (cached(fuel, "o/models/cup/1") / "model.sdf").read_text()
     ), "Gazebo reads the same folder, and also stores models with these URLs"
+
+
+def test_textures_are_found_by_url(fuel: Fuel) -> None:
+    picture = BytesIO()
+    Image.new("RGB", (2, 2), (200, 0, 0)).save(picture, "PNG")
+    fuel.archives["o/models/brick"] = [model(**{"materials/textures/red.png": picture.getvalue()})]
+    look = f"<albedo_map>{fuel.url}/1.0/o/models/Brick/tip/files/materials/textures/red.png</albedo_map>"
+    look = f"<material><pbr><metal>{look}</metal></pbr></material>"
+    Path("w.sdf").write_text(
+        '<sdf version="1.9"><model name="m"><static>1</static><link name="l"><visual name="v">'
+        f"<geometry><box><size>1 1 1</size></box></geometry>{look}</visual></link></model></sdf>"
+    )
+    (missing,) = simkit.check("w.sdf")
+    assert missing.code == "SK-URI-006" and missing.hint == "download it with `simkit fetch w.sdf`"
+    assert run("fetch", "w.sdf").exit_code == 0
+    assert not list(simkit.check("w.sdf"))
 
 
 def test_all_missing_resources_are_reported_in_one_run(fuel: Fuel) -> None:
