@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from urllib.parse import quote, unquote
 
-from simkit.errors import InputError
+from simkit.diagnostics import Diagnostic
+from simkit.errors import LoadError
 from simkit.input_file import read_failure, read_input_text
 from simkit.loaders.resources.uris import is_small_integer
 
@@ -157,18 +158,18 @@ def read_lock(path: Path) -> dict[str, LockEntry]:
     """Read `simkit.lock`; return its entries by `FuelUrl.key`, and no entry if the file does not exist.
 
     Raises:
-        InputError: SK-FETCH-007 the file is not a lock file of simkit.
+        LoadError: SK-FETCH-007 the file is not a lock file of simkit.
     """
     try:
         content = json.loads(read_input_text(path, _LOCK_LIMIT))
     except FileNotFoundError:
         return {}
     except (OSError, UnicodeDecodeError) as error:
-        raise _invalid_lock(path, f"cannot be read: {read_failure(error)}") from None
+        raise _invalid_lock(path, f"it cannot be read: {read_failure(error)}") from None
     except (ValueError, RecursionError) as error:
-        raise _invalid_lock(path, f"is not JSON: {error}") from None
+        raise _invalid_lock(path, f"it is not JSON: {error}") from None
     if not isinstance(content, Mapping) or content.get("format") != 1 or not isinstance(content.get("entries"), list):
-        raise _invalid_lock(path, 'found no {"format": 1, "entries": [...]}')
+        raise _invalid_lock(path, 'it has no {"format": 1, "entries": [...]}')
     found = {}
     for number, item in enumerate(content["entries"]):
         url = parse_fuel_url(item["url"]) if isinstance(item, Mapping) and isinstance(item.get("url"), str) else None
@@ -184,6 +185,7 @@ def _is_entry(item: Mapping[str, object]) -> bool:
     return are_numbers and isinstance(digest, str) and bool(_SHA256.fullmatch(digest)) and "name" in item
 
 
-def _invalid_lock(path: Path, reason: str) -> InputError:
-    message = f"SK-FETCH-007 {path}: {reason:.300}\n    help: delete the file, and `simkit fetch` writes a new one"
-    return InputError(message, "SK-FETCH-007")
+def _invalid_lock(path: Path, reason: str) -> LoadError:
+    hint = "delete the file, and `simkit fetch` writes a new one"
+    message = f"this is not a lock file of simkit fetch: {reason:.300}"
+    return LoadError([Diagnostic("SK-FETCH-007", "error", message, str(path), hint=hint)])

@@ -12,7 +12,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
-from simkit.errors import InputError
+from simkit.errors import InputError, LoadError
 from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
 from simkit.loaders.resources.fuel_cache import LOCK_NAME, LockEntry, cached_versions, parse_fuel_url, read_lock
 from simkit.loaders.resources.project_folder import readable_folder
@@ -73,6 +73,7 @@ class Resolver:
         self.base, self.missing_meshes, self.anywhere = base, missing_meshes, anywhere
         self._found: dict[str, Path] = {}
         self._locks: dict[Path | None, dict[str, LockEntry]] = {}
+        self._lock_problems: list[Diagnostic] = []
         found = [Path(p).expanduser() for p in paths]
         for variable in _SEARCH_VARIABLES:
             found += [Path(p) for p in os.environ.get(variable, "").split(os.pathsep) if p]
@@ -97,7 +98,11 @@ class Resolver:
         return near
 
     def report_choices(self, where: Where, diagnostics: Diagnostics) -> None:
-        """Record a note for each package that was found under another name or more than once, once per package."""
+        """Record a note for each package that was found under another name or more than once, once per package.
+
+        An invalid lock file, which could not choose a version, is an error.
+        """
+        diagnostics.extend(self._lock_problems)
         hint = "choose another one with --package-path NAME=DIR"
         for name, reason in self.packages.notes.items():
             if name not in self._reported:
@@ -338,9 +343,13 @@ class Resolver:
 
     def _lock(self) -> dict[str, LockEntry]:
         """Return the entries of the file `simkit.lock` beside the loaded file."""
-        if self.base not in self._locks:
-            self._locks[self.base] = {} if self.base is None else read_lock(self.base / LOCK_NAME)
-        return self._locks[self.base]
+        if self.base is not None and self.base not in self._locks:
+            self._locks[self.base] = {}
+            try:
+                self._locks[self.base] = read_lock(self.base / LOCK_NAME)
+            except LoadError as error:
+                self._lock_problems += error.diagnostics
+        return self._locks.get(self.base, {})
 
     def _nearby_names(self, relative_to: Path | None) -> Iterable[str]:
         for root in (*self.paths, *([relative_to.parent] if relative_to else [])):

@@ -42,7 +42,7 @@ from simkit.writers.fuel.download import (
 )
 from simkit.writers.fuel.references import Reference, ReferenceSearch
 
-OTHER_CONTENT = "SK-FETCH-005"
+OTHER_CONTENT, NO_LOCK = "SK-FETCH-005", "SK-FETCH-009"
 _UNPACKED_RATIO = 4  # the files of an archive may have this many times the limit of the archive
 _MOST_RESOURCES = 2000
 _MOST_LISTED = 30
@@ -129,8 +129,8 @@ def fetch(
         xacro_args: arguments of a xacro file.
 
     Raises:
-        LoadError: the source cannot be read.
-        InputError: SK-FETCH-007 the lock file is invalid; SK-CLI-016 the cache is not writable.
+        LoadError: the source cannot be read, or SK-FETCH-007 the lock file is invalid.
+        InputError: SK-CLI-016 the cache is not writable.
     """
     report = FetchReport()
     resolver = Resolver(list(resource_paths), missing_meshes=True, package_paths=tuple(package_paths))
@@ -206,7 +206,13 @@ class _Fetcher:
         if entries == before:
             return None
         content = {"format": 1, "entries": [asdict(entries[key]) for key in sorted(entries)]}
-        write_atomically(path, (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode())
+        try:
+            write_atomically(path, (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode())
+        except InputError as error:  # for example beside a world of an installed package
+            reason = str(error).removeprefix(f"{error.code} ")
+            hint = "copy the world to a folder of your own, if others shall get the same versions"
+            self.report.diagnostics.warning(NO_LOCK, f"everything is in the cache, but simkit {reason}", hint=hint)
+            return None
         return path
 
     def _resource(self, reference: Reference) -> FetchedResource | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import shutil
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
 from pathlib import Path
@@ -226,7 +227,18 @@ def test_an_invalid_lock_is_an_error(fuel: Fuel, text: str) -> None:
     Path("simkit.lock").write_text(text)
     for command in ("fetch", "check"):
         result = run(command, "w.sdf")
-        assert result.exit_code == 2 and "SK-FETCH-007" in result.output, command
+        assert result.exit_code == 2 and "simkit.lock: error SK-FETCH-007" in result.output, command
+    assert [d.code for d in simkit.check("w.sdf")] == ["SK-URI-002", "SK-FETCH-007"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="uses a folder in which nobody can write")
+def test_a_world_in_a_folder_that_is_not_writable_gets_its_models(fuel: Fuel) -> None:
+    fuel.archives["o/models/box"] = [model()]
+    write_world(f"{fuel.url}/1.0/o/models/box")
+    Path("simkit.lock").symlink_to("/proc/nobody/simkit.lock")
+    result = run("fetch", "w.sdf")
+    assert result.exit_code == 0 and "warning SK-FETCH-009" in result.output
+    assert (cached(fuel, "o/models/box/1") / "model.sdf").is_file()
 
 
 def test_two_fetches_at_once_download_once(fuel: Fuel) -> None:
