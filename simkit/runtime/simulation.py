@@ -317,7 +317,7 @@ class Simulation(InProcess):
 
         Raises:
             ServiceError: no such service; the message suggests the closest name.
-            MessageError: the request does not fit the type.
+            MessageError: the request or the response does not fit the type.
             PluginError: the service of a plugin raised.
         """
         return self.communication.services.call(service, request)

@@ -9,14 +9,13 @@ The plugin receives goals and cancel requests between two steps, in the order in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from simkit import msgs
-from simkit.errors import ActionError, InputError, MessageError, PluginError, SimkitError, SubscriberError
+from simkit.errors import ActionError, InputError, PluginError, SimkitError, SubscriberError
 from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.topic_names import absolute_name
-from simkit.runtime.communication.endpoint_table import EndpointTable
+from simkit.runtime.communication.endpoint_table import EndpointTable, as_message
 from simkit.runtime.communication.subscription import Callback, Message, callback_name
 
 if TYPE_CHECKING:
@@ -89,7 +88,7 @@ class GoalHandle:
         """
         if self.is_done:
             return
-        self.feedback = self._as_message(feedback, "Feedback")
+        self.feedback = as_message(self._action, feedback, "Feedback")
         self._notify(self._on_feedback, self.feedback, "feedback")
 
     def succeed(self, result: Message = None, reason: str = "") -> None:
@@ -107,7 +106,7 @@ class GoalHandle:
     def _end(self, status: GoalStatus, result: Message, reason: str) -> None:
         if self.is_done:
             raise ActionError(f"goal {self.id} of {self._action.name!r} has ended already ({self.status.name})")
-        self.result = None if status is GoalStatus.REJECTED else self._as_message(result, "Result")
+        self.result = None if status is GoalStatus.REJECTED else as_message(self._action, result, "Result")
         self.status, self.reason = status, reason
         self._notify(self._on_done, self, "get_result")
 
@@ -122,14 +121,6 @@ class GoalHandle:
                 raise
             topic, now = f"{self._action.name}/_action/{part}", self._action.engine.time
             raise SubscriberError(topic, callback_name(callback), now, repr(error)) from error
-
-    def _as_message(self, value: Message, part: str) -> Message:
-        type_name = f"{self._action.type_name}_{part}"
-        if value is None or isinstance(value, Mapping):
-            return msgs.make(type_name, **(value or {}))
-        if msgs.type_name(value) != type_name:
-            raise MessageError(f"{self._action.name!r} needs {type_name}, got {msgs.type_name(value)}")
-        return value
 
     def __deepcopy__(self, memo: dict[int, object]) -> GoalHandle:
         return self
@@ -248,7 +239,7 @@ class ActionTable(EndpointTable[Action]):
         """
         self._engine.check_open()
         action = self._get(absolute_name(name))
-        request = self._as_message(action, goal)
+        request = as_message(action, goal, self.part)
         journal = self._bus.journal
         if journal is not None:
             on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)

@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from simkit import msgs
+from simkit.argument_checks import shown
 from simkit.diagnostics import name_hint
-from simkit.errors import ActionError, MessageError, ServiceError
+from simkit.errors import ActionError, MessageError, NoMessageError, ServiceError
+from simkit.msgs.message_text import is_message
 from simkit.msgs.message_types import definition_files
 from simkit.runtime.communication.subscription import Message
 
@@ -93,14 +95,24 @@ class EndpointTable(Generic[E]):
             raise self.error(f"no {self.kind} {name!r}; {name_hint(name, self.names())}")
         return found
 
-    def _as_message(self, endpoint: E, value: Message) -> Message:
-        """Convert a value to a request or goal: a message, a dict of its fields, or None for fields that are all zero.
 
-        Raises:
-            MessageError: the value does not fit the type.
-        """
-        type_name = f"{endpoint.type_name}_{self.part}"
-        message = msgs.from_dict([type_name], value or {}) if value is None or isinstance(value, Mapping) else value
-        if msgs.type_name(message) != type_name:
-            raise MessageError(f"{endpoint.name!r} needs {type_name}, got {msgs.type_name(message)}")
-        return message
+def as_message(endpoint: Endpoint, value: Message, part: str) -> Message:
+    """Convert a value to a message of a service or action.
+
+    Args:
+        endpoint: service or action.
+        value: message, dict of its fields, or None for a message whose fields are all zero.
+        part: `Request` or `Response` of a service; `Goal`, `Feedback` or `Result` of an action.
+
+    Raises:
+        MessageError: the value does not fit the type.
+    """
+    type_name = f"{endpoint.type_name}_{part}"
+    if value is None or isinstance(value, Mapping):
+        return msgs.from_dict([type_name], value or {})
+    start = f"the {part.lower()} of {endpoint.name!r} must be a {type_name}"
+    if not is_message(value):
+        raise NoMessageError(f"{start}, a dict of its fields or None, got {shown(value)} ({type(value).__name__})")
+    if msgs.type_name(value) != type_name:
+        raise MessageError(f"{start}, got a {msgs.type_name(value)}")
+    return value

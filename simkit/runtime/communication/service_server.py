@@ -8,13 +8,12 @@ A bridge to ROS 2 only has to forward requests and responses.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
-from simkit import msgs
 from simkit.argument_checks import check_function, check_text
 from simkit.errors import PluginError, ServiceError, SimkitError
 from simkit.msgs.topic_names import absolute_name
-from simkit.runtime.communication.endpoint_table import EndpointTable
+from simkit.runtime.communication.endpoint_table import EndpointTable, as_message
 from simkit.runtime.communication.subscription import Message
 from simkit.runtime.engine.plugin_faults import call_plugin
 
@@ -96,12 +95,12 @@ class ServiceTable(EndpointTable[Service]):
 
         Raises:
             ServiceError: no such service; the message suggests the closest name.
-            MessageError: the request does not fit the type.
+            MessageError: the request or the response does not fit the type.
             PluginError: the service of a plugin raised.
         """
         self._engine.check_open()
         service = self._get(absolute_name(name))
-        message = self._as_message(service, request)
+        message = as_message(service, request, self.part)
         with self._bus.passing("call", service=service, request=message):
             return self._answer(service, message)
 
@@ -109,9 +108,7 @@ class ServiceTable(EndpointTable[Service]):
         owner, hook = service.owner, f"service {service.name}"
         try:
             response = call_plugin(owner, hook, service.handler, request)
-            if response is None or isinstance(response, Mapping):
-                return msgs.make(f"{service.type_name}_Response", **(response or {}))
-            return response
+            return as_message(service, response, "Response")
         except SimkitError:
             raise
         except Exception as error:
