@@ -22,7 +22,6 @@ from simkit.cli.terminal.output import (
     print_diagnostics,
     print_error,
     print_status,
-    report_errors,
     stdout_console,
 )
 from simkit.errors import InputError, RegressionError
@@ -31,6 +30,7 @@ from simkit.writers.atomic_output import check_writable
 
 if TYPE_CHECKING:
     from simkit.run_spec import RunSpec
+    from simkit.testing.conditions import CheckResult as ConditionResult
     from simkit.testing.golden.compare.difference import Verdict
     from simkit.testing.run_record.record import RunRecord
 
@@ -163,10 +163,7 @@ def result_dict(result: CheckResult) -> JsonObject:
         "differences": [_json_number(vars(d) if hasattr(d, "__dict__") else d) for d in comparison.differences],
         "notes": list(comparison.notes),
         "machine": {name: {"golden": a, "run": b} for name, (a, b) in comparison.machine.items()},
-        "checks": [
-            {"title": c.check.title, "passed": c.passed, "message": c.message, "time": _json_number(c.time)}
-            for c in verdict.checks
-        ],
+        "checks": _check_dicts(verdict.checks),
     }
     if explanation is not None:
         found["explanation"] = {
@@ -177,6 +174,13 @@ def result_dict(result: CheckResult) -> JsonObject:
             "causes": [_json_number(vars(cause)) for cause in explanation.causes],
         }
     return found
+
+
+def _check_dicts(checks: Sequence[ConditionResult]) -> list[JsonObject]:
+    """Return the results of a scenario's own checks as JSON objects."""
+    return [
+        {"title": c.check.title, "passed": c.passed, "message": c.message, "time": _json_number(c.time)} for c in checks
+    ]
 
 
 def _json_number(value: JsonValue) -> object:
@@ -194,7 +198,7 @@ golden = typer.Typer(help="Record and compare golden runs (reference sensor outp
 
 
 @golden.command()
-@report_errors
+@report_errors_and_json
 def record(
     world: options.Scenario,
     out_: Annotated[Path, option("Folder to write.", "DIR", "--out", "-o")],
@@ -214,6 +218,7 @@ def record(
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
     force: options.Force = False,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
     """Run a scenario and store the result as a golden run."""
     loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file)
@@ -227,10 +232,14 @@ def record(
     found = record_golden(spec, out_, force=force)
     if found.simulation is not None:
         print_diagnostics(found.simulation.diagnostics, verbose=False)
+        add_diagnostics(found.simulation.diagnostics)
         found.simulation.close()
     messages = sum(len(stream.times_ns) for stream in found.streams.values())
     size = sum(path.stat().st_size for path in out_.iterdir())
     stdout_console().print(f"{out_}: {len(found.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
+    add_to_report(
+        folder=str(out_), topics=len(found.streams), messages=messages, bytes=size, checks=_check_dicts(found.checks)
+    )
     for result in found.checks:
         if not result.passed:
             print_status(f"warning: the scenario's own check failed: {result.check.title}: {result.message}")

@@ -133,8 +133,12 @@ def test_standard_output_is_only_the_object_whatever_plugins_and_their_processes
 
 
 def test_golden_check_reports_results_and_golden_runs_that_cannot_be_read(world: Path) -> None:
-    golden = CliRunner().invoke(app, ["golden", "record", str(world), "--out", "golden/ball", "--duration", "0.1"])
-    assert golden.exit_code == 0
+    made, code, _ = report("golden", "record", world, "--out", "golden/ball", "--duration", "0.1")
+    files = Path("golden/ball").iterdir()
+    assert (code, made["folder"], made["bytes"]) == (0, "golden/ball", sum(path.stat().st_size for path in files))
+    assert (made["topics"], made["messages"] > 0, made["checks"]) == (2, True, [])
+    again, code, _ = report("golden", "record", world, "--out", "golden/ball")
+    assert (code, [d["code"] for d in again["diagnostics"]]) == (2, ["SK-GOLDEN-005"])
     found, code, _ = report("golden", "check", "golden")
     assert (code, found["passed"], found["diagnostics"]) == (0, True, [])
     assert [r["name"] for r in found["results"]] == ["ball"]
