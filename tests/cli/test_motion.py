@@ -76,6 +76,15 @@ def test_a_refused_motion_ends_the_run_with_its_reason(lab: Path) -> None:
     assert limits.exit_code == 1 and "elbow would be at 3.5 rad" in limits.stderr
 
 
+def test_a_motion_of_many_hours_is_refused_before_it_is_played(lab: Path) -> None:
+    more = lab.with_name("more.yaml")
+    more.write_text("play_motion2:\n  ros__parameters:\n    motions:\n"
+                    "      slow: {joints: [wrist], positions: [0.4, 0], times_from_start: [0.5, 1e9]}\n")  # fmt: skip
+    result = motion("play", "slow", "--world", lab, "--motions", more)
+    assert result.exit_code == 1
+    assert "SK-MOTION-012 motion 'slow' would take 1e+09 s; expected up to 10000 s" in result.stderr
+
+
 def test_a_run_can_be_recorded(lab: Path) -> None:
     bag = lab.with_name("nod.mcap")
     assert motion("play", "nod", "--world", lab, "--record", bag).exit_code == 0

@@ -112,6 +112,10 @@ def play_motions(
         goal = sim.send_goal(player.action_name, {"motion_name": name, "skip_planning": skip_planning})
         while not goal.is_done and sim.time - start < _LONGEST:
             sim.run(_SLICE)
+            planned = player.planned_duration(goal)
+            if planned > _LONGEST:
+                text = f"motion {name!r} would take {planned:g} s; expected up to {_LONGEST:g} s"
+                raise MotionError(f"SK-MOTION-012 {text}")
         if goal.status.name != "SUCCEEDED":
             raise MotionError(f"SK-MOTION-012 {goal.reason or f'motion {name!r} did not finish'}")
         yield PlayedMotion(motions[name], sim.time - start, _largest_error(player, motions[name]))

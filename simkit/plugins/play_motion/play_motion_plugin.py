@@ -56,6 +56,7 @@ class _RunningMotion:
         goal: Goal of the client.
         key: Key of the motion.
         controllers: Names of the controllers that move the joints of the motion.
+        duration: Planned duration, including the approach [s].
         until_ns: Simulated time after which the motion counts as failed [ns].
         parts: Goals of the controllers that have not finished yet, by name of the controller.
     """
@@ -63,6 +64,7 @@ class _RunningMotion:
     goal: GoalHandle
     key: str
     controllers: tuple[str, ...]
+    duration: float
     until_ns: int
     parts: dict[str, GoalHandle] = field(default_factory=dict)
 
@@ -205,6 +207,10 @@ class PlayMotion(ModelPlugin):
         """True while no motion is being played."""
         return not self._runs
 
+    def planned_duration(self, goal: GoalHandle) -> float:
+        """Return the planned duration of a motion that is being played, including the approach [s]; otherwise 0.0."""
+        return next((run.duration for run in self._runs if run.goal is goal), 0.0)
+
     # ------------------------------------------------------------------ goals
 
     def _on_goal(self, goal: GoalHandle) -> None:
@@ -239,7 +245,7 @@ class PlayMotion(ModelPlugin):
             self._refuse(goal, refused, rejects=not is_accepted)
             return
         until = self.sim.time_ns + round((2.0 * found.duration + 1.0) * 1e9)
-        run = _RunningMotion(goal, motion.key, names, until)
+        run = _RunningMotion(goal, motion.key, names, found.duration, until)
         self._runs.append(run)
         for controller in needed:
             request = trajectory_goal(found, motion, controller, self.robot)
