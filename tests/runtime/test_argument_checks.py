@@ -81,6 +81,8 @@ WRONG_TYPES: dict[str, Call] = {
     "load None": lambda _: simkit.load(None),
     "load number": lambda _: simkit.load(123),
     "describe": lambda _: simkit.describe(None),
+    "paths of describe": lambda _: simkit.describe(WORLD, plugin_paths=range(3)),
+    "paths of check": lambda _: simkit.check(WORLD, plugin_paths="plugins"),
     "seed": lambda _: simkit.load(WORLD, seed="x"),
     "one path": lambda _: simkit.load(WORLD, resource_paths="models"),
     "xacro_args": lambda _: simkit.load(WORLD, xacro_args=3),
