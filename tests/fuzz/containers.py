@@ -81,6 +81,7 @@ _LONG = re.compile(
     rb"[-+]?(?:\d[\d_.]{2,}|\.inf|Infinity|\d[\d.]*[eE]\+?\d+|0[xob]\w+)"
 )
 _SHORT_STEP = re.compile(rb"(max_step_size\W{1,4})[^<\"',}\n]*")
+_SLOW = re.compile(rb"(approach_velocity\W{1,4})(?:0\.0\d*|[\d.]+e-0?[1-5])\b")  # slower ones are refused
 _XML = Mutator()
 _DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # ten times faster, where PyYAML was built with it
 LINES = 20  # broken lines made of each line of a file of lines
@@ -116,7 +117,7 @@ def damaged(name: str, content: bytes, chance: random.Random) -> bytes:
 
 def shortened(content: bytes) -> bytes:
     """Return a text whose run takes few steps."""
-    content = _LONG.sub(rb"\g<1>1", content)
+    content = _SLOW.sub(rb"\g<1>0.1", _LONG.sub(rb"\g<1>1", content))
     return _SHORT_STEP.sub(rb"\g<1>0.002", content)
 
 
@@ -262,7 +263,7 @@ def _damaged_packed(content: bytes, chance: random.Random) -> bytes:
     """Return compressed data whose content is changed."""
     if chance.random() < 0.3:
         return shuffled_bytes(content, chance)
-    return lzma.compress(shuffled_bytes(lzma.decompress(content), chance))
+    return lzma.compress(shuffled_bytes(lzma.decompress(content), chance), preset=0)
 
 
 def _damaged_zip(content: bytes, chance: random.Random) -> bytes:

@@ -10,6 +10,7 @@ import sys
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -115,8 +116,17 @@ def given_arguments(file: Path) -> list[str]:
     return [*found, *ends.get(found[0], ())]
 
 
-def _command(arguments: Sequence[str]) -> dict[str, str]:
+@cache
+def command_line() -> Any:
+    """Return the command `simkit`, which Typer takes longer to make than many inputs take to open."""
+    from typer.main import get_command
+
     from simkit.cli import app
+
+    return get_command(app)
+
+
+def _command(arguments: Sequence[str]) -> dict[str, str]:
     from simkit.cli.terminal.output import stderr_console, stdout_console
 
     streams = [io.TextIOWrapper(io.BytesIO(), "utf-8", errors="replace", write_through=True) for _ in range(2)]
@@ -125,7 +135,7 @@ def _command(arguments: Sequence[str]) -> dict[str, str]:
         console.cache_clear()
     sys.stdout, sys.stderr = streams
     try:
-        app(list(arguments), prog_name="simkit")
+        command_line()(list(arguments), prog_name="simkit")
     except SystemExit as stopped:
         code = stopped.code if isinstance(stopped.code, int) else 0 if stopped.code is None else 1
     except BaseException as error:  # noqa: BLE001 -- whatever it is, it is what is looked for

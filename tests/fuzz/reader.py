@@ -8,6 +8,7 @@ import selectors
 import signal
 import subprocess
 import sys
+import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,7 @@ class Reader:
     def __init__(self, resources: list[Path] | None = None) -> None:
         self._resources = [str(p) for p in resources or []]
         self._worker: subprocess.Popen[bytes] | None = None
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115 -- closed with the reader
         self.slowest: tuple[float, str] = (0.0, "")
         self.largest: tuple[int, str] = (0, "")
         self.outcomes: dict[str, int] = {}
@@ -44,6 +46,7 @@ class Reader:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+        self._said.close()
 
     def read(
         self, main: str, files: Mapping[str, bytes], name: str = "", arguments: Sequence[str] = ()
@@ -86,7 +89,7 @@ class Reader:
         line = self._line(worker, SECONDS)
         if line is None:
             self.close()
-            return {"outcome": f"no answer within {SECONDS:.0f} s"}
+            return {"outcome": f"no answer within {SECONDS:.0f} s", "trace": self._last_words()}
         return json.loads(line) if line else self._died(worker)
 
     def close(self) -> None:
@@ -103,7 +106,7 @@ class Reader:
             env={**os.environ, "PYTHONPATH": same_simkit},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
+            stderr=self._said,
         )
         assert self._line(self._worker, 60.0) == b'{"ready": true}\n', "the worker does not start"
         return self._worker
@@ -113,7 +116,12 @@ class Reader:
         worker.communicate()
         code = worker.wait()
         name = signal.Signals(-code).name if code < 0 else str(code)
-        return {"outcome": f"the interpreter died: {name}"}
+        return {"outcome": f"the interpreter died: {name}", "trace": self._last_words()}
+
+    def _last_words(self) -> str:
+        """Return the end of what the worker wrote to standard error: where each thread was, by faulthandler."""
+        self._said.seek(max(0, self._said.seek(0, os.SEEK_END) - 5000))
+        return self._said.read().decode(errors="replace")
 
     @staticmethod
     def _line(worker: subprocess.Popen[bytes], seconds: float) -> bytes | None:

@@ -93,7 +93,7 @@ def targets() -> tuple[Target, ...]:
             "exercise",
             {**WORLD_FILES, "e.yaml": scenario + intact("exercise.yaml"), "drive.py": intact("drive.py")},
             ("e.yaml",),
-            (("*exercise", "e.yaml"),) * 60 + (("*exercise_run", "e.yaml"),) * 4 + (("grade", "e.yaml", "drive.py"),),
+            (("*exercise", "e.yaml"),) * 150 + (("*exercise_run", "e.yaml"),) * 10 + (("grade", "e.yaml", "drive.py"),),
         ),
         Target(
             "bundle",

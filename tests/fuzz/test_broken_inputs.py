@@ -6,9 +6,10 @@ traceback, no other exit code, no control character on the terminal, no file, pr
 
 from __future__ import annotations
 
+import os
 import random
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,7 @@ KINDS = (
     "bag", "bag folder", "sqlite bag", "script", "parameters", "motions", "scenario", "exercise", "bundle",
     "bundle with code", "golden", "condition", "command",
 )  # fmt: skip
+MOST = int(os.environ.get("SIMKIT_FUZZ_INPUTS", "1000000"))  # inputs of a kind; SECONDS ends it, too
 QUICK = 5  # inputs of a kind that are always tried
 # What an intact input gives where it is not "loaded"
 REFUSED = {("bag", "recover", "sqlite"): "SK-BAG-004", ("replay", "c.zip"): "SK-BUNDLE-005"}
@@ -78,24 +80,29 @@ def test_every_command_accepts_the_intact_input(kind: str, reader: Reader) -> No
 @pytest.mark.fuzz
 @pytest.mark.parametrize("kind", KINDS)
 def test_broken_inputs_are_accepted_or_refused_for_minutes(kind: str, reader: Reader, tmp_path: Path) -> None:
-    until, index, found = time.monotonic() + SECONDS / len(KINDS), 0, []
     chosen = of_kind(kind)
-    while time.monotonic() < until:
-        found.append(problem(reader, chosen[index % len(chosen)], f"for minutes {index}", tmp_path))
-        index += 1
-    found = list(filter(None, found))
-    assert not found, f"{len(found)} of {index}\n" + "\n".join(found[:20])
+    try_many(kind, lambda index: problem(reader, chosen[index % len(chosen)], f"for minutes {index}", tmp_path))
 
 
 @pytest.mark.fuzz
 def test_odd_arguments_of_the_python_interface_raise_errors_with_a_code_for_minutes(
     reader: Reader, tmp_path: Path
 ) -> None:
-    until, index, found = time.monotonic() + SECONDS / len(KINDS), 0, []
-    while time.monotonic() < until:
+    def one(index: int) -> str:
         files = {**WORLD_FILES, "calls.txt": f"{SEED} {index}".encode()}
         answer = reader.read("calls.txt", files, f"calls {index}", ("*calls", "calls.txt"))
-        if answer["outcome"] not in FINE:
-            found.append(complaint("calls.txt", files, answer, tmp_path))
+        return "" if answer["outcome"] in FINE else complaint("calls.txt", files, answer, tmp_path)
+
+    try_many("calls", one)
+
+
+def try_many(kind: str, one: Callable[[int], str]) -> None:
+    """Try the inputs of a kind for its share of the time, at most MOST; print the number and each find at once."""
+    until, index, found = time.monotonic() + SECONDS / (len(KINDS) + 1), 0, []
+    while index < MOST and time.monotonic() < until:
+        if text := one(index):
+            found.append(text)
+            print(f"\n{kind} {index}: {text}", flush=True)  # noqa: T201 -- read with -s
         index += 1
+    print(f"\n{kind}: {index} inputs, {len(found)} finds", flush=True)  # noqa: T201 -- read with -s
     assert not found, f"{len(found)} of {index}\n" + "\n".join(found[:20])

@@ -7,6 +7,7 @@ and the most memory. A command is run in the folder of the files; without one th
 
 from __future__ import annotations
 
+import faulthandler
 import io
 import json
 import os
@@ -21,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from openers import Watch, opened
+from reader import SECONDS
 
 ADDRESSES = 8 << 30  # [bytes] of address space; the engine and its libraries take 2 of it
 STEPPING = 0.2  # [s] of wall time that a file that loads is stepped for
@@ -36,6 +38,7 @@ STAND = """<sdf version="1.9"><world name="w"><model name="m"><link name="l"/><l
 
 def main() -> None:
     bound_memory()
+    faulthandler.enable()
     warnings.simplefilter("error", RuntimeWarning)  # what numpy says of bad numbers would be on a user's terminal
     import simkit
 
@@ -55,6 +58,7 @@ def main() -> None:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(sys.stdin.buffer.read(length))
         forget_peak()
+        faulthandler.dump_traceback_later(0.9 * SECONDS)  # to stderr, which the parent reads when no answer comes
         began, used = time.perf_counter(), time.process_time()
         if asked["arguments"]:
             answer: dict[str, Any] = opened(asked["arguments"], folder, watch)
@@ -62,6 +66,7 @@ def main() -> None:
                 answer = {"outcome": f"writes outside its folder: {sorted(more)}"}
         else:
             answer = outcome(folder / asked["main"], [folder, *resources])
+        faulthandler.cancel_dump_traceback_later()
         times = {"seconds": round(time.perf_counter() - began, 3), "cpu": round(time.process_time() - used, 3)}
         say({**answer, **times, "peak_mib": peak_mib()})
 

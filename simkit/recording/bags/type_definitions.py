@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from simkit.errors import InputError
@@ -18,8 +19,9 @@ _DEEPEST: Final = 50
 _LARGEST_ARRAY: Final = (1 << 31) - 1
 
 
+@lru_cache(maxsize=64)
 def definition_store(type_name: str, text: str) -> Typestore:
-    """Return a type store with a type and the types that it uses.
+    """Return a type store with a type and the types that it uses; equal definitions share a store.
 
     Args:
         type_name: name of the type.
