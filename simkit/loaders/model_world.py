@@ -9,7 +9,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.bundled_models import builtin_model
 from simkit.pose import IDENTITY
 from simkit.run_spec import EMPTY_SPACE, GROUND
-from simkit.scene import Scene, SceneWorld
+from simkit.scene import Scene, SceneModel, SceneWorld
 from simkit.scene.model_transform import transform_model
 
 SceneReader = Callable[[str, Diagnostics], Scene]
@@ -36,7 +36,7 @@ def add_model_world(scene: Scene, model_world: str, read: SceneReader, diagnosti
     if model_world == EMPTY_SPACE or (model_world == GROUND and model.has_ground):
         return scene
     if model_world == GROUND:
-        world = _with_ground(scene.world, read)
+        world = _with_ground(scene.world, model, read)
         text = f"the file has no world: {model.name} starts on level ground, under a sun"
         diagnostics.note("SK-SPAWN-005", text, model.where, "--world none: empty space; --world NAME: another world")
     else:
@@ -49,11 +49,15 @@ def add_model_world(scene: Scene, model_world: str, read: SceneReader, diagnosti
     return replace(scene, worlds=(world,), model=None, around=None, standing=(model.name,))
 
 
-def _with_ground(world: SceneWorld, read: SceneReader) -> SceneWorld:
-    """Return a world with Gazebo's ground plane, and with its sun if the world has no light."""
+def _with_ground(world: SceneWorld, robot: SceneModel, read: SceneReader) -> SceneWorld:
+    """Return a world with Gazebo's ground plane, and with its sun if nothing else lights the robot.
+
+    An MJCF file puts the lights of its scene on bodies too. A light on a link of another format is a headlamp.
+    """
     ground, sun = (read(builtin_model(f"model://{name}") or "", Diagnostics()) for name in ("ground_plane", "sun"))
     assert ground.model is not None and sun.light is not None
     plane = ground.model
     if world.model(plane.name) is not None:
         plane = transform_model(plane, f"{plane.name}_1", IDENTITY)
-    return replace(world, models=(plane, *world.models), lights=world.lights or (sun.light,))
+    is_lit = bool(world.lights) or (robot.mjcf is not None and any(link.lights for link in robot.all_links()))
+    return replace(world, models=(plane, *world.models), lights=world.lights if is_lit else (sun.light,))

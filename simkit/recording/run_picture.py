@@ -29,6 +29,11 @@ _PATH_COLOUR = (0.10, 0.45, 0.95, 1.0)
 _SCAN_COLOUR = (0.95, 0.20, 0.15, 1.0)
 _PATH_RADIUS, _SCAN_RADIUS = 0.012, 0.018  # [m] at a scene of 5 m
 _SHORTEST = 0.01  # [m] of travel per piece of the path
+_VERTICAL_FOV = 0.8  # [rad]
+_FILLED = 0.9  # fraction of the image that the visible points fill
+_NEAREST = 0.15  # [m] least distance of the eye
+_VIEW = np.array((0.6, 0.8, -1.0)) / math.sqrt(2.0)  # line of sight, 45° downwards
+_CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
 _SCANNERS = frozenset({"ray", "gpu_ray", "lidar", "gpu_lidar"})
 
 
@@ -89,10 +94,18 @@ def save_picture(sim: Simulation, path: Path, render: Render, driven: DrivenPath
             for point in cloud:
                 _add_sphere(scene, point, _SCAN_RADIUS * size, _SCAN_COLOUR)
 
-    eye, target = _viewpoint([*points, *_moving_bodies(sim)], driven)
+    eye, target = _viewpoint([*points, *_moving_models(sim)], driven)
     # twice the resolution gives smooth edges on every renderer
     width, height = _SIZE
-    large = render(sim, _OVERSAMPLED * width, _OVERSAMPLED * height, eye=eye, target=target, decorate=decorate)
+    large = render(
+        sim,
+        _OVERSAMPLED * width,
+        _OVERSAMPLED * height,
+        eye=eye,
+        target=target,
+        vertical_fov=_VERTICAL_FOV,
+        decorate=decorate,
+    )
     colours = cv2.resize(large, _SIZE, interpolation=cv2.INTER_AREA)
     try:
         is_saved = cv2.imwrite(str(path), colours[:, :, ::-1])
@@ -129,30 +142,45 @@ def _last_scans(sim: Simulation) -> list[tuple[LaserScan, Pose]]:
     return found
 
 
-def _moving_bodies(sim: Simulation) -> list[Points]:
-    """Return the corners of boxes around the moving geoms in the world frame [m], shape (2 n, 3)."""
+def _moving_models(sim: Simulation) -> list[Points]:
+    """Return the corners of the boxes around the drawn geoms of all models that are not static [m], shape (8 n, 3)."""
     model, data = sim.mj_model, sim.mj_data
-    is_moving = (np.asarray(model.geom_bodyid) > 0) & (np.asarray(model.geom_rbound) > 0.0)
-    if not is_moving.any():
+    links = sim.engine.names.links.values()
+    owned = [geom for link in links if not sim.models[link.model].static for geom in link.visuals or link.geoms]
+    drawn = np.array(owned, dtype=int)
+    drawn = drawn[(model.geom_rbound[drawn] > 0.0)]  # a plane has no bounds
+    if not len(drawn):
         return []
-    centres, reach = np.asarray(data.geom_xpos)[is_moving], np.asarray(model.geom_rbound)[is_moving][:, None]
-    return [np.concatenate((centres - reach, centres + reach))]
+    corners = model.geom_aabb[drawn, None, :3] + _CORNERS * model.geom_aabb[drawn, None, 3:]
+    axes = data.geom_xmat[drawn].reshape(-1, 3, 3)
+    return [(np.einsum("nij,nkj->nki", axes, corners) + data.geom_xpos[drawn, None]).reshape(-1, 3)]
 
 
 def _viewpoint(points: list[Points], driven: DrivenPath | None) -> tuple[Points, Points] | tuple[None, None]:
-    """Return eye and target [m] of a view from obliquely above that shows all moving models and scan points."""
+    """Return eye and target [m] of a view from obliquely above that shows all moving models and scan points.
+
+    A point at (across, up, depth) from the target is in the image if |across| and |up| are at most the tangents of half
+    the opening angles times its distance along the view. So each point gives a least distance of the eye. The target is
+    shifted until the least distances of opposite edges are equal.
+    """
     visible = [cloud for cloud in points if len(cloud)]
     if driven is not None:
         visible += [np.array(track) for track in driven.tracks.values()]
     if not visible:
         return None, None
     cloud = np.concatenate(visible)
-    low, high = cloud.min(axis=0), cloud.max(axis=0)
-    target = (low + high) / 2
-    radius = max(float(np.linalg.norm(high - low)) / 2, 0.6)
-    distance = 0.88 * radius / math.tan(0.4)
-    eye = target + distance * np.array((-0.34, -0.46, 0.82))
-    return eye, target
+    target = (cloud.min(axis=0) + cloud.max(axis=0)) / 2
+    across = np.cross(_VIEW, (0.0, 0.0, 1.0))
+    across /= np.linalg.norm(across)
+    axes = np.array((across, np.cross(across, _VIEW), _VIEW))
+    half_height = _FILLED * math.tan(_VERTICAL_FOV / 2)
+    distance = 0.0
+    for axis, half in ((0, half_height * _SIZE[0] / _SIZE[1]), (1, half_height)):
+        position, depth = (cloud - target) @ axes[axis], (cloud - target) @ axes[2]
+        high, low = float((position / half - depth).max()), float((-position / half - depth).max())
+        target = target + axes[axis] * half * (high - low) / 2
+        distance = max(distance, (high + low) / 2)
+    return target - max(distance, _NEAREST) * axes[2], target
 
 
 def _add_capsule(scene: mujoco.MjvScene, start: Points, end: Points, radius: float, colour: tuple[float, ...]) -> None:

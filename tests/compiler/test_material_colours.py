@@ -255,3 +255,18 @@ def test_a_light_on_a_moving_link_goes_with_it(make, compiled):
     mujoco.mj_forward(c.model, c.data)
     assert c.data.light_xpos[0, 2] - c.data.qpos[2] == pytest.approx(1.0)
     assert c.data.qpos[2] < -0.1
+
+
+@pytest.mark.parametrize("colour", ["0 0 0 1", "0.0118 0.0118 0.0118 1"])
+def test_the_edges_of_a_black_model_are_seen(tmp_path, colour):
+    material = f"<material><diffuse>{colour}</diffuse><specular>0 0 0 1</specular></material>"
+    sun = SUN.replace("0 1 -0.2", "0.1 0.2 -1")
+    image = seen(tmp_path, material=material, light=sun, eye=(0.0, -2.5, 2.0))
+    top, front = image[45, 50], image[70, 50]
+    assert top.min() >= 25 and top.max() - top.min() <= 2, "the lit top is dark grey"
+    assert top.max() <= 40 and int(top.min()) - int(front.max()) >= 10, "the front is darker"
+
+
+def test_a_black_model_stays_black_in_the_compiled_world(make, compiled):
+    black = visual(Material(diffuse=(0, 0, 0, 1)))
+    assert geom_colours(black, None).rgba == (0, 0, 0, 1)

@@ -117,3 +117,10 @@ def test_a_world_that_does_not_exist_or_has_a_model_of_that_name_is_an_error(fol
     (folder / "lab.sdf").write_text(LAB.replace("desk", "robot"))
     with pytest.raises(simkit.LoadError, match="SK-SPAWN-002"):
         simkit.load("robot.urdf", model_world="lab.sdf")
+
+
+def test_an_mjcf_model_with_a_light_on_its_body_gets_no_sun(folder: Path) -> None:
+    for light, suns in (("", 1), ('<light pos="0 0 3"/>', 0)):
+        (folder / "drone.xml").write_text(MJCF.format("").replace("<freejoint/>", f"<freejoint/>{light}"))
+        with open_scenario(RunSpec("drone.xml")) as sim:
+            assert len(sim.world.lights) == suns

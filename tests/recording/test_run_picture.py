@@ -53,8 +53,8 @@ def test_paths_follow_moving_models_and_leave_out_static_ones() -> None:
         np.testing.assert_allclose([p[0] for p in driven.tracks["rover"]], np.arange(11) * 0.05, atol=1e-9)
 
 
-def test_a_tall_robot_is_seen_to_its_top(tmp_path: Path) -> None:
-    world = WORLD.replace("0.1 0.1 0.1</size>", "0.1 0.1 3</size>").replace("0 0 0.1 0 0 0", "0 0 1.5 0 0 0")
+def viewpoint(tmp_path: Path, world: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return eye and target of the picture of a world."""
     seen: list[tuple[np.ndarray, np.ndarray]] = []
 
     def render(_sim: object, width: int, height: int, *, eye: np.ndarray, target: np.ndarray, **_: object) -> object:
@@ -62,11 +62,32 @@ def test_a_tall_robot_is_seen_to_its_top(tmp_path: Path) -> None:
         return np.zeros((height, width, 3), np.uint8)
 
     with simkit.load(world) as sim:
-        save_picture(sim, tmp_path / "tall.png", render, DrivenPath(sim))
-    ((eye, target),) = seen
+        save_picture(sim, tmp_path / "seen.png", render)
+    return seen[0]
+
+
+def test_a_tall_robot_is_seen_to_its_top(tmp_path: Path) -> None:
+    eye, target = viewpoint(
+        tmp_path, WORLD.replace("0.1 0.1 0.1</size>", "0.1 0.1 3</size>").replace("0 0 0.1 0 0 0", "0 0 1.5 0 0 0")
+    )
     up_to_top = np.array((0.0, 0.0, 3.0)) - eye
     angle = np.arccos(up_to_top @ (target - eye) / np.linalg.norm(up_to_top) / np.linalg.norm(target - eye))
     assert angle < 0.4  # [rad] half of the picture's opening angle
+
+
+def test_a_model_fills_the_picture_whatever_its_size(tmp_path: Path) -> None:
+    world = WORLD[: WORLD.index("<sensor")] + "</link></model></world></sdf>"
+    small = viewpoint(tmp_path, world)
+    large = viewpoint(tmp_path, world.replace("0.1 0.1 0.1</size>", "1 1 1</size>"))
+    assert np.linalg.norm(large[0] - large[1]) == pytest.approx(10 * np.linalg.norm(small[0] - small[1]))
+    assert np.linalg.norm(small[0] - small[1]) < 0.3  # [m] for a box of 0.1 m
+
+
+def test_a_link_that_is_fixed_to_the_world_belongs_to_the_picture(tmp_path: Path) -> None:
+    model = WORLD[: WORLD.index("<sensor")].replace("0.1 0.1 0.1</size>", "0.1 0.1 4</size>")
+    fixed = model + '</link><joint name="j" type="fixed"><parent>world</parent><child>body</child></joint>'
+    eye, target = viewpoint(tmp_path, fixed + "</model></world></sdf>")
+    assert np.linalg.norm(eye - target) > 3.0  # [m] the whole height of 4 m is in the image
 
 
 def test_a_picture_shows_path_and_scan(tmp_path: Path) -> None:
