@@ -106,6 +106,16 @@ def test_a_picture_shows_path_and_scan(tmp_path: Path) -> None:
     assert int(((blue > 150) & (red < 90)).sum()) > 100  # the path behind the rover
 
 
+def test_a_moving_model_without_visuals_is_drawn_by_its_collisions(tmp_path: Path) -> None:
+    model = WORLD[: WORLD.index("<sensor")].replace("visual", "collision") + "</link></model></world></sdf>"
+    with simkit.load(model) as sim:
+        try:
+            image = render_view(sim, 64, 64, eye=np.array((0.0, -1.0, 0.1)), target=np.array((0.0, 0.0, 0.1)))
+        except RenderError as error:
+            pytest.skip(str(error))
+        assert (image[32, 32] != image[2, 2]).any(), "the box is in the middle of the image"
+
+
 @pytest.mark.parametrize(
     ("name", "reason"), [("out.gif", "expected .png or .jpg"), ("no/out.png", "no does not exist")]
 )

@@ -7,11 +7,14 @@ from collections.abc import Callable
 import mujoco
 import numpy as np
 
+from simkit.compiler.geom_groups import VISUAL
+from simkit.compiler.name_map import LinkBinding
 from simkit.pose import Vector
 from simkit.runtime import Simulation
 from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Colours, Shot, View, look_at
+from simkit.sensors.values_with_expiry import temporary_values
 
 
 def render_view(
@@ -59,12 +62,22 @@ def render_view(
 
     renderer = renderer_of(sim)
     data = sim.engine.physics.fresh()
-    composition = renderer.composer.compose(model, data, position, look_at(position, middle), prepare)
+    with temporary_values(model.geom_group, _collisions_to_draw(sim), VISUAL):
+        composition = renderer.composer.compose(model, data, position, look_at(position, middle), prepare)
     render_thread.drain()  # the render thread uses the same buffers
     colours = renderer.draw(composition, Shot(view)).colours
     renderer.composer.give_back(composition)
     assert colours is not None
     return colours.copy()
+
+
+def _collisions_to_draw(sim: Simulation) -> list[int]:
+    """Return the collision geoms of models without any visual, which cameras do not see; static ones are left out."""
+    by_model: dict[str, list[LinkBinding]] = {}
+    for link in sim.engine.names.links.values():
+        by_model.setdefault(link.model, []).append(link)
+    invisible = (n for n, links in by_model.items() if not sim.models[n].static and not any(li.visuals for li in links))
+    return [geom for name in invisible for link in by_model[name] for geom in link.geoms]
 
 
 def _add_headlight(scene: mujoco.MjvScene) -> None:
