@@ -201,6 +201,8 @@ class GeomWriter:
             report_once(self.diagnostics, "note", "SK-MESH-013", text, visual.where)
             return
         look = self._visual_settings(visual, part, pixels if part.uv is not None else None)
+        if pixels is not None and part.uv is None:
+            look["rgba"] = _tinted(look["rgba"], pixels)
         mesh = self._surface_mesh(visual, part, self.assets.has_texture(look["material"]))
         self._add(parent, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, **look)
 
@@ -288,6 +290,12 @@ class GeomWriter:
         x, y, z = shape.position
         at = pose @ Pose((x, y, z + low * z_size))
         self._add(parent, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
+
+
+def _tinted(colour: Colour, pixels: Pixels) -> Colour:
+    """Return a colour times the mean of a texture, for a mesh that has no texture coordinates (an STL file)."""
+    r, g, b = np.broadcast_to(pixels.mean(axis=(0, 1))[:3] / 255.0, 3)
+    return (float(colour[0] * r), float(colour[1] * g), float(colour[2] * b), colour[3])
 
 
 def _collision_title(shape: Geometry) -> str:

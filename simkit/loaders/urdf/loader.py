@@ -12,7 +12,7 @@ from simkit.loaders.sdf.load_context import IncludableLoader, IncludedModel, Mod
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.urdf.gazebo_extensions import read_flag
 from simkit.loaders.urdf.kinematic_tree import place_links
-from simkit.loaders.urdf.robot import build_robot, declare_robot
+from simkit.loaders.urdf.robot import WORLD, build_robot, declare_robot
 from simkit.loaders.xacro import expand, needs_expansion
 from simkit.params import Params
 from simkit.pose import Pose
@@ -89,7 +89,9 @@ def _frames_document(robot: SdfFile, workspace: Workspace) -> Params:
 
     static = "true" if read_flag(draft.extensions.robot, "static") else "false"
     parts = [make("static", static), pose(draft.extensions.robot.pose("pose"))]
-    parts += [make("link", "", (pose(at),), name=name) for name, at in draft.links_world.items()]
+    # a link named `world` stands for the world, which the SDF file has already
+    links = {name: at for name, at in draft.links_world.items() if name != WORLD}
+    parts += [make("link", "", (pose(at),), name=name) for name, at in links.items()]
     for name, joint in draft.joints.items():
         ends = (make("parent", joint.parent), make("child", joint.child))
         if name not in draft.links:

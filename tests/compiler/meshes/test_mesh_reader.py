@@ -206,6 +206,18 @@ def test_a_texture_travels_with_its_coordinates(make, compiled, tmp_path):
     np.testing.assert_allclose(c.model.mesh_texcoord[:3], [(0, 1), (1, 1), (1, 0)])
 
 
+def test_a_mesh_without_coordinates_has_the_mean_colour_of_a_texture(make, compiled, tmp_path):
+    from PIL import Image
+
+    Image.fromarray(np.array([[[51, 102, 0], [51, 0, 0]]], np.uint8)).save(tmp_path / "paint.png")
+    (tmp_path / "t.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
+    material = Material(diffuse=(1.0, 0.5, 1.0, 0.8), texture=tmp_path / "paint.png")
+    visual = SceneVisual("v", "m::a::v", Pose(), Mesh(tmp_path / "t.obj", "t.obj"), material)
+    model = compiled(make.model("m", make.link("m::a", visuals=(visual,)))).model
+    assert model.ntex == 0
+    np.testing.assert_allclose(model.geom_rgba[0], (0.2, 0.1, 0.0, 0.8), atol=1e-6)
+
+
 def test_a_polyline_is_extruded(make, compiled):
     outline = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 0.3), (0.0, 1.0))
     model = make.model("arena", make.link("arena::link", Polyline((outline,), 0.5)), static=True)

@@ -156,6 +156,17 @@ def test_an_sdf_world_can_include_robots_with_poses_and_joints(load, write):
     assert not with_code(found, "SK-URDF-017")
 
 
+def test_a_robot_that_is_fixed_by_a_link_named_world_can_be_included(load, write):
+    text = robot(link("base") + '<link name="world"/>' + joint("mount", "world", "base", "", "fixed"), "bot")
+    file = write("bot.urdf", text)
+    world = '<sdf version="1.9"><world name="w"><include><uri>bot.urdf</uri><pose>0 0 1 0 0 0</pose></include>'
+    scene, found = load(world + "</world></sdf>", (file.parent,))
+    assert not errors(found)
+    (bot,) = scene.world.models
+    assert bot.joints[0].type == "fixed"
+    np.testing.assert_allclose(bot.links[0].pose_world.position, (0, 0, 1), atol=1e-12)
+
+
 def test_a_nested_robot_has_the_scoped_name_of_the_outer_model(load, write):
     root = write("models/bot/bot.urdf", robot(link("base"), "bot")).parents[1]
     text = """<sdf version="1.9"><model name="cart"><link name="l"/><include><uri>model://bot</uri></include>
