@@ -18,6 +18,7 @@ from simkit.errors import LoadError, PluginError, RenderError
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.model_world import add_model_world
+from simkit.loaders.resources.world_interfaces import read_interfaces
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.make_instances import (
@@ -91,6 +92,7 @@ def load(
     model_world: str = EMPTY_SPACE,
     params_files: ParameterFileArgument | Sequence[ParameterFileArgument] = (),
     change_world: Callable[[SceneWorld], SceneWorld] | None = None,
+    interfaces: Sequence[Source] = (),
 ) -> Simulation:
     """Load a world or a single model and return a simulation that is ready to step.
 
@@ -124,6 +126,7 @@ def load(
             these files have priority over the files that the plugins name.
         change_world: function that receives the resolved world, with all options above applied, and returns the world
             to build.
+        interfaces: folders with definitions of messages, services and actions; see `docs/own_messages.md`.
 
     Returns:
         Simulation at t = 0.
@@ -139,6 +142,7 @@ def load(
     seed = check_load_arguments(
         seed=seed, plugin_paths=plugin_paths, plugins=plugins, strict=strict, overrides=overrides, sleep=sleep,
         on_error=on_error, spawn=spawn, params_files=params_files, change_world=change_world, model_world=model_world,
+        interfaces=interfaces,
     )  # fmt: skip
     import_mujoco()
     from simkit.compiler import SpecBuilder
@@ -147,6 +151,7 @@ def load(
 
     diagnostics = Diagnostics()
     resolver = Resolver(resource_paths, package_paths=package_paths)
+    read_interfaces(interfaces, source, resolver, diagnostics)
 
     def find_file(uri: str, folder: Path | None) -> Path | None:
         return resolver.search(uri, folder)[0]
@@ -196,7 +201,7 @@ def load(
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
         "xacro_args": named_values(xacro_args, "xacro_args"), "package_paths": package_paths or {},
         "params_files": params_files, "strict": strict, "sleep": sleep, "render_thread": render_thread,
-        "on_error": on_error,
+        "on_error": on_error, "interfaces": tuple(interfaces),
     }  # fmt: skip
     simulation.run_spec = RunSpec(
         os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
@@ -256,6 +261,7 @@ def check(
     xacro_args: NamedValues | None = None,
     package_paths: PackagePaths | None = None,
     base: str = "auto",
+    interfaces: Sequence[Source] = (),
 ) -> Diagnostics:
     """Return every problem of a file, also of compiling it and of loading its plugins; the file raises no exception."""
     from simkit.compiler.lint import lint_world
@@ -263,13 +269,9 @@ def check(
     diagnostics = Diagnostics()
     try:
         with load(
-            source,
-            resource_paths=resource_paths,
-            plugin_paths=plugin_paths,
-            xacro_args=xacro_args,
-            package_paths=package_paths,
-            base=base,
-        ) as simulation:
+            source, resource_paths=resource_paths, plugin_paths=plugin_paths, xacro_args=xacro_args,
+            package_paths=package_paths, base=base, interfaces=interfaces,
+        ) as simulation:  # fmt: skip
             diagnostics.extend(simulation.diagnostics)
             diagnostics.extend(lint_world(simulation.world, simulation.engine.compiled))
     except LoadError as error:

@@ -5,6 +5,7 @@ SimkitError                 exit 1
 │   ├── ArgumentTypeError            an argument has another kind than expected; also a TypeError
 │   ├── ArgumentValueError           an argument is out of range, NaN or infinite; also a ValueError
 │   ├── LoadError                    a file has errors; `.diagnostics` lists all of them
+│   │   └── InterfaceError           a definition of a message, service or action has errors
 │   ├── MessageError                 a message does not fit its topic; NoMessageError is also a TypeError
 │   ├── ServiceError                 a service is unknown, or its name is already used
 │   ├── ActionError                  an action is unknown, or its name is already used
@@ -86,6 +87,10 @@ class LoadError(InputError):
         if len(errors) > _MOST_LISTED:
             lines.append(f"and {len(errors) - _MOST_LISTED} more problems; `diagnostics` has all of them")
         super().__init__("\n".join(lines), errors[0].code if errors else "SK-LOAD-001")
+
+
+class InterfaceError(LoadError):
+    """Errors in the definitions of messages, services and actions."""
 
 
 class MessageError(InputError):

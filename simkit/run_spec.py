@@ -205,6 +205,7 @@ class LoadOptions(SourceOptions, total=False):
     """Arguments of `simkit.load` that a run passes and that are not fields of `RunSpec`."""
 
     plugin_paths: Sequence[FilePath]
+    interfaces: Sequence[FilePath]
     params_files: FilePath | Sequence[FilePath | tuple[str, FilePath]]
     strict: bool
     sleep: bool

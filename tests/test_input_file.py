@@ -20,7 +20,7 @@ OWN_FILES = {
     "cli/diagnostic_catalogue.py": "data of the package",
     "compiler/meshes/mesh_cache.py": "the cache of simkit",
     "mujoco_import.py": "the list of files that pip has installed",
-    "msgs/message_types.py": "data of the package",
+    "msgs/shipped_interfaces.py": "data of the package",
     "plugins/authoring/plugin_reload.py": "modules that Python has imported already",
     "registry.py": "modules of the package",
     "sensors/presets/preset.py": "data of the package",

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from importlib import import_module
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
@@ -21,6 +21,7 @@ Context = Any
 # Parameter of click.
 Parameter = Any
 
+_INTERFACES_HELP = "Folder with definitions .msg, .srv and .action: a ROS package or a workspace; repeatable."
 _WORDS = __name__  # key of the words of the command line in the context's meta
 _SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 _COMPLETION_CALLBACKS = {"--show-completion": "show_callback", "--install-completion": "install_callback"}
@@ -121,10 +122,39 @@ def _bypass_conversion(command: Command) -> None:
 def _converted_parameters(original: Callable[[Context], list[Parameter]], ctx: Context) -> list[Parameter]:
     """Return the parameters of a command, including `--help`."""
     found = original(ctx)
+    if not hasattr(ctx.command, "commands"):
+        found = [*found[:-1], interfaces_option(), *found[-1:]]
     for each in found:
         if each.nargs == 1 and not getattr(each, "multiple", False) and "process_value" not in vars(each):
             each.process_value = partial(_process_value, each, each.process_value)
     return found
+
+
+def _define_interfaces(ctx: typer.Context, folders: list[str]) -> None:
+    """Define the types in the folders of the option, before the command runs or completes a value."""
+    if folders:
+        from simkit.cli.terminal.given_interfaces import define_interfaces
+
+        define_interfaces(ctx, folders)
+
+
+@cache
+def interfaces_option() -> Parameter:
+    """Return the option `--interfaces`, which every command has."""
+
+    def placeholder(
+        interfaces: Annotated[
+            list[str],
+            typer.Option(
+                metavar="DIR", help=_INTERFACES_HELP, callback=_define_interfaces, expose_value=False, is_eager=True
+            ),
+        ] = [],
+    ) -> None:
+        pass
+
+    maker = typer.Typer(add_completion=False)
+    maker.command()(placeholder)
+    return next(each for each in typer.main.get_command(maker).params if each.name == "interfaces")
 
 
 def _process_value(parameter: Parameter, original: Callable[..., object], ctx: Context, value: object) -> object:

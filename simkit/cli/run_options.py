@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import cast
 
+from simkit.cli.terminal.given_interfaces import interface_folders
 from simkit.cli.terminal.options import source_arguments
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
 from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
@@ -54,6 +55,7 @@ def load_options(
     values = {
         **source_arguments(resource_paths, package_paths, xacro_args, base),
         "plugin_paths": tuple(plugin_paths),
+        "interfaces": interface_folders(),
         "params_files": tuple(params_files),
         "on_error": on_error,
         "strict": strict,

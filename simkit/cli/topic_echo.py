@@ -15,7 +15,8 @@ from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_json, print_line, print_note
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source, wait_for_topic
 from simkit.errors import InputError, MessageError
-from simkit.msgs.message_types import FieldNode, FieldValue, Message
+from simkit.msgs.definition_parser import FieldNode
+from simkit.msgs.message_types import FieldValue, Message
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore

@@ -64,6 +64,7 @@ def check_load_arguments(
     params_files: Any,
     change_world: object,
     model_world: object,
+    interfaces: object,
 ) -> int:
     """Check the other arguments of `simkit.load`, and return the seed.
 
@@ -72,6 +73,7 @@ def check_load_arguments(
         ArgumentValueError: the seed is not a whole number, or `on_error` is unknown.
     """
     check_paths(plugin_paths, "plugin_paths")
+    check_paths(interfaces, "interfaces")
     check_list(plugins, object, "plugins", "plugins")
     check_kind(strict, _FLAG, "strict", "True or False")
     check_list(overrides, str, "overrides", "texts PATH=VALUE")

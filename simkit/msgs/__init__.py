@@ -3,6 +3,7 @@
     msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
     msgs.type_of("sensor_msgs/msg/Imu")  # the class itself; calling it is faster than `make`
     msgs.header(sim.time_ns, "imu_link")
+    msgs.add("my_msgs/msg/Num", "int64 num")  # a type of one's own
 
 This package builds, encodes and decodes messages, and formats messages and definitions as text. It does not depend on
 topics, simulations or bags. `import simkit.msgs` imports neither rosbags nor NumPy.
@@ -16,7 +17,9 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from simkit.errors import MessageError, NoMessageError
-from simkit.msgs.message_types import Message, definition, full_name, message_class, rihs, type_of, type_store, types_of
+from simkit.msgs.message_types import Message, definition, full_name, message_class, type_of, type_store, types_of
+from simkit.msgs.own_interfaces import add
+from simkit.msgs.type_hashes import rihs
 
 if TYPE_CHECKING:
     from simkit.msgs.message_builder import MessageBuilder
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Message",
+    "add",
     "definition",
     "deserialize",
     "duration",

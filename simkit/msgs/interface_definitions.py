@@ -8,23 +8,23 @@ from typing import TYPE_CHECKING
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
+from simkit.msgs import own_interfaces
+from simkit.msgs.definition_parser import BASIC_TYPES, PARTS
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_text import message_to_dict
-from simkit.msgs.message_types import FieldValue, definition_files, definition_text, full_name, type_store
+from simkit.msgs.message_types import FieldValue, full_name, interface_parts, own_package_hint, type_store
+from simkit.msgs.shipped_interfaces import definition_files, rosbags_types
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 _TYPE = re.compile(r"^\s*([A-Za-z]\w*(?:/\w+)*)(<=\d+)?(\[[^\]]*\])?\s+[a-z]\w*\b")
-_BASIC = frozenset({"bool", "byte", "char", "string", "wstring", "float32", "float64"}) | {
-    f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)
-}
 
 
 def interface_names(kind: str) -> list[str]:
     """Return the full name of every interface of a kind (`msg`, `srv` or `action`), sorted."""
-    ours = {name for name in definition_files() if f"/{kind}/" in name}
-    return sorted(ours | {name for name in type_store().fielddefs if "/msg/" in name} if kind == "msg" else ours)
+    found = {name for name in (*definition_files(), *own_interfaces.names()) if f"/{kind}/" in name}
+    return sorted(found.union(rosbags_types()) if kind == "msg" else found)
 
 
 def full_interface_name(name: str) -> str:
@@ -34,16 +34,16 @@ def full_interface_name(name: str) -> str:
         MessageError: the name is unknown; the message suggests the closest name.
     """
     package, _, rest = name.partition("/")
-    ours = definition_files()
     for full in (name, f"{package}/srv/{rest}", f"{package}/action/{rest}"):
-        if full in ours:
+        if full.count("/") == 2 and interface_parts(full) is not None:
             return full
     try:
         return full_name(name)
     except MessageError:
         known = [known for kind in ("msg", "srv", "action") for known in interface_names(kind)]
         hint = did_you_mean(name, known)
-        raise MessageError(f"unknown interface {name!r}; {hint}".rstrip("; ")) from None
+        text = f"unknown interface {name!r}; {hint}".rstrip("; ") + own_package_hint(package, known)
+        raise MessageError(text) from None
 
 
 def interface_text(
@@ -66,7 +66,7 @@ def _lines(name: str, depth: int, comments: bool, below: bool, store: Typestore 
         if text or comments:
             yield "\t" * depth + text
         found = _TYPE.match(text)
-        if found and found[1] not in _BASIC:
+        if found and found[1] not in BASIC_TYPES:
             inner = found[1] if "/" in found[1] else f"{package}/{found[1]}"
             full = inner.replace("/", "/msg/") if inner.count("/") == 1 else inner
             yield from _lines(full, depth + 1, below, below, store)
@@ -74,8 +74,9 @@ def _lines(name: str, depth: int, comments: bool, below: bool, store: Typestore 
 
 def _text(name: str, store: Typestore | None) -> str:
     """Return the text of a type's definition file, or a text made from the type store if there is no file."""
-    if store is None and name in definition_files():
-        return definition_text(name)
+    own = interface_parts(name) if store is None else None
+    if own is not None:
+        return "---\n".join(part.text for part in own)
     found = (store or type_store()).generate_msgdef(name if store else full_name(name), ros_version=2)[0]
     return str(found).split("=" * 80)[0].rstrip()
 
@@ -89,6 +90,6 @@ def prototype(type_name: str) -> dict[str, FieldValue]:
         MessageError: the type is unknown.
     """
     name = full_interface_name(type_name)
-    if name in definition_files():
-        name += {"msg": "", "srv": "_Request", "action": "_Goal"}[name.split("/")[1]]
+    if name.split("/")[1] != "msg" and interface_parts(name) is not None:
+        name += PARTS[name.split("/")[1]][0]
     return message_to_dict(builder_of(name).default())

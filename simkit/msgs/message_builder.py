@@ -11,14 +11,9 @@ import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
-from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, FieldNode, FieldValue, Message, full_name, type_store
+from simkit.msgs.definition_parser import ARRAY, BASE, INTEGER_RANGES, NAME, SEQUENCE, TEXTS, FieldNode
+from simkit.msgs.message_types import FieldValue, Message, definition_of, full_name, type_store
 
-_INTEGERS: dict[str, tuple[int, int]] = {
-    **{f"int{n}": (-(1 << (n - 1)), (1 << (n - 1)) - 1) for n in (8, 16, 32, 64)},
-    **{f"uint{n}": (0, (1 << n) - 1) for n in (8, 16, 32, 64)},
-    "byte": (0, 255),
-    "char": (0, 255),
-}
 _DTYPES = {"byte": "uint8", "char": "uint8", "bool": "bool"}
 
 # ROS defaults that are not zero.
@@ -44,10 +39,11 @@ class MessageBuilder:
         self.name = name
         self.cls: type[Message] = store.types[name]
         self.fields: list[tuple[str, _Default, _Conversion]] = []
+        own = definition_of(name)
         for field, node in store.fielddefs[name][1]:
             default, convert = _default_and_conversion(node)
-            value = _DEFAULTS.get((name, field))
-            default = default if value is None else partial(float, value)
+            value = own.defaults.get(field) if own else _DEFAULTS.get((name, field))
+            default = default if value is None else partial(convert, value)
             self.fields.append((normalize_fieldname(field), default, convert))
         self._defaults = [default for _, default, _ in self.fields]
 
@@ -110,24 +106,24 @@ def _default_and_conversion(node: FieldNode) -> tuple[_Default, _Conversion]:
         builder = builder_of(content)
         return builder.default, builder.convert
     if kind == BASE:
-        return _scalar(content[0])
+        return _scalar(*content)
     (inner_kind, inner), size = content
     length = size if kind == ARRAY else 0
     bound = size if kind == SEQUENCE and size else None
-    if int(inner_kind) == BASE and inner[0] != "string":
+    if int(inner_kind) == BASE and inner[0] not in TEXTS:
         dtype = np.dtype(_DTYPES.get(inner[0], inner[0]))
         return partial(np.zeros, length, dtype), partial(_numbers, dtype, length or None, bound)
     default, convert = _default_and_conversion((inner_kind, inner))
     return (lambda: [default() for _ in range(length)]), partial(_items, convert, length or None, bound)
 
 
-def _scalar(name: str) -> tuple[_Default, _Conversion]:
-    if name == "string":
-        return str, _text
+def _scalar(name: str, bound: int) -> tuple[_Default, _Conversion]:
+    if name in TEXTS:
+        return str, partial(_bounded_text, bound) if bound else _text
     if name == "bool":
         return bool, _boolean
-    if name in _INTEGERS:
-        return int, partial(_integer, *_INTEGERS[name])
+    if name in INTEGER_RANGES:
+        return int, partial(_integer, *INTEGER_RANGES[name])
     return float, _float
 
 
@@ -158,6 +154,13 @@ def _text(value: FieldValue) -> str:
     return value
 
 
+def _bounded_text(bound: int, value: FieldValue) -> str:
+    text = _text(value)
+    if len(text) > bound:
+        raise MessageError(f"found {len(text)} characters; expected at most {bound}")
+    return text
+
+
 def _check_length(count: int, length: int | None, bound: int | None) -> None:
     if length is not None and count != length:
         raise MessageError(f"found {count} entries; expected {length}")
@@ -174,6 +177,9 @@ def _numbers(
         array = np.frombuffer(value, np.uint8).astype(dtype, copy=False)
     else:
         array = np.asarray(value)
+        if array.dtype == np.float64 and dtype == np.uint64:
+            array = np.asarray(value, object)  # NumPy converts a list with numbers above 2**63 to float64
+            array = array.astype(dtype) if all(isinstance(item, int) for item in array.flat) else np.asarray(value)
         if array.size and (array.dtype.kind not in "biuf" or (dtype.kind in "iu" and array.dtype.kind == "f")):
             raise MessageError(f"found {_short(value)}; expected a list of {dtype}")
         array = array.astype(dtype).reshape(-1)

@@ -9,7 +9,8 @@ import sys
 from collections.abc import Iterator
 from itertools import groupby
 
-from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, FieldNode, class_names, type_store
+from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
+from simkit.msgs.message_types import class_names, type_store
 
 _HEAD = '''# Written by `python -m simkit.msgs.message_class_stubs`; a test compares it with the definitions.
 # ruff: noqa

@@ -14,7 +14,8 @@ import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
-from simkit.msgs.message_types import ARRAY, NAME, SEQUENCE, FieldNode, FieldValue, Message, type_store
+from simkit.msgs.definition_parser import ARRAY, NAME, SEQUENCE, FieldNode
+from simkit.msgs.message_types import FieldValue, Message, type_store
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore

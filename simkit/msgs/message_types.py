@@ -1,5 +1,6 @@
-"""Message types: types of ROS 2 Jazzy from rosbags, and types in `definitions/`, which are read at first use.
+"""Message types: types of ROS 2 Jazzy from rosbags, types in `definitions/`, and types of the user (`own_interfaces`).
 
+A type is read at its first use.
 The definition of a simkit type is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
 with the published fields in the published order. The hash of a definition depends on field names, types and order, and
 not on constants. A service or action is several message types, which `---` separates in the file:
@@ -8,64 +9,32 @@ not on constants. A service or action is several message types, which `---` sepa
 
 from __future__ import annotations
 
-import os
+from collections.abc import Iterable
 from functools import cache
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
+from simkit.msgs import own_interfaces
+from simkit.msgs.definition_parser import PARTS, MessageDefinition, interface_of
+from simkit.msgs.shipped_interfaces import definition_files, rosbags_types, shipped_message_types, shipped_parts
+from simkit.msgs.wide_strings import with_wide_strings
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
-
-_FOLDER: Final = os.path.join(os.path.dirname(__file__), "definitions")  # noqa: PTH118, PTH120 (pathlib takes 3 ms)
-BASE, NAME, ARRAY, SEQUENCE = 1, 2, 3, 4
-"""Kinds of field nodes in the type store: `rosbags.interfaces.Nodetype`, whose import would load all of rosbags."""
-_PARTS: Final = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
-
-
-@cache
-def definition_files() -> dict[str, str]:
-    """Return the path of each definition file by the full name of its message, service or action."""
-    return {
-        f"{package.name}/{kind.name}/{file.name.removesuffix(f'.{kind.name}')}": file.path
-        for package in os.scandir(_FOLDER)
-        for kind in os.scandir(package.path)
-        for file in os.scandir(kind.path)
-    }
-
-
-@cache
-def definition_text(interface_name: str) -> str:
-    """Return the text of the definition file of a message, service or action in `definitions/`."""
-    with open(definition_files()[interface_name], encoding="utf-8") as file:
-        return file.read()
-
-
-@cache
-def _message_sources() -> dict[str, tuple[str, int]]:
-    """Return the interface of each message type in `definitions/`, and the index of the type's part in the file."""
-    return {
-        f"{interface}{part}": (interface, index)
-        for interface in definition_files()
-        for index, part in enumerate(_PARTS[interface.split("/")[1]])
-    }
-
 
 # Message of any type: an object of a dataclass that rosbags creates at run time.
 Message = Any
 # Value of a message's field: a number, a text, an array, a message or a list of these.
 FieldValue = Any
-# Type of a field in the type store: its kind (`BASE`, `NAME`, `ARRAY`, `SEQUENCE`) and the details of that kind.
-FieldNode = tuple[int, Any]
 _Entry = Any  # entry of the type store: a class, or its constants and fields
 
 
 class _ReadOnDemand(dict[str, _Entry]):
-    """Table of the type store that also contains the types of `definitions/`, each registered on first access."""
+    """Table of the type store that also contains the types of simkit and of the user, registered on first access."""
 
     def __contains__(self, type_name: object) -> bool:
-        return super().__contains__(type_name) or type_name in _message_sources()
+        return super().__contains__(type_name) or (isinstance(type_name, str) and definition_of(type_name) is not None)
 
     def __missing__(self, type_name: str) -> _Entry:
         _register(type_name)
@@ -78,29 +47,58 @@ def type_store() -> Typestore:
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_JAZZY)
-    store.fielddefs, store.types = _ReadOnDemand(store.fielddefs), _ReadOnDemand(store.types)
-    return store
+    return with_wide_strings(store, _ReadOnDemand(store.fielddefs), _ReadOnDemand(store.types))
+
+
+def interface_parts(interface_name: str) -> tuple[MessageDefinition, ...] | None:
+    """Return the parts of an interface of simkit or of the user; None for types of rosbags and unknown names.
+
+    Raises:
+        InterfaceError: the definition of a type of the user has errors.
+    """
+    if interface_name in definition_files():
+        return shipped_parts(interface_name)
+    own = own_interfaces.find(interface_name)
+    return None if own is None else own.parts
+
+
+def definition_of(type_name: str) -> MessageDefinition | None:
+    """Return the definition of a message type of simkit or of the user; None for types of rosbags and unknown names.
+
+    Raises:
+        InterfaceError: the definition of a type of the user has errors.
+    """
+    interface, part = interface_of(type_name) or ("", 0)
+    parts = interface_parts(interface) if interface else None
+    return None if parts is None else parts[part]
 
 
 def _register(type_name: str) -> None:
-    """Read the definition of one message type of `definitions/` into the type store.
+    """Register one message type of simkit or of the user in the type store.
 
     Raises:
-        KeyError: the type is not in `definitions/`.
+        KeyError: the type is unknown.
     """
-    from rosbags.typesys import get_types_from_msg
+    found = definition_of(type_name)
+    if found is None:
+        raise KeyError(type_name)
+    constants = [
+        (name, kind, _SpecialNumber(value) if kind.startswith("float") else value)
+        for name, kind, value in found.constants
+    ]
+    type_store().register({type_name: (constants, found.fields)})
 
-    interface, part = _message_sources()[type_name]
-    package, kind, name = type_name.split("/")
-    text = definition_text(interface).split("---\n")[part]
-    # rosbags' parser has no services; it parses every definition as a message
-    (definition,) = get_types_from_msg(text, f"{package}/msg/{name}").values()
-    type_store().register({f"{package}/{kind}/{name}": definition})
+
+class _SpecialNumber(float):
+    """Number whose text is Python code also if it is NaN or infinite: rosbags writes constants into generated code."""
+
+    def __repr__(self) -> str:
+        return f"float({str(float(self))!r})"
 
 
 def message_type_names() -> list[str]:
     """Return the full name of every message type, including the parts of services and actions."""
-    return sorted({*type_store().fielddefs, *_message_sources()})
+    return sorted({*rosbags_types(), *shipped_message_types()})
 
 
 def full_name(type_name: str) -> str:
@@ -115,9 +113,17 @@ def full_name(type_name: str) -> str:
     for name in (type_name, long):
         if name in known:
             return name
-    is_long = any(f"/{kind}/" in type_name for kind in _PARTS)
-    hint = did_you_mean(type_name if is_long else long, [*known, *_message_sources()])
-    raise MessageError(f"unknown message type {type_name!r}; {hint}".rstrip("; "))
+    is_long = any(f"/{kind}/" in type_name for kind in PARTS)
+    names = [*known, *shipped_message_types(), *own_interfaces.names()]
+    hint = did_you_mean(type_name if is_long else long, names)
+    raise MessageError(f"unknown message type {type_name!r}; {hint}".rstrip("; ") + own_package_hint(package, names))
+
+
+def own_package_hint(package: str, names: Iterable[str]) -> str:
+    """Return a hint about `--interfaces` if no known type is in the package; else an empty text."""
+    if any(name.startswith(f"{package}/") for name in names):
+        return ""
+    return f"; if the package {package!r:.80} is yours, add its folder with --interfaces DIR"
 
 
 @cache
@@ -135,13 +141,13 @@ def class_names() -> dict[str, str]:
     """
     names = message_type_names()
     candidates: dict[str, list[str]] = {}
-    for name in sorted(names, key=_message_sources().__contains__):  # ROS's own types first
+    for name in sorted(names, key=shipped_message_types().__contains__):  # ROS's own types first
         candidates.setdefault(name.rpartition("/")[2], []).append(name)
     found = {}
     for name in names:
         short = name.rpartition("/")[2]
         first, *others = candidates[short]
-        is_ambiguous = bool(others) and (first in _message_sources()) == (others[0] in _message_sources())
+        is_ambiguous = bool(others) and (first in shipped_message_types()) == (others[0] in shipped_message_types())
         found[short if name == first and not is_ambiguous else name.replace("/", "__")] = name
     return found
 
@@ -157,6 +163,9 @@ def message_class(class_name: str) -> type[Message]:
         names = class_names()
         if class_name in names:
             return type_of(names[class_name])
+        own = own_interfaces.message_type(class_name)
+        if own:
+            return type_of(own)
         raise AttributeError(f"simkit.msgs has no {class_name!r}; {did_you_mean(class_name, names)}".rstrip("; "))
     raise AttributeError(f"simkit.msgs has no {class_name!r}")
 
@@ -170,10 +179,19 @@ def types_of(*type_names: str) -> tuple[type[Message], ...]:
 @cache
 def definition(type_name: str) -> str:
     """Return the definition of a type as `ros2msg` text, with the definitions of all types that it uses."""
-    return type_store().generate_msgdef(full_name(type_name), ros_version=2)[0]
+    name, store = full_name(type_name), type_store()
+    texts: dict[str, tuple[str, str]] = {}
+    text = store.gendefhash(name, texts, 2)[0]
+    # rosbags' texts have neither default values nor the bounds of wstring; types of the user keep their own text
+    pieces = [_own_text(name) or text]
+    for used, (used_text, _) in texts.items():
+        package, _, short = used.split("/")
+        pieces.append(f"MSG: {package}/{short}\n{_own_text(used) or used_text}")
+    return ("=" * 80 + "\n").join(pieces)
 
 
-@cache
-def rihs(type_name: str) -> str:
-    """Return the type hash as ROS 2 writes it (`RIHS01_…`)."""
-    return type_store().hash_rihs01(full_name(type_name))
+def _own_text(type_name: str) -> str:
+    """Return the text of a type of the user; empty for all other types."""
+    interface, _ = interface_of(type_name) or ("", 0)
+    found = None if interface in definition_files() else definition_of(type_name)
+    return "" if found is None else found.text

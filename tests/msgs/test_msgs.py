@@ -11,7 +11,8 @@ import pytest
 
 from simkit import msgs
 from simkit.errors import MessageError
-from simkit.msgs.message_types import definition_files, definition_text, message_type_names
+from simkit.msgs.message_types import message_type_names
+from simkit.msgs.shipped_interfaces import definition_files, definition_text
 
 # Type hashes as published by the packages' own generated code (ROS 2 Jazzy and later).
 PUBLISHED = {

@@ -9,8 +9,9 @@ from functools import cache
 from typing import Any
 
 from simkit.msgs import type_store
+from simkit.msgs.definition_parser import BASE, NAME
 from simkit.msgs.message_text import NUMBER_CODES
-from simkit.msgs.message_types import BASE, NAME, Message
+from simkit.msgs.message_types import Message
 
 _CODES = {**NUMBER_CODES, "bool": "?"}
 Reader = Callable[[bytes, int], Message]

@@ -97,6 +97,10 @@ class PackageIndex:
                 self._fallbacks[name, around] = tuple(found)
             yield from self._fallbacks[name, around]
 
+    def named_exactly(self, name: str, around: Iterable[Path]) -> Iterator[Path]:
+        """Yield folders that can be the package with exactly this name, nearest first; they need not exist."""
+        return self._exact(name, tuple(dict.fromkeys(around)))
+
     def members(self, name: str, member: str, around: Iterable[Path]) -> Iterator[Path]:
         """Yield the package `name_member`: `package://moveit_resources/panda_description` was once a folder."""
         for folder in self._exact(f"{name}_{member}", tuple(dict.fromkeys(around))):

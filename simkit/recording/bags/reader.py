@@ -17,6 +17,7 @@ from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 from simkit.msgs import message_types
+from simkit.msgs.definition_parser import FieldNode
 from simkit.recording.bags.bag_contents import BagMessage, BagTopic, unreadable
 from simkit.recording.bags.bag_files import bag_layout, open_files
 from simkit.recording.bags.mcap_records import LARGEST_RECORD, decompress
@@ -205,7 +206,7 @@ def _is_as_in_simkit(type_name: str, store: Typestore) -> bool:
     return True
 
 
-def _used_types(fields: Sequence[tuple[str, message_types.FieldNode]]) -> Iterator[str]:
+def _used_types(fields: Sequence[tuple[str, FieldNode]]) -> Iterator[str]:
     for _, (kind, content) in fields:
         inner = content[0] if int(kind) in (3, 4) else (kind, content)
         if int(inner[0]) == 2:

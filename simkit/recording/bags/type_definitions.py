@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from simkit.errors import InputError
-from simkit.msgs.message_types import ARRAY, BASE, NAME, FieldNode
+from simkit.msgs.definition_parser import ARRAY, BASE, NAME, FieldNode
 
 if TYPE_CHECKING:
     from rosbags.interfaces.typing import Typesdict

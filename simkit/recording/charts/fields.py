@@ -18,8 +18,9 @@ import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
 from simkit.msgs.message_text import NUMBER_CODES, field_nodes, field_value
-from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, FieldNode, FieldValue, Message
+from simkit.msgs.message_types import FieldValue, Message
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore

@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.errors import InputError
+from simkit.msgs.definition_parser import BASE, NAME, FieldNode
 from simkit.msgs.message_text import field_nodes, field_value
-from simkit.msgs.message_types import BASE, NAME, FieldNode, FieldValue
+from simkit.msgs.message_types import FieldValue
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore

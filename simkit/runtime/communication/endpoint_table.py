@@ -10,7 +10,7 @@ from simkit.argument_checks import shown
 from simkit.diagnostics import name_hint
 from simkit.errors import ActionError, MessageError, NoMessageError, ServiceError
 from simkit.msgs.message_text import is_message
-from simkit.msgs.message_types import definition_files
+from simkit.msgs.message_types import interface_parts
 from simkit.runtime.communication.subscription import Message
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class EndpointTable(Generic[E]):
 
         The definition of a known type is read later, with the first message of the type.
         """
-        if type_name not in definition_files():
+        if interface_parts(type_name) is None:
             msgs.full_name(f"{type_name}_{self.part}")
 
     def _find(self, name: str) -> E | None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
-from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged
+from simkit.errors import InputError, InterfaceError, PluginError, SimkitError, SimulationDiverged
 from simkit.run_spec import PluginErrorPolicy
 
 if TYPE_CHECKING:
@@ -127,9 +127,9 @@ class PluginFaults:
         Raises:
             PluginError: the policy is "stop"; the exception is its `__cause__`.
             SimkitError: the exception itself, if the plugin did not cause it: the physics diverged, there is no
-                renderer, or another plugin stopped the run.
+                renderer, another plugin stopped the run, or the definition of a type has errors.
         """
-        if isinstance(error, SimkitError) and not isinstance(error, InputError):
+        if isinstance(error, InterfaceError) or (isinstance(error, SimkitError) and not isinstance(error, InputError)):
             raise error
         if self.policy(plugin) == "stop":
             raise PluginError(plugin.name, hook, self._engine.time, str(plugin.where), repr(error)) from error

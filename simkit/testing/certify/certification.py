@@ -24,7 +24,7 @@ from simkit.testing.certify.outcome import STACK_FILE, CodePosition, RunOutcome,
 from simkit.testing.certify.outcome_comparison import Culprit, differences, find_culprit, first_tick
 from simkit.testing.certify.variations import Variation, choose_variations
 
-_FOLDERS: Final = ("resource_paths", "plugin_paths")
+_FOLDERS: Final = ("resource_paths", "plugin_paths", "interfaces")
 _LEAST_LIMIT, _TIMES = 60.0, 10.0  # wall-clock limit of a run: ten times as long as the first run, at least 60 s
 _WATCHED: Final = 5.0  # factor by which the limit is longer if every plugin call is recorded
 _SPARE_SECONDS: Final = 20.0  # additional time in which a process can end itself after its limit [s]

@@ -29,7 +29,7 @@ from simkit.testing.run_record.record import Array, Column, Pictures, RunRecord,
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES
 from simkit.testing.run_record.state_recorder import ModelFields
 
-_PATH_OPTIONS: Final = ("resource_paths", "plugin_paths", "params_files")
+_PATH_OPTIONS: Final = ("resource_paths", "plugin_paths", "params_files", "interfaces")
 _LONG_TEXT: Final = 2000
 _PLAIN: Final = (
     "duration", "seed", "name", "overrides", "topics", "skip", "state", "model", "picture", "until", "timeout",

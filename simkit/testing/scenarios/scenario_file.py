@@ -37,7 +37,7 @@ _CHECKS: Final[dict[str, CheckKind]] = {
     "rates": "rate",
 }
 _READING_KEYS: Final = ("resource_paths", "package_paths", "xacro_args", "base")
-_LOADING_KEYS: Final = ("plugin_paths", "params_files", *_READING_KEYS)
+_LOADING_KEYS: Final = ("plugin_paths", "interfaces", "params_files", *_READING_KEYS)
 KEYS: Final = (
     *("world", "name", "duration", "seed", "set", "spawn", "model_world", "commands", "play", "play_topics", "topics"),
     *("skip", "tolerances", "statistics", "state", "model", "picture", "until", "timeout", "wall_timeout"),
@@ -221,7 +221,7 @@ class ScenarioReader(ValueReader):
     def _options(self) -> dict[str, object]:
         folder = self._document.path.parent
         found: dict[str, object] = {}
-        for key in ("resource_paths", "plugin_paths"):
+        for key in ("resource_paths", "plugin_paths", "interfaces"):
             if key in self._fields:
                 found[key] = tuple(folder / one for one in self._texts(key))
         if "params_files" in self._fields:

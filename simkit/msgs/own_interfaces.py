@@ -1,0 +1,312 @@
+"""Messages, services and actions that are not shipped with simkit: from files of the user, or from another process.
+
+A definition comes from `simkit.msgs.add`, from the folders of `--interfaces` and `SIMKIT_INTERFACES`, or from a client
+or a running simulation. At its first use, a type is also searched in ROS packages on `AMENT_PREFIX_PATH` and near the
+loaded world. A type has one definition in a process.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from simkit.diagnostic_record import Diagnostic
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InterfaceError
+from simkit.input_file import read_failure, read_input_text
+from simkit.msgs.definition_parser import (
+    PARTS,
+    UNKNOWN_TYPE,
+    MessageDefinition,
+    interface_of,
+    name_problem,
+    parse_interface,
+)
+from simkit.msgs.interface_folders import definitions_in, installed_file, installed_names
+from simkit.msgs.shipped_interfaces import rosbags_types, shipped_message_types, shipped_parts
+from simkit.msgs.type_limits import DefinitionTooLarge, check_size
+
+VARIABLE: Final = "SIMKIT_INTERFACES"
+_DIFFERS, _TOO_LARGE, _UNREADABLE = "SK-INTERFACE-004", "SK-INTERFACE-005", "SK-INTERFACE-006"
+_LARGEST_FILE: Final = 1 << 20  # [bytes]; the longest definition of ROS 2 Jazzy has 20 kB with its comments
+
+
+@dataclass(frozen=True)
+class OwnInterface:
+    """Message, service or action with its definition.
+
+    Attributes:
+        name: full name, such as `my_msgs/srv/AddInts`.
+        parts: definition of each part: one for a message, two for a service, three for an action.
+        source: file of the definition; the interface's name for a definition without a file.
+    """
+
+    name: str
+    parts: tuple[MessageDefinition, ...]
+    source: str
+
+    @property
+    def text(self) -> str:
+        """Text of the definition file."""
+        return "---\n".join(part.text for part in self.parts)
+
+
+InterfaceFinder = Callable[[str, str], Path | None]
+"""Function that returns the definition file of a package and a relative path such as `msg/Num.msg`."""
+
+_added: dict[str, OwnInterface] = {}
+_used: set[str] = set()  # names that were looked up
+_missing: set[str] = set()  # names that no folder has; looked up again after a change of the folders
+_finders: list[InterfaceFinder] = []
+_read_variable = ""
+
+
+def find(name: str) -> OwnInterface | None:
+    """Return an interface by its full name; search its package if it is not known yet.
+
+    Raises:
+        InterfaceError: the definition, or another definition in its folder, has errors.
+    """
+    read_environment()
+    if name not in _added and name not in _missing:
+        file = _located(name)
+        if file is None:
+            _missing.add(name)
+        else:
+            _add_all([(name, file)])
+    if name in _added:
+        _used.add(name)
+    return _added.get(name)
+
+
+def names() -> list[str]:
+    """Return the full name of every interface that was added or is installed in a ROS workspace, sorted."""
+    read_environment()
+    return sorted({*_added, *installed_names()})
+
+
+def add(name: str, text: str) -> None:
+    """Define a message, service or action for this process.
+
+    A second definition with the same fields, constants and defaults has no effect.
+
+    Args:
+        name: full name, such as `my_msgs/msg/Num`, `my_msgs/srv/AddInts` or `my_msgs/action/Count`.
+        text: definition, as in a `.msg`, `.srv` or `.action` file.
+
+    Raises:
+        InterfaceError: the name or the definition is invalid, or the type has another definition already.
+    """
+    _add_all([(name, text)])
+
+
+def add_texts(texts: Iterable[tuple[str, str]]) -> None:
+    """Define several interfaces that may use each other, given as names and texts.
+
+    Raises:
+        InterfaceError: see `add`.
+    """
+    _add_all(list(texts))
+
+
+def add_folders(folders: Iterable[str | os.PathLike[str]]) -> None:
+    """Define all interfaces in folders: ROS packages, workspaces, or folders with definition files.
+
+    Raises:
+        InterfaceError: a folder or a definition has errors; the exception lists all of them.
+    """
+    given: list[tuple[str, str | Path]] = []
+    problems: list[Diagnostic] = []
+    for folder in folders:
+        path = Path(folder).expanduser()
+        found = list(definitions_in(path)) if path.is_dir() else []
+        if not found:
+            what = "has no file .msg, .srv or .action" if path.is_dir() else "is not a folder"
+            hint = "give a ROS package, a workspace, or a folder such as my_msgs with my_msgs/msg/Num.msg"
+            problems.append(Diagnostic(_UNREADABLE, "error", f"interfaces: {str(path)!r} {what}", hint=hint))
+        given += found
+    _add_all(given, problems)
+
+
+def read_environment() -> None:
+    """Define all interfaces in the folders of `SIMKIT_INTERFACES`, once for each value of the variable.
+
+    Raises:
+        InterfaceError: see `add_folders`.
+    """
+    global _read_variable
+    value = os.environ.get(VARIABLE, "")
+    if value != _read_variable:
+        _read_variable = value  # first, because the search for a type that a definition uses comes here again
+        try:
+            add_folders(folder for folder in value.split(os.pathsep) if folder)
+        except BaseException:
+            _read_variable = ""
+            raise
+
+
+def set_finder(finder: InterfaceFinder) -> None:
+    """Set the function that searches packages near the world; worlds that were loaded before keep their types."""
+    _finders[:] = [finder]
+    _missing.clear()
+
+
+def message_type(class_name: str) -> str:
+    """Return the message type of a class name, such as `Num` or `my_msgs__msg__Num`; empty if there are not one."""
+    found = [f"{name}{part}" for name in _added for part in PARTS[name.split("/")[1]]]
+    matching = [n for n in found if class_name in (n.rpartition("/")[2], n.replace("/", "__"))]
+    return matching[0] if len(matching) == 1 else ""
+
+
+def texts_used_by(type_names: Iterable[str]) -> dict[str, str]:
+    """Return the text of each own interface that some message types or interfaces consist of, by name."""
+    found: dict[str, str] = {}
+    waiting = list(type_names)
+    while waiting:
+        name = waiting.pop()
+        own = _added.get(name) or _added.get((interface_of(name) or ("", 0))[0])
+        if own is not None and own.name not in found:
+            found[own.name] = own.text
+            waiting += [used for part in own.parts for _, used in part.used_types()]
+    return dict(sorted(found.items()))
+
+
+def used_texts() -> dict[str, str]:
+    """Return the text of each own interface that was used in this process, by name."""
+    return texts_used_by(_used)
+
+
+# ---------------------------------------------------------------------- reading and checks
+
+
+def _located(name: str) -> Path | None:
+    """Return the definition file of an interface in a ROS workspace or near the world; None if there is none."""
+    if name_problem(name) is not None:
+        return None
+    package, kind, short = name.split("/")
+    file = f"{kind}/{short}.{kind}"
+    return installed_file(package, file) or next((f for find in _finders if (f := find(package, file))), None)
+
+
+def _add_all(given: Sequence[tuple[str, str | Path]], problems: Sequence[Diagnostic] = ()) -> None:
+    """Parse, check and store definitions, and those definitions in workspaces that they use.
+
+    Args:
+        given: name, and text or file, of each definition.
+        problems: problems that were found before.
+
+    Raises:
+        InterfaceError: there are problems; nothing is stored.
+    """
+    batch = _Batch(list(problems))
+    for name, source in given:
+        batch.read(name, source)
+    batch.check()
+    if batch.problems:
+        raise InterfaceError(batch.problems)
+    if batch.interfaces:
+        _added.update(batch.interfaces)
+        _missing.clear()
+
+
+class _Batch:
+    """Definitions that are read together, because they may use each other."""
+
+    def __init__(self, problems: list[Diagnostic]) -> None:
+        self.problems = problems
+        self.interfaces: dict[str, OwnInterface] = {}
+        self._waiting: list[OwnInterface] = []
+
+    def read(self, name: str, source: str | Path) -> None:
+        """Parse one definition and compare it with the definition that the type may have already."""
+        file = str(source) if isinstance(source, Path) else name
+        wrong = name_problem(name)
+        if wrong is not None:
+            self._report(file, wrong.code, 0, wrong.message, wrong.hint)
+            return
+        try:
+            text = read_input_text(source, _LARGEST_FILE) if isinstance(source, Path) else source
+        except (OSError, UnicodeDecodeError) as error:
+            self._report(file, _UNREADABLE, 0, f"the definition cannot be read: {read_failure(error)}")
+            return
+        parts, found = parse_interface(name, text)
+        for problem in found:
+            self._report(file, problem.code, problem.line, problem.message, problem.hint)
+        self._put(OwnInterface(name, tuple(parts), file), is_valid=not found)
+
+    def _put(self, own: OwnInterface, *, is_valid: bool) -> None:
+        before = self.interfaces.get(own.name) or _added.get(own.name) or _shipped(own.name)
+        if before is None or not is_valid:  # the types of a definition with errors are checked too
+            self.interfaces[own.name] = own
+            self._waiting.append(own)
+        elif [part.content for part in before.parts] != [part.content for part in own.parts]:
+            other = "simkit's own definition" if before.source == "simkit" else before.source
+            text = f"{own.name} is defined differently already: {_difference(before, own)}"
+            self._report(own.source, _DIFFERS, 0, text, f"use one definition, or another name; compare with {other}")
+
+    def check(self) -> None:
+        """Check that every type that is used exists, has an end and a moderate size."""
+        while self._waiting:
+            own = self._waiting.pop(0)
+            for part in own.parts:
+                for field, used in part.used_types():
+                    self._require(own, part.lines[field], used)
+        if not self.problems:
+            for own in self.interfaces.values():
+                self._check_size(own)
+
+    def _require(self, own: OwnInterface, line: int, used: str) -> None:
+        if used in self.interfaces or used in _added or _shipped(used) is not None:
+            return
+        file = _located(used)
+        if file is not None:
+            self.read(used, file)
+        elif not any(used == problem.file for problem in self.problems):
+            known = [*self.interfaces, *_added, *shipped_message_types(), *rosbags_types()]
+            same = sorted(name for name in known if name.endswith(used[used.rindex("/") :]) and "/msg/" in name)
+            hint = f"did you mean {same[0]!r}?" if same else did_you_mean(used, known)
+            hint = hint or "add the folder of its package with --interfaces DIR"
+            self._report(own.source, UNKNOWN_TYPE, line, f"unknown type {used!r}", hint)
+
+    def _check_size(self, own: OwnInterface) -> None:
+        def fields_of(name: str) -> list[tuple[str, tuple[int, object]]]:
+            found = self.interfaces.get(name) or _added.get(name) or _shipped(name)
+            assert found is not None
+            return found.parts[0].fields
+
+        for part in own.parts:
+            for field, used in part.used_types():
+                try:
+                    check_size(own.name, lambda name, part=part: part.fields if name == own.name else fields_of(name))
+                except DefinitionTooLarge as error:
+                    self._report(own.source, _TOO_LARGE, part.lines[field], f"{field!r} of type {used}: {error}")
+                    return
+
+    def _report(self, file: str, code: str, line: int, message: str, hint: str = "") -> None:
+        self.problems.append(Diagnostic(code, "error", message, file, line or None, hint))
+
+
+def _shipped(name: str) -> OwnInterface | None:
+    """Return an interface that is shipped with simkit or with rosbags."""
+    found = shipped_parts(name)
+    return None if found is None else OwnInterface(name, found, "simkit")
+
+
+def _difference(before: OwnInterface, now: OwnInterface) -> str:
+    """Describe the first difference between two definitions of an interface."""
+    for one, other in zip(before.parts, now.parts, strict=True):
+        for what, first, second in (
+            ("fields", one.fields, other.fields),
+            ("constants", one.constants, other.constants),
+            ("defaults", sorted(one.defaults.items()), sorted(other.defaults.items())),
+        ):
+            if first != second:
+                pairs = enumerate(zip(first, second, strict=False))
+                index = next((i for i, (one_item, other_item) in pairs if one_item != other_item), None)
+                if index is None:
+                    return f"there were {len(first)} {what}, now there are {len(second)}"
+                return f"{what} {first[index][0]!r} and {second[index][0]!r} differ"
+    return "the parts differ"

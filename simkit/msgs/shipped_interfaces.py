@@ -1,0 +1,63 @@
+"""Definitions of messages, services and actions that are shipped with simkit, and with rosbags for ROS 2 Jazzy.
+
+The definition of a simkit type is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
+with the published fields in the published order. The hash of a definition depends on field names, types and order, and
+not on constants.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, Final
+
+from simkit.msgs.definition_parser import PARTS, MessageDefinition, parse_interface
+
+_FOLDER: Final = os.path.join(os.path.dirname(__file__), "definitions")  # noqa: PTH118, PTH120 (pathlib takes 3 ms)
+NO_FIELD: Final = "structure_needs_at_least_one_member"
+"""Name of the only field of a type that has no fields."""
+
+
+@cache
+def definition_files() -> dict[str, str]:
+    """Return the path of each definition file by the full name of its message, service or action."""
+    return {
+        f"{package.name}/{kind.name}/{file.name.removesuffix(f'.{kind.name}')}": file.path
+        for package in os.scandir(_FOLDER)
+        for kind in os.scandir(package.path)
+        for file in os.scandir(kind.path)
+    }
+
+
+@cache
+def definition_text(interface_name: str) -> str:
+    """Return the text of the definition file of a message, service or action in `definitions/`."""
+    with open(definition_files()[interface_name], encoding="utf-8") as file:
+        return file.read()
+
+
+@cache
+def shipped_message_types() -> dict[str, str]:
+    """Return the interface of each message type in `definitions/`."""
+    return {f"{name}{part}": name for name in definition_files() for part in PARTS[name.split("/")[1]]}
+
+
+@cache
+def shipped_parts(interface_name: str) -> tuple[MessageDefinition, ...] | None:
+    """Return the parts of an interface that is shipped with simkit or rosbags; None for any other."""
+    if interface_name in definition_files():
+        return tuple(parse_interface(interface_name, definition_text(interface_name))[0])
+    if interface_name not in rosbags_types():
+        return None
+    constants, fields = rosbags_types()[interface_name]
+    plain = [(name, (int(node[0]), node[1])) for name, node in fields if name != NO_FIELD]
+    return (MessageDefinition("", list(constants), plain),)
+
+
+@cache
+def rosbags_types() -> Mapping[str, Any]:
+    """Return constants and fields of the message types that come with rosbags, by name."""
+    from rosbags.typesys import Stores, get_typestore
+
+    return get_typestore(Stores.ROS2_JAZZY).fielddefs
