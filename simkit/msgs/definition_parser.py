@@ -36,8 +36,8 @@ _PACKAGE: Final = re.compile(r"[a-z](?:_?[a-z0-9])*")
 _TYPE_NAME: Final = re.compile(r"[A-Z][A-Za-z0-9]*")
 _FIELD_NAME: Final = _PACKAGE
 _CONSTANT_NAME: Final = re.compile(r"[A-Z](?:[A-Z0-9_]*[A-Z0-9])?")
-_FOREIGN_NAME: Final = re.compile(r"[A-Za-z_]\w*")
-_TYPE: Final = re.compile(r"([A-Za-z]\w*(?:/\w+){0,2})(<=\d+)?(\[(<=)?(\d*)\])?")
+_FOREIGN_NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_TYPE: Final = re.compile(r"([A-Za-z]\w*(?:/\w+){0,2})(<=\d+)?(\[(<=)?(\d*)\])?", re.ASCII)
 _CODE: Final = re.compile(r"""(?:[^#'"]|'(?:\\.|[^'\\])*'|"(?:\\.|[^"\\])*"|['"])*""")
 _ITEM: Final = re.compile(r"""\s*('(?:\\.|[^'\\])*'|"(?:\\.|[^"\\])*"|[^,]*?)\s*(?:,|$)""")
 LARGEST_SIZE: Final = (1 << 31) - 1

@@ -33,7 +33,7 @@ def definitions_in(folder: Path) -> Iterator[tuple[str, Path]]:
         for name in () if is_ignored else sorted(files):
             short, _, kind = name.rpartition(".")
             # older ROS distributions install `srv/Name_Request.msg` beside `srv/Name.srv`
-            if kind in _KINDS and short and here.name in (kind, *({here.name} - set(_KINDS))):
+            if kind in _KINDS and short and (here.name == kind or here.name not in _KINDS):
                 yield f"{_package_of(here)}/{kind}/{short}", here / name
 
 
