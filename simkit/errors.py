@@ -12,7 +12,7 @@ SimkitError                 exit 1
 │   └── ParameterError               a parameter is unknown, or its value is not allowed
 ├── SimulationDiverged      exit 3   the physics diverged
 ├── PluginError             exit 4   a plugin raised
-├── SubscriberError         exit 4   a subscriber of a topic raised
+├── SubscriberError         exit 4   a callback of a script raised
 ├── RegressionError         exit 5   a regression check failed
 ├── RenderError             exit 2   there is no renderer, or it failed
 └── InstallationError       exit 1   MuJoCo is missing, damaged, or has another version
@@ -24,6 +24,16 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from simkit.diagnostic_record import NOWHERE, Diagnostic, Where
+
+
+def callback_name(callback: object) -> str:
+    """Return the name of a callback with its file and line."""
+    while hasattr(callback, "__wrapped__"):  # a wrapper that records or converts
+        callback = callback.__wrapped__
+    code = getattr(getattr(callback, "__func__", callback), "__code__", None)
+    name = str(getattr(callback, "__qualname__", "") or type(callback).__name__)
+    return f"{name!r} ({code.co_filename}:{code.co_firstlineno})" if code is not None else repr(name)
+
 
 _MOST_LISTED = 100  # problems in the text of a LoadError
 
@@ -156,10 +166,17 @@ class PluginError(SimkitError):
 
 
 class SubscriberError(SimkitError):
-    """Exception in a subscriber's callback; the original exception is `__cause__`.
+    """Exception in a callback of a script; the original exception is `__cause__`.
+
+    Args:
+        topic: name of the topic, service, action or parameter.
+        callback: name of the callback, with its file and line.
+        time: simulated time [s].
+        reason: text of the exception.
+        kind: what the callback answers, such as `service`; empty for a subscriber of a topic.
 
     Attributes:
-        topic: name of the topic.
+        topic: name of the topic, service, action or parameter.
         callback: name of the callback, with its file and line.
         time: simulated time [s].
     """
@@ -167,8 +184,9 @@ class SubscriberError(SimkitError):
     exit_code: ClassVar[int] = 4
     code = "SK-TOPIC-002"
 
-    def __init__(self, topic: str, callback: str, time: float, reason: str) -> None:
-        super().__init__(f"{self.code} subscriber {callback} of {topic!r} raised at t={time:.6g} s: {reason}")
+    def __init__(self, topic: str, callback: str, time: float, reason: str, kind: str = "") -> None:
+        subject = f"callback {callback} of {kind} {topic!r}" if kind else f"subscriber {callback} of {topic!r}"
+        super().__init__(f"{self.code} {subject} raised at t={time:.6g} s: {reason}")
         self.topic, self.callback, self.time = topic, callback, time
 
 

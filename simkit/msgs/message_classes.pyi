@@ -538,6 +538,19 @@ class Fibonacci_Result:
     sequence: NDArray[np.int32]
     __msgtype__: ClassVar[str]
 
+@dataclass
+class AddTwoInts_Request:
+    """`example_interfaces/srv/AddTwoInts_Request`"""
+    a: int
+    b: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AddTwoInts_Response:
+    """`example_interfaces/srv/AddTwoInts_Response`"""
+    sum: int
+    __msgtype__: ClassVar[str]
+
 # gazebo_msgs
 
 @dataclass

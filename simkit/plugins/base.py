@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import Action, GoalHandle
     from simkit.runtime.communication.parameter_server import Parameter
     from simkit.runtime.communication.publisher import Listener, Publisher
-    from simkit.runtime.communication.service_server import Service
+    from simkit.runtime.communication.service_call import Service
     from simkit.runtime.communication.subscription import Subscription
     from simkit.runtime.engine.random_streams import RandomStream
     from simkit.scene import ScenePlugin

@@ -9,11 +9,9 @@ from simkit.argument_checks import check_function, checked_integer
 from simkit.errors import InputError, SimulationDiverged
 from simkit.pose import Pose, Vector
 from simkit.run_spec import PluginErrorPolicy, RunSpec
-from simkit.runtime.communication.action_server import EndCallback, GoalHandle
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
-from simkit.runtime.communication.service_server import Service, ServiceHandler
-from simkit.runtime.communication.subscription import Callback, CallbackPolicy, Subscription
+from simkit.runtime.communication.script_graph import ScriptGraph
 from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.engine.engine import Engine
 from simkit.runtime.engine.engine_state import InProcess
@@ -34,13 +32,12 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.diagnostics import Diagnostic, Diagnostics
-    from simkit.runtime.communication.subscription import Callback, Message
     from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.scheduler import Scheduler
     from simkit.scene import SceneWorld
 
 
-class Simulation(InProcess):
+class Simulation(ScriptGraph, InProcess):
     """Loaded world, made by `simkit.load`; also a context manager.
 
     All readings show the state at `time`.
@@ -192,7 +189,8 @@ class Simulation(InProcess):
     def _stateful(self) -> list[Stateful]:
         """Return every part with a state, except sensors and plugins, in the order of restoring."""
         engine, interfaces, control, handles = self.engine, self.communication, self.control, self.contents.handles
-        own = (engine.faults, interfaces.live_parameters, interfaces.actions, control.pausing, control.origin)
+        calls = (interfaces.live_parameters, interfaces.services, interfaces.actions)
+        own = (engine.faults, *calls, control.pausing, control.origin)
         return [*handles.stateful(), *own, engine.velocity_servos, *handles.tables["model"].values()]
 
     def _loaded_state(self) -> Snapshot:
@@ -277,86 +275,6 @@ class Simulation(InProcess):
     @paused.setter
     def paused(self, paused: bool) -> None:
         self.control.paused = paused
-
-    def publish(self, topic: str, message: Message) -> None:
-        """Publish a message object, or a dict of its fields; command inputs receive it before the next step.
-
-        Raises:
-            MessageError: the topic is unknown, or the fields do not fit its type.
-        """
-        self.engine.check_open()
-        self.communication.publish(topic, message)
-
-    def subscribe(
-        self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: CallbackPolicy = "stop"
-    ) -> Subscription:
-        """Receive a topic; its publisher may be opened later.
-
-        Args:
-            topic: name of the topic.
-            callback: function that receives each message.
-            keep: number of newest messages to keep; None for a million.
-            on_error: policy for a callback that raises: "stop" ends the run with a SubscriberError, "drop" closes the
-                subscription.
-        """
-        self.engine.check_open()
-        return self.communication.bus.subscribe(topic, callback, keep, on_error)
-
-    def topics(self) -> dict[str, str]:
-        """Return the ROS type names by topic, sorted; "" for a topic that only has subscriptions."""
-        self.engine.check_open()
-        bus = self.communication.bus
-        return dict(sorted(({s.topic: "" for s in bus.subscriptions()} | bus.topics()).items()))
-
-    def call(self, service: str, request: Message = None) -> Message:
-        """Send a request to a service and return the response.
-
-        Args:
-            service: name of the service; a missing leading slash is added.
-            request: message, dict of its fields, or None for a message whose fields are all zero.
-
-        Raises:
-            ServiceError: no such service; the message suggests the closest name.
-            MessageError: the request or the response does not fit the type.
-            PluginError: the service of a plugin raised.
-        """
-        return self.communication.services.call(service, request)
-
-    def offer(self, service: str, type_name: str, handler: ServiceHandler) -> Service:
-        """Open a service.
-
-        Args:
-            service: name of the service; a missing leading slash is added.
-            type_name: service type, such as `std_srvs/srv/Trigger`.
-            handler: function that receives a request and returns the response: a message, a dict of its fields, or None
-                for a message whose fields are all zero.
-
-        Raises:
-            ServiceError: a service of that name exists.
-            MessageError: the type is unknown.
-        """
-        return self.communication.services.offer(service, type_name, handler)
-
-    def send_goal(
-        self, action: str, goal: Message = None, on_feedback: Callback | None = None, on_done: EndCallback | None = None
-    ) -> GoalHandle:
-        """Send a goal; the plugin receives it before the next step.
-
-        Args:
-            action: name of the action.
-            goal: message, dict of its fields, or None for a message whose fields are all zero.
-            on_feedback: function that receives each feedback message.
-            on_done: function that receives the handle after the end of the goal.
-
-        Raises:
-            ActionError: no such action; the message suggests the closest name.
-            MessageError: the goal does not fit the type.
-        """
-        return self.communication.actions.send(action, goal, on_feedback, on_done)
-
-    def set_parameter(self, node: str, name: str, value: object) -> None:
-        """Set a live parameter; raise ParameterError for an unknown parameter or a value that is not allowed."""
-        self.communication.set_parameter(node, name, value)
 
     @property
     def diagnostics(self) -> list[Diagnostic]:

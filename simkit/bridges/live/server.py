@@ -22,7 +22,7 @@ from simkit.bridges.live.message_reader import message_reader
 from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject, read_json_frame
 from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Response
 from simkit.bridges.live.topic_feed import TopicFeeds
-from simkit.errors import PluginError, SimkitError, SimulationDiverged
+from simkit.errors import PluginError, SimkitError, SimulationDiverged, SubscriberError
 from simkit.runtime.communication.command_queue import QUEUE_DEPTH
 from simkit.version import __version__
 
@@ -237,7 +237,7 @@ class Server:
             answer |= {"error": str(error.args[0] if error.args else error), "code": "SK-LIVE-008"}
         except SimkitError as error:
             answer |= {"error": str(error), "code": error.code}
-            if isinstance(error, (PluginError, SimulationDiverged)):
+            if isinstance(error, (PluginError, SimulationDiverged, SubscriberError)):
                 raised = error  # the error ends the run, as it would for a caller in the process
         except Exception as error:  # noqa: BLE001 - a service that a script offers may raise anything
             answer |= {"error": f"{request_name} failed: {error!r}", "code": "SK-LIVE-008"}

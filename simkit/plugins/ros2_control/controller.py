@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.runtime.communication.action_server import Action, GoalHandle
     from simkit.runtime.communication.publisher import Listener, Publisher
-    from simkit.runtime.communication.service_server import Service
+    from simkit.runtime.communication.service_call import Service
 
 
 Key = tuple[str, str]

@@ -9,14 +9,18 @@ The plugin receives goals and cancel requests between two steps, in the order in
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from simkit.errors import ActionError, InputError, PluginError, SimkitError, SubscriberError
+from simkit.argument_checks import check_function
+from simkit.errors import ActionError, InputError, PluginError, SimkitError, SubscriberError, callback_name
 from simkit.msgs.goal_status import GoalStatus
+from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import absolute_name
-from simkit.runtime.communication.endpoint_table import EndpointTable, as_message
-from simkit.runtime.communication.subscription import Callback, Message, callback_name
+from simkit.runtime.communication.endpoint_table import EndpointTable
+from simkit.runtime.communication.script_callback import ScriptCallback
+from simkit.runtime.communication.subscription import Callback, Message
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus
@@ -72,13 +76,25 @@ class GoalHandle:
         with bus.passing("cancel", goal=self.id):
             bus.enqueue(lambda: self._action.ask_to_cancel(self))
 
-    # ------------------------------------------------------------------ for the plugin
+    # ------------------------------------------------------------------ for the plugin or script with the action
+
+    def accept(self) -> None:
+        """Accept a goal of an action that decides later; a goal of any other action is accepted by its callback."""
+        if self.status is GoalStatus.UNKNOWN:
+            with self._action.bus.passing("accept_goal", goal=self.id):
+                self.status = GoalStatus.EXECUTING
+
+    def continue_goal(self) -> None:
+        """Continue a goal whose cancellation was requested."""
+        if self.status is GoalStatus.CANCELING:
+            with self._action.bus.passing("continue_goal", goal=self.id):
+                self.status = GoalStatus.EXECUTING
 
     def reject(self, reason: str = "") -> None:
         """Reject the goal. Only the goal callback of the plugin can do this."""
         if self.status in (GoalStatus.EXECUTING, GoalStatus.CANCELING):
             raise ActionError(f"goal {self.id} of {self._action.name!r} was accepted already; abort it")
-        self._end(GoalStatus.REJECTED, None, reason)
+        self.end(GoalStatus.REJECTED, None, reason)
 
     def publish_feedback(self, feedback: Message) -> None:
         """Send feedback to the client. After the end of the goal, feedback is ignored.
@@ -86,29 +102,39 @@ class GoalHandle:
         Args:
             feedback: feedback message, or a dict of its fields.
         """
-        if self.is_done:
+        if self.is_done or not self._action.knows(self):
             return
-        self.feedback = as_message(self._action, feedback, "Feedback")
-        self._notify(self._on_feedback, self.feedback, "feedback")
+        message = self._as_message(feedback, "Feedback")
+        with self._action.bus.passing("send_feedback", goal=self.id, feedback=message):
+            self.feedback = message
+            self._notify(self._on_feedback, message, "feedback")
 
     def succeed(self, result: Message = None, reason: str = "") -> None:
         """End the goal as succeeded."""
-        self._end(GoalStatus.SUCCEEDED, result, reason)
+        self.end(GoalStatus.SUCCEEDED, result, reason)
 
     def abort(self, result: Message = None, reason: str = "") -> None:
         """End the goal as aborted."""
-        self._end(GoalStatus.ABORTED, result, reason)
+        self.end(GoalStatus.ABORTED, result, reason)
 
     def canceled(self, result: Message = None, reason: str = "") -> None:
         """End the goal as cancelled."""
-        self._end(GoalStatus.CANCELED, result, reason)
+        self.end(GoalStatus.CANCELED, result, reason)
 
-    def _end(self, status: GoalStatus, result: Message, reason: str) -> None:
+    def end(self, status: GoalStatus, result: Message = None, reason: str = "") -> None:
+        """End the goal with a final status.
+
+        Raises:
+            ActionError: the goal has ended, or a reset or restore has undone it.
+        """
+        if not self.is_done and not self._action.knows(self):
+            raise ActionError(f"goal {self.id} of {self._action.name!r} was undone by a reset or a restore")
         if self.is_done:
             raise ActionError(f"goal {self.id} of {self._action.name!r} has ended already ({self.status.name})")
-        self.result = None if status is GoalStatus.REJECTED else as_message(self._action, result, "Result")
-        self.status, self.reason = status, reason
-        self._notify(self._on_done, self, "get_result")
+        message = None if status is GoalStatus.REJECTED else self._as_message(result, "Result")
+        with self._action.bus.passing("end_goal", goal=self.id, status=status, result=message, reason=reason):
+            self.result, self.status, self.reason = message, status, reason
+            self._notify(self._on_done, self, "get_result")
 
     def _notify(self, callback: Callback | None, argument: Message, part: str) -> None:
         """Call a callback of the client. An exception of the callback does not count as an error of the plugin."""
@@ -122,6 +148,11 @@ class GoalHandle:
             topic, now = f"{self._action.name}/_action/{part}", self._action.engine.time
             raise SubscriberError(topic, callback_name(callback), now, repr(error)) from error
 
+    def _as_message(self, value: Message, part: str) -> Message:
+        return checked_message(
+            value, (f"{self._action.type_name}_{part}",), repr(self._action.name), none_is_default=True
+        )
+
     def __deepcopy__(self, memo: dict[int, object]) -> GoalHandle:
         return self
 
@@ -133,30 +164,48 @@ class Action:
         name: absolute name.
         type_name: action type, such as `control_msgs/action/FollowJointTrajectory`.
         owner: plugin of the action; the action exists as long as its owner.
+        on_goal: function that receives each new goal.
+        on_cancel: function that receives a goal whose cancellation is requested; None if every goal continues.
+        node: other process that executes the goals, and accepts or rejects them later; empty for this process.
     """
 
     def __init__(
         self,
-        bus: TopicBus,
-        engine: Engine,
+        table: ActionTable,
         name: str,
         type_name: str,
         on_goal: GoalCallback,
         on_cancel: CancelCallback | None,
+        node: str = "",
     ) -> None:
-        self.bus, self.engine, self.name, self.type_name, self.owner = bus, engine, name, type_name, bus.owner
+        self._table, self.bus, self.engine = table, table.bus, table.engine
+        self.name, self.type_name, self.owner = name, type_name, self.bus.owner
         self.active = True
-        self._on_goal, self._on_cancel = on_goal, on_cancel
+        self.on_goal, self.on_cancel, self.node = on_goal, on_cancel, node
+        if self.owner is None and not node:
+            self.on_goal = ScriptCallback(self.bus, _succeeding(on_goal), "action", name)
+            self.on_cancel = on_cancel and ScriptCallback(self.bus, on_cancel, "action", name, lambda found: found)
+
+    def close(self) -> None:
+        """Close the action permanently. Its goals are aborted."""
+        self._table.close(self)
+
+    def knows(self, goal: GoalHandle) -> bool:
+        """Check whether a goal belongs to the present state: no reset or restore has undone it."""
+        return self._table.knows(goal)
 
     def offer(self, goal: GoalHandle) -> None:
         """Pass a goal to the plugin. The plugin executes the goal, unless its goal callback rejects the goal."""
         if goal.is_done:
             return  # the plugin raised before it received the goal
         if not self.active:
-            goal._end(GoalStatus.REJECTED, None, "the action was removed")
+            goal.end(GoalStatus.REJECTED, None, "the action was removed")
+            return
+        if self.node:
+            self.on_goal(goal)
             return
         goal.status = GoalStatus.ACCEPTED
-        self._guarded(self._on_goal, goal)
+        self._guarded(self.on_goal, goal)
         if goal.status is GoalStatus.ACCEPTED:
             goal.status = GoalStatus.EXECUTING
 
@@ -165,10 +214,10 @@ class Action:
 
         The goal continues if the plugin has no cancel callback or returns False.
         """
-        if not goal.is_active or goal.status is GoalStatus.CANCELING or self._on_cancel is None:
+        if not goal.is_active or goal.status is GoalStatus.CANCELING or self.on_cancel is None:
             return
         before, goal.status = goal.status, GoalStatus.CANCELING
-        if self._guarded(self._on_cancel, goal) is False and goal.status is GoalStatus.CANCELING:
+        if self._guarded(self.on_cancel, goal) is False and goal.status is GoalStatus.CANCELING:
             goal.status = before
 
     def _guarded(self, call: Callable[[GoalHandle], bool | None], goal: GoalHandle) -> bool | None:
@@ -187,6 +236,18 @@ class Action:
         return self
 
 
+def _succeeding(on_goal: Callable[[GoalHandle], Message]) -> GoalCallback:
+    """Return a goal callback that ends the goal as succeeded if `on_goal` returns a result."""
+
+    @functools.wraps(on_goal)
+    def execute(goal: GoalHandle) -> None:
+        result = on_goal(goal)
+        if result is not None and not goal.is_done:
+            goal.succeed(result)
+
+    return execute
+
+
 GoalStates = tuple[int, tuple[tuple[GoalHandle, tuple[GoalStatus, Message, Message, str]], ...]]
 """Number of sent goals, and status, result, feedback and reason of each goal."""
 
@@ -203,22 +264,42 @@ class ActionTable(EndpointTable[Action]):
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         super().__init__(bus, engine)
+        self.bus, self.engine = bus, engine
         self._goals: list[GoalHandle] = []
         self._sent = 0
 
-    def act(self, name: str, type_name: str, on_goal: GoalCallback, on_cancel: CancelCallback | None = None) -> Action:
+    def act(
+        self,
+        name: str,
+        type_name: str,
+        on_goal: GoalCallback,
+        on_cancel: CancelCallback | None = None,
+        *,
+        node: str = "",
+    ) -> Action:
         """Open an action. An action that is opened within `bus.owned_by(owner)` belongs to that owner.
+
+        Args:
+            name: name of the action; a missing leading slash is added.
+            type_name: action type, such as `control_msgs/action/FollowJointTrajectory`.
+            on_goal: function that receives each new goal between two steps.
+            on_cancel: function that receives a goal that a client cancels; it returns False to continue the goal.
+            node: other process that executes the goals; empty for this process.
 
         Raises:
             ActionError: an action of that name exists.
             MessageError: the type is unknown.
         """
+        self._engine.check_open()
         name = absolute_name(name)
+        check_function(on_goal, "on_goal")
+        if on_cancel is not None:
+            check_function(on_cancel, "on_cancel")
         self._check_type(type_name)
         if self._find(name) is not None:
             raise ActionError(f"an action {name!r} exists already")
-        with self._bus.passing("act", action=name):
-            action = Action(self._bus, self._engine, name, type_name, on_goal, on_cancel)
+        action = Action(self, name, type_name, on_goal, on_cancel, node)
+        with self._bus.passing("act", action=action):
             self._endpoints.setdefault(name, []).append(action)
         return action
 
@@ -261,6 +342,18 @@ class ActionTable(EndpointTable[Action]):
         """Abort every goal of a plugin that was removed from the world."""
         for goal in [g for g in self._goals if not g._action.active and g.is_active]:
             goal.abort(reason="the action was removed")
+
+    def knows(self, goal: GoalHandle) -> bool:
+        """Check whether a goal was sent in the present state of the simulation."""
+        return any(one is goal for one in self._goals)
+
+    def goal(self, number: int) -> GoalHandle:
+        """Return a goal that has not ended, by its number."""
+        return next(goal for goal in self._goals if goal.id == number)
+
+    def _end_requests(self, endpoint: Action) -> None:
+        for goal in [g for g in self._goals if g._action is endpoint and not g.is_done]:
+            goal.abort(reason=f"the action{f' of {endpoint.node!r}' if endpoint.node else ''} was closed")
 
     def get_state(self) -> GoalStates:
         """Return the status of each goal."""

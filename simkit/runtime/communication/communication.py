@@ -6,14 +6,18 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from simkit import msgs
+from simkit.argument_checks import check_list, check_text
+from simkit.errors import MessageError
+from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
 from simkit.runtime.communication.action_server import ActionTable
 from simkit.runtime.communication.parameter_server import Parameter, ParameterTable
+from simkit.runtime.communication.script_callback import ScriptCallback
 from simkit.runtime.communication.service_server import ServiceTable
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.publisher import Publisher
-    from simkit.runtime.communication.subscription import Message
+    from simkit.runtime.communication.publisher import Listener, Publisher
+    from simkit.runtime.communication.subscription import Callback, Message
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.scheduler import Phase, Scheduler, Task
@@ -147,14 +151,72 @@ class Communication:
         self.live_parameters.set(node, name, value)
 
     def publish(self, topic: str, message: Message) -> None:
-        """Publish a message; a dict for a topic that only has subscriptions gets the first type that fits.
+        """Publish a message. A message object on an unknown topic opens the topic.
+
+        A dict for a topic that only has subscriptions gets the first type that fits.
 
         Raises:
-            MessageError: the topic is unknown, or the fields do not fit its type.
+            MessageError: a dict is published on an unknown topic, or the message does not fit the topic's type.
         """
-        if isinstance(message, Mapping) and self.bus.wanted(topic) and absolute_name(topic) not in self.bus.topics():
-            message = msgs.from_dict(list(TYPES_OF_DICTS), dict(message))
+        topic = absolute_name(topic)
+        if not self.bus.types_of(topic):
+            if isinstance(message, Mapping):
+                message = msgs.from_dict(TYPES_OF_DICTS, message) if self.bus.wanted(topic) else message
+            else:
+                message = checked_message(message, (), repr(topic))
+                self.bus.advertise(topic, msgs.type_name(message))
         self.bus.publish(topic, message)
+
+    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
+        """Open a topic for messages of a script or of another process.
+
+        Args:
+            topic: name of the topic; a missing leading slash is added.
+            type_name: ROS 2 type, such as `sensor_msgs/msg/Imu`.
+            latched: send the last message to a later subscriber (transient local).
+
+        Raises:
+            MessageError: the type is unknown, or the topic has another type.
+        """
+        self._engine.check_open()
+        return self.bus.advertise(topic, *self._checked_types(topic, type_name), latched=latched)
+
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callback, *, records: bool = True) -> Listener:
+        """Open a topic for commands to a script or to another process.
+
+        Args:
+            topic: name of the topic; a missing leading slash is added.
+            types: accepted type or types; `topics` lists the first one.
+            callback: function that receives each message between two steps.
+            records: True if a journal records the calls that the callback makes into the simulation.
+
+        Raises:
+            MessageError: a type is unknown, or the topic has another type.
+        """
+        self._engine.check_open()
+        name = absolute_name(topic)
+        names = self._checked_types(name, types)
+        called = ScriptCallback(self.bus, callback, "command input", name) if records else callback
+        with self.bus.passing("listen", topic=name, types=names, callback=called) as report:
+            listener = self.bus.listen(name, names, called)
+            if report is not None:
+                report(listener)
+        return listener
+
+    def _checked_types(self, topic: str, types: str | Sequence[str]) -> tuple[str, ...]:
+        """Return the full names of types that may be used on a topic."""
+        topic = absolute_name(topic)
+        if not isinstance(types, (list, tuple)):
+            check_text(types, "the type")
+            types = (str(types),)
+        check_list(types, str, "types", "a text such as 'std_msgs/msg/String'")
+        names = tuple(msgs.full_name(name) for name in types)
+        for name in names:
+            msgs.type_of(name)
+        used = list(dict.fromkeys(self.bus.types_of(topic)))
+        if used and not set(used) & set(names):
+            raise MessageError(f"topic {topic!r} has type {' or '.join(used)}, got {' or '.join(names)}")
+        return names
 
     @property
     def parameters(self) -> dict[str, dict[str, Parameter[Any]]]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from simkit import msgs
-from simkit.argument_checks import shown
+from simkit.argument_checks import check_text
 from simkit.diagnostics import name_hint
-from simkit.errors import ActionError, MessageError, NoMessageError, ServiceError
-from simkit.msgs.message_text import is_message
+from simkit.errors import ActionError, ServiceError
+from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.message_types import interface_parts
 from simkit.runtime.communication.subscription import Message
 
@@ -66,6 +66,19 @@ class EndpointTable(Generic[E]):
         """Return the endpoints of an owner by name."""
         return {e.name: e for endpoints in self._endpoints.values() for e in endpoints if e.owner is owner}
 
+    def close(self, endpoint: E) -> None:
+        """Remove an endpoint permanently."""
+        if endpoint in self._endpoints.get(endpoint.name, ()):
+            with self._bus.passing("close", endpoint=endpoint):
+                endpoint.active = False
+                self._endpoints[endpoint.name].remove(endpoint)
+                if not self._endpoints[endpoint.name]:
+                    del self._endpoints[endpoint.name]
+                self._end_requests(endpoint)
+
+    def _end_requests(self, endpoint: E) -> None:
+        """End the requests that a closed endpoint has not answered."""
+
     def set_active(self, owners: Sequence[object]) -> None:
         """Enable the endpoints of these owners and all endpoints without an owner; disable the others."""
         living = {id(owner) for owner in owners}
@@ -82,6 +95,7 @@ class EndpointTable(Generic[E]):
 
         The definition of a known type is read later, with the first message of the type.
         """
+        check_text(type_name, "the type")
         if interface_parts(type_name) is None:
             msgs.full_name(f"{type_name}_{self.part}")
 
@@ -96,23 +110,7 @@ class EndpointTable(Generic[E]):
         return found
 
 
-def as_message(endpoint: Endpoint, value: Message, part: str) -> Message:
-    """Convert a value to a message of a service or action.
-
-    Args:
-        endpoint: service or action.
-        value: message, dict of its fields, or None for a message whose fields are all zero.
-        part: `Request` or `Response` of a service; `Goal`, `Feedback` or `Result` of an action.
-
-    Raises:
-        MessageError: the value does not fit the type.
-    """
-    type_name = f"{endpoint.type_name}_{part}"
-    if value is None or isinstance(value, Mapping):
-        return msgs.from_dict([type_name], value or {})
-    start = f"the {part.lower()} of {endpoint.name!r} must be a {type_name}"
-    if not is_message(value):
-        raise NoMessageError(f"{start}, a dict of its fields or None, got {shown(value)} ({type(value).__name__})")
-    if msgs.type_name(value) != type_name:
-        raise MessageError(f"{start}, got a {msgs.type_name(value)}")
-    return value
+        Raises:
+            MessageError: the value does not fit the type.
+        """
+        return checked_message(value, (f"{endpoint.type_name}_{self.part}",), repr(endpoint.name), none_is_default=True)

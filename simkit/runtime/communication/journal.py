@@ -15,6 +15,7 @@ from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 P = ParamSpec("P")
 R = TypeVar("R")
 OutsideCallback = Callable[[Any], Any] | None
+ResultStore = Callable[[Any], None]
 S = TypeVar("S", bound="Journaled")
 
 
@@ -29,10 +30,14 @@ class Journal(Protocol):
             arguments: arguments of the operation.
         """
 
-    def called_back(self, subscription: object) -> AbstractContextManager[None]:
+    def called_back(self, callback: object) -> AbstractContextManager[ResultStore | None]:
         """Return the context manager in which a callback runs.
 
-        If the callback belongs to no plugin, the journal records the calls that the callback makes.
+        If the callback belongs to no plugin, the journal records the calls that the callback makes. The value of the
+        context is then the function that records the callback's result.
+
+        Args:
+            callback: subscription, or `ScriptCallback`.
         """
 
     def hears(self, topic: str, subscription: object) -> None:

@@ -15,13 +15,15 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from simkit.argument_checks import check_text
+from simkit.argument_checks import check_text, checked_number, shown
 from simkit.diagnostics import did_you_mean, name_hint
 from simkit.errors import ParameterError
+from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.journal import journaled
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.service_server import ServiceHandler, ServiceTable
+    from simkit.runtime.communication.service_call import Service, ServiceHandler
+    from simkit.runtime.communication.service_server import ServiceTable
     from simkit.runtime.communication.subscription import Message
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
@@ -41,10 +43,12 @@ class Parameter(Generic[T]):
         node: node of the parameter, such as `/tb3/diff_drive`.
         name: name of the parameter.
         value: present value.
+        default: value at the declaration.
         minimum: lower bound of a number; None without one.
         maximum: upper bound of a number; None without one.
         choices: allowed values; empty if not limited to a list.
         description: meaning, with its unit.
+        on_change: function that receives each new value; None without one.
         owner: plugin of the parameter.
         active: True if the plugin is part of the simulation; False if only a restore can bring the plugin back.
     """
@@ -65,7 +69,7 @@ class Parameter(Generic[T]):
         self.node, self.name, self.value = node, name, value
         self.minimum, self.maximum, self.choices = minimum, maximum, tuple(choices)
         self.description, self.owner = description, owner
-        self._on_change = on_change
+        self.default, self.on_change = value, on_change
         self.active = True
 
     @property
@@ -96,8 +100,8 @@ class Parameter(Generic[T]):
     def take(self, value: T) -> None:
         """Store a checked value and notify the plugin."""
         self.value = value
-        if self._on_change is not None:
-            self._on_change(value)
+        if self.on_change is not None:
+            self.on_change(value)
 
     def is_within(self, value: object) -> bool:
         """Check whether a value of the right type is allowed."""
@@ -114,6 +118,35 @@ class Parameter(Generic[T]):
 
 
 AnyParameter = Parameter[Any]
+
+
+def checked_parameter(node: str, name: str, value: object, **options: Any) -> AnyParameter:
+    """Return a parameter of a script or of another process.
+
+    Args:
+        node: node of the parameter.
+        name: name of the parameter.
+        value: first value; a list of numbers is a tuple.
+        options: other arguments of `Parameter`.
+
+    Raises:
+        ParameterError: a parameter cannot have this value, or not within these bounds.
+    """
+    check_text(node, "node")
+    check_text(name, "name")
+    bounds = {end: options.get(end) for end in ("minimum", "maximum")}
+    bounds = {end: None if found is None else checked_number(found, end) for end, found in bounds.items()}
+    if isinstance(value, (np.generic, np.ndarray)):
+        value = value.tolist()
+    value, *choices = (tuple(v) if isinstance(v, list) else v for v in (value, *options.get("choices", ())))
+    if type(value) not in _TYPE_NAMES or (isinstance(value, tuple) and _convert(value, value) is None):
+        kinds = "a boolean, an integer, a number, text or a tuple of numbers"
+        raise ParameterError(f"{node} {name}: found {shown(value)}; expected {kinds}")
+    parameter: AnyParameter = Parameter(absolute_name(node), name, value, **{**options, **bounds, "choices": choices})
+    parameter.value = parameter.default = parameter.checked(parameter.value)
+    return parameter
+
+
 ParameterState = tuple[tuple[AnyParameter, Any], ...]
 """Parameters with their values."""
 
@@ -128,12 +161,38 @@ class ParameterTable:
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         self._bus, self._engine = bus, engine
+        self._services: dict[str, list[Service]] = {}
         # a new model may have the name, and so the node, of a removed model that a restore can bring back
         self._parameters: dict[str, dict[tuple[int, str], AnyParameter]] = {}
 
     def add(self, parameter: AnyParameter) -> None:
         """Add a parameter to its node."""
         self._parameters.setdefault(parameter.node, {})[id(parameter.owner), parameter.name] = parameter
+
+    def declare(self, services: ServiceTable, parameter: AnyParameter) -> None:
+        """Add a parameter of a script or of another process, with the parameter services of a new node.
+
+        Raises:
+            ParameterError: the node has a parameter of that name.
+        """
+        node, name = parameter.node, parameter.name
+        present = self.nodes().get(node, {})
+        if name in present:
+            raise ParameterError(f"{node!r} has a parameter {name!r} already")
+        with self._bus.passing("declare", parameter=parameter):
+            self.add(parameter)
+            if not present:
+                self._services[node] = offer_parameter_services(services, self, node)
+
+    def remove(self, parameter: AnyParameter) -> None:
+        """Remove a parameter that `declare` added; its node's services end with the last parameter."""
+        found = self._parameters.get(parameter.node, {})
+        if found.get((id(parameter.owner), parameter.name)) is parameter:
+            with self._bus.passing("close", endpoint=parameter):
+                del found[id(parameter.owner), parameter.name]
+                if not any(p.active for p in found.values()):
+                    for service in self._services.pop(parameter.node, ()):
+                        service.close()
 
     def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
         """Return a name for a plugin's node: the first free name of `wanted`, `otherwise`, `otherwise_2` and so on."""
@@ -183,7 +242,7 @@ class ParameterTable:
         """Enable the parameters of these plugins; disable all others."""
         living = {id(owner) for owner in owners}
         for parameter in (p for found in self._parameters.values() for p in found.values()):
-            parameter.active = id(parameter.owner) in living
+            parameter.active = parameter.owner is None or id(parameter.owner) in living
 
     def forget(self, owners: Sequence[object]) -> None:
         """Remove every parameter of these plugins permanently."""
@@ -200,7 +259,12 @@ class ParameterTable:
         return tuple((p, p.value) for found in self._parameters.values() for p in found.values())
 
     def set_state(self, state: ParameterState) -> None:
-        """Restore values from `get_state`. The plugins are not notified, because their own state is restored too."""
+        """Restore values from `get_state`. The plugins are not notified, because their own state is restored too.
+
+        A parameter that a script declared later returns to its declared value.
+        """
+        for parameter in (p for found in self._parameters.values() for p in found.values() if p.owner is None):
+            parameter.value = parameter.default
         for parameter, value in state:
             parameter.value = value
 
@@ -241,7 +305,7 @@ _VALUE_FIELDS = {
 }
 
 
-def offer_parameter_services(services: ServiceTable, parameters: ParameterTable, node: str) -> None:
+def offer_parameter_services(services: ServiceTable, parameters: ParameterTable, node: str) -> list[Service]:
     """Open the six parameter services of a node."""
 
     def find(name: str) -> AnyParameter | None:
@@ -258,9 +322,11 @@ def offer_parameter_services(services: ServiceTable, parameters: ParameterTable,
         "ListParameters": lambda request: {"result": {"names": _list_names(parameters, node, request.prefixes)}},
         "DescribeParameters": lambda request: {"descriptors": [_descriptor(find(n)) for n in request.names]},
     }
+    opened = []
     for name, handler in handlers.items():
         snake = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
-        services.offer(f"{node}/{snake}", f"rcl_interfaces/srv/{name}", handler)
+        opened.append(services.offer(f"{node}/{snake}", f"rcl_interfaces/srv/{name}", handler))
+    return opened
 
 
 def _list_names(parameters: ParameterTable, node: str, prefixes: list[str]) -> list[str]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from simkit import msgs
+from simkit.msgs.message_arguments import checked_message
 from simkit.runtime.communication.journal import JournalKeeper
 from simkit.runtime.communication.subscription import Callback, LazyMessage, Message, PendingWork
 
@@ -21,6 +22,12 @@ class PublishingBus(JournalKeeper, Protocol):
     """Interface of the topic bus that a publisher needs."""
 
     inbox: CommandQueue
+
+    def count_inputs(self, topic: str) -> int:
+        """Return the number of command inputs of a topic."""
+
+    def close(self, end: Publisher | Listener) -> None:
+        """Remove a publisher or a listener permanently."""
 
 
 class TopicSides(NamedTuple):
@@ -67,6 +74,16 @@ class Publisher:
     def wanted(self) -> bool:
         readers = self._readers
         return bool(readers.readers) or self.latched or readers.feeds
+
+    @property
+    def subscribers(self) -> int:
+        """Number of subscriptions and command inputs of the topic."""
+        readers = self._readers
+        return len(readers.readers) + (self._bus.count_inputs(self.topic) if readers.feeds else 0)
+
+    def close(self) -> None:
+        """Close the publisher permanently."""
+        self._bus.close(self)
 
     @property
     def is_live(self) -> bool:
@@ -140,13 +157,16 @@ class ExternalPublisher(Publisher):
     __slots__ = ()
 
     def publish(self, message: Message) -> None:
-        """Publish a message and record it in the journal."""
+        """Publish a message, or a dict of its fields, and record it in the journal.
+
+        Raises:
+            MessageError: the message does not fit the topic's type.
+        """
+        message = checked_message(message, (self.type_name,), repr(self.topic))
         journal = self._bus.journal
         if journal is None:
             super().publish(message)
             return
-        if type(message) is dict:
-            message = msgs.make(self.type_name, **message)
         with journal.passing("send", {"publisher": self, "message": message}):
             super().publish(message)
 
@@ -161,11 +181,15 @@ class ExternalPublisher(Publisher):
 class Listener:
     """Command input; its callback is called between two steps."""
 
-    __slots__ = ("active", "callback", "owner", "topic", "types")
+    __slots__ = ("_bus", "active", "callback", "owner", "topic", "types")
 
-    def __init__(self, topic: str, types: Sequence[str], callback: Callback, owner: object) -> None:
-        self.topic, self.types, self.callback, self.owner = topic, tuple(types), callback, owner
+    def __init__(self, bus: PublishingBus, topic: str, types: Sequence[str], callback: Callback, owner: object) -> None:
+        self._bus, self.topic, self.types, self.callback, self.owner = bus, topic, tuple(types), callback, owner
         self.active = True
+
+    def close(self) -> None:
+        """Close the command input permanently."""
+        self._bus.close(self)
 
     def __deepcopy__(self, memo: dict[int, object]) -> Listener:
         return self

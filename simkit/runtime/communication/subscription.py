@@ -191,10 +191,3 @@ class StreamSubscription(Subscription):
         super().__init__(bus, topic, callback, 0, "stop")
         self.receive = callback
         self.is_called = not takes_later
-
-
-def callback_name(callback: Callback | None) -> str:
-    """Return the name of a callback with its file and line."""
-    code = getattr(getattr(callback, "__func__", callback), "__code__", None)
-    name = str(getattr(callback, "__qualname__", "") or type(callback).__name__)
-    return f"{name!r} ({code.co_filename}:{code.co_firstlineno})" if code is not None else repr(name)

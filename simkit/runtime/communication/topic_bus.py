@@ -10,6 +10,7 @@ from simkit import msgs
 from simkit.argument_checks import check_function, checked_integer, wrong_value
 from simkit.diagnostics import Diagnostics, name_hint
 from simkit.errors import MessageError, SimkitError
+from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.command_queue import CommandQueue
 from simkit.runtime.communication.journal import Journal
@@ -125,7 +126,7 @@ class TopicBus:
         self.check_available(topic)
         self.gather(topic)
         self.revision += 1
-        listener = Listener(topic, types, callback, self.owner)
+        listener = Listener(self, topic, types, callback, self.owner)
         self._check_type(topic, listener)
         self._listeners.setdefault(topic, []).append(listener)
         self._readers_of(topic).feeds = True
@@ -170,11 +171,11 @@ class TopicBus:
     def close(self, end: Publisher | Listener) -> None:
         """Remove a publisher or a listener permanently."""
         self.gather(end.topic)
-        if isinstance(end, ExternalPublisher):
-            with self.passing("close", publisher=end):
+        if end.owner is None:
+            with self.passing("close", endpoint=end):
                 pass
         self.revision += 1
-        table: Mapping[str, Endpoints] = self._publishers if isinstance(end, Publisher) else self._listeners
+        table: Any = self._publishers if isinstance(end, Publisher) else self._listeners
         if end in table.get(end.topic, []):
             table[end.topic].remove(end)
         self._readers_of(end.topic).feeds = bool(self._listeners.get(end.topic))
@@ -184,17 +185,18 @@ class TopicBus:
     def set_active(self, owners: Sequence[object]) -> None:
         """Enable the publishers and listeners of these owners and those without an owner; disable the others."""
         living = {id(o) for o in owners}
-        tables: tuple[Mapping[str, Endpoints], ...] = (self._publishers, self._listeners)
-        for ends in (ends for table in tables for ends in table.values()):
-            for end in ends:
-                end.active = end.owner is None or id(end.owner) in living
+        for end in self._all_ends():
+            end.active = end.owner is None or id(end.owner) in living
 
     def forget(self, owners: Sequence[object]) -> None:
         """Remove every publisher and listener of these owners permanently."""
         removed = {id(owner) for owner in owners}
-        tables: tuple[Mapping[str, Endpoints], ...] = (self._publishers, self._listeners)
-        for end in [end for table in tables for ends in table.values() for end in ends if id(end.owner) in removed]:
+        for end in [end for end in self._all_ends() if id(end.owner) in removed]:
             self.close(end)
+
+    def _all_ends(self) -> Endpoints:
+        ends: Endpoints = [*self._publishers.values(), *self._listeners.values()]
+        return [end for found in ends for end in found]
 
     def endpoints(self, topic: str | None = None) -> Iterator[tuple[str, Publisher | Listener, tuple[str, ...], str]]:
         """Yield tuples of topic, publisher or listener, ROS types, and "publishes" or "takes".
@@ -216,6 +218,15 @@ class TopicBus:
 
     # ------------------------------------------------------------------ lists
 
+    def types_of(self, topic: str) -> list[str]:
+        """Return the types of a topic: those of its command inputs first, then those of its publishers."""
+        types = [t for li in self._listeners.get(topic, ()) if li.active for t in li.types]
+        return [*types, *(p.type_name for p in self._publishers.get(topic, ()) if p.active)]
+
+    def count_inputs(self, topic: str) -> int:
+        """Return the number of command inputs of a topic."""
+        return sum(li.active for li in self._listeners.get(topic, ()))
+
     def topics(self) -> dict[str, str]:
         """Return the types by topic, sorted, except unlisted topics and topics that only have subscriptions."""
         return {t: kind for t, kind in self.all_topics().items() if t not in self.unlisted or self.wanted(t)}
@@ -223,14 +234,9 @@ class TopicBus:
     def all_topics(self) -> dict[str, str]:
         """Return the ROS type names of all topics, including unlisted ones."""
         found: dict[str, str] = {}
-        for topic, publishers in self._publishers.items():
-            for p in publishers:
-                if p.active:
-                    found.setdefault(topic, p.type_name)
-        for topic, listeners in self._listeners.items():
-            for li in listeners:
-                if li.active:
-                    found.setdefault(topic, li.types[0])
+        for topic, end, types, _ in self.endpoints():
+            if end.active:
+                found.setdefault(topic, types[0])
         return dict(sorted(found.items()))
 
     def latched(self) -> frozenset[str]:
@@ -262,8 +268,7 @@ class TopicBus:
         return [reader for readers in self._readers.values() for reader in readers.readers]
 
     def _report_change(self, topic: str) -> None:
-        if topic in self._on_change:
-            self._on_change[topic]()
+        self._on_change.get(topic, lambda: None)()
 
     # ------------------------------------------------------------------ messages
 
@@ -296,14 +301,10 @@ class TopicBus:
             MessageError: the type of a dict is unknown, or the dict fits no type.
         """
         topic = absolute_name(topic)
-        types = [t for li in self._listeners.get(topic, ()) if li.active for t in li.types]
-        types += [p.type_name for p in self._publishers.get(topic, ()) if p.active]
-        if isinstance(message, Mapping):
-            if not types:
-                raise MessageError(f"no topic {topic!r}; {name_hint(topic, self.topics())}")
-            message = msgs.from_dict(list(dict.fromkeys(types)), dict(message))
-        elif msgs.type_name(message) not in types and types:
-            raise MessageError(f"{topic!r} needs {' or '.join(dict.fromkeys(types))}, got {msgs.type_name(message)}")
+        types = self.types_of(topic)
+        if not types and isinstance(message, Mapping):
+            raise MessageError(f"no topic {topic!r}; {name_hint(topic, self.topics())}")
+        message = checked_message(message, types, repr(topic))
         with self.passing("publish", topic=topic, message=message):
             self.gather(topic)
             readers = self._readers_of(topic)

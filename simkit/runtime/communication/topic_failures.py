@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged, SubscriberError
-from simkit.runtime.communication.subscription import MAX_KEPT_MESSAGES, callback_name
+from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged, SubscriberError, callback_name
+from simkit.runtime.communication.subscription import MAX_KEPT_MESSAGES
 from simkit.runtime.engine.plugin_faults import is_guarded
 
 if TYPE_CHECKING:
@@ -21,10 +21,13 @@ class TopicFailures:
     Args:
         reports: collection for the warnings.
         now: function that returns the simulated time [s].
+
+    Attributes:
+        now: function that returns the simulated time [s].
     """
 
     def __init__(self, reports: Diagnostics, now: Callable[[], float]) -> None:
-        self._reports, self._now = reports, now
+        self._reports, self.now = reports, now
 
     def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
         """Stop the run or close the subscription, as its policy requires. Call this inside the `except` block."""
@@ -34,17 +37,17 @@ class TopicFailures:
         if subscription.on_error == "stop":
             if isinstance(error, SimkitError) and not isinstance(error, InputError):
                 raise error  # unchanged, so that the publishing plugin is not blamed
-            raise SubscriberError(topic, name, self._now(), repr(error)) from error
+            raise SubscriberError(topic, name, self.now(), repr(error)) from error
         subscription.close()
-        message = f"subscriber {name} of {topic!r} raised at t={self._now():.6g} s and is closed: {error!r}"
+        message = f"subscriber {name} of {topic!r} raised at t={self.now():.6g} s and is closed: {error!r}"
         self._reports.warning("SK-TOPIC-003", message)
 
     def input_error(self, listener: Listener, error: Exception) -> SimkitError:
         """Return the error for a command input whose callback raised."""
         owner, hook = listener.owner, f"its callback for {listener.topic!r}"
         if hasattr(owner, "where"):
-            return PluginError(str(getattr(owner, "name", owner)), hook, self._now(), str(owner.where), repr(error))
-        return SubscriberError(listener.topic, callback_name(listener.callback), self._now(), repr(error))
+            return PluginError(str(getattr(owner, "name", owner)), hook, self.now(), str(owner.where), repr(error))
+        return SubscriberError(listener.topic, callback_name(listener.callback), self.now(), repr(error))
 
     def report_full(self, topic: str) -> None:
         """Warn that a subscription without `keep` has received more messages than it can keep."""

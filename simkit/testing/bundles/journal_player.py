@@ -4,19 +4,42 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError, MessageError, SimkitError
+from simkit.msgs.goal_status import GoalStatus
 from simkit.pose import Pose
 from simkit.run_spec import JsonMapping
+from simkit.runtime.communication.parameter_server import Parameter
 from simkit.testing.bundles.direct_changes import apply_changes
 from simkit.testing.bundles.journal_values import decode_message, decode_value
 
 if TYPE_CHECKING:
-    from simkit.runtime import Publisher, Simulation, Snapshot
+    from simkit.runtime import Simulation, Snapshot
     from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.runtime.communication.service_call import ServiceCall
 
 Entry = JsonMapping
+
+
+class AbsentServer:
+    """Process that offered a service in the recorded run. Its responses are in the journal.
+
+    Attributes:
+        node: name of the process.
+        is_busy: True, because no code may wait for the process.
+    """
+
+    is_busy = True
+
+    def __init__(self, node: str) -> None:
+        self.node = node
+
+    def send(self, call: ServiceCall) -> None:
+        """Do nothing: the journal has the response."""
+
+    def wait(self, seconds: float) -> None:
+        """Do nothing: the journal has the response."""
 
 
 class JournalPlayer:
@@ -50,7 +73,7 @@ class JournalPlayer:
                 self._cancelled.add(entry.get("goal"))
         self._snapshots: dict[object, Snapshot] = {}
         self._goals: dict[object, GoalHandle] = {}
-        self._publishers: dict[object, Publisher] = {}
+        self._endpoints: dict[object, Any] = {}
         self.count = 0
         self.refused: list[str] = []
 
@@ -92,17 +115,50 @@ class JournalPlayer:
     def _advertise(self, entry: Entry) -> None:
         topic, type_name = _text_field(entry, "topic"), _text_field(entry, "type")
         publisher = self._sim.communication.bus.advertise(topic, type_name, latched=entry.get("latched") is True)
-        self._publishers[entry.get("number")] = publisher
+        self._endpoints[entry.get("number")] = publisher
 
     def _send(self, entry: Entry) -> None:
-        message, publisher = decode_message(entry.get("message")), self._publishers.get(entry.get("number"))
+        message, publisher = decode_message(entry.get("message")), self._endpoints.get(entry.get("number"))
         if publisher is None:  # advertised before the journal began
             self._sim.communication.bus.publish(_text_field(entry, "topic"), message)
         else:
             publisher.publish(message)
 
     def _close(self, entry: Entry) -> None:
-        self._sim.communication.bus.close(self._publishers.pop(entry.get("number")))
+        endpoint = self._endpoints.pop(entry.get("number"))
+        if isinstance(endpoint, Parameter):
+            self._sim.communication.live_parameters.remove(endpoint)
+        else:
+            endpoint.close()
+
+    def _listen(self, entry: Entry) -> None:
+        types, called = [str(name) for name in entry["types"]], self._answering(entry.get("callback"))
+        self._endpoints[entry.get("number")] = self._sim.listen(_text_field(entry, "topic"), types, called)
+
+    def _offer(self, entry: Entry) -> None:
+        node, called = entry.get("node"), self._answering(entry.get("callback"))
+        remote = None if node is None else AbsentServer(str(node))
+        name, type_name = _text_field(entry, "service"), _text_field(entry, "type")
+        service = self._sim.communication.services.offer(name, type_name, called, remote=remote)
+        self._endpoints[entry.get("number")] = service
+
+    def _act(self, entry: Entry) -> None:
+        on_cancel = self._answering(entry.get("on_cancel")) if entry.get("cancels") is True else None
+        name, type_name, node = (_text_field(entry, field) for field in ("action", "type", "node"))
+        on_goal = self._answering(entry.get("on_goal"))
+        action = self._sim.communication.actions.act(name, type_name, on_goal, on_cancel, node=node)
+        self._endpoints[entry.get("number")] = action
+
+    def _declare(self, entry: Entry) -> None:
+        options: dict[str, Any] = {name: entry.get(name) for name in ("minimum", "maximum", "choices", "description")}
+        node, name = _text_field(entry, "node"), _text_field(entry, "name")
+        called = self._callback_for_entries(entry.get("callback"))
+        value: Any = entry.get("value")
+        self._endpoints[entry.get("number")] = self._sim.declare(name, value, node=node, on_change=called, **options)
+
+    def _answering(self, number: object) -> Callable[[Any], Any]:
+        """Return a callback that plays the entries of the run's callback and returns its results."""
+        return self._callback_for_entries(number) or (lambda _: None)
 
     def _hear(self, entry: Entry) -> None:
         """Subscribe to a topic of the run, if the callback of that subscription made inputs to the simulation."""
@@ -110,21 +166,30 @@ class JournalPlayer:
         if callback is not None:
             self._sim.communication.bus.tap(_text_field(entry, "topic"), callback)
 
-    def _callback_for_entries(self, number: object) -> Callable[[object], None] | None:
+    def _callback_for_entries(self, number: object) -> Callable[[Any], Any] | None:
         """Return a callback whose n-th call plays the entries that the run's callback wrote in its n-th call.
 
-        The result is None if the run's callback wrote no entries.
+        The callback returns the result that the run's callback returned in this call.
+
+        Returns:
+            The callback; None if the run's callback wrote no entries.
         """
         pending = self._within.get(_integer_field(number)) if number is not None else None
         if not pending:
             return None
         count = 0
 
-        def play_pending(_: object) -> None:
+        def play_pending(_: object) -> object:
             nonlocal count
             count += 1
+            result = None
             while pending and _integer_field(pending[0]["in"][1]) <= count:
-                self._play(pending.popleft())
+                entry = pending.popleft()
+                if entry["do"] == "return":
+                    result, self.count = entry.get("value"), self.count + 1
+                else:
+                    self._play(entry)
+            return decode_message(result) if isinstance(result, dict) else result
 
         return play_pending
 
@@ -139,6 +204,32 @@ class JournalPlayer:
         handle = self._sim.send_goal(_text_field(entry, "action"), decode_message(entry.get("goal")), feedback, done)
         if handle.id in self._cancelled:
             self._goals[handle.id] = handle
+
+    def _begin_call(self, entry: Entry) -> None:
+        services, request = self._sim.communication.services, decode_message(entry.get("request"))
+        services.begin(_text_field(entry, "service"), request, self._callback_for_entries(entry.get("on_done")))
+
+    def _finish_call(self, entry: Entry) -> None:
+        services, response = self._sim.communication.services, entry.get("response")
+        message = None if response is None else decode_message(response)
+        services.finish(services.waiting(_integer_field(entry.get("call"))), message, _text_field(entry, "error"))
+
+    def _goal(self, entry: Entry) -> GoalHandle:
+        return self._sim.communication.actions.goal(_integer_field(entry.get("goal")))
+
+    def _accept_goal(self, entry: Entry) -> None:
+        self._goal(entry).accept()
+
+    def _continue_goal(self, entry: Entry) -> None:
+        self._goal(entry).continue_goal()
+
+    def _send_feedback(self, entry: Entry) -> None:
+        self._goal(entry).publish_feedback(decode_message(entry.get("feedback")))
+
+    def _end_goal(self, entry: Entry) -> None:
+        result = None if entry.get("result") is None else decode_message(entry.get("result"))
+        status = GoalStatus(_integer_field(entry.get("status")))
+        self._goal(entry).end(status, result, _text_field(entry, "reason"))
 
     def _cancel(self, entry: Entry) -> None:
         self._goals[entry.get("goal")].cancel()
@@ -193,6 +284,8 @@ _ENTRY_METHODS: dict[str, Callable[[JournalPlayer, Entry], None]] = {
     name: getattr(JournalPlayer, f"_{name}")
     for name in (
         *("publish", "advertise", "send", "close", "hear", "by_hand", "call", "send_goal", "cancel", "set", "spawned"),
+        *("listen", "offer", "act", "declare", "begin_call", "finish_call"),
+        *("accept_goal", "continue_goal", "send_feedback", "end_goal"),
         *("remove", "clone", "add_sensor", "make_movable", "add_weld", "set_weld", "reset", "reseed"),
         *("reset_models", "snapshot", "restore"),
     )

@@ -14,16 +14,23 @@ from weakref import WeakKeyDictionary, finalize, ref
 from simkit.msgs import Message
 from simkit.pose import Pose
 from simkit.run_spec import JsonObject
+from simkit.runtime.communication.script_callback import ScriptCallback
 from simkit.scene import SceneModel
 from simkit.testing.bundles.direct_changes import DirectChanges
 from simkit.testing.bundles.journal_values import NotEncodable, encode_message, encode_value
 
 if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
-    from simkit.runtime.communication.service_server import Service
+    from simkit.runtime.communication.action_server import Action
+    from simkit.runtime.communication.journal import ResultStore
+    from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.service_call import Service
 
 _MAX_BYTES_IN_MEMORY: Final = 16 << 20  # beyond this size [bytes], the journal continues in a temporary file
-_CALLS_STORED_UNCHANGED: Final = ("add_weld", "cancel", "make_movable", "remove", "reseed", "reset", "reset_models")
+_CALLS_STORED_UNCHANGED: Final = (
+    *("accept_goal", "add_weld", "cancel", "continue_goal", "make_movable", "remove", "reseed", "reset"),
+    *("reset_models",),
+)
 """Calls whose arguments are stored unchanged in the entry."""
 MAX_JOURNAL_BYTES: Final = 1 << 30
 """Maximum size of a journal [bytes]."""
@@ -55,7 +62,7 @@ class JournalWriter:
         self._callback_counts: dict[int, list[int]] = {}
         self._numbers: WeakKeyDictionary[object, int] = WeakKeyDictionary()
         self._callback_numbers: WeakKeyDictionary[object, int] = WeakKeyDictionary()
-        self._publishers: dict[int, tuple[object, int]] = {}
+        self._endpoints: dict[int, tuple[object, int]] = {}
         self._snapshots: dict[int, tuple[ref[object], int]] = {}
         self._snapshot_count = 0
         self._direct_changes = DirectChanges(sim)
@@ -98,14 +105,16 @@ class JournalWriter:
             self._direct_changes.store_state()
 
     @contextmanager
-    def called_back(self, subscription: object) -> Iterator[None]:
+    def called_back(self, callback: object) -> Iterator[ResultStore | None]:
         """Treat inputs from a callback as external, except if the callback belongs to a plugin."""
-        number = self._numbers.get(subscription)
+        number = self._numbers.get(callback)
         if number is None:  # the callback belongs to a plugin
-            yield
+            yield None
             return
+        if isinstance(callback, ScriptCallback):
+            self._callback_counts[number][1] += 1
         with self._outside_at(number):
-            yield
+            yield self._store_result
 
     @contextmanager
     def _outside_at(self, number: int) -> Iterator[None]:
@@ -132,6 +141,19 @@ class JournalWriter:
 
         self._callback_numbers[counted_callback] = count[0]
         return counted_callback
+
+    def _store_result(self, value: object) -> None:
+        """Record the result of the active callback."""
+        try:
+            self._write("return", {"value": encode_message(value) if hasattr(value, "__msgtype__") else value})
+        except NotEncodable as error:
+            self.gaps.append(f"the result of a callback cannot be stored by a bundle: {error}")
+
+    def _numbered(self, callback: object) -> int | None:
+        """Return the number of a script's callback; None if there is none."""
+        if isinstance(callback, ScriptCallback) and callback not in self._numbers:
+            self._numbers[callback] = self._new_callback_counter()[0]
+        return None if callback is None else self._numbers.get(callback)
 
     def _new_callback_counter(self) -> list[int]:
         number = len(self._callback_counts) + 1
@@ -208,35 +230,74 @@ class JournalWriter:
         return {"topic": topic, "message": encode_message(message)}
 
     def _of_advertise(self, publisher: Publisher) -> dict[str, object]:
-        number = len(self._publishers) + 1
-        self._publishers[id(publisher)] = publisher, number
+        number = self._number_of_endpoint(publisher)
         arguments = {"topic": publisher.topic, "type": publisher.type_name, "latched": publisher.latched}
         return {"number": number, **arguments}
 
     def _of_send(self, publisher: Publisher, message: Message) -> dict[str, object]:
-        number = self._publishers.get(id(publisher), (None, 0))[1]
+        number = self._endpoints.get(id(publisher), (None, 0))[1]
         return {"number": number, "topic": publisher.topic, "message": encode_message(message)}
 
-    def _of_close(self, publisher: object) -> dict[str, object] | None:
-        known = self._publishers.get(id(publisher))
+    def _number_of_endpoint(self, endpoint: object) -> int:
+        """Return the number of a new publisher, command input, service, action or parameter."""
+        return self._endpoints.setdefault(id(endpoint), (endpoint, len(self._endpoints) + 1))[1]
+
+    def _of_listen(self, topic: str, types: tuple[str, ...], callback: object) -> dict[str, object]:
+        arguments = {"topic": topic, "types": list(types), "callback": self._numbered(callback)}
+        number = len(self._endpoints) + 1
+
+        def store(listener: object) -> None:
+            self._endpoints[id(listener)] = listener, number
+
+        return {"number": number, **arguments, "then": store}
+
+    def _of_close(self, endpoint: object) -> dict[str, object] | None:
+        known = self._endpoints.get(id(endpoint))
         return None if known is None else {"number": known[1]}
 
-    def _of_call(self, service: Service, request: object) -> dict[str, object] | None:
-        if service.owner is None and not service.yields:
-            # a replay does not call a service of the caller; the inputs that its callback makes are recorded instead
-            return None
+    def _of_call(self, service: Service, request: object) -> dict[str, object]:
         return {"service": service.name, "request": encode_message(request)}
 
     def _of_send_goal(self, action: str, goal: object, on_feedback: object, on_done: object) -> dict[str, object]:
-        callbacks = {"on_feedback": on_feedback, "on_done": on_done}
-        heard = {name: self._callback_numbers.get(one) for name, one in callbacks.items() if one is not None}
-        return {"action": action, "goal": encode_message(goal), **{k: v for k, v in heard.items() if v is not None}}
+        heard = self._outside_callbacks(on_feedback=on_feedback, on_done=on_done)
+        return {"action": action, "goal": encode_message(goal), **heard}
 
-    def _of_offer(self, service: str) -> None:
-        self.gaps.append(f"the service {service!r} was offered by the caller; a replay does not have it")
+    def _of_begin_call(self, service: str, request: object, on_done: object) -> dict[str, object]:
+        return {"service": service, "request": encode_message(request), **self._outside_callbacks(on_done=on_done)}
 
-    def _of_act(self, action: str) -> None:
-        self.gaps.append(f"the action {action!r} was offered by the caller; a replay does not have it")
+    def _outside_callbacks(self, **callbacks: object) -> dict[str, object]:
+        """Return the numbers of the callbacks that `outside` wrapped, by name."""
+        found = {name: self._callback_numbers.get(one) for name, one in callbacks.items() if one is not None}
+        return {name: number for name, number in found.items() if number is not None}
+
+    def _of_finish_call(self, call: int, response: object, error: str) -> dict[str, object]:
+        return {"call": call, "response": None if response is None else encode_message(response), "error": error}
+
+    def _of_offer(self, service: Service) -> dict[str, object]:
+        entry = {"number": self._number_of_endpoint(service), "service": service.name, "type": service.type_name}
+        if service.remote is not None:
+            return {**entry, "node": service.remote.node}
+        return {**entry, "callback": self._numbered(service.handler)}
+
+    def _of_act(self, action: Action) -> dict[str, object]:
+        entry = {"number": self._number_of_endpoint(action), "action": action.name, "type": action.type_name}
+        callbacks = {"on_goal": self._numbered(action.on_goal), "on_cancel": self._numbered(action.on_cancel)}
+        if action.node:
+            callbacks = {"on_goal": None, "on_cancel": None}
+        return {**entry, "node": action.node, **callbacks, "cancels": action.on_cancel is not None}
+
+    def _of_end_goal(self, goal: int, status: int, result: object, reason: str) -> dict[str, object]:
+        message = None if result is None else encode_message(result)
+        return {"goal": goal, "status": int(status), "result": message, "reason": reason}
+
+    def _of_send_feedback(self, goal: int, feedback: object) -> dict[str, object]:
+        return {"goal": goal, "feedback": encode_message(feedback)}
+
+    def _of_declare(self, parameter: Parameter[Any]) -> dict[str, object]:
+        names = ("node", "name", "value", "minimum", "maximum", "choices", "description")
+        values = {name: encode_value(getattr(parameter, name)) for name in names}
+        number = self._number_of_endpoint(parameter)
+        return {"number": number, **values, "callback": self._numbered(parameter.on_change)}
 
     def _of_set(self, node: str, name: str, value: object) -> dict[str, object]:
         return {"node": node, "name": name, "value": encode_value(value)}

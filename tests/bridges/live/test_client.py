@@ -221,5 +221,5 @@ def test_an_error_in_a_service_of_a_script_is_reported_and_raised(
     with run(court, may_fail=True) as client:
         with pytest.raises(LiveError, match="no bricks left"):
             client.call("/build")
-        with pytest.raises(LiveClosed, match="ended: no bricks left"):
+        with pytest.raises(LiveClosed, match="ended: SK-TOPIC-002 .*no bricks left"):
             client.flush()

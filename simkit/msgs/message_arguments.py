@@ -1,0 +1,41 @@
+"""Messages as users give them: message objects, dicts of fields, or None."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from simkit import msgs
+from simkit.errors import MessageError, NoMessageError
+from simkit.msgs.message_types import FieldValue, Message
+
+
+def checked_message(
+    value: FieldValue, type_names: Iterable[str], place: str, *, none_is_default: bool = False
+) -> Message:
+    """Return a message of one of the types.
+
+    Args:
+        value: message, or dict of the fields of the first type that they match.
+        type_names: full names of the accepted types; empty if a message may have any type.
+        place: topic, service or action for the error message.
+        none_is_default: True if None is a message with all fields at their defaults.
+
+    Raises:
+        MessageError: the value does not fit the types; the message begins with `place`.
+    """
+    names = list(dict.fromkeys(type_names))
+    if value is None and none_is_default:
+        value = {}
+    if isinstance(value, Mapping):
+        try:
+            return msgs.from_dict(names, dict(value))
+        except MessageError as error:
+            raise MessageError(f"{place}: {error}") from None
+    found = None if isinstance(value, type) else getattr(value, "__msgtype__", None)
+    if found in names or (isinstance(found, str) and not names):
+        return value
+    if isinstance(found, str):
+        raise MessageError(f"{place} needs {' or '.join(names)}, got {found}")
+    got = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
+    wanted = f"{' or '.join(names) or 'a message'}, or a dict of its fields"
+    raise NoMessageError(f"{place} needs {wanted}; {got} is not a message")

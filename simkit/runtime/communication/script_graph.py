@@ -1,0 +1,224 @@
+"""Topics, services, actions and parameters of a simulation, as a script uses them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from simkit.runtime.communication.parameter_server import Parameter, checked_parameter
+from simkit.runtime.communication.script_callback import ScriptCallback
+
+if TYPE_CHECKING:
+    from simkit.runtime.communication.action_server import Action, CancelCallback, EndCallback, GoalHandle
+    from simkit.runtime.communication.communication import Communication
+    from simkit.runtime.communication.publisher import Listener, Publisher
+    from simkit.runtime.communication.service_call import CallEnd, Service, ServiceHandler
+    from simkit.runtime.communication.subscription import Callback, CallbackPolicy, Message, Subscription
+    from simkit.runtime.engine.engine import Engine
+
+T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
+
+SCRIPT_NODE = "/script"
+"""Node of the parameters that a script declares without a node."""
+
+
+class ScriptGraph:
+    """Topics, services, actions and parameters: the base class of a simulation.
+
+    Attributes:
+        engine: physics, step loop, servos, random streams, plugin faults.
+        communication: topics, services, actions and live parameters.
+    """
+
+    engine: Engine
+    communication: Communication
+
+    # ------------------------------------------------------------------ topics
+
+    def advertise(self, topic: str, type_name: str, latched: bool = False) -> Publisher:
+        """Open a topic for publishing.
+
+        Args:
+            topic: name of the topic; a missing leading slash is added.
+            type_name: ROS 2 type, such as `std_msgs/msg/String`.
+            latched: send the last message to a later subscriber (transient local).
+
+        Raises:
+            MessageError: the type is unknown, or the topic has another type.
+        """
+        return self.communication.advertise(topic, type_name, latched=latched)
+
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callback) -> Listener:
+        """Open a topic for commands: `callback(message)` is called between two steps for each message.
+
+        Use `subscribe` for messages that a sensor or a plugin publishes.
+
+        Args:
+            topic: name of the topic; a missing leading slash is added.
+            types: accepted type or types.
+            callback: function that receives each message.
+
+        Raises:
+            MessageError: a type is unknown, or the topic has another type.
+        """
+        return self.communication.listen(topic, types, callback)
+
+    def publish(self, topic: str, message: Message) -> None:
+        """Publish a message object, or a dict of its fields; command inputs receive it before the next step.
+
+        A message object on an unknown topic opens the topic.
+
+        Raises:
+            MessageError: a dict is published on an unknown topic, or the message does not fit the topic's type.
+        """
+        self.engine.check_open()
+        self.communication.publish(topic, message)
+
+    def subscribe(
+        self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: CallbackPolicy = "stop"
+    ) -> Subscription:
+        """Receive a topic; its publisher may be opened later.
+
+        Args:
+            topic: name of the topic.
+            callback: function that receives each message.
+            keep: number of newest messages to keep; None for a million.
+            on_error: policy for a callback that raises: "stop" ends the run with a SubscriberError, "drop" closes the
+                subscription.
+        """
+        self.engine.check_open()
+        return self.communication.bus.subscribe(topic, callback, keep, on_error)
+
+    def topics(self) -> dict[str, str]:
+        """Return the ROS type names by topic, sorted; "" for a topic that only has subscriptions."""
+        self.engine.check_open()
+        bus = self.communication.bus
+        return dict(sorted(({s.topic: "" for s in bus.subscriptions()} | bus.topics()).items()))
+
+    # ------------------------------------------------------------------ services
+
+    def call(
+        self, service: str, request: Message = None, timeout: float = 10.0, on_done: CallEnd | None = None
+    ) -> Message:
+        """Send a request to a service and return the response.
+
+        Args:
+            service: name of the service; a missing leading slash is added.
+            request: message, dict of its fields, or None for a message whose fields are all zero.
+            timeout: longest wait for a service of another process [s], wall time.
+            on_done: function that receives the call before the step after the response has arrived; its `response` is
+                None if its `error` is not. With `on_done`, the method returns at once, with the `ServiceCall`.
+
+        Raises:
+            ServiceError: no such service; the message suggests the closest name. Or: another process does not answer,
+                or a callback would wait for it (SK-SERVICE-011).
+            MessageError: the request does not fit the type.
+            PluginError: the service of a plugin raised.
+            SubscriberError: the function of a script that answers raised.
+        """
+        return self.communication.services.call(service, request, timeout, on_done)
+
+    def offer(self, service: str, type_name: str, handler: ServiceHandler) -> Service:
+        """Open a service.
+
+        Args:
+            service: name of the service; a missing leading slash is added.
+            type_name: service type, such as `std_srvs/srv/Trigger`.
+            handler: function that receives a request and returns the response: a message, a dict of its fields, or None
+                for a message whose fields are all zero.
+
+        Raises:
+            ServiceError: a service of that name exists.
+            MessageError: the type is unknown.
+        """
+        return self.communication.services.offer(service, type_name, handler)
+
+    # ------------------------------------------------------------------ actions
+
+    def act(
+        self,
+        action: str,
+        type_name: str,
+        callback: Callable[[GoalHandle], Any],
+        on_cancel: CancelCallback | None = None,
+    ) -> Action:
+        """Open an action.
+
+        Args:
+            action: name of the action; a missing leading slash is added.
+            type_name: action type, such as `example_interfaces/action/Fibonacci`.
+            callback: function that receives each new goal between two steps. It may reject the goal, or return the
+                result: a message or a dict of its fields. Otherwise the goal is active until its method `succeed`,
+                `abort` or `canceled` is called.
+            on_cancel: function that receives a goal that a client cancels; it returns False to continue the goal.
+                Without a function, every goal continues.
+
+        Raises:
+            ActionError: an action of that name exists.
+            MessageError: the type is unknown.
+        """
+        return self.communication.actions.act(action, type_name, callback, on_cancel)
+
+    def send_goal(
+        self, action: str, goal: Message = None, on_feedback: Callback | None = None, on_done: EndCallback | None = None
+    ) -> GoalHandle:
+        """Send a goal; the plugin receives it before the next step.
+
+        Args:
+            action: name of the action.
+            goal: message, dict of its fields, or None for a message whose fields are all zero.
+            on_feedback: function that receives each feedback message.
+            on_done: function that receives the handle after the end of the goal.
+
+        Raises:
+            ActionError: no such action; the message suggests the closest name.
+            MessageError: the goal does not fit the type.
+        """
+        return self.communication.actions.send(action, goal, on_feedback, on_done)
+
+    # ------------------------------------------------------------------ parameters
+
+    def declare(
+        self,
+        name: str,
+        value: T,
+        *,
+        node: str = SCRIPT_NODE,
+        minimum: float | None = None,
+        maximum: float | None = None,
+        choices: Sequence[T] = (),
+        description: str = "",
+        on_change: Callable[[T], object] | None = None,
+    ) -> Parameter[T]:
+        """Declare a live parameter: `.value` is always the current value.
+
+        Args:
+            name: name of the parameter, such as `p_gain`.
+            value: first value. Later values have its type: bool, int, float, str or tuple of numbers.
+            node: ROS node of the parameter; the six parameter services have its name in front.
+            minimum: lower bound of the number, or of each number of a tuple.
+            maximum: upper bound of the number, or of each number of a tuple.
+            choices: allowed values; empty for no restriction.
+            description: meaning of the parameter, with its unit.
+            on_change: function that receives each new value between two steps. Resets and restores do not call it.
+
+        Raises:
+            ParameterError: the node has a parameter of that name, or the value is not allowed.
+        """
+        self.engine.check_open()
+        parameter = checked_parameter(
+            node,
+            name,
+            value,
+            minimum=minimum,
+            maximum=maximum,
+            choices=choices,
+            description=description,
+            on_change=on_change and ScriptCallback(self.communication.bus, on_change, "parameter", name),
+        )
+        self.communication.live_parameters.declare(self.communication.services, parameter)
+        return parameter
+
+    def set_parameter(self, node: str, name: str, value: object) -> None:
+        """Set a live parameter; raise ParameterError for an unknown parameter or a value that is not allowed."""
+        self.communication.set_parameter(node, name, value)
