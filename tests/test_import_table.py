@@ -60,6 +60,7 @@ FRONT = {"__init__", "__main__"}
 """Modules that only hand on what a user imports or runs."""
 
 HEAVY = {
+    "action_msgs": "only the Python of ROS has it",
     "coacd": "optional: the extra `decompose`",
     "cv2": "0.1 s",
     "embreex": "optional: has no wheels for some machines",
@@ -82,6 +83,7 @@ HEAVY = {
     "pvlib": "optional: the extra `sun`",
     "pyarrow": "optional: the extra `parquet`",
     "pytest": "only tests have it",
+    "rclpy": "only the Python of ROS has it",
     "rich": "0.05 s",
     "rosbags": "0.04 s; only messages need it",
     "scipy": "0.3 s",

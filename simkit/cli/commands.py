@@ -45,6 +45,7 @@ COMMANDS = {
     "node": "List the nodes of a running simulation.",
     "interface": "List and show the types of messages, services and actions.",
     "model": "Show models, poses and joints of a running simulation.",
+    "ros": "Connect a running simulation to ROS 2.",
     "tf": "Show the frames of a running simulation or of a bag.",
 }
 """Commands and their help lines. The module of each command has the command's name and is imported on first use."""

@@ -16,7 +16,7 @@ from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
 from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.gazebo_options import remove_gazebo_options
 from simkit.cli.run_options import RunDisplay, load_options
-from simkit.cli.terminal import options
+from simkit.cli.terminal import options, ros_options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, report_errors_and_json
 from simkit.cli.terminal.options import option
@@ -43,6 +43,7 @@ class RunCommand(TyperCommand):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Insert the default value of both options if the command line has the option without a value."""
+        args = ros_options.join_ros_arguments(args) if "--ros" in args else args
         completed: list[str] = []
         for index, word in enumerate(args):
             if word == "--":
@@ -148,6 +149,12 @@ def run(
     wall_timeout: WallTimeout = None,
     assert_: Conditions = [],
     junit: Annotated[Path | None, option("JUnit XML report to write.", "FILE.xml")] = None,
+    ros: ros_options.Ros = False,
+    ros_python: ros_options.RosPython = None,
+    ros_domain: ros_options.RosDomain = None,
+    ros_namespace: ros_options.RosNamespace = None,
+    ros_network: ros_options.RosNetwork = False,
+    ros_args: ros_options.RosArguments = None,
 ) -> int:
     """Run a world without a window, as fast as possible."""
     policy, checks = _on_error(on_plugin_error), tuple(Check("final", expression=e, where="--assert") for e in assert_)
@@ -179,7 +186,8 @@ def run(
         steps=step,
     )
     key_timeout = _timeout(key_timeout)
-    display = RunDisplay(view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure)
+    bridge = ros_options.run_ros_options(ros, ros_python, ros_domain, ros_namespace, ros_network, ros_args)
+    display = RunDisplay(view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure, bridge)
     return execute(spec, display)
 
 
@@ -237,6 +245,7 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
     """
     from simkit.bridges import viewer
     from simkit.build import load
+    from simkit.cli.run_ros import open_bridge
     from simkit.cli.run_session import Session, check_keyboard, check_renderer
     from simkit.cli.run_verdict import RunVerdict
     from simkit.recording import run_picture
@@ -252,6 +261,7 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
         viewer.check_possible()
     check_keyboard(display)
     with (
+        open_bridge(display) as bridge,
         RunVerdict(spec, display.junit) as verdict,
         BlockedPlugins(print_status) as blocked,
         FailureBundle(display.bundles, verdict, spec) as bundling,
@@ -264,7 +274,7 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
                 print_diagnostics(sim.diagnostics, verbose=display.verbose)
                 if not display.verbose:
                     _print_model_world(sim.diagnostics)
-                verdict.code = Session(spec, display, sim, blocked, verdict).execute()
+                verdict.code = Session(spec, display, sim, blocked, verdict, bridge).execute()
             finally:
                 add_diagnostics(sim.diagnostics)
     return verdict.code

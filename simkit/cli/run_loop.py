@@ -68,7 +68,7 @@ class RunLoop:
         sim: Simulation,
         commands: Commands,
         interrupts: Interrupts,
-        watchers: list[Callable[[], None]],
+        watchers: list[Callable[[], object]],
         *,
         rtf: float | None = None,
         follow: bool = False,

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from simkit.cli.terminal.given_interfaces import interface_folders
 from simkit.cli.terminal.options import source_arguments
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
 from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
+
+if TYPE_CHECKING:
+    from simkit.bridges.ros.bridge_process import RosOptions
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,7 @@ class RunDisplay:
         watch: True to reload plugins whose files change.
         junit: file for a JUnit XML report.
         bundles: folder for the bundle of a failed run.
+        ros: options of the bridge to ROS 2; None for a run without ROS.
     """
 
     view: bool = False
@@ -38,6 +42,7 @@ class RunDisplay:
     watch: bool = False
     junit: Path | None = None
     bundles: Path | None = None
+    ros: RosOptions | None = None
 
 
 def load_options(

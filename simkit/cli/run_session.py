@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from simkit.cli.run_loop import Interrupts, RunLoop
 from simkit.cli.run_options import RunDisplay
+from simkit.cli.run_ros import start_bridge
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
@@ -21,6 +22,7 @@ from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
 
 if TYPE_CHECKING:
+    from simkit.bridges.ros.bridge_process import RosBridge
     from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
     from simkit.cli.terminal.progress import Progress
     from simkit.cli.terminal.teleop import Teleop
@@ -163,12 +165,19 @@ class Session:
         sim: loaded simulation.
         blocked: reporter of plugins that block the run.
         verdict: result of the run.
+        bridge: bridge to ROS 2, which is not started yet; None for a run without ROS.
     """
 
     def __init__(
-        self, spec: RunSpec, display: RunDisplay, sim: Simulation, blocked: BlockedPlugins, verdict: RunVerdict
+        self,
+        spec: RunSpec,
+        display: RunDisplay,
+        sim: Simulation,
+        blocked: BlockedPlugins,
+        verdict: RunVerdict,
+        bridge: RosBridge | None = None,
     ) -> None:
-        self.spec, self.display = spec, display
+        self.spec, self.display, self._bridge = spec, display, bridge
         self.sim, self.blocked, self.verdict = sim, blocked, verdict
         self._teleop: Teleop | None = None
 
@@ -196,7 +205,7 @@ class Session:
             keyboard = self._keyboard()
             begun = time.perf_counter()
             progress = stack.enter_context(self._progress(counter, duration))
-            watchers: list[Callable[[], None]] = [progress.update]
+            watchers: list[Callable[[], object]] = [progress.update]
             if recording is not None:
                 watchers.append(recording.check)
             if driven is not None:
@@ -210,6 +219,7 @@ class Session:
                 stack.enter_context(keyboard)
                 self._connect_keys(keyboard, loop)
             self._serve(stack, loop)
+            start_bridge(self._bridge, loop, interrupts, watchers)
             self._hold()
             stack.enter_context(conditions)
             loop.is_over = self.verdict.is_over
@@ -347,7 +357,7 @@ class Session:
 
     # ------------------------------------------------------------------ viewer, clients and plugin files
 
-    def _open_viewer(self, stack: ExitStack, loop: RunLoop, watchers: list[Callable[[], None]]) -> None:
+    def _open_viewer(self, stack: ExitStack, loop: RunLoop, watchers: list[Callable[[], object]]) -> None:
         from simkit.bridges.viewer import Viewer
 
         viewer = stack.enter_context(Viewer(self.sim))
@@ -368,7 +378,7 @@ class Session:
             stack.enter_context(loop.server)
 
     def _watched(
-        self, loop: RunLoop, interrupts: Interrupts, watchers: list[Callable[[], None]]
+        self, loop: RunLoop, interrupts: Interrupts, watchers: list[Callable[[], object]]
     ) -> Callable[[float | None], object]:
         """Return a function that runs the loop and reloads plugins whose files change."""
         from simkit.cli.plugin_watch import PluginWatch

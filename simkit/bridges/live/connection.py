@@ -59,6 +59,8 @@ class ClientConnection:
         node: name of the client in node lists.
         subscriptions, publishers, goals: open handles of the client, by the client's numbers.
         is_held: True while reading from the client is paused, because further commands would be dropped.
+        drops_invalid: True for a bridge, which passes on messages of others: an invalid message is dropped with a
+            notification. Any other client that sends an invalid message is disconnected.
         why: reason for disconnecting the client, after the client was informed; None for a connection in use.
     """
 
@@ -68,6 +70,7 @@ class ClientConnection:
         self.publishers: dict[int, Publisher] = {}
         self.goals: dict[int, tuple[GoalHandle, int]] = {}
         self.is_held = False
+        self.drops_invalid = False
         self.why: str | None = None
         self.is_gone = False
         self.reader = FrameReader(LARGEST_IN, (ASK, MESSAGE))

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.bridges.live import socket_files
+from simkit.bridges.live.bridge_requests import BRIDGE_REQUESTS
 from simkit.bridges.live.connection import ClientConnection
 from simkit.bridges.live.message_reader import message_reader
 from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject, read_json_frame
@@ -189,6 +190,9 @@ class Server:
         try:
             message = message_reader(publisher.type_name)(body, 4)
         except Exception as error:  # noqa: BLE001 - invalid bytes may cause any exception
+            if peer.drops_invalid:
+                peer.send_json(TELL, {"tell": "invalid", "topic": publisher.topic, "type": publisher.type_name})
+                return
             raise BadFrame(f"the data on {publisher.topic!r} is not a valid {publisher.type_name}: {error!r}") from None
         publisher.publish(message)
         self._hold_back_if_full(peer, publisher.topic)
@@ -226,9 +230,10 @@ class Server:
         answer: JsonObject = {"id": number}
         found = b""
         try:
-            if request_name not in REQUESTS:
+            handler = REQUESTS.get(request_name) or BRIDGE_REQUESTS.get(request_name)
+            if handler is None:
                 raise RequestRefused(f"unknown request {request_name!r}")
-            result = REQUESTS[request_name](Request(self, peer, args, data))
+            result = handler(Request(self, peer, args, data))
             if isinstance(result, Response):
                 answer["type"], found = msgs.type_name(result.message), msgs.serialize(result.message)
             else:

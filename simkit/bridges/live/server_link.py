@@ -127,6 +127,10 @@ class ServerLink:
             raise LiveError(str(words["error"]), str(words.get("code", "SK-LIVE-008")))
         return words.get("ok"), found, str(words.get("type", ""))
 
+    def has_answer(self, number: int) -> bool:
+        """Check whether the answer with that number has arrived, so that `answer` returns at once."""
+        return number in self._answers
+
     def next_number(self) -> int:
         """Return an unused number for a new handle."""
         return next(self._numbers)
@@ -222,9 +226,14 @@ class ServerLink:
             self.goals[int(words["number"])](words, data)
         elif words["tell"] == "hello":
             self.info = {k: v for k, v in words.items() if k != "tell"}
+        elif words["tell"] == "invalid":
+            self.invalid(words)
         elif words["tell"] == "bye":
             self._closed = LiveClosed(str(words["why"]), str(words.get("code", "SK-LIVE-005")))
             self._socket.close()
+
+    def invalid(self, words: JsonObject) -> None:
+        """Process the notification that a message of this client was dropped; only bridges receive it."""
 
     def _fail(self, error: LiveClosed) -> None:
         """Close the socket and raise the error."""

@@ -1,0 +1,74 @@
+"""Handlers of the requests that only bridges to other middleware send: the whole graph, and parts of actions."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
+from typing import Final
+
+from simkit.bridges.live.introspection import topic_list
+from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response
+from simkit.errors import MessageError
+from simkit.msgs.derived_types import derived_type, interface_hash
+from simkit.msgs.message_builder import builder_of
+from simkit.msgs.message_types import type_of
+
+
+def graph(request: Request) -> object:
+    """Return topics, heard topics, services and actions, with the hashes of their types and the simulated time.
+
+    If nothing has changed since the graph with the revision in the request, return only revision and time.
+    """
+    sim = request.sim
+    services, actions = sim.communication.services.names(), sim.communication.actions.names()
+    content = tuple(services.items()), tuple(actions.items()), [p.node for p in request.server.peers.values()]
+    revision = f"{sim.communication.bus.revision} {content!r}".__hash__()
+    found = {"revision": revision, "time_ns": sim.time_ns}
+    if request.args.get("revision") == revision:
+        return found
+    topics = topic_list(sim, request.server.peers.values())
+    types = {t for row in topics for t in row["types"]} | {
+        t for row in topics for s in row["subscribers"] for t in s["types"]
+    }
+    names = [*types, *services.values()]
+    for action in actions.values():
+        names += [f"{action}_SendGoal", f"{action}_GetResult", f"{action}_FeedbackMessage"]
+    heard = sorted({subscription.topic for subscription in sim.communication.bus.subscriptions()})
+    return {
+        **found,
+        "topics": topics,
+        "heard": heard,
+        "services": services,
+        "actions": actions,
+        "hashes": _hashes(names),
+    }
+
+
+def _hashes(names: Collection[str]) -> dict[str, str]:
+    """Return the type hashes by name; types without a hash are left out."""
+    found = {}
+    for name in dict.fromkeys(names):
+        try:
+            found[name] = interface_hash(name)
+        except (MessageError, KeyError, ValueError):
+            continue
+    return found
+
+
+def goal_result(request: Request) -> object:
+    """Return the response of an action's service GetResult, whose CDR is aligned otherwise than the result's own."""
+    action, status = request.arg("action", str), request.arg("status", int)
+    result = request.message() if request.data else None
+    try:
+        response = derived_type(f"{action}_GetResult_Response")
+        if result is None:
+            result = builder_of(f"{action}_Result").default()
+    except (MessageError, ValueError) as error:
+        raise RequestRefused(str(error)) from None
+    if not isinstance(result, type_of(f"{action}_Result")):
+        raise RequestRefused(f"the result is not one of {action}")
+    return Response(response(status, result))
+
+
+BRIDGE_REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType({"graph": graph, "goal_result": goal_result})
+"""Handler of each request, by the name that a bridge sends."""

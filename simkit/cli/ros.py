@@ -1,0 +1,53 @@
+"""Command `simkit ros`: connect a running simulation to ROS 2."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand
+
+from simkit.cli.run_loop import Interrupts
+from simkit.cli.terminal import completion, options, ros_options
+from simkit.cli.terminal.options import argument
+from simkit.cli.terminal.output import print_status, report_errors_quietly
+
+
+class RosCommand(TyperCommand):
+    """Command that accepts the arguments of ROS after `--ros-args`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Join the arguments of ROS to one value and parse all options."""
+        return super().parse_args(ctx, ros_options.join_ros_arguments(args))
+
+
+COMMAND = RosCommand
+Simulation = Annotated[
+    str | None, argument("Name of the running simulation, if several run.", "[SIM]", completion.simulations)
+]
+
+
+@report_errors_quietly
+def ros(
+    simulation: Simulation = None,
+    ros_python: ros_options.RosPython = None,
+    ros_domain: ros_options.RosDomain = None,
+    ros_namespace: ros_options.RosNamespace = None,
+    ros_network: ros_options.RosNetwork = False,
+    ros_args: ros_options.RosArguments = None,
+    sim: options.Sim = None,
+) -> int:
+    """Connect a running simulation to ROS 2 until the simulation ends, or until Ctrl-C."""
+    from simkit.bridges.live.discovery import find_socket
+    from simkit.bridges.ros.bridge_process import RosBridge
+
+    if simulation is not None and sim is not None and simulation != sim:
+        raise typer.BadParameter(f"found {simulation!r} and --sim {sim}; expected one name", param_hint="SIM")
+    found = ros_options.ros_options(ros_python, ros_domain, ros_namespace, ros_network, ros_args)
+    socket = find_socket(simulation or sim)
+    with Interrupts() as interrupts, RosBridge(found, print_status) as bridge:
+        bridge.start(socket)
+        code = bridge.wait(lambda: bool(interrupts.exit_code))
+        if bridge.end_text:
+            print_status(f"note: {bridge.end_text}")
+    return interrupts.exit_code or code
