@@ -17,6 +17,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from simkit.errors import MessageError, NoMessageError
+from simkit.msgs.cdr_serializer import make_serializer
 from simkit.msgs.message_types import Message, definition, full_name, message_class, type_of, type_store, types_of
 from simkit.msgs.own_interfaces import add
 from simkit.msgs.type_hashes import rihs
@@ -49,6 +50,7 @@ __all__ = [
 ]
 
 _NS = 1_000_000_000
+_SERIALIZERS: dict[type[Message], Callable[[Message], bytes]] = {}  # by class: the fastest way to find one
 
 if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown classes
 
@@ -64,6 +66,14 @@ def _builder_of() -> Callable[[str], MessageBuilder]:
     from simkit.msgs.message_builder import builder_of
 
     return builder_of
+
+
+def _serializer_of(message: Message) -> Callable[[Message], bytes]:
+    """Return the serialiser of a message, and keep it for messages of the same class."""
+    found = make_serializer(full_name(type_name(message)))
+    if hasattr(type(message), "__msgtype__"):
+        _SERIALIZERS[type(message)] = found
+    return found
 
 
 def make(type_name: str, /, **fields: FieldValue) -> Message:
@@ -152,11 +162,11 @@ def serialize(message: Message) -> bytes:
     Raises:
         MessageError: the value of a field does not match its type.
     """
-    name = type_name(message)
+    serializer = _SERIALIZERS.get(type(message)) or _serializer_of(message)
     try:
-        return bytes(type_store().serialize_cdr(message, name, little_endian=True))
-    except (struct.error, TypeError, ValueError, AttributeError, AssertionError, OverflowError) as error:
-        raise MessageError(f"{name} cannot be serialised: {error}") from None
+        return serializer(message)
+    except (struct.error, TypeError, ValueError, AttributeError, OverflowError) as error:
+        raise MessageError(f"{type_name(message)} cannot be serialised: {error}") from None
 
 
 def deserialize(data: bytes | memoryview, type_name: str) -> Message:

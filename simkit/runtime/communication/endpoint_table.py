@@ -109,6 +109,8 @@ class EndpointTable(Generic[E]):
             raise self.error(f"no {self.kind} {name!r}; {name_hint(name, self.names())}")
         return found
 
+    def _as_message(self, endpoint: E, value: Message) -> Message:
+        """Convert a value to a request or goal: a message, a dict of its fields, or None for fields that are all zero.
 
         Raises:
             MessageError: the value does not fit the type.
