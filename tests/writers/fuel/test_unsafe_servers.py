@@ -6,6 +6,7 @@ import stat
 import struct
 import time
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -31,26 +32,26 @@ def stored(fuel: Fuel) -> list[Path]:
     return [p for p in Path("cache").rglob("*") if p.is_file() and ".simkit-fetch" not in p.parts]
 
 
-UNSAFE = {
-    "slip": (archive({"model.sdf": BOX, "../../out.txt": "x"}), "leads out of its folder"),
-    "absolute": (archive({"/tmp/out.txt": "x"}), "is an absolute path"),
-    "backslash": (archive({"a\\b.txt": "x"}), "characters that are not allowed"),
-    "folder": (archive({"../../out/": ""}), "leads out of its folder"),
-    "link": (archive({"model.sdf": BOX, "out": link("out", b"/etc")}), "is a link"),
-    "bomb": (archive({"zeros": bytes(80 << 20)}), "more than 200 times its size"),
-    "hidden bomb": (with_wrong_size(archive({"zeros": bytes(80 << 20)}), 100), "it is damaged"),
-    "duplicate": (archive({"A.sdf": "x", "a.sdf": "y"}), "is a duplicate"),
-    "both": (archive({"a": "x", "a/b": "y"}), "is both a file and a folder"),
-    "truncated": (model()[:200], "not a ZIP archive"),
-    "damaged": (model().replace(b"model.sdf", b"m0del.sdf", 1), "it is damaged"),
-    "page": (b"<html>login</html>", "not a ZIP archive"),
-    "empty": (b"", "not a ZIP archive"),
+UNSAFE: dict[str, tuple[Callable[[], bytes], str]] = {
+    "slip": (lambda: archive({"model.sdf": BOX, "../../out.txt": "x"}), "leads out of its folder"),
+    "absolute": (lambda: archive({"/tmp/out.txt": "x"}), "is an absolute path"),
+    "backslash": (lambda: archive({"a\\b.txt": "x"}), "characters that are not allowed"),
+    "folder": (lambda: archive({"../../out/": ""}), "leads out of its folder"),
+    "link": (lambda: archive({"model.sdf": BOX, "out": link("out", b"/etc")}), "is a link"),
+    "bomb": (lambda: archive({"zeros": bytes(80 << 20)}), "more than 200 times its size"),
+    "hidden bomb": (lambda: with_wrong_size(archive({"zeros": bytes(80 << 20)}), 100), "it is damaged"),
+    "duplicate": (lambda: archive({"A.sdf": "x", "a.sdf": "y"}), "is a duplicate"),
+    "both": (lambda: archive({"a": "x", "a/b": "y"}), "is both a file and a folder"),
+    "truncated": (lambda: model()[:200], "not a ZIP archive"),
+    "damaged": (lambda: model().replace(b"model.sdf", b"m0del.sdf", 1), "it is damaged"),
+    "page": (lambda: b"<html>login</html>", "not a ZIP archive"),
+    "empty": (lambda: b"", "not a ZIP archive"),
 }
 
 
 @pytest.mark.parametrize("name", UNSAFE)
 def test_a_dangerous_archive_is_refused_and_nothing_is_stored(fuel: Fuel, name: str) -> None:
-    fuel.archives["o/models/box"], reason = [UNSAFE[name][0]], UNSAFE[name][1]
+    fuel.archives["o/models/box"], reason = [UNSAFE[name][0]()], UNSAFE[name][1]
     fuel.archives["o/models/good"] = [model()]
     write_world(f"{fuel.url}/1.0/o/models/box", f"{fuel.url}/1.0/o/models/good")
     result = run("fetch", "w.sdf")
