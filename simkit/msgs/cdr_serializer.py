@@ -17,7 +17,8 @@ import struct
 from collections.abc import Callable
 from typing import Any, Final
 
-from simkit.msgs.message_types import ARRAY, BASE, NAME, FieldNode, Message, type_store
+from simkit.msgs.definition_parser import ARRAY, BASE, NAME, FieldNode
+from simkit.msgs.message_types import Message, type_store
 
 Serializer = Callable[[Message], bytes]
 Pack = Callable[..., bytes]
@@ -112,6 +113,10 @@ def check_size(array: Any, count: int, size: int) -> None:
         raise ValueError(f"found {len(array)} elements of {array.nbytes} bytes; expected {count} of {size} bytes")
 
 
+class _WideStringError(Exception):
+    """A type has a `wstring`, which only the type store can serialise."""
+
+
 class _Generator:
     """Generator of the function that serialises one type."""
 
@@ -150,6 +155,8 @@ class _Generator:
             self._message(content, self._assign("v", value))
         elif kind == BASE and content[0] == "string":
             self._text(value)
+        elif kind == BASE and content[0] == "wstring":
+            raise _WideStringError
         elif kind == BASE:
             self._put(CODES[content[0]], value)
         else:
@@ -162,6 +169,8 @@ class _Generator:
 
     def _array(self, node: FieldNode, length: int | None, array: str) -> None:
         kind, content = int(node[0]), node[1]
+        if kind == BASE and content[0] == "wstring":
+            raise _WideStringError
         is_number = kind == BASE and content[0] != "string"
         size = struct.calcsize(CODES[content[0]]) if is_number else 0
         if length is not None and is_number:
@@ -264,4 +273,7 @@ def make_serializer(type_name: str) -> Serializer:
 
     The function raises any exception if the value of a field does not match its type.
     """
-    return _Generator(type_name).function()
+    try:
+        return _Generator(type_name).function()
+    except _WideStringError:
+        return lambda message: bytes(type_store().serialize_cdr(message, type_name))

@@ -1,94 +1,84 @@
-"""Types that ROS 2 derives from a service or an action, registered in the type store on request.
+"""Types that ROS 2 derives from services and actions, and sends or puts into its graph.
 
 A service `S` is itself a type of its request, response and event. An action `A` has the services `A_SendGoal` and
-`A_GetResult` and the message `A_FeedbackMessage`. ROS 2 sends these types and puts their hashes into its graph.
+`A_GetResult` and the message `A_FeedbackMessage`.
 """
 
 from __future__ import annotations
 
-import re
+from typing import Final
 
-from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, FieldNode, Message, rihs, type_of, type_store
+from simkit.errors import MessageError
+from simkit.msgs.definition_parser import BASE, NAME, PARTS, SEQUENCE, FieldNode
+from simkit.msgs.message_types import Message, type_of, type_store
 
-_UUID = "unique_identifier_msgs/msg/UUID"
-_DERIVED = re.compile(r"_(SendGoal|GetResult)(_Request|_Response|_Event)?$|_FeedbackMessage$|_Event$")
-_OF_ACTIONS: dict[str, tuple[tuple[str, str], ...]] = {
-    "_SendGoal_Request": (("goal_id", _UUID), ("goal", "{0}_Goal")),
-    "_SendGoal_Response": (("accepted", "bool"), ("stamp", "builtin_interfaces/msg/Time")),
-    "_GetResult_Request": (("goal_id", _UUID),),
-    "_GetResult_Response": (("status", "int8"), ("result", "{0}_Result")),
-    "_FeedbackMessage": (("goal_id", _UUID), ("feedback", "{0}_Feedback")),
-    "": (
-        *(("goal", "{0}_Goal"), ("result", "{0}_Result"), ("feedback", "{0}_Feedback")),
-        *(("send_goal_service", "{0}_SendGoal"), ("get_result_service", "{0}_GetResult")),
-        ("feedback_message", "{0}_FeedbackMessage"),
-    ),
-}
-_INFO = "service_msgs/msg/ServiceEventInfo"
-_INFO_FIELDS: tuple[tuple[str, FieldNode], ...] = (
-    ("event_type", (BASE, ("uint8", 0))),
-    ("stamp", (NAME, "builtin_interfaces/msg/Time")),
-    ("client_gid", (ARRAY, ((BASE, ("uint8", 0)), 16))),
-    ("sequence_number", (BASE, ("int64", 0))),
-)
+Fields = list[tuple[str, FieldNode]]
+_EVENT_INFO: Final = "service_msgs/msg/ServiceEventInfo"
 
 
-def derived_type(type_name: str) -> type[Message]:
-    """Return the class of a type that ROS 2 derives, such as `example_interfaces/action/Fibonacci_GetResult_Response`.
+def is_derived(name: str) -> bool:
+    """Check for a service or action itself, or for a type that ROS 2 derives from it."""
+    kind, _, short = name.partition("/")[2].partition("/")
+    return kind in ("srv", "action") and "_" + short.partition("_")[2] not in PARTS[kind]
+
+
+def derived_type(name: str) -> type[Message]:
+    """Return the class of a derived type, such as `example_interfaces/action/Fibonacci_GetResult_Response`.
 
     Raises:
         MessageError: the service or action of the type is unknown.
     """
-    _register(type_name)
-    return type_of(type_name)
+    if name not in type_store().fielddefs:
+        fields = derived_fields(name)
+        for _, (kind, content) in fields:
+            if kind == NAME:
+                (derived_type if is_derived(content) else type_of)(content)
+        type_store().register({name: ([], fields)})
+    return type_of(name)
 
 
-def interface_hash(type_name: str) -> str:
-    """Return the type hash (`RIHS01_…`) of a message, a service, an action or a type derived from one.
+def derived_fields(name: str) -> Fields:
+    """Return the fields of a derived type.
 
     Raises:
         MessageError: the type is unknown.
     """
-    if type_name.split("/")[1:2] != ["msg"]:
-        _register(type_name)
-    return rihs(type_name)
+    base, _, suffix = name.rpartition("/")[2].partition("_")
+    return _fields_of(f"{name.rpartition('/')[0]}/{base}", name.split("/")[1], suffix)
 
 
-def _register(type_name: str) -> None:
-    store = type_store()
-    if type_name in store.fielddefs:
-        return
-    _, kind, name = type_name.split("/")
-    fields: list[tuple[str, FieldNode]] = []
-    if name.endswith("_Event"):
-        service = type_name.removesuffix("_Event")
-        # rosbags gives `char` another number in the hash than ROS 2, for which it is uint8
-        store.fielddefs[_INFO] = ([], list(_INFO_FIELDS))
-        fields.append(("info", (NAME, _INFO)))
-        for part in ("Request", "Response"):
-            fields.append((part.lower(), (SEQUENCE, (_node(f"{service}_{part}"), 1))))
-    elif kind == "srv" or name.endswith(("_SendGoal", "_GetResult")):
-        for part in ("Request", "Response", "Event"):
-            fields.append((f"{part.lower()}_message", _node(f"{type_name}_{part}")))
-    else:
-        suffix = found[0] if (found := _DERIVED.search(name)) else ""
-        action = type_name.removesuffix(suffix) if suffix else type_name
-        for field, field_type in _OF_ACTIONS[suffix]:
-            fields.append((field, _node(field_type.format(action))))
-    store.register({type_name: ([], fields)})
+def _service(name: str) -> Fields:
+    return [(f"{part.lower()}_message", (NAME, f"{name}_{part}")) for part in ("Request", "Response", "Event")]
 
 
-def _node(type_name: str) -> FieldNode:
-    """Return the node of a field; its type is registered first if ROS 2 derives it."""
-    if "/" not in type_name:
-        return BASE, (type_name, 0)
-    if "/msg/" not in type_name:
-        if _is_derived(type_name):
-            _register(type_name)
-        else:
-            type_of(type_name)
-    return NAME, type_name
+def _event(name: str) -> Fields:
+    parts = [(part.lower(), (SEQUENCE, ((NAME, f"{name}_{part}"), 1))) for part in ("Request", "Response")]
+    return [("info", (NAME, _EVENT_INFO)), *parts]
 
 
-def _is_derived(type_name: str) -> bool:
-    return _DERIVED.search(type_name) is not None
+def _fields_of(name: str, kind: str, suffix: str) -> Fields:
+    """Return the fields of a service or action itself, or of one of the types that ROS 2 derives from it."""
+    if kind == "srv":
+        found = {"": _service, "Event": _event}.get(suffix)
+        if found is not None:
+            return found(name)
+    goal_id: tuple[str, FieldNode] = ("goal_id", (NAME, "unique_identifier_msgs/msg/UUID"))
+    stamp: tuple[str, FieldNode] = ("stamp", (NAME, "builtin_interfaces/msg/Time"))
+    table: dict[str, Fields] = {
+        "": [
+            *((part.lower(), (NAME, f"{name}_{part}")) for part in ("Goal", "Result", "Feedback")),
+            ("send_goal_service", (NAME, f"{name}_SendGoal")),
+            ("get_result_service", (NAME, f"{name}_GetResult")),
+            ("feedback_message", (NAME, f"{name}_FeedbackMessage")),
+        ],
+        "SendGoal_Request": [goal_id, ("goal", (NAME, f"{name}_Goal"))],
+        "SendGoal_Response": [("accepted", (BASE, ("bool", 0))), stamp],
+        "GetResult_Request": [goal_id],
+        "GetResult_Response": [("status", (BASE, ("int8", 0))), ("result", (NAME, f"{name}_Result"))],
+        "FeedbackMessage": [goal_id, ("feedback", (NAME, f"{name}_Feedback"))],
+    }
+    for word in ("SendGoal", "GetResult"):
+        table[word], table[f"{word}_Event"] = _service(f"{name}_{word}"), _event(f"{name}_{word}")
+    if kind == "action" and suffix in table:
+        return table[suffix]
+    raise MessageError(f"unknown type {name}_{suffix}")

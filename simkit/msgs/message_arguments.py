@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from simkit import msgs
+from simkit.argument_checks import shown
 from simkit.errors import MessageError, NoMessageError
 from simkit.msgs.message_types import FieldValue, Message
 
@@ -36,6 +37,6 @@ def checked_message(
         return value
     if isinstance(found, str):
         raise MessageError(f"{place} needs {' or '.join(names)}, got {found}")
-    got = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
+    got = f"the class {value.__name__}" if isinstance(value, type) else f"{shown(value)} ({type(value).__name__})"
     wanted = f"{' or '.join(names) or 'a message'}, or a dict of its fields"
     raise NoMessageError(f"{place} needs {wanted}; {got} is not a message")

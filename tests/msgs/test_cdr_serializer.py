@@ -10,7 +10,8 @@ import pytest
 
 from simkit import msgs
 from simkit.errors import MessageError
-from simkit.msgs.message_types import ARRAY, BASE, NAME, message_type_names, type_store
+from simkit.msgs.definition_parser import ARRAY, BASE, NAME
+from simkit.msgs.message_types import message_type_names, type_store
 
 DTYPES = {"byte": "uint8", "char": "uint8"}
 

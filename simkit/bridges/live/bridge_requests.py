@@ -9,9 +9,10 @@ from typing import Final
 from simkit.bridges.live.introspection import topic_list
 from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response
 from simkit.errors import MessageError
-from simkit.msgs.derived_types import derived_type, interface_hash
+from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_types import type_of
+from simkit.msgs.type_hashes import rihs
 
 
 def graph(request: Request) -> object:
@@ -49,7 +50,7 @@ def _hashes(names: Collection[str]) -> dict[str, str]:
     found = {}
     for name in dict.fromkeys(names):
         try:
-            found[name] = interface_hash(name)
+            found[name] = rihs(name)
         except (MessageError, KeyError, ValueError):
             continue
     return found

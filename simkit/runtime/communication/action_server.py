@@ -320,7 +320,7 @@ class ActionTable(EndpointTable[Action]):
         """
         self._engine.check_open()
         action = self._get(absolute_name(name))
-        request = as_message(action, goal, self.part)
+        request = self._as_message(action, goal)
         journal = self._bus.journal
         if journal is not None:
             on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)

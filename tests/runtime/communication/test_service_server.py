@@ -9,7 +9,7 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.errors import MessageError, PluginError, ServiceError
+from simkit.errors import MessageError, PluginError, ServiceError, SubscriberError
 
 EMPTY = '<sdf version="1.9"><world name="w"/></sdf>'
 
@@ -38,7 +38,7 @@ def test_a_request_may_be_a_message_or_a_dict() -> None:
     with simkit.load(EMPTY, plugins=[lamp := Lamp()]) as sim:
         sim.call("lamp/switch", msgs.make("std_srvs/srv/SetBool_Request", data=True))
         assert lamp.is_on
-        with pytest.raises(MessageError, match="must be a std_srvs/srv/SetBool_Request, got a std_msgs/msg/Bool"):
+        with pytest.raises(MessageError, match="needs std_srvs/srv/SetBool_Request, got std_msgs/msg/Bool"):
             sim.call("lamp/switch", msgs.make("std_msgs/msg/Bool"))
         with pytest.raises(MessageError, match="did you mean 'data'"):
             sim.call("lamp/switch", {"dta": True})
@@ -66,10 +66,10 @@ def test_an_exception_in_the_service_of_a_plugin_names_the_plugin() -> None:
 @pytest.mark.parametrize(
     ("response", "found"),
     [
-        (3, r"a dict of its fields or None, got 3 \(int\)"),
-        (False, r"a dict of its fields or None, got False \(bool\)"),
-        ((True, "on"), r"a dict of its fields or None, got \(True, 'on'\) \(tuple\)"),
-        (msgs.make("std_msgs/msg/String"), "got a std_msgs/msg/String"),
+        (3, r"or a dict of its fields; 3 \(int\) is not a message"),
+        (False, r"or a dict of its fields; False \(bool\) is not a message"),
+        ((True, "on"), r"or a dict of its fields; \(True, 'on'\) \(tuple\) is not a message"),
+        (msgs.make("std_msgs/msg/String"), "got std_msgs/msg/String"),
     ],
 )
 def test_a_response_of_the_wrong_type_is_an_error_that_names_the_service(response: object, found: str) -> None:
@@ -81,7 +81,8 @@ def test_a_response_of_the_wrong_type_is_an_error_that_names_the_service(respons
         sim.offer("script", "std_srvs/srv/SetBool", lambda request: response)
         for name in ("/lamp/switch", "/script"):
             with pytest.raises(
-                MessageError, match=f"response of '{name}' must be a std_srvs/srv/SetBool_Response.*{found}"
+                (MessageError, SubscriberError),
+                match=f"response of '{name}' needs std_srvs/srv/SetBool_Response.*{found}",
             ):
                 sim.call(name)
 
