@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
+from typing import Final
 
 from simkit import msgs
+from simkit.bridges.live.client_graph import DEFAULT_DEPTH, ClientGraph, absolute, check_callback
 from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription
 from simkit.bridges.live.discovery import find_socket
 from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
-from simkit.bridges.live.server_link import CONNECT_PERIOD, ServerLink
+from simkit.bridges.live.server_link import CONNECT_PERIOD
 from simkit.msgs.message_types import Message
 
-DEFAULT_DEPTH = 1000
-"""Default number of messages that a subscription queues at most, in the client and in the simulation."""
+NO_ANSWER: Final = "SK-SERVICE-010"
 
 
 def connect(name: str | None = None, timeout: float = 10.0, node: str | None = None, wait: float = 0.0) -> Client:
@@ -39,7 +40,7 @@ def connect(name: str | None = None, timeout: float = 10.0, node: str | None = N
         time.sleep(CONNECT_PERIOD)
 
 
-class Client(ServerLink):
+class Client(ClientGraph):
     """Connection to a running simulation; a context manager. Use each client in one thread only.
 
     Args:
@@ -109,16 +110,27 @@ class Client(ServerLink):
 
     # ------------------------------------------------------------------ topics
 
-    def subscribe(self, topic: str, depth: int = DEFAULT_DEPTH) -> LiveSubscription:
+    def subscribe(
+        self, topic: str, callback: Callable[[Message], object] | None = None, depth: int = DEFAULT_DEPTH
+    ) -> LiveSubscription:
         """Subscribe to a topic. The topic need not exist yet.
 
         Args:
             topic: name of the topic; a leading `/` is added if it is missing.
+            callback: function that receives each message while the client receives, for example in `spin`. Without it,
+                the messages wait in the subscription.
             depth: highest number of queued messages; if more arrive, the oldest are dropped and counted.
         """
-        return self.subscribe_all([topic], depth)[0]
+        if callback is not None:
+            check_callback(callback, "callback")
+        return self.subscribe_all([topic], depth, callback)[0]
 
-    def subscribe_all(self, topics: Iterable[str], depth: int = DEFAULT_DEPTH) -> list[LiveSubscription]:
+    def subscribe_all(
+        self,
+        topics: Iterable[str],
+        depth: int = DEFAULT_DEPTH,
+        callback: Callable[[Message], object] | None = None,
+    ) -> list[LiveSubscription]:
         """Subscribe to several topics at once.
 
         All requests are sent before the first answer is read, because a simulation with slow steps answers only once
@@ -127,7 +139,7 @@ class Client(ServerLink):
         opened, requests = [], []
         for topic in topics:
             number = self.next_number()
-            subscription = LiveSubscription(self, number, topic if topic.startswith("/") else "/" + topic, depth)
+            subscription = LiveSubscription(self, number, absolute(topic), depth, callback)
             self.subscriptions[number] = subscription.take  # the first messages may arrive together with the answer
             opened.append(subscription)
             args = {"number": number, "topic": topic, "depth": depth}
@@ -145,18 +157,19 @@ class Client(ServerLink):
             raise failed
         return opened
 
-    def advertise(self, topic: str, type_name: str | None = None) -> LivePublisher:
+    def advertise(self, topic: str, type_name: str | None = None, latched: bool = False) -> LivePublisher:
         """Open a topic for publishing.
 
         Args:
             topic: name of the topic; a leading `/` is added if it is missing.
             type_name: type of the messages; default: the type that the topic already has.
+            latched: send the last message to a later subscriber (transient local).
 
         Raises:
             LiveError: the topic has another type, or the type is unknown.
         """
         number = self.next_number()
-        found = self.ask("advertise", number=number, topic=topic, type=type_name)
+        found = self.ask("advertise", number=number, topic=topic, type=type_name, latched=latched)
         return LivePublisher(self, number, found["topic"], found["type"])
 
     # ------------------------------------------------------------------ services and actions
@@ -166,17 +179,26 @@ class Client(ServerLink):
         found: dict[str, str] = self.ask("services")
         return found
 
-    def call(self, name: str, request: object = None) -> Message:
+    def call(self, name: str, request: object = None, timeout: float | None = None) -> Message:
         """Call a service and return its response. The service has finished when this method returns.
 
         Args:
             name: name of the service; a leading `/` is added if it is missing.
             request: a dict of fields, a message, or None for a request with all fields zero.
+            timeout: longest wait for the response [s], wall time; None for the timeout of the client.
 
         Raises:
-            LiveError: the service does not exist, the request does not match its type, or the service failed.
+            LiveError: the service does not exist, the request does not match its type, the service failed, or it gives
+                no response in time.
         """
-        _, data, type_name = self._request_with_message("call", name, request)
+        try:
+            _, data, type_name = self._request_with_message("call", name, request, timeout)
+        except LiveError as error:
+            if error.code != "SK-LIVE-004":
+                raise
+            wait = self.timeout if timeout is None else timeout
+            message = f"service {absolute(name)!r} gave no response within {wait:g} s"
+            raise LiveError(f"{message}; it is slow, or its process or the simulation is stopped", NO_ANSWER) from None
         return msgs.deserialize(data, type_name)
 
     def actions(self) -> dict[str, str]:
@@ -205,12 +227,12 @@ class Client(ServerLink):
         return handle
 
     def _request_with_message(
-        self, question: str, name: str, message: object, **more: object
+        self, question: str, name: str, message: object, timeout: float | None = None, **more: object
     ) -> tuple[JsonValue, bytes, str]:
         if message is None or isinstance(message, Mapping):
-            return self.request(question, {"name": name, "fields": dict(message or {}), **more})
+            return self.request(question, {"name": name, "fields": dict(message or {}), **more}, b"", timeout)
         content = {"name": name, "type": msgs.type_name(message), **more}
-        return self.request(question, content, msgs.serialize(message))
+        return self.request(question, content, msgs.serialize(message), timeout)
 
     def __enter__(self) -> Client:
         return self

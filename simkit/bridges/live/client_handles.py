@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import NamedTuple
 
 from simkit import msgs
-from simkit.bridges.live.protocol import JsonObject, LiveClosed, message_frame
+from simkit.bridges.live.protocol import JsonObject, LiveClosed, LiveError, message_frame
 from simkit.bridges.live.server_link import ServerLink
+from simkit.errors import callback_name
 from simkit.msgs.goal_status import GoalStatus
+from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.message_types import Message
 
 
@@ -33,7 +36,7 @@ class Received(NamedTuple):
 
 
 class LiveSubscription:
-    """Subscription to a topic.
+    """Subscription to a topic. Its callback, if it has one, is called while the client receives.
 
     `for time_ns, type_name, cdr in subscription` waits for each message until the simulation ends.
 
@@ -43,8 +46,10 @@ class LiveSubscription:
         lost: number of messages that were dropped because the queue was full.
     """
 
-    def __init__(self, link: ServerLink, number: int, topic: str, depth: int) -> None:
-        self._link, self.number, self.topic = link, number, topic
+    def __init__(
+        self, link: ServerLink, number: int, topic: str, depth: int, callback: Callable[[Message], object] | None = None
+    ) -> None:
+        self._link, self.number, self.topic, self._callback = link, number, topic, callback
         self.waiting: deque[Received] = deque()
         self._depth, self._lost_there, self._lost_here = max(1, depth), 0, 0
         self._closed = False
@@ -90,6 +95,20 @@ class LiveSubscription:
             self.waiting.popleft()
             self._lost_here += 1
         self.waiting.append(Received(time_ns, type_name, data))
+        if self._callback is not None and len(self.waiting) == 1:
+            self._link.callbacks.append(self._call)
+
+    def _call(self) -> None:
+        """Call the callback with each waiting message."""
+        while self.waiting and self._callback is not None:
+            message = self.waiting.popleft().message
+            try:
+                self._callback(message)
+            except Exception as error:
+                if self.waiting:
+                    self._link.callbacks.append(self._call)
+                name = callback_name(self._callback)
+                raise LiveError(f"subscriber {name} of {self.topic!r} raised: {error!r}", "SK-TOPIC-002") from error
 
 
 class LivePublisher:
@@ -103,6 +122,11 @@ class LivePublisher:
     def __init__(self, link: ServerLink, number: int, topic: str, type_name: str) -> None:
         self._link, self.number, self.topic, self.type_name = link, number, topic, type_name
 
+    @property
+    def subscribers(self) -> int:
+        """Number of subscriptions and command inputs of the topic; several clients count as one."""
+        return int(self._link.request("subscribers", {"number": self.number})[0])
+
     def publish(self, message: object) -> None:
         """Send a message, given as a message, a dict of its fields, or CDR.
 
@@ -113,9 +137,7 @@ class LivePublisher:
         if isinstance(message, (bytes, bytearray, memoryview)):
             data = bytes(message)
         else:
-            data = msgs.serialize(
-                msgs.from_dict([self.type_name], message) if isinstance(message, Mapping) else message
-            )
+            data = msgs.serialize(checked_message(message, (self.type_name,), repr(self.topic)))
         self._link.send(message_frame(self.number, data))
 
     def close(self) -> None:
@@ -172,7 +194,7 @@ class LiveGoal:
         if "status" not in update:
             self.feedback = message
             if self._on_feedback is not None:
-                self._on_feedback(message)
+                self._link.callbacks.append(partial(self._on_feedback, message))
             return
         self.status, self.reason = GoalStatus(int(update["status"])), str(update.get("reason", ""))
         if message is not None:

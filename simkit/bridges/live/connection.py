@@ -5,9 +5,11 @@ from __future__ import annotations
 import socket
 import time
 from collections import OrderedDict, deque
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
+from simkit import msgs
 from simkit.bridges.live.protocol import (
+    ANSWER,
     ASK,
     HEAD,
     LARGEST_IN,
@@ -20,6 +22,8 @@ from simkit.bridges.live.protocol import (
     JsonObject,
     json_frame,
 )
+from simkit.msgs.message_types import Message
+from simkit.runtime.communication.service_call import NO_ANSWER
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import GoalHandle
@@ -31,6 +35,22 @@ MOST_OPEN = 1000  # open subscriptions, publishers or goals of one client
 _ANSWERS_FULL = 1 << 18  # [bytes] of queued answers; above this limit no more requests of the client are read
 _UNREAD_TIMEOUT = 10.0  # [s] of wall time after which a client that reads no answers is disconnected
 _PIECE = 1 << 16  # [bytes] read or written at once
+
+
+class ClientEndpoint(Protocol):
+    """Service, action, command input or parameter of a client.
+
+    Attributes:
+        opened: endpoint in the simulation.
+    """
+
+    opened: Any
+
+    def send_due(self) -> None:
+        """Send the client what the simulation has queued since the last call."""
+
+    def close(self) -> None:
+        """Close the endpoint in the simulation."""
 
 
 class ClientSubscription:
@@ -58,6 +78,7 @@ class ClientConnection:
     Attributes:
         node: name of the client in node lists.
         subscriptions, publishers, goals: open handles of the client, by the client's numbers.
+        endpoints: services, actions, command inputs and parameters of the client, by the client's numbers.
         is_held: True while reading from the client is paused, because further commands would be dropped.
         drops_invalid: True for a bridge, which passes on messages of others: an invalid message is dropped with a
             notification. Any other client that sends an invalid message is disconnected.
@@ -69,6 +90,7 @@ class ClientConnection:
         self.subscriptions: dict[int, ClientSubscription] = {}
         self.publishers: dict[int, Publisher] = {}
         self.goals: dict[int, tuple[GoalHandle, int]] = {}
+        self.endpoints: dict[int, ClientEndpoint] = {}
         self.is_held = False
         self.drops_invalid = False
         self.why: str | None = None
@@ -119,6 +141,21 @@ class ClientConnection:
         self._answers.append(frame)
         self._answer_bytes += len(frame)
 
+    def answer_later(self, number: int, response: Message, error: str) -> None:
+        """Send the answer to a request that was forwarded to another client: a message, or the text of an error."""
+        if self.is_gone:
+            return
+        if error:
+            self.send_json(ANSWER, {"id": number, "error": error, "code": NO_ANSWER})
+        else:
+            self.send_json(ANSWER, {"id": number, "type": msgs.type_name(response)}, msgs.serialize(response))
+        self.write()
+
+    def send_requests(self) -> None:
+        """Send the requests, goals and new values of the client's endpoints."""
+        for endpoint in list(self.endpoints.values()):
+            endpoint.send_due()
+
     def queue_message(self, subscribed: ClientSubscription, time_ns: int, type_name: str, data: bytes) -> None:
         """Queue a message. If the queue is full, the oldest messages are dropped."""
         size = len(data)
@@ -155,8 +192,10 @@ class ClientConnection:
         subscribed.waiting.clear()
 
     def clear(self) -> None:
-        """Release all open handles and queued data of the client."""
-        for table in (self.subscriptions, self.publishers, self.goals, self._queue):
+        """Close the endpoints of the client, and release its handles and queued data."""
+        for endpoint in list(self.endpoints.values()):
+            endpoint.close()
+        for table in (self.subscriptions, self.publishers, self.goals, self.endpoints, self._queue):
             table.clear()
         self._answers.clear()
         self._rest = None

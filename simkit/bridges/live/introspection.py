@@ -62,11 +62,11 @@ def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[st
     for name in sim.communication.services.names():
         service = sim.communication.services._find(name)
         if service is not None:
-            entry(names.owner_node(service.owner))["services"][name] = [service.type_name]
+            entry(names.endpoint_node(service))["services"][name] = [service.type_name]
     for name in sim.communication.actions.names():
         action = sim.communication.actions._find(name)
         if action is not None:
-            entry(names.owner_node(action.owner))["actions"][name] = [action.type_name]
+            entry(names.endpoint_node(action))["actions"][name] = [action.type_name]
     for node, parameters in sim.communication.parameters.items():
         entry(node)["parameters"] = list(parameters)
     for peer in clients:
@@ -140,9 +140,10 @@ class NodeNames:
             if p.owner is not None
         }
         self._clients = {id(end): peer.node for peer in clients for end in peer.publishers.values()}
+        self._clients |= {id(e.opened): peer.node for peer in clients for e in peer.endpoints.values()}
 
     def endpoint_node(self, end: Any) -> str:
-        """Return the node of a publisher or subscriber."""
+        """Return the node of a publisher, a subscriber, a service or an action."""
         return self._clients.get(id(end)) or self.owner_node(end.owner)
 
     def owner_node(self, owner: object) -> str:

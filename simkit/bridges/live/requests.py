@@ -37,12 +37,18 @@ class RequestHost(Protocol):
         peers: connections of clients, by file descriptor.
         feeds: topics that clients subscribe to.
         client_topics: topics that a client created, because nothing in the simulation used them.
+        is_polling: True while `poll` processes data.
     """
 
     sim: Simulation
     peers: dict[int, ClientConnection]
     feeds: TopicFeeds
     client_topics: set[str]
+    is_polling: bool
+
+    def poll(self, wait: float = 0.0) -> bool:
+        """Read the frames of clients, and send the data that is queued for them."""
+        ...
 
     def measured_rtf(self) -> float:
         """Return the real-time factor over about the last second of wall time."""
@@ -51,12 +57,17 @@ class RequestHost(Protocol):
 
 @dataclass(frozen=True)
 class Request:
-    """Request of a client: its arguments, and the message (CDR) that follows them."""
+    """Request of a client: its arguments, and the message (CDR) that follows them.
+
+    Attributes:
+        respond: function that sends a later answer: a message, or the text of an error.
+    """
 
     server: RequestHost
     peer: ClientConnection
     args: JsonObject
     data: bytes
+    respond: Callable[[object, str], None]
 
     @property
     def sim(self) -> Simulation:
@@ -193,12 +204,12 @@ def advertise(request: Request) -> object:
         raise RequestRefused(f"topic {topic!r} has type {allowed}, got {type_name}", "SK-MSG-001")
     msgs.type_of(type_name)
     if not types_in_use:
-        _count_new_topic(request, topic)
-    request.peer.publishers[number] = bus.advertise(topic, type_name)
+        count_new_topic(request, topic)
+    request.peer.publishers[number] = bus.advertise(topic, type_name, latched=request.args.get("latched") is True)
     return {"topic": topic, "type": type_name}
 
 
-def _count_new_topic(request: Request, topic: str) -> None:
+def count_new_topic(request: Request, topic: str) -> None:
     """Count a topic that a client creates. Their number is limited, because recordings keep topics until the end."""
     if not _NEW_TOPIC.fullmatch(topic):
         raise RequestRefused(f"{topic!r} is not a topic name; expected letters, digits and _ between slashes")
@@ -263,7 +274,6 @@ REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
         "advertise": advertise,
         "unadvertise": unadvertise,
         "services": lambda request: request.sim.communication.services.names(),
-        "call": lambda request: Response(request.sim.call(request.arg("name", str), request.message())),
         "actions": lambda request: request.sim.communication.actions.names(),
         "goal": goal,
         "cancel": cancel,

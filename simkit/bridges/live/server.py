@@ -13,12 +13,14 @@ import socket
 import time
 from collections import deque
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.bridges.live import socket_files
 from simkit.bridges.live.bridge_requests import BRIDGE_REQUESTS
 from simkit.bridges.live.connection import ClientConnection
+from simkit.bridges.live.endpoint_requests import ENDPOINT_REQUESTS, LATER
 from simkit.bridges.live.message_reader import message_reader
 from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject, read_json_frame
 from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Response
@@ -36,6 +38,7 @@ BUDGET: Final = 0.005  # [s] of wall time for clients between two slices
 _SLICE, _BUSY_SLICE = 0.4, 0.08  # share of a slice's usual wall time with idle clients, and with busy clients
 _REQUESTS_PER_TURN = 64  # frames that are read from one client before the turn of the next client
 _LONGEST_HOLD = 0.2  # [s] of wall time, longest pause in reading from a client that avoids dropped commands
+_HANDLERS: Final = {**REQUESTS, **BRIDGE_REQUESTS, **ENDPOINT_REQUESTS}
 _MOST_CALLERS = 16  # connections that are accepted in one poll
 
 
@@ -52,6 +55,7 @@ class Server:
         feeds: topics that clients subscribe to.
         peers: connections of clients, by file descriptor.
         client_topics: topics that clients created during the run, because nothing in the simulation used them.
+        is_polling: True while `poll` processes data.
 
     Raises:
         NoSocketFolder: no folder can contain the socket; the message has the reason.
@@ -67,7 +71,7 @@ class Server:
         self.client_topics: set[str] = set()
         self._busy: deque[ClientConnection] = deque()
         self._interest: dict[int, int] = {}
-        self._numbers = 0
+        self._numbers, self.is_polling = 0, False
         self._taken: dict[str, int] = {}
         self._taken_at, self._taken_since = -1, 0.0
         self._fewest = 1  # smallest queue depth for the next step, over all topics
@@ -93,8 +97,18 @@ class Server:
             return False
         if not self.peers and wait <= 0:
             return self._accept_callers()
+        was_polling, self.is_polling = self.is_polling, True
+        try:
+            return self._exchange_data(wait)
+        finally:
+            self.is_polling = was_polling
+
+    def _exchange_data(self, wait: float) -> bool:
+        """Read and send data; return True if anything arrived."""
         self.feeds.deliver_ready()
         self._send_goal_states()
+        for peer in list(self.peers.values()):
+            peer.send_requests()
         self._release_held()
         for peer in [p for p in self.peers.values() if p.is_waiting]:
             self._write(peer)
@@ -230,10 +244,11 @@ class Server:
         answer: JsonObject = {"id": number}
         found = b""
         try:
-            handler = REQUESTS.get(request_name) or BRIDGE_REQUESTS.get(request_name)
-            if handler is None:
+            if request_name not in _HANDLERS:
                 raise RequestRefused(f"unknown request {request_name!r}")
-            result = handler(Request(self, peer, args, data))
+            result = _HANDLERS[request_name](Request(self, peer, args, data, partial(peer.answer_later, number)))
+            if result is LATER:
+                return
             if isinstance(result, Response):
                 answer["type"], found = msgs.type_name(result.message), msgs.serialize(result.message)
             else:

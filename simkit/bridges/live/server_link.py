@@ -8,6 +8,7 @@ import select
 import socket
 import struct
 import time
+from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -31,6 +32,7 @@ from simkit.bridges.live.protocol import (
     read_json_frame,
 )
 
+_ENDPOINT_TELLS = ("request", "goal_request", "goal_cancel", "parameter")
 _PIECE = 1 << 18  # [bytes] read from the socket at once
 _LONGEST_TIMEOUT = 1e6  # [s]; `select` rejects much longer waits on some systems
 CONNECT_PERIOD = 0.05
@@ -53,7 +55,9 @@ class ServerLink:
 
     Attributes:
         info: `name`, `world`, `pid` and `version` of the simulation, and `node`, the client's name in its lists.
-        subscriptions, goals: callbacks for messages and for goal updates, by number.
+        subscriptions, goals, endpoints: functions for messages, goal updates and requests, by number.
+        requests: requests to the client's services, which are also answered while a callback waits.
+        callbacks: other calls of the client's functions, which wait until no other callback runs.
     """
 
     def __init__(self, path: Path, timeout: float = 10.0, node: str | None = None) -> None:
@@ -61,6 +65,11 @@ class ServerLink:
         self.info: JsonObject = {}
         self.subscriptions: dict[int, MessageReceiver] = {}
         self.goals: dict[int, GoalListener] = {}
+        self.endpoints: dict[int, GoalListener] = {}
+        self.requests: deque[Callable[[], None]] = deque()
+        self.callbacks: deque[Callable[[], None]] = deque()
+        self._is_in_callback = False
+        self._abandoned: set[int] = set()
         self._numbers = itertools.count(1)
         self._reader = FrameReader(LARGEST_OUT, (ANSWER, TELL, MESSAGE))
         self._answers: dict[int, tuple[JsonObject, bytes]] = {}
@@ -100,14 +109,26 @@ class ServerLink:
             return False
         return True
 
-    def request(self, question: str, args: Mapping[str, object], data: bytes = b"") -> tuple[JsonValue, bytes, str]:
+    def request(
+        self, question: str, args: Mapping[str, object], data: bytes = b"", timeout: float | None = None
+    ) -> tuple[JsonValue, bytes, str]:
         """Return the answer to a request, with the CDR after it and the CDR's type.
+
+        Args:
+            question: name of the request.
+            args: arguments of the request.
+            data: message as CDR.
+            timeout: longest wait for the answer [s]; None for the timeout of the link.
 
         Raises:
             LiveError: the simulation cannot answer the request; with the code and the message of its error.
             LiveClosed: the simulation has ended.
         """
-        return self.answer(self.send_request(question, args, data))
+        return self.answer(self.send_request(question, args, data), timeout)
+
+    def post(self, question: str, args: Mapping[str, object], data: bytes = b"") -> None:
+        """Send a request whose answer is not needed."""
+        self._abandoned.add(self.send_request(question, args, data))
 
     def send_request(self, question: str, args: Mapping[str, object], data: bytes = b"") -> int:
         """Send a request; return the number of its answer."""
@@ -119,9 +140,14 @@ class ServerLink:
         self.send(frame)
         return number
 
-    def answer(self, number: int) -> tuple[JsonValue, bytes, str]:
+    def answer(self, number: int, timeout: float | None = None) -> tuple[JsonValue, bytes, str]:
         """Wait for the answer with that number and return it."""
-        self._wait_for_answer(lambda: number in self._answers)
+        try:
+            self._wait_for_answer(lambda: number in self._answers, timeout)
+        except BaseException:
+            if self._answers.pop(number, None) is None:
+                self._abandoned.add(number)
+            raise
         words, found = self._answers.pop(number)
         if "error" in words:
             raise LiveError(str(words["error"]), str(words.get("code", "SK-LIVE-008")))
@@ -136,7 +162,9 @@ class ServerLink:
         return next(self._numbers)
 
     def receive(self, timeout: float | None = 0.0) -> bool:
-        """Receive frames and dispatch them to subscriptions and goals.
+        """Receive frames, and call the functions of subscriptions, goals, services and actions.
+
+        Within a callback, only requests to this client's services are processed; other callbacks wait for its end.
 
         Args:
             timeout: longest wait for a frame [s]; None for no limit.
@@ -147,12 +175,27 @@ class ServerLink:
         Raises:
             LiveClosed: the simulation has ended.
         """
+        if self._call_functions():
+            return True
         if self._closed is not None:
             raise self._closed
         ready, _, _ = select.select([self._socket], [], [], None if timeout is None else min(timeout, _LONGEST_TIMEOUT))
         if ready:
             self._receive_piece()
+            self._call_functions()
         return bool(ready)
+
+    def _call_functions(self) -> bool:
+        """Call the functions of this client for what has arrived; return True if there were any."""
+        called = False
+        while self.requests or (self.callbacks and not self._is_in_callback):
+            before, self._is_in_callback = self._is_in_callback, True
+            try:
+                (self.requests or self.callbacks).popleft()()
+            finally:
+                self._is_in_callback = before
+            called = True
+        return called
 
     def fileno(self) -> int:
         """Return the socket's file descriptor, for `select`."""
@@ -192,8 +235,8 @@ class ServerLink:
             self.receive(left)
         return True
 
-    def _wait_for_answer(self, condition: Callable[[], bool]) -> None:
-        if not self.wait(condition, self.timeout):
+    def _wait_for_answer(self, condition: Callable[[], bool], timeout: float | None = None) -> None:
+        if not self.wait(condition, self.timeout if timeout is None else timeout):
             raise self._no_answer()
 
     def _receive_piece(self) -> None:
@@ -219,11 +262,18 @@ class ServerLink:
             return
         words, data = read_json_frame(body)
         if kind == ANSWER:
-            self._answers[int(words["id"])] = words, data
+            number = int(words["id"])
+            if number in self._abandoned:
+                self._abandoned.discard(number)
+            else:
+                self._answers[number] = words, data
         elif words["tell"] == "type":
             self._types[int(words["number"])] = str(words["type"])
         elif words["tell"] == "goal" and int(words["number"]) in self.goals:
             self.goals[int(words["number"])](words, data)
+        elif words["tell"] in _ENDPOINT_TELLS:
+            if int(words["number"]) in self.endpoints:
+                self.endpoints[int(words["number"])](words, data)
         elif words["tell"] == "hello":
             self.info = {k: v for k, v in words.items() if k != "tell"}
         elif words["tell"] == "invalid":

@@ -319,8 +319,8 @@ class ActionTable(EndpointTable[Action]):
             MessageError: the goal does not fit the type.
         """
         self._engine.check_open()
-        action = self._get(absolute_name(name))
-        request = self._as_message(action, goal)
+        action = self.get(absolute_name(name))
+        request = self.checked(action, goal)
         journal = self._bus.journal
         if journal is not None:
             on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)

@@ -102,14 +102,14 @@ class EndpointTable(Generic[E]):
     def _find(self, name: str) -> E | None:
         return next((endpoint for endpoint in self._endpoints.get(name, ()) if endpoint.active), None)
 
-    def _get(self, name: str) -> E:
+    def get(self, name: str) -> E:
         """Return the active endpoint of that name. If none exists, raise an error that suggests the closest name."""
         found = self._find(name)
         if found is None:
             raise self.error(f"no {self.kind} {name!r}; {name_hint(name, self.names())}")
         return found
 
-    def _as_message(self, endpoint: E, value: Message) -> Message:
+    def checked(self, endpoint: E, value: Message) -> Message:
         """Convert a value to a request or goal: a message, a dict of its fields, or None for fields that are all zero.
 
         Raises:

@@ -110,8 +110,8 @@ class ServiceTable(EndpointTable[Service]):
             SubscriberError: the function of a script that answers raised.
         """
         self._engine.check_open()
-        service = self._get(absolute_name(name))
-        message = self._as_message(service, request)
+        service = self.get(absolute_name(name))
+        message = self.checked(service, request)
         timeout = checked_number(timeout, "timeout", 0.0, unit="s", finite=False)
         if on_done is not None:
             check_function(on_done, "on_done")
@@ -129,8 +129,8 @@ class ServiceTable(EndpointTable[Service]):
             request: request message.
             on_done: function that receives the call, before the step after the response has arrived.
         """
-        service = self._get(absolute_name(name))
-        return self._begin(service, self._as_message(service, request), on_done)
+        service = self.get(absolute_name(name))
+        return self._begin(service, self.checked(service, request), on_done)
 
     def _begin(self, service: Service, request: Message, on_done: CallEnd | None) -> ServiceCall:
         if self._bus.journal is not None:

@@ -1,0 +1,220 @@
+"""Topics, services, actions and parameters that a client of a running simulation opens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from simkit.bridges.live.client_handles import LivePublisher
+from simkit.bridges.live.client_servers import (
+    LiveAction,
+    LiveEndpoint,
+    LiveInput,
+    LiveParameter,
+    LiveServerGoal,
+    LiveService,
+)
+from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
+from simkit.bridges.live.server_link import ServerLink
+from simkit.errors import ArgumentTypeError
+from simkit.msgs.message_types import Message
+
+DEFAULT_DEPTH = 1000
+"""Default number of messages that a subscription queues at most, in the client and in the simulation."""
+
+
+def absolute(name: str) -> str:
+    """Return a name with its leading slash."""
+    return name if name.startswith("/") else "/" + name
+
+
+def check_callback(value: object, name: str) -> None:
+    """Raise ArgumentTypeError if a value cannot be called."""
+    if not callable(value):
+        raise ArgumentTypeError(f"{name} must be a function, got {type(value).__name__}")
+
+
+class ClientGraph(ServerLink):
+    """Methods with which a client opens topics, services, actions and parameters; the base class of a client.
+
+    Args:
+        path: path of the simulation's socket.
+        timeout: longest wait for an answer [s], wall time.
+        node: name of the client in the simulation's node lists.
+    """
+
+    def __init__(self, path: Path, timeout: float = 10.0, node: str | None = None) -> None:
+        super().__init__(path, timeout, node)
+        self._publishers: dict[str, LivePublisher] = {}
+
+    def advertise(self, topic: str, type_name: str | None = None, latched: bool = False) -> LivePublisher:
+        """Open a topic for publishing.
+
+        Args:
+            topic: name of the topic; a leading `/` is added if it is missing.
+            type_name: type of the messages; default: the type that the topic already has.
+            latched: send the last message to a later subscriber (transient local).
+
+        Raises:
+            LiveError: the topic has another type, or the type is unknown.
+        """
+        number = self.next_number()
+        found = self.request("advertise", {"number": number, "topic": topic, "type": type_name, "latched": latched})[0]
+        return LivePublisher(self, number, found["topic"], found["type"])
+
+    def publish(self, topic: str, message: object) -> None:
+        """Publish a message. A message object on an unknown topic opens the topic.
+
+        Args:
+            topic: name of the topic; a leading `/` is added if it is missing.
+            message: message, or a dict of its fields if the topic has a type.
+
+        Raises:
+            LiveError: the topic has another type, or does not exist.
+            MessageError: the message does not match the type of the topic.
+        """
+        name = absolute(topic)
+        if name not in self._publishers:
+            type_name = getattr(message, "__msgtype__", None)
+            self._publishers[name] = self.advertise(name, type_name if isinstance(type_name, str) else None)
+        self._publishers[name].publish(message)
+
+    def listen(
+        self, topic: str, types: str | Sequence[str], callback: Callable[[Message], object], depth: int = DEFAULT_DEPTH
+    ) -> LiveInput:
+        """Open a topic for commands: `callback(message)` is called for each message, while the client receives.
+
+        Args:
+            topic: name of the topic; a leading `/` is added if it is missing.
+            types: accepted type or types.
+            callback: function that receives each message.
+            depth: highest number of queued messages; if more arrive, the oldest are dropped and counted.
+
+        Raises:
+            LiveError: the topic has another type, or a type is unknown.
+        """
+        check_callback(callback, "callback")
+        number = self.next_number()
+        opened = LiveInput(self, number, absolute(topic), depth, callback)
+        self.subscriptions[number] = opened.take
+        names = [types] if isinstance(types, str) else list(types)
+        try:
+            self.request("listen", {"number": number, "topic": topic, "types": names, "depth": depth})[0]
+        except LiveError:
+            del self.subscriptions[number]
+            raise
+        return opened
+
+    def spin(self, timeout: float | None = None) -> None:
+        """Receive, and call the functions of this client, until the simulation ends.
+
+        Args:
+            timeout: longest time [s], wall time; None for no limit.
+        """
+        try:
+            self.wait(lambda: False, timeout)
+        except LiveClosed as error:
+            if error.code != "SK-LIVE-005":
+                raise
+
+    def offer(self, name: str, type_name: str, handler: Callable[[Message], object]) -> LiveService:
+        """Open a service, which the client answers while it receives, for example in `spin`.
+
+        Args:
+            name: name of the service; a leading `/` is added if it is missing.
+            type_name: service type, such as `std_srvs/srv/Trigger`.
+            handler: function that receives a request and returns the response: a message, a dict of its fields, or None
+                for a message whose fields are all zero.
+
+        Raises:
+            LiveError: a service of that name exists, or the type is unknown.
+        """
+        check_callback(handler, "handler")
+        opened = LiveService(self, self.next_number(), absolute(name), type_name, handler)
+        self._open_endpoint(opened, "offer", {"name": name, "type": type_name})
+        return opened
+
+    def act(
+        self,
+        name: str,
+        type_name: str,
+        callback: Callable[[LiveServerGoal], object],
+        on_cancel: Callable[[LiveServerGoal], bool | None] | None = None,
+    ) -> LiveAction:
+        """Open an action, whose goals the client executes while it receives, for example in `spin`.
+
+        Args:
+            name: name of the action; a leading `/` is added if it is missing.
+            type_name: action type, such as `example_interfaces/action/Fibonacci`.
+            callback: function that receives each new goal. It may reject the goal, or return the result: a message or a
+                dict of its fields. Otherwise the goal is active until its method `succeed`, `abort` or `canceled` is
+                called.
+            on_cancel: function that receives a goal that another client cancels; it returns False to continue the goal.
+                Without a function, every goal continues.
+
+        Raises:
+            LiveError: an action of that name exists, or the type is unknown.
+        """
+        check_callback(callback, "callback")
+        opened = LiveAction(self, self.next_number(), absolute(name), type_name, callback, on_cancel)
+        self._open_endpoint(opened, "act", {"name": name, "type": type_name, "cancels": on_cancel is not None})
+        return opened
+
+    def _open_endpoint(self, endpoint: LiveEndpoint, question: str, args: Mapping[str, object]) -> JsonValue:
+        """Open an endpoint in the simulation; its first requests may arrive together with the answer."""
+        self.endpoints[endpoint.number] = endpoint.take
+        try:
+            return self.request(question, {"number": endpoint.number, **args})[0]
+        except LiveError:
+            self.endpoints.pop(endpoint.number, None)
+            raise
+
+    # ------------------------------------------------------------------ parameters
+
+    def parameters(self) -> dict[str, JsonObject]:
+        """Return the parameters: node -> name -> `value`, `type`, `minimum`, `maximum`, `choices`, `allowed`, …."""
+        found: dict[str, JsonObject] = self.request("parameters", {})[0]
+        return found
+
+    def set_parameter(self, node: str, name: str, value: object) -> None:
+        """Set a live parameter of a node.
+
+        Raises:
+            LiveError: no parameter has that name, or the value is not allowed.
+        """
+        self.request("set_parameter", {"node": node, "name": name, "value": value})[0]
+
+    def declare(
+        self,
+        name: str,
+        value: object,
+        *,
+        node: str | None = None,
+        minimum: float | None = None,
+        maximum: float | None = None,
+        choices: Sequence[object] = (),
+        description: str = "",
+        on_change: Callable[[object], object] | None = None,
+    ) -> LiveParameter:
+        """Declare a live parameter: `.value` is the newest value that the client has received.
+
+        Args:
+            name: name of the parameter, such as `p_gain`.
+            value: first value. Later values have its type: bool, int, float, str or tuple of numbers.
+            node: ROS node of the parameter; None for the name of this client.
+            minimum: lower bound of the number, or of each number of a tuple.
+            maximum: upper bound of the number, or of each number of a tuple.
+            choices: allowed values; empty for no restriction.
+            description: meaning of the parameter, with its unit.
+            on_change: function that receives each new value while the client receives.
+
+        Raises:
+            LiveError: the node has a parameter of that name, or the value is not allowed.
+        """
+        if on_change is not None:
+            check_callback(on_change, "on_change")
+        opened = LiveParameter(self, self.next_number(), name, str(node), value, on_change)
+        options = {"minimum": minimum, "maximum": maximum, "choices": list(choices), "description": description}
+        found = self._open_endpoint(opened, "declare", {"name": name, "value": value, "node": node, **options})
+        opened.node = found["node"]
+        return opened

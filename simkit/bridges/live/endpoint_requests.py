@@ -1,0 +1,139 @@
+"""Handlers of the requests with which clients open and serve endpoints, and call services."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final, TypeVar
+
+from simkit.bridges.live.client_endpoints import (
+    ClientAction,
+    ClientEndpoint,
+    ClientInput,
+    ClientParameter,
+    ClientService,
+)
+from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response, count_new_topic
+from simkit.msgs.topic_names import absolute_name
+from simkit.runtime.communication.parameter_server import checked_parameter
+
+E = TypeVar("E", bound=ClientEndpoint)
+_NAME = re.compile(r"(/[A-Za-z0-9_.-]+)+")
+_LONGEST_NAME = 255
+
+LATER: Final = object()
+"""Result of a handler whose answer comes later, through `Request.respond`."""
+
+
+def _name(request: Request, argument: str = "name") -> str:
+    """Return the absolute name of a new endpoint."""
+    found = absolute_name(request.arg(argument, str))
+    if not _NAME.fullmatch(found) or len(found) > _LONGEST_NAME:
+        raise RequestRefused(f"{found!r:.80} is not a name; expected letters, digits and _ between slashes")
+    return found
+
+
+def _endpoint(request: Request, kind: type[E]) -> E:
+    """Return the client's endpoint with the requested number."""
+    found = request.peer.endpoints.get(request.arg("number", int))
+    if not isinstance(found, kind):
+        raise RequestRefused("there is no such endpoint")
+    return found
+
+
+def call(request: Request) -> object:
+    """Call a service. The answer of a service of another client comes later."""
+    services = request.sim.communication.services
+    service = services.get(absolute_name(request.arg("name", str)))
+    if not isinstance(service.remote, ClientService):
+        return Response(services.call(service.name, request.message()))
+    service.remote.forward(services.checked(service, request.message()), request.respond)
+    return LATER
+
+
+def offer(request: Request) -> object:
+    """Open a service that the client answers."""
+    number = request.new_number(request.peer.endpoints)
+    found = ClientService(request.server, request.peer, number, _name(request), request.arg("type", str))
+    request.peer.endpoints[number] = found
+    return found.opened.name
+
+
+def respond(request: Request) -> object:
+    """Pass the client's response to the caller of its service."""
+    error = request.args.get("error")
+    message = None if error is not None else request.message()
+    _endpoint(request, ClientService).respond(request.arg("call", int), message, "" if error is None else str(error))
+    return None
+
+
+def act(request: Request) -> object:
+    """Open an action whose goals the client executes."""
+    number = request.new_number(request.peer.endpoints)
+    name, type_name, cancels = _name(request), request.arg("type", str), request.arg("cancels", bool)
+    found = ClientAction(request.server, request.peer, number, name, type_name, cancels)
+    request.peer.endpoints[number] = found
+    return found.opened.name
+
+
+def update_goal(request: Request) -> object:
+    """Apply a change that the client made to a goal of its action."""
+    message = None if request.args.get("type") is None else request.message()
+    change, reason = request.arg("change", str), request.arg("reason", str)
+    _endpoint(request, ClientAction).update(request.arg("goal", int), change, message, reason)
+    return None
+
+
+def listen(request: Request) -> object:
+    """Open a command input whose messages the client receives."""
+    number = request.new_number(request.peer.endpoints)
+    topic, types = request.topic(), [str(name) for name in request.arg("types", list)]
+    if not request.sim.communication.bus.types_of(topic):
+        count_new_topic(request, topic)
+    found = ClientInput(request.server, request.peer, number, topic, types, request.arg("depth", int))
+    request.peer.endpoints[number] = found
+    return {"topic": topic, "types": list(found.opened.types)}
+
+
+def declare(request: Request) -> object:
+    """Declare a parameter of the client, on the node of the client's name unless another node is requested."""
+    number, args = request.new_number(request.peer.endpoints), request.args
+    node = request.peer.node if args.get("node") is None else _name(request, "node")
+    choices = request.arg("choices", list)
+    options = {"minimum": args.get("minimum"), "maximum": args.get("maximum"), "choices": choices}
+    described = {**options, "description": request.arg("description", str)}
+    parameter = checked_parameter(node, request.arg("name", str), args.get("value"), **described)
+    request.peer.endpoints[number] = ClientParameter(request.server, request.peer, number, parameter)
+    return {"node": parameter.node, "value": parameter.value}
+
+
+def close_endpoint(request: Request) -> object:
+    """Close an endpoint of the client."""
+    _endpoint(request, ClientEndpoint).close()
+    del request.peer.endpoints[request.arg("number", int)]
+    return None
+
+
+def subscribers(request: Request) -> object:
+    """Return the number of subscriptions and command inputs of a publisher's topic."""
+    publisher = request.peer.publishers.get(request.arg("number", int))
+    if publisher is None:
+        raise RequestRefused("there is no such publisher")
+    return publisher.subscribers
+
+
+ENDPOINT_REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
+    {
+        "call": call,
+        "offer": offer,
+        "respond": respond,
+        "act": act,
+        "update_goal": update_goal,
+        "listen": listen,
+        "declare": declare,
+        "close_endpoint": close_endpoint,
+        "subscribers": subscribers,
+    }
+)
+"""Handler of each of these requests, by the name that a client sends."""
