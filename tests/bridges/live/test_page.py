@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from simkit.bridges.live import requests
+from simkit.bridges.live import endpoint_requests, requests
 from simkit.live import connect
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "live.md").read_text(encoding="utf-8")
@@ -17,7 +17,8 @@ PAGE = (Path(__file__).resolve().parents[3] / "docs" / "live.md").read_text(enco
 
 def test_the_page_has_every_request() -> None:
     table = PAGE[PAGE.index("| question |") :]
-    assert set(requests.REQUESTS) == set(re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M))))
+    handlers = {*requests.REQUESTS, *endpoint_requests.ENDPOINT_REQUESTS}
+    assert handlers == set(re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M))))
 
 
 def test_a_client_of_another_process_does_not_change_the_end_of_a_run(court_text: str, tmp_path: Path) -> None:
