@@ -195,6 +195,7 @@ class ClientAction(ClientEndpoint):
                 for number in [number for number, one in self._goals.items() if one is goal]:
                     self._tell(tell, {"goal": number})
                 continue
+            self._goals = {n: one for n, one in self._goals.items() if not one.is_done and self.opened.knows(one)}
             refusal = self._refusal(len(self._goals))
             if refusal:
                 goal.reject(refusal)
@@ -221,18 +222,15 @@ class ClientAction(ClientEndpoint):
             raise LiveError(f"no goal {number} of {self.opened.name!r} is active", "SK-LIVE-008")
         if change not in ("accept", "continue", "feedback", *_FINAL):
             raise LiveError(f"unknown change {change!r:.80} of a goal", "SK-LIVE-008")
-        if change in _FINAL:
-            del self._goals[number]
         if change == "REJECTED":
             goal.reject(reason)
-            return
-        if self.opened.knows(goal):
+        elif self.opened.knows(goal):
             goal.accept()
         if change == "feedback":
             goal.publish_feedback(message)
         elif change == "continue":
             goal.continue_goal()
-        elif change in _FINAL:
+        elif change in _FINAL and change != "REJECTED":
             goal.end(GoalStatus[change], message, reason)
 
 

@@ -24,7 +24,9 @@ DEFAULT_DEPTH = 1000
 
 
 def absolute(name: str) -> str:
-    """Return a name with its leading slash."""
+    """Return a name with its leading slash; raise ArgumentTypeError if it is not a text."""
+    if not isinstance(name, str):
+        raise ArgumentTypeError(f"the name must be a text, got {type(name).__name__}")
     return name if name.startswith("/") else "/" + name
 
 
@@ -97,7 +99,7 @@ class ClientGraph(ServerLink):
         number = self.next_number()
         opened = LiveInput(self, number, absolute(topic), depth, callback)
         self.subscriptions[number] = opened.take
-        names = [types] if isinstance(types, str) else list(types)
+        names = list(types) if isinstance(types, (list, tuple)) else [types]
         try:
             self.request("listen", {"number": number, "topic": topic, "types": names, "depth": depth})[0]
         except LiveError:
@@ -156,6 +158,8 @@ class ClientGraph(ServerLink):
             LiveError: an action of that name exists, or the type is unknown.
         """
         check_callback(callback, "callback")
+        if on_cancel is not None:
+            check_callback(on_cancel, "on_cancel")
         opened = LiveAction(self, self.next_number(), absolute(name), type_name, callback, on_cancel)
         self._open_endpoint(opened, "act", {"name": name, "type": type_name, "cancels": on_cancel is not None})
         return opened

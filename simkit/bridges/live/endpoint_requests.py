@@ -15,6 +15,7 @@ from simkit.bridges.live.client_endpoints import (
     ClientService,
 )
 from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response, count_new_topic
+from simkit.errors import SimkitError
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.parameter_server import checked_parameter
 
@@ -62,9 +63,16 @@ def offer(request: Request) -> object:
 
 def respond(request: Request) -> object:
     """Pass the client's response to the caller of its service."""
-    error = request.args.get("error")
-    message = None if error is not None else request.message()
-    _endpoint(request, ClientService).respond(request.arg("call", int), message, "" if error is None else str(error))
+    service, number, error = _endpoint(request, ClientService), request.arg("call", int), request.args.get("error")
+    if error is not None:
+        service.respond(number, None, str(error) or "an error without a text")
+        return None
+    try:
+        message = request.message()
+    except SimkitError as problem:  # the caller must not wait for another response
+        service.respond(number, None, str(problem))
+        raise
+    service.respond(number, message, "")
     return None
 
 

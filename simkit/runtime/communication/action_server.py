@@ -260,7 +260,7 @@ class ActionTable(EndpointTable[Action]):
         engine: engine that calls plugins.
     """
 
-    kind, part, error = "action", "Goal", ActionError
+    kind, folder, part, error = "action", "action", "Goal", ActionError
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         super().__init__(bus, engine)

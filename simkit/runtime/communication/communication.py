@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from simkit import msgs
-from simkit.argument_checks import check_list, check_text
+from simkit.argument_checks import check_list, check_text, wrong_value
 from simkit.errors import MessageError
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
@@ -210,6 +210,8 @@ class Communication:
             check_text(types, "the type")
             types = (str(types),)
         check_list(types, str, "types", "a text such as 'std_msgs/msg/String'")
+        if not types:
+            raise wrong_value("types", "a list with at least one type", types)
         names = tuple(msgs.full_name(name) for name in types)
         for name in names:
             msgs.type_of(name)

@@ -50,6 +50,7 @@ class EndpointTable(Generic[E]):
     """
 
     kind: ClassVar[str]
+    folder: ClassVar[str]
     part: ClassVar[str]
     error: ClassVar[type[ServiceError | ActionError]]
 
@@ -96,7 +97,7 @@ class EndpointTable(Generic[E]):
         The definition of a known type is read later, with the first message of the type.
         """
         check_text(type_name, "the type")
-        if interface_parts(type_name) is None:
+        if interface_parts(type_name) is None or f"/{self.folder}/" not in type_name:
             msgs.full_name(f"{type_name}_{self.part}")
 
     def _find(self, name: str) -> E | None:

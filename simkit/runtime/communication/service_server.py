@@ -45,7 +45,7 @@ class ServiceTable(EndpointTable[Service]):
         engine: engine that calls plugins.
     """
 
-    kind, part, error = "service", "Request", ServiceError
+    kind, folder, part, error = "service", "srv", "Request", ServiceError
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         super().__init__(bus, engine)

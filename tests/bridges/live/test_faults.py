@@ -183,6 +183,25 @@ ARGS: tuple[dict[str, Any], ...] = (
     {"ask": "control", "action": "rtf", "value": float("nan")},
     {"ask": "set_parameter", "node": "/a", "name": "b", "value": {"c": []}},
     {"ask": "node", "name": {}},
+    {"ask": "offer", "number": 1, "name": "/a b", "type": "std_srvs/srv/Trigger"},
+    {"ask": "offer", "number": 1, "name": "/s", "type": "std_srvs/srv/Triger"},
+    {"ask": "offer", "number": "1", "name": "/s", "type": "std_srvs/srv/Trigger"},
+    {"ask": "offer", "number": 1, "name": "/world/court/control/" + "x" * 999, "type": "std_srvs/srv/Trigger"},
+    {"ask": "act", "number": 1, "name": "/s", "type": "std_srvs/srv/Trigger", "cancels": True},
+    {"ask": "act", "number": 1, "name": "/s", "type": "example_interfaces/action/Fibonacci"},
+    {"ask": "listen", "number": 1, "topic": "/imu", "types": ["std_msgs/msg/String"], "depth": 1},
+    {"ask": "listen", "number": 1, "topic": "/imu", "types": [], "depth": 1},
+    {"ask": "listen", "number": 1, "topic": "/imu", "types": [{}], "depth": 1},
+    {"ask": "declare", "number": 1, "name": "", "value": 1, "choices": [], "description": ""},
+    {"ask": "declare", "number": 1, "name": "a", "value": {}, "choices": [], "description": ""},
+    {"ask": "declare", "number": 1, "name": "a", "value": 10**400, "choices": [], "description": ""},
+    {"ask": "declare", "number": 1, "name": "a", "value": 1, "choices": [{}, [{}]], "description": ""},
+    {"ask": "declare", "number": 1, "name": "a", "value": 1, "minimum": [], "choices": [], "description": ""},
+    {"ask": "respond", "number": 1, "call": 1},
+    {"ask": "update_goal", "number": 1, "goal": 1, "change": "accept", "reason": ""},
+    {"ask": "close_endpoint", "number": 1},
+    {"ask": "subscribers", "number": 1},
+    {"ask": "subscribers", "number": []},
     {"ask": "__class__"},
 )
 
@@ -230,8 +249,27 @@ def mutated(server: Server, index: int, open_: list[Any]) -> None:
         caller.socket.close()
 
 
+def servers(server: Server, index: int, open_: list[Any]) -> None:
+    """Servers that call themselves, and answer nothing or nonsense."""
+    caller = Caller(server)
+    caller.ask("offer", number=1, name=f"/sum_{index}", type="example_interfaces/srv/AddTwoInts")
+    caller.ask("act", number=2, name=f"/count_{index}", type="example_interfaces/action/Fibonacci", cancels=True)
+    caller.ask("listen", number=3, topic="/imu", types=["sensor_msgs/msg/Imu"], depth=10)
+    caller.ask("declare", number=4, name="gain", value=index, choices=[], description="", node=f"/n_{index}")
+    for number in range(20):
+        caller.ask("call", name=f"/sum_{index}", fields={"a": number})
+        caller.ask("goal", number=number, name=f"/count_{index}", fields={})
+        caller.ask("respond", number=1, call=number, type="std_msgs/msg/Float64")
+        caller.ask("update_goal", number=2, goal=number, change="SUCCEEDED", reason="", type="std_msgs/msg/Empty")
+        caller.ask("set_parameter", node=f"/n_{index}", name="gain", value=number)
+    server.poll()
+    open_.append(caller)
+    if len(open_) > 5:
+        open_.pop(0).socket.close()
+
+
 DISTURBANCES: list[Disturbance] = [
-    mutated, slow, dying, garbage, crowd, questions, subscriptions, huge, odd, args, bad_cdr,
+    servers, mutated, slow, dying, garbage, crowd, questions, subscriptions, huge, odd, args, bad_cdr,
 ]  # fmt: skip
 
 
