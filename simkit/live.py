@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.bridges.live.client import Client, connect
 from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription, Received
+from simkit.bridges.live.client_servers import LiveAction, LiveInput, LiveParameter, LiveServerGoal, LiveService
 from simkit.bridges.live.discovery import RunningSim, simulations
 from simkit.bridges.live.protocol import LiveClosed, LiveError
 
@@ -19,10 +20,15 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Client",
+    "LiveAction",
     "LiveClosed",
     "LiveError",
     "LiveGoal",
+    "LiveInput",
+    "LiveParameter",
     "LivePublisher",
+    "LiveServerGoal",
+    "LiveService",
     "LiveSubscription",
     "Received",
     "RunningSim",

@@ -191,8 +191,11 @@ class Action:
         self._table.close(self)
 
     def knows(self, goal: GoalHandle) -> bool:
-        """Check whether a goal belongs to the present state: no reset or restore has undone it."""
-        return self._table.knows(goal)
+        """Check whether a goal belongs to the present state: no reset or restore has undone it.
+
+        A plugin's own state is restored together with its goals, so its goals always belong to the present state.
+        """
+        return self.owner is not None or self._table.knows(goal)
 
     def offer(self, goal: GoalHandle) -> None:
         """Pass a goal to the plugin. The plugin executes the goal, unless its goal callback rejects the goal."""

@@ -73,6 +73,28 @@ def test_a_client_calls_the_service_of_another_client(court: simkit.Simulation, 
             client.ask("offer", number=77, name="/x", type="example_interfaces/srv/Ad")
 
 
+def test_functions_of_a_client_may_call_services_and_its_own_service_answers_meanwhile(
+    court: simkit.Simulation, run: Callable[..., Any]
+) -> None:
+    sums: list[int] = []
+    with run(court) as client:
+        with pytest.raises(LiveError, match="unknown request 'respnd'"):
+            client.ask("respnd")
+        client.offer("/add", ADD, add)
+        client.offer("/twice", ADD, lambda request: {"sum": 2 * client.call("/add", request_of(request)).sum})
+        client.listen("/go", "std_msgs/msg/Int64", lambda m: sums.append(client.call("/twice", {"a": m.data}).sum))
+        publisher = client.advertise("/go")
+        for value in (1, 2, 3):
+            publisher.publish({"data": value})
+        assert client.call("/twice", {"a": 5, "b": 1}).sum == 12
+        assert client.wait(lambda: len(sums) == 3, 5.0)
+    assert sums == [2, 4, 6]
+
+
+def request_of(request: Any) -> dict[str, int]:
+    return {"a": request.a, "b": request.b}
+
+
 @pytest.mark.parametrize(
     ("handler", "text"),
     [
