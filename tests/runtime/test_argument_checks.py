@@ -127,6 +127,7 @@ WRONG_VALUES: dict[str, Call] = {
     "pose NaN": lambda _: simkit.Pose(NAN),
     "pose length": lambda _: simkit.Pose((1, 2)),
     "pose zero": lambda _: simkit.Pose(ORIGIN, (0, 0, 0, 0)),
+    "quaternion huge": lambda _: simkit.Pose(ORIGIN, (1e200, 0, 0, 0)),
     "pose huge": lambda _: simkit.Pose((10**5000, 0, 0)),
     "angle huge": lambda _: simkit.Pose.from_rpy(0, 0, 0, 10**5000, 0, 0),
     "angle infinite": lambda _: simkit.Pose.from_rpy(0, 0, 0, 0, 0, math.inf),

@@ -225,7 +225,7 @@ class JointActuators(SharedByCopies):
             state += self._integrate(now, reference, rate, period)
         if now.has_effort:
             state += now.effort_share * commands
-        if not state.dot(state) < _LARGEST_CONTROL**2:
+        if not np.vdot(state, state) < _LARGEST_CONTROL**2:
             state = np.minimum(np.maximum(state, -_LARGEST_CONTROL), _LARGEST_CONTROL)
         data.act[self._states] = state
         data.ctrl[self._ids] = now.servo_stiffness * rate

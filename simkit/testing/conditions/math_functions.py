@@ -212,7 +212,7 @@ def _bind_reduction(usage: str, function: Reduction, *, empty_value: float | Non
 
 
 def _norm(values: Any) -> float:
-    return math.sqrt(float(values.dot(values)))
+    return math.sqrt(float(np.vdot(values, values)))  # without a warning for an overflow
 
 
 def _len(binder: ExpressionBinder, call: Call) -> BoundNode:
