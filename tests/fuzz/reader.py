@@ -36,6 +36,7 @@ class Reader:
     def __init__(self, resources: list[Path] | None = None) -> None:
         self._resources = [str(p) for p in resources or []]
         self._worker: subprocess.Popen[bytes] | None = None
+        self._top = tempfile.TemporaryDirectory(prefix="simkit_fuzz_", ignore_cleanup_errors=True)
         self._said = tempfile.TemporaryFile()  # noqa: SIM115 -- closed with the reader
         self.slowest: tuple[float, str] = (0.0, "")
         self.largest: tuple[int, str] = (0, "")
@@ -47,6 +48,7 @@ class Reader:
     def __exit__(self, *_: object) -> None:
         self.close()
         self._said.close()
+        self._top.cleanup()
 
     def read(
         self, main: str, files: Mapping[str, bytes], name: str = "", arguments: Sequence[str] = ()
@@ -99,7 +101,7 @@ class Reader:
             self._worker = None
 
     def _start(self) -> subprocess.Popen[bytes]:
-        command = [sys.executable, str(Path(__file__).with_name("worker.py")), *self._resources]
+        command = [sys.executable, str(Path(__file__).with_name("worker.py")), self._top.name, *self._resources]
         same_simkit = str(Path(simkit.__file__).resolve().parents[1])
         self._worker = subprocess.Popen(
             command,

@@ -43,10 +43,10 @@ def main() -> None:
     import simkit
 
     simkit.load("<sdf version='1.9'><world name='w'/></sdf>").close()
-    top = Path(tempfile.mkdtemp(prefix="simkit_fuzz_"))
+    top = Path(tempfile.mkdtemp(dir=sys.argv[1]))
     inside(top)
     watch = Watch(top)
-    resources = [Path(p) for p in sys.argv[1:]]
+    resources = [Path(p) for p in sys.argv[2:]]
     say({"ready": True})
     while header := sys.stdin.buffer.readline():
         asked = json.loads(header)
