@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from typing import Annotated
 
 import typer
@@ -72,6 +73,7 @@ def show(
     all_comments: Annotated[bool, Option("--all-comments", help="Print the comments of nested types, too.")] = False,
     no_comments: Annotated[bool, Option("--no-comments", help="Leave out comments.")] = False,
     bag: options.Bag = None,
+    sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
     """Print the definition of a type, followed by the definitions of its nested types."""
@@ -80,6 +82,7 @@ def show(
     name = _read(type_)
     try:
         if bag is None:
+            _define_if_unknown(name, sim)
             text = interface_text(name, comments=not no_comments, all_comments=all_comments)
         else:
             text = _of_bag(name, bag, comments=not no_comments, all_comments=all_comments)
@@ -107,14 +110,17 @@ def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> st
 def proto(
     type_: TypeName,
     no_quotes: Annotated[bool, Option("--no-quotes", help="Leave out the quotes around the text.")] = False,
+    sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
     """Print a message with all fields, as a template."""
     from simkit.msgs.interface_definitions import prototype
     from simkit.msgs.message_text import to_yaml
 
+    name = _read(type_)
+    _define_if_unknown(name, sim)
     try:
-        found = prototype(_read(type_))
+        found = prototype(name)
     except MessageError as error:
         raise InputError(f"SK-CLI-032 {error}", "SK-CLI-032") from None
     if json_:
@@ -122,6 +128,19 @@ def proto(
     else:
         text = to_yaml(found)
         print_line(text if no_quotes else f'"{text}"')
+
+
+def _define_if_unknown(type_name: str, sim: str | None) -> None:
+    """Define the types that a running simulation knows, if this process does not know a type."""
+    from simkit.live import LiveError, connect, simulations
+    from simkit.msgs.interface_definitions import full_interface_name
+
+    try:
+        full_interface_name(type_name)
+    except MessageError:
+        for name in [sim] if sim else [each.name for each in simulations()]:
+            with suppress(LiveError), connect(name) as client:
+                client.interfaces()
 
 
 def _read(type_name: str) -> str:

@@ -98,6 +98,7 @@ def _full_type_name(client: Client, topic: str, type_name: str | None) -> str:
         entry = find_topic(LiveSource(client), topic)
         subscribed_types = [t for end in entry.subscribers for t in end.types]
         return subscribed_types[0] if subscribed_types else entry.types[0]
+    client.interfaces()  # the type may be one that only the simulation knows
     try:
         return msgs.full_name(type_name)
     except MessageError as error:

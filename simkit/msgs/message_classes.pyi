@@ -38,6 +38,23 @@ class action_msgs__msg__GoalStatusArray:
     status_list: list[action_msgs__msg__GoalStatus]
     __msgtype__: ClassVar[str]
 
+@dataclass
+class CancelGoal_Request:
+    """`action_msgs/srv/CancelGoal_Request`"""
+    goal_info: GoalInfo
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CancelGoal_Response:
+    """`action_msgs/srv/CancelGoal_Response`"""
+    return_code: int
+    goals_canceling: list[GoalInfo]
+    ERROR_NONE: ClassVar[int] = 0
+    ERROR_REJECTED: ClassVar[int] = 1
+    ERROR_UNKNOWN_GOAL_ID: ClassVar[int] = 2
+    ERROR_GOAL_TERMINATED: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
 # actionlib_msgs
 
 @dataclass
@@ -81,6 +98,24 @@ class Actuators:
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
     normalized: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+# aruco_msgs
+
+@dataclass
+class aruco_msgs__msg__Marker:
+    """`aruco_msgs/msg/Marker`"""
+    header: Header
+    id: int
+    pose: PoseWithCovariance
+    confidence: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class aruco_msgs__msg__MarkerArray:
+    """`aruco_msgs/msg/MarkerArray`"""
+    header: Header
+    markers: list[aruco_msgs__msg__Marker]
     __msgtype__: ClassVar[str]
 
 # builtin_interfaces
@@ -518,6 +553,33 @@ class diagnostic_msgs__msg__KeyValue:
     value: str
     __msgtype__: ClassVar[str]
 
+@dataclass
+class AddDiagnostics_Request:
+    """`diagnostic_msgs/srv/AddDiagnostics_Request`"""
+    load_namespace: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AddDiagnostics_Response:
+    """`diagnostic_msgs/srv/AddDiagnostics_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SelfTest_Request:
+    """`diagnostic_msgs/srv/SelfTest_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SelfTest_Response:
+    """`diagnostic_msgs/srv/SelfTest_Response`"""
+    id: str
+    passed: int
+    status: list[DiagnosticStatus]
+    __msgtype__: ClassVar[str]
+
 # example_interfaces
 
 @dataclass
@@ -539,6 +601,194 @@ class Fibonacci_Result:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class example_interfaces__msg__Bool:
+    """`example_interfaces/msg/Bool`"""
+    data: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Byte:
+    """`example_interfaces/msg/Byte`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__ByteMultiArray:
+    """`example_interfaces/msg/ByteMultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Char:
+    """`example_interfaces/msg/Char`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Empty:
+    """`example_interfaces/msg/Empty`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Float32:
+    """`example_interfaces/msg/Float32`"""
+    data: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Float32MultiArray:
+    """`example_interfaces/msg/Float32MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.float32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Float64:
+    """`example_interfaces/msg/Float64`"""
+    data: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Float64MultiArray:
+    """`example_interfaces/msg/Float64MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Int16:
+    """`example_interfaces/msg/Int16`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Int16MultiArray:
+    """`example_interfaces/msg/Int16MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.int16]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Int32:
+    """`example_interfaces/msg/Int32`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Int32MultiArray:
+    """`example_interfaces/msg/Int32MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Int64:
+    """`example_interfaces/msg/Int64`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Int64MultiArray:
+    """`example_interfaces/msg/Int64MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.int64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Int8:
+    """`example_interfaces/msg/Int8`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__Int8MultiArray:
+    """`example_interfaces/msg/Int8MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.int8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__MultiArrayDimension:
+    """`example_interfaces/msg/MultiArrayDimension`"""
+    label: str
+    size: int
+    stride: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__MultiArrayLayout:
+    """`example_interfaces/msg/MultiArrayLayout`"""
+    dim: list[example_interfaces__msg__MultiArrayDimension]
+    data_offset: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__String:
+    """`example_interfaces/msg/String`"""
+    data: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__UInt16:
+    """`example_interfaces/msg/UInt16`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__UInt16MultiArray:
+    """`example_interfaces/msg/UInt16MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.uint16]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__UInt32:
+    """`example_interfaces/msg/UInt32`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__UInt32MultiArray:
+    """`example_interfaces/msg/UInt32MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.uint32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__UInt64:
+    """`example_interfaces/msg/UInt64`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__UInt64MultiArray:
+    """`example_interfaces/msg/UInt64MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.uint64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__UInt8:
+    """`example_interfaces/msg/UInt8`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__msg__UInt8MultiArray:
+    """`example_interfaces/msg/UInt8MultiArray`"""
+    layout: example_interfaces__msg__MultiArrayLayout
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WString:
+    """`example_interfaces/msg/WString`"""
+    data: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class AddTwoInts_Request:
     """`example_interfaces/srv/AddTwoInts_Request`"""
     a: int
@@ -549,6 +799,32 @@ class AddTwoInts_Request:
 class AddTwoInts_Response:
     """`example_interfaces/srv/AddTwoInts_Response`"""
     sum: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__srv__SetBool_Request:
+    """`example_interfaces/srv/SetBool_Request`"""
+    data: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__srv__SetBool_Response:
+    """`example_interfaces/srv/SetBool_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__srv__Trigger_Request:
+    """`example_interfaces/srv/Trigger_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class example_interfaces__srv__Trigger_Response:
+    """`example_interfaces/srv/Trigger_Response`"""
+    success: bool
+    message: str
     __msgtype__: ClassVar[str]
 
 # gazebo_msgs
@@ -1102,6 +1378,37 @@ class SpawnModel_Response:
     status_message: str
     __msgtype__: ClassVar[str]
 
+# geographic_msgs
+
+@dataclass
+class GeoPoint:
+    """`geographic_msgs/msg/GeoPoint`"""
+    latitude: float
+    longitude: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GeoPointStamped:
+    """`geographic_msgs/msg/GeoPointStamped`"""
+    header: Header
+    position: GeoPoint
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GeoPose:
+    """`geographic_msgs/msg/GeoPose`"""
+    position: GeoPoint
+    orientation: Quaternion
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GeoPoseStamped:
+    """`geographic_msgs/msg/GeoPoseStamped`"""
+    header: Header
+    pose: GeoPose
+    __msgtype__: ClassVar[str]
+
 # geometry_msgs
 
 @dataclass
@@ -1489,7 +1796,878 @@ class TransitionEvent:
     goal_state: State
     __msgtype__: ClassVar[str]
 
+@dataclass
+class ChangeState_Request:
+    """`lifecycle_msgs/srv/ChangeState_Request`"""
+    transition: Transition
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ChangeState_Response:
+    """`lifecycle_msgs/srv/ChangeState_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetAvailableStates_Request:
+    """`lifecycle_msgs/srv/GetAvailableStates_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetAvailableStates_Response:
+    """`lifecycle_msgs/srv/GetAvailableStates_Response`"""
+    available_states: list[State]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetAvailableTransitions_Request:
+    """`lifecycle_msgs/srv/GetAvailableTransitions_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetAvailableTransitions_Response:
+    """`lifecycle_msgs/srv/GetAvailableTransitions_Response`"""
+    available_transitions: list[TransitionDescription]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetState_Request:
+    """`lifecycle_msgs/srv/GetState_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetState_Response:
+    """`lifecycle_msgs/srv/GetState_Response`"""
+    current_state: State
+    __msgtype__: ClassVar[str]
+
+# map_msgs
+
+@dataclass
+class OccupancyGridUpdate:
+    """`map_msgs/msg/OccupancyGridUpdate`"""
+    header: Header
+    x: int
+    y: int
+    width: int
+    height: int
+    data: NDArray[np.int8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PointCloud2Update:
+    """`map_msgs/msg/PointCloud2Update`"""
+    header: Header
+    type: int
+    points: PointCloud2
+    ADD: ClassVar[int] = 0
+    DELETE: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ProjectedMap:
+    """`map_msgs/msg/ProjectedMap`"""
+    map: OccupancyGrid
+    min_z: float
+    max_z: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ProjectedMapInfo:
+    """`map_msgs/msg/ProjectedMapInfo`"""
+    frame_id: str
+    x: float
+    y: float
+    width: float
+    height: float
+    min_z: float
+    max_z: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMapROI_Request:
+    """`map_msgs/srv/GetMapROI_Request`"""
+    x: float
+    y: float
+    l_x: float
+    l_y: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMapROI_Response:
+    """`map_msgs/srv/GetMapROI_Response`"""
+    sub_map: OccupancyGrid
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPointMapROI_Request:
+    """`map_msgs/srv/GetPointMapROI_Request`"""
+    x: float
+    y: float
+    z: float
+    r: float
+    l_x: float
+    l_y: float
+    l_z: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPointMapROI_Response:
+    """`map_msgs/srv/GetPointMapROI_Response`"""
+    sub_map: PointCloud2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPointMap_Request:
+    """`map_msgs/srv/GetPointMap_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPointMap_Response:
+    """`map_msgs/srv/GetPointMap_Response`"""
+    map: PointCloud2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ProjectedMapsInfo_Request:
+    """`map_msgs/srv/ProjectedMapsInfo_Request`"""
+    projected_maps_info: list[ProjectedMapInfo]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ProjectedMapsInfo_Response:
+    """`map_msgs/srv/ProjectedMapsInfo_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SaveMap_Request:
+    """`map_msgs/srv/SaveMap_Request`"""
+    filename: String
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SaveMap_Response:
+    """`map_msgs/srv/SaveMap_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMapProjections_Request:
+    """`map_msgs/srv/SetMapProjections_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMapProjections_Response:
+    """`map_msgs/srv/SetMapProjections_Response`"""
+    projected_maps_info: list[ProjectedMapInfo]
+    __msgtype__: ClassVar[str]
+
+# nav2_msgs
+
+@dataclass
+class AssistedTeleop_Feedback:
+    """`nav2_msgs/action/AssistedTeleop_Feedback`"""
+    current_teleop_duration: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AssistedTeleop_Goal:
+    """`nav2_msgs/action/AssistedTeleop_Goal`"""
+    time_allowance: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AssistedTeleop_Result:
+    """`nav2_msgs/action/AssistedTeleop_Result`"""
+    total_elapsed_time: Duration
+    error_code: int
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 730
+    TIMEOUT: ClassVar[int] = 731
+    TF_ERROR: ClassVar[int] = 732
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BackUp_Feedback:
+    """`nav2_msgs/action/BackUp_Feedback`"""
+    distance_traveled: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BackUp_Goal:
+    """`nav2_msgs/action/BackUp_Goal`"""
+    target: Point
+    speed: float
+    time_allowance: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BackUp_Result:
+    """`nav2_msgs/action/BackUp_Result`"""
+    total_elapsed_time: Duration
+    error_code: int
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 710
+    TIMEOUT: ClassVar[int] = 711
+    TF_ERROR: ClassVar[int] = 712
+    INVALID_INPUT: ClassVar[int] = 713
+    COLLISION_AHEAD: ClassVar[int] = 714
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ComputePathThroughPoses_Feedback:
+    """`nav2_msgs/action/ComputePathThroughPoses_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ComputePathThroughPoses_Goal:
+    """`nav2_msgs/action/ComputePathThroughPoses_Goal`"""
+    goals: list[PoseStamped]
+    start: PoseStamped
+    planner_id: str
+    use_start: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ComputePathThroughPoses_Result:
+    """`nav2_msgs/action/ComputePathThroughPoses_Result`"""
+    path: Path
+    planning_time: Duration
+    error_code: int
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 300
+    INVALID_PLANNER: ClassVar[int] = 301
+    TF_ERROR: ClassVar[int] = 302
+    START_OUTSIDE_MAP: ClassVar[int] = 303
+    GOAL_OUTSIDE_MAP: ClassVar[int] = 304
+    START_OCCUPIED: ClassVar[int] = 305
+    GOAL_OCCUPIED: ClassVar[int] = 306
+    TIMEOUT: ClassVar[int] = 307
+    NO_VALID_PATH: ClassVar[int] = 308
+    NO_VIAPOINTS_GIVEN: ClassVar[int] = 309
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ComputePathToPose_Feedback:
+    """`nav2_msgs/action/ComputePathToPose_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ComputePathToPose_Goal:
+    """`nav2_msgs/action/ComputePathToPose_Goal`"""
+    goal: PoseStamped
+    start: PoseStamped
+    planner_id: str
+    use_start: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ComputePathToPose_Result:
+    """`nav2_msgs/action/ComputePathToPose_Result`"""
+    path: Path
+    planning_time: Duration
+    error_code: int
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 200
+    INVALID_PLANNER: ClassVar[int] = 201
+    TF_ERROR: ClassVar[int] = 202
+    START_OUTSIDE_MAP: ClassVar[int] = 203
+    GOAL_OUTSIDE_MAP: ClassVar[int] = 204
+    START_OCCUPIED: ClassVar[int] = 205
+    GOAL_OCCUPIED: ClassVar[int] = 206
+    TIMEOUT: ClassVar[int] = 207
+    NO_VALID_PATH: ClassVar[int] = 208
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DockRobot_Feedback:
+    """`nav2_msgs/action/DockRobot_Feedback`"""
+    state: int
+    docking_time: Duration
+    num_retries: int
+    NONE: ClassVar[int] = 0
+    NAV_TO_STAGING_POSE: ClassVar[int] = 1
+    INITIAL_PERCEPTION: ClassVar[int] = 2
+    CONTROLLING: ClassVar[int] = 3
+    WAIT_FOR_CHARGE: ClassVar[int] = 4
+    RETRY: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DockRobot_Goal:
+    """`nav2_msgs/action/DockRobot_Goal`"""
+    use_dock_id: bool
+    dock_id: str
+    dock_pose: PoseStamped
+    dock_type: str
+    max_staging_time: float
+    navigate_to_staging_pose: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DockRobot_Result:
+    """`nav2_msgs/action/DockRobot_Result`"""
+    success: bool
+    error_code: int
+    num_retries: int
+    NONE: ClassVar[int] = 0
+    DOCK_NOT_IN_DB: ClassVar[int] = 901
+    DOCK_NOT_VALID: ClassVar[int] = 902
+    FAILED_TO_STAGE: ClassVar[int] = 903
+    FAILED_TO_DETECT_DOCK: ClassVar[int] = 904
+    FAILED_TO_CONTROL: ClassVar[int] = 905
+    FAILED_TO_CHARGE: ClassVar[int] = 906
+    UNKNOWN: ClassVar[int] = 999
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DriveOnHeading_Feedback:
+    """`nav2_msgs/action/DriveOnHeading_Feedback`"""
+    distance_traveled: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DriveOnHeading_Goal:
+    """`nav2_msgs/action/DriveOnHeading_Goal`"""
+    target: Point
+    speed: float
+    time_allowance: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DriveOnHeading_Result:
+    """`nav2_msgs/action/DriveOnHeading_Result`"""
+    total_elapsed_time: Duration
+    error_code: int
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 720
+    TIMEOUT: ClassVar[int] = 721
+    TF_ERROR: ClassVar[int] = 722
+    COLLISION_AHEAD: ClassVar[int] = 723
+    INVALID_INPUT: ClassVar[int] = 724
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DummyBehavior_Feedback:
+    """`nav2_msgs/action/DummyBehavior_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DummyBehavior_Goal:
+    """`nav2_msgs/action/DummyBehavior_Goal`"""
+    command: String
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DummyBehavior_Result:
+    """`nav2_msgs/action/DummyBehavior_Result`"""
+    total_elapsed_time: Duration
+    error_code: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowGPSWaypoints_Feedback:
+    """`nav2_msgs/action/FollowGPSWaypoints_Feedback`"""
+    current_waypoint: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowGPSWaypoints_Goal:
+    """`nav2_msgs/action/FollowGPSWaypoints_Goal`"""
+    number_of_loops: int
+    goal_index: int
+    gps_poses: list[GeoPose]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowGPSWaypoints_Result:
+    """`nav2_msgs/action/FollowGPSWaypoints_Result`"""
+    missed_waypoints: list[MissedWaypoint]
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 600
+    TASK_EXECUTOR_FAILED: ClassVar[int] = 601
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowPath_Feedback:
+    """`nav2_msgs/action/FollowPath_Feedback`"""
+    distance_to_goal: float
+    speed: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowPath_Goal:
+    """`nav2_msgs/action/FollowPath_Goal`"""
+    path: Path
+    controller_id: str
+    goal_checker_id: str
+    progress_checker_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowPath_Result:
+    """`nav2_msgs/action/FollowPath_Result`"""
+    result: Empty
+    error_code: int
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 100
+    INVALID_CONTROLLER: ClassVar[int] = 101
+    TF_ERROR: ClassVar[int] = 102
+    INVALID_PATH: ClassVar[int] = 103
+    PATIENCE_EXCEEDED: ClassVar[int] = 104
+    FAILED_TO_MAKE_PROGRESS: ClassVar[int] = 105
+    NO_VALID_CONTROL: ClassVar[int] = 106
+    CONTROLLER_TIMED_OUT: ClassVar[int] = 107
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowWaypoints_Feedback:
+    """`nav2_msgs/action/FollowWaypoints_Feedback`"""
+    current_waypoint: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowWaypoints_Goal:
+    """`nav2_msgs/action/FollowWaypoints_Goal`"""
+    number_of_loops: int
+    goal_index: int
+    poses: list[PoseStamped]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowWaypoints_Result:
+    """`nav2_msgs/action/FollowWaypoints_Result`"""
+    missed_waypoints: list[MissedWaypoint]
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 600
+    TASK_EXECUTOR_FAILED: ClassVar[int] = 601
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavigateThroughPoses_Feedback:
+    """`nav2_msgs/action/NavigateThroughPoses_Feedback`"""
+    current_pose: PoseStamped
+    navigation_time: Duration
+    estimated_time_remaining: Duration
+    number_of_recoveries: int
+    distance_remaining: float
+    number_of_poses_remaining: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavigateThroughPoses_Goal:
+    """`nav2_msgs/action/NavigateThroughPoses_Goal`"""
+    poses: list[PoseStamped]
+    behavior_tree: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavigateThroughPoses_Result:
+    """`nav2_msgs/action/NavigateThroughPoses_Result`"""
+    error_code: int
+    NONE: ClassVar[int] = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavigateToPose_Feedback:
+    """`nav2_msgs/action/NavigateToPose_Feedback`"""
+    current_pose: PoseStamped
+    navigation_time: Duration
+    estimated_time_remaining: Duration
+    number_of_recoveries: int
+    distance_remaining: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavigateToPose_Goal:
+    """`nav2_msgs/action/NavigateToPose_Goal`"""
+    pose: PoseStamped
+    behavior_tree: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavigateToPose_Result:
+    """`nav2_msgs/action/NavigateToPose_Result`"""
+    error_code: int
+    NONE: ClassVar[int] = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SmoothPath_Feedback:
+    """`nav2_msgs/action/SmoothPath_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SmoothPath_Goal:
+    """`nav2_msgs/action/SmoothPath_Goal`"""
+    path: Path
+    smoother_id: str
+    max_smoothing_duration: Duration
+    check_for_collisions: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SmoothPath_Result:
+    """`nav2_msgs/action/SmoothPath_Result`"""
+    path: Path
+    smoothing_duration: Duration
+    was_completed: bool
+    error_code: int
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 500
+    INVALID_SMOOTHER: ClassVar[int] = 501
+    TIMEOUT: ClassVar[int] = 502
+    SMOOTHED_PATH_IN_COLLISION: ClassVar[int] = 503
+    FAILED_TO_SMOOTH_PATH: ClassVar[int] = 504
+    INVALID_PATH: ClassVar[int] = 505
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Spin_Feedback:
+    """`nav2_msgs/action/Spin_Feedback`"""
+    angular_distance_traveled: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Spin_Goal:
+    """`nav2_msgs/action/Spin_Goal`"""
+    target_yaw: float
+    time_allowance: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Spin_Result:
+    """`nav2_msgs/action/Spin_Result`"""
+    total_elapsed_time: Duration
+    error_code: int
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 700
+    TIMEOUT: ClassVar[int] = 701
+    TF_ERROR: ClassVar[int] = 702
+    COLLISION_AHEAD: ClassVar[int] = 703
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UndockRobot_Feedback:
+    """`nav2_msgs/action/UndockRobot_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UndockRobot_Goal:
+    """`nav2_msgs/action/UndockRobot_Goal`"""
+    dock_type: str
+    max_undocking_time: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UndockRobot_Result:
+    """`nav2_msgs/action/UndockRobot_Result`"""
+    success: bool
+    error_code: int
+    NONE: ClassVar[int] = 0
+    DOCK_NOT_VALID: ClassVar[int] = 902
+    FAILED_TO_CONTROL: ClassVar[int] = 905
+    UNKNOWN: ClassVar[int] = 999
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Wait_Feedback:
+    """`nav2_msgs/action/Wait_Feedback`"""
+    time_left: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Wait_Goal:
+    """`nav2_msgs/action/Wait_Goal`"""
+    time: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Wait_Result:
+    """`nav2_msgs/action/Wait_Result`"""
+    total_elapsed_time: Duration
+    error_code: int
+    NONE: ClassVar[int] = 0
+    UNKNOWN: ClassVar[int] = 740
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BehaviorTreeLog:
+    """`nav2_msgs/msg/BehaviorTreeLog`"""
+    timestamp: Time
+    event_log: list[BehaviorTreeStatusChange]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BehaviorTreeStatusChange:
+    """`nav2_msgs/msg/BehaviorTreeStatusChange`"""
+    timestamp: Time
+    node_name: str
+    uid: int
+    previous_status: str
+    current_status: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CollisionDetectorState:
+    """`nav2_msgs/msg/CollisionDetectorState`"""
+    polygons: list[str]
+    detections: NDArray[np.bool_]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CollisionMonitorState:
+    """`nav2_msgs/msg/CollisionMonitorState`"""
+    action_type: int
+    polygon_name: str
+    DO_NOTHING: ClassVar[int] = 0
+    STOP: ClassVar[int] = 1
+    SLOWDOWN: ClassVar[int] = 2
+    APPROACH: ClassVar[int] = 3
+    LIMIT: ClassVar[int] = 4
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Costmap:
+    """`nav2_msgs/msg/Costmap`"""
+    header: Header
+    metadata: CostmapMetaData
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CostmapFilterInfo:
+    """`nav2_msgs/msg/CostmapFilterInfo`"""
+    header: Header
+    type: int
+    filter_mask_topic: str
+    base: float
+    multiplier: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CostmapMetaData:
+    """`nav2_msgs/msg/CostmapMetaData`"""
+    map_load_time: Time
+    update_time: Time
+    layer: str
+    resolution: float
+    size_x: int
+    size_y: int
+    origin: Pose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CostmapUpdate:
+    """`nav2_msgs/msg/CostmapUpdate`"""
+    header: Header
+    x: int
+    y: int
+    size_x: int
+    size_y: int
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MissedWaypoint:
+    """`nav2_msgs/msg/MissedWaypoint`"""
+    index: int
+    goal: PoseStamped
+    error_code: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Particle:
+    """`nav2_msgs/msg/Particle`"""
+    pose: Pose
+    weight: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParticleCloud:
+    """`nav2_msgs/msg/ParticleCloud`"""
+    header: Header
+    particles: list[Particle]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpeedLimit:
+    """`nav2_msgs/msg/SpeedLimit`"""
+    header: Header
+    percentage: bool
+    speed_limit: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VoxelGrid:
+    """`nav2_msgs/msg/VoxelGrid`"""
+    header: Header
+    data: NDArray[np.uint32]
+    origin: Point32
+    resolutions: Vector3
+    size_x: int
+    size_y: int
+    size_z: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClearCostmapAroundRobot_Request:
+    """`nav2_msgs/srv/ClearCostmapAroundRobot_Request`"""
+    reset_distance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClearCostmapAroundRobot_Response:
+    """`nav2_msgs/srv/ClearCostmapAroundRobot_Response`"""
+    response: Empty
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClearCostmapExceptRegion_Request:
+    """`nav2_msgs/srv/ClearCostmapExceptRegion_Request`"""
+    reset_distance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClearCostmapExceptRegion_Response:
+    """`nav2_msgs/srv/ClearCostmapExceptRegion_Response`"""
+    response: Empty
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClearEntireCostmap_Request:
+    """`nav2_msgs/srv/ClearEntireCostmap_Request`"""
+    request: Empty
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClearEntireCostmap_Response:
+    """`nav2_msgs/srv/ClearEntireCostmap_Response`"""
+    response: Empty
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetCostmap_Request:
+    """`nav2_msgs/srv/GetCostmap_Request`"""
+    specs: CostmapMetaData
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetCostmap_Response:
+    """`nav2_msgs/srv/GetCostmap_Response`"""
+    map: Costmap
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IsPathValid_Request:
+    """`nav2_msgs/srv/IsPathValid_Request`"""
+    path: Path
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IsPathValid_Response:
+    """`nav2_msgs/srv/IsPathValid_Response`"""
+    is_valid: bool
+    invalid_pose_indices: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class nav2_msgs__srv__LoadMap_Request:
+    """`nav2_msgs/srv/LoadMap_Request`"""
+    map_url: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class nav2_msgs__srv__LoadMap_Response:
+    """`nav2_msgs/srv/LoadMap_Response`"""
+    map: OccupancyGrid
+    result: int
+    RESULT_SUCCESS: ClassVar[int] = 0
+    RESULT_MAP_DOES_NOT_EXIST: ClassVar[int] = 1
+    RESULT_INVALID_MAP_DATA: ClassVar[int] = 2
+    RESULT_INVALID_MAP_METADATA: ClassVar[int] = 3
+    RESULT_UNDEFINED_FAILURE: ClassVar[int] = 255
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ManageLifecycleNodes_Request:
+    """`nav2_msgs/srv/ManageLifecycleNodes_Request`"""
+    command: int
+    STARTUP: ClassVar[int] = 0
+    PAUSE: ClassVar[int] = 1
+    RESUME: ClassVar[int] = 2
+    RESET: ClassVar[int] = 3
+    SHUTDOWN: ClassVar[int] = 4
+    CONFIGURE: ClassVar[int] = 5
+    CLEANUP: ClassVar[int] = 6
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ManageLifecycleNodes_Response:
+    """`nav2_msgs/srv/ManageLifecycleNodes_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ReloadDockDatabase_Request:
+    """`nav2_msgs/srv/ReloadDockDatabase_Request`"""
+    filepath: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ReloadDockDatabase_Response:
+    """`nav2_msgs/srv/ReloadDockDatabase_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class nav2_msgs__srv__SaveMap_Request:
+    """`nav2_msgs/srv/SaveMap_Request`"""
+    map_topic: str
+    map_url: str
+    image_format: str
+    map_mode: str
+    free_thresh: float
+    occupied_thresh: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class nav2_msgs__srv__SaveMap_Response:
+    """`nav2_msgs/srv/SaveMap_Response`"""
+    result: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetInitialPose_Request:
+    """`nav2_msgs/srv/SetInitialPose_Request`"""
+    pose: PoseWithCovarianceStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetInitialPose_Response:
+    """`nav2_msgs/srv/SetInitialPose_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
 # nav_msgs
+
+@dataclass
+class Goals:
+    """`nav_msgs/msg/Goals`"""
+    header: Header
+    goals: list[PoseStamped]
+    __msgtype__: ClassVar[str]
 
 @dataclass
 class GridCells:
@@ -1532,6 +2710,108 @@ class Path:
     """`nav_msgs/msg/Path`"""
     header: Header
     poses: list[PoseStamped]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMap_Request:
+    """`nav_msgs/srv/GetMap_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMap_Response:
+    """`nav_msgs/srv/GetMap_Response`"""
+    map: OccupancyGrid
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPlan_Request:
+    """`nav_msgs/srv/GetPlan_Request`"""
+    start: PoseStamped
+    goal: PoseStamped
+    tolerance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPlan_Response:
+    """`nav_msgs/srv/GetPlan_Response`"""
+    plan: Path
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LoadMap_Request:
+    """`nav_msgs/srv/LoadMap_Request`"""
+    map_url: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LoadMap_Response:
+    """`nav_msgs/srv/LoadMap_Response`"""
+    map: OccupancyGrid
+    result: int
+    RESULT_SUCCESS: ClassVar[int] = 0
+    RESULT_MAP_DOES_NOT_EXIST: ClassVar[int] = 1
+    RESULT_INVALID_MAP_DATA: ClassVar[int] = 2
+    RESULT_INVALID_MAP_METADATA: ClassVar[int] = 3
+    RESULT_UNDEFINED_FAILURE: ClassVar[int] = 255
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMap_Request:
+    """`nav_msgs/srv/SetMap_Request`"""
+    map: OccupancyGrid
+    initial_pose: PoseWithCovarianceStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMap_Response:
+    """`nav_msgs/srv/SetMap_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+# octomap_msgs
+
+@dataclass
+class Octomap:
+    """`octomap_msgs/msg/Octomap`"""
+    header: Header
+    binary: bool
+    id: str
+    resolution: float
+    data: NDArray[np.int8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class OctomapWithPose:
+    """`octomap_msgs/msg/OctomapWithPose`"""
+    header: Header
+    origin: Pose
+    octomap: Octomap
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BoundingBoxQuery_Request:
+    """`octomap_msgs/srv/BoundingBoxQuery_Request`"""
+    min: Point
+    max: Point
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BoundingBoxQuery_Response:
+    """`octomap_msgs/srv/BoundingBoxQuery_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetOctomap_Request:
+    """`octomap_msgs/srv/GetOctomap_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetOctomap_Response:
+    """`octomap_msgs/srv/GetOctomap_Response`"""
+    map: Octomap
     __msgtype__: ClassVar[str]
 
 # play_motion2_msgs
@@ -1877,6 +3157,18 @@ class DescribeParameters_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class GetLoggerLevels_Request:
+    """`rcl_interfaces/srv/GetLoggerLevels_Request`"""
+    names: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLoggerLevels_Response:
+    """`rcl_interfaces/srv/GetLoggerLevels_Response`"""
+    levels: list[LoggerLevel]
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class GetParameterTypes_Request:
     """`rcl_interfaces/srv/GetParameterTypes_Request`"""
     names: list[str]
@@ -1912,6 +3204,18 @@ class ListParameters_Request:
 class ListParameters_Response:
     """`rcl_interfaces/srv/ListParameters_Response`"""
     result: ListParametersResult
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLoggerLevels_Request:
+    """`rcl_interfaces/srv/SetLoggerLevels_Request`"""
+    levels: list[LoggerLevel]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLoggerLevels_Response:
+    """`rcl_interfaces/srv/SetLoggerLevels_Response`"""
+    results: list[SetLoggerLevelsResult]
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2553,6 +3857,19 @@ class TimeReference:
     source: str
     __msgtype__: ClassVar[str]
 
+@dataclass
+class SetCameraInfo_Request:
+    """`sensor_msgs/srv/SetCameraInfo_Request`"""
+    camera_info: CameraInfo
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetCameraInfo_Response:
+    """`sensor_msgs/srv/SetCameraInfo_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
 # service_msgs
 
 @dataclass
@@ -2797,6 +4114,488 @@ class WindInfo_Response:
     """`simkit_msgs/srv/WindInfo_Response`"""
     wind: Wind
     velocity: Vector3
+    __msgtype__: ClassVar[str]
+
+# simulation_interfaces
+
+@dataclass
+class SimulateSteps_Feedback:
+    """`simulation_interfaces/action/SimulateSteps_Feedback`"""
+    completed_steps: int
+    remaining_steps: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SimulateSteps_Goal:
+    """`simulation_interfaces/action/SimulateSteps_Goal`"""
+    steps: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SimulateSteps_Result:
+    """`simulation_interfaces/action/SimulateSteps_Result`"""
+    result: Result
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Bounds:
+    """`simulation_interfaces/msg/Bounds`"""
+    type: int
+    points: list[Vector3]
+    TYPE_EMPTY: ClassVar[int] = 0
+    TYPE_BOX: ClassVar[int] = 1
+    TYPE_CONVEX_HULL: ClassVar[int] = 2
+    TYPE_SPHERE: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EntityCategory:
+    """`simulation_interfaces/msg/EntityCategory`"""
+    category: int
+    CATEGORY_UNKNOWN: ClassVar[int] = 0
+    CATEGORY_OBJECT: ClassVar[int] = 1
+    CATEGORY_ROBOT: ClassVar[int] = 2
+    CATEGORY_HUMAN: ClassVar[int] = 3
+    CATEGORY_DYNAMIC_OBJECT: ClassVar[int] = 4
+    CATEGORY_STATIC_OBJECT: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EntityFilters:
+    """`simulation_interfaces/msg/EntityFilters`"""
+    filter: str
+    categories: list[EntityCategory]
+    tags: TagsFilter
+    bounds: Bounds
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EntityInfo:
+    """`simulation_interfaces/msg/EntityInfo`"""
+    category: EntityCategory
+    description: str
+    tags: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__msg__EntityState:
+    """`simulation_interfaces/msg/EntityState`"""
+    header: Header
+    pose: Pose
+    twist: Twist
+    acceleration: Accel
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NamedPose:
+    """`simulation_interfaces/msg/NamedPose`"""
+    name: str
+    description: str
+    tags: list[str]
+    pose: Pose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Resource:
+    """`simulation_interfaces/msg/Resource`"""
+    uri: str
+    resource_string: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Result:
+    """`simulation_interfaces/msg/Result`"""
+    result: int
+    error_message: str
+    RESULT_FEATURE_UNSUPPORTED: ClassVar[int] = 0
+    RESULT_OK: ClassVar[int] = 1
+    RESULT_NOT_FOUND: ClassVar[int] = 2
+    RESULT_INCORRECT_STATE: ClassVar[int] = 3
+    RESULT_OPERATION_FAILED: ClassVar[int] = 4
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SimulationState:
+    """`simulation_interfaces/msg/SimulationState`"""
+    state: int
+    STATE_STOPPED: ClassVar[int] = 0
+    STATE_PLAYING: ClassVar[int] = 1
+    STATE_PAUSED: ClassVar[int] = 2
+    STATE_QUITTING: ClassVar[int] = 3
+    STATE_NO_WORLD: ClassVar[int] = 4
+    STATE_LOADING_WORLD: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SimulatorFeatures:
+    """`simulation_interfaces/msg/SimulatorFeatures`"""
+    features: NDArray[np.uint16]
+    spawn_formats: list[str]
+    custom_info: str
+    SPAWNING: ClassVar[int] = 0
+    DELETING: ClassVar[int] = 1
+    NAMED_POSES: ClassVar[int] = 2
+    POSE_BOUNDS: ClassVar[int] = 3
+    ENTITY_TAGS: ClassVar[int] = 4
+    ENTITY_BOUNDS: ClassVar[int] = 5
+    ENTITY_BOUNDS_BOX: ClassVar[int] = 6
+    ENTITY_BOUNDS_CONVEX: ClassVar[int] = 7
+    ENTITY_CATEGORIES: ClassVar[int] = 8
+    SPAWNING_RESOURCE_STRING: ClassVar[int] = 9
+    ENTITY_STATE_GETTING: ClassVar[int] = 10
+    ENTITY_STATE_SETTING: ClassVar[int] = 11
+    ENTITY_INFO_GETTING: ClassVar[int] = 12
+    ENTITY_INFO_SETTING: ClassVar[int] = 13
+    SPAWNABLES: ClassVar[int] = 14
+    SIMULATION_RESET: ClassVar[int] = 20
+    SIMULATION_RESET_TIME: ClassVar[int] = 21
+    SIMULATION_RESET_STATE: ClassVar[int] = 22
+    SIMULATION_RESET_SPAWNED: ClassVar[int] = 23
+    SIMULATION_STATE_GETTING: ClassVar[int] = 24
+    SIMULATION_STATE_SETTING: ClassVar[int] = 25
+    SIMULATION_STATE_PAUSE: ClassVar[int] = 26
+    STEP_SIMULATION_SINGLE: ClassVar[int] = 31
+    STEP_SIMULATION_MULTIPLE: ClassVar[int] = 32
+    STEP_SIMULATION_ACTION: ClassVar[int] = 33
+    WORLD_LOADING: ClassVar[int] = 40
+    WORLD_RESOURCE_STRING: ClassVar[int] = 41
+    WORLD_TAGS: ClassVar[int] = 42
+    WORLD_UNLOADING: ClassVar[int] = 43
+    WORLD_INFO_GETTING: ClassVar[int] = 44
+    AVAILABLE_WORLDS: ClassVar[int] = 45
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Spawnable:
+    """`simulation_interfaces/msg/Spawnable`"""
+    entity_resource: Resource
+    description: str
+    spawn_bounds: Bounds
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TagsFilter:
+    """`simulation_interfaces/msg/TagsFilter`"""
+    tags: list[str]
+    filter_mode: int
+    FILTER_MODE_ANY: ClassVar[int] = 0
+    FILTER_MODE_ALL: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WorldResource:
+    """`simulation_interfaces/msg/WorldResource`"""
+    name: str
+    world_resource: Resource
+    description: str
+    tags: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__DeleteEntity_Request:
+    """`simulation_interfaces/srv/DeleteEntity_Request`"""
+    entity: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__DeleteEntity_Response:
+    """`simulation_interfaces/srv/DeleteEntity_Response`"""
+    result: Result
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetAvailableWorlds_Request:
+    """`simulation_interfaces/srv/GetAvailableWorlds_Request`"""
+    additional_sources: list[str]
+    filter: TagsFilter
+    offline_only: bool
+    continue_on_error: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetAvailableWorlds_Response:
+    """`simulation_interfaces/srv/GetAvailableWorlds_Response`"""
+    result: Result
+    worlds: list[WorldResource]
+    DEFAULT_SOURCES_FAILED: ClassVar[int] = 101
+    ADDITIONAL_SOURCES_FAILED: ClassVar[int] = 102
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetCurrentWorld_Request:
+    """`simulation_interfaces/srv/GetCurrentWorld_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetCurrentWorld_Response:
+    """`simulation_interfaces/srv/GetCurrentWorld_Response`"""
+    result: Result
+    world: WorldResource
+    NO_WORLD_LOADED: ClassVar[int] = 101
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntitiesStates_Request:
+    """`simulation_interfaces/srv/GetEntitiesStates_Request`"""
+    filters: EntityFilters
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntitiesStates_Response:
+    """`simulation_interfaces/srv/GetEntitiesStates_Response`"""
+    result: Result
+    entities: list[str]
+    states: list[simulation_interfaces__msg__EntityState]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntities_Request:
+    """`simulation_interfaces/srv/GetEntities_Request`"""
+    filters: EntityFilters
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntities_Response:
+    """`simulation_interfaces/srv/GetEntities_Response`"""
+    result: Result
+    entities: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntityBounds_Request:
+    """`simulation_interfaces/srv/GetEntityBounds_Request`"""
+    entity: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntityBounds_Response:
+    """`simulation_interfaces/srv/GetEntityBounds_Response`"""
+    result: Result
+    bounds: Bounds
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntityInfo_Request:
+    """`simulation_interfaces/srv/GetEntityInfo_Request`"""
+    entity: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntityInfo_Response:
+    """`simulation_interfaces/srv/GetEntityInfo_Response`"""
+    result: Result
+    info: EntityInfo
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__GetEntityState_Request:
+    """`simulation_interfaces/srv/GetEntityState_Request`"""
+    entity: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__GetEntityState_Response:
+    """`simulation_interfaces/srv/GetEntityState_Response`"""
+    result: Result
+    state: simulation_interfaces__msg__EntityState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetNamedPoseBounds_Request:
+    """`simulation_interfaces/srv/GetNamedPoseBounds_Request`"""
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetNamedPoseBounds_Response:
+    """`simulation_interfaces/srv/GetNamedPoseBounds_Response`"""
+    result: Result
+    bounds: Bounds
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetNamedPoses_Request:
+    """`simulation_interfaces/srv/GetNamedPoses_Request`"""
+    tags: TagsFilter
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetNamedPoses_Response:
+    """`simulation_interfaces/srv/GetNamedPoses_Response`"""
+    result: Result
+    poses: list[NamedPose]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetSimulationState_Request:
+    """`simulation_interfaces/srv/GetSimulationState_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetSimulationState_Response:
+    """`simulation_interfaces/srv/GetSimulationState_Response`"""
+    state: SimulationState
+    result: Result
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetSimulatorFeatures_Request:
+    """`simulation_interfaces/srv/GetSimulatorFeatures_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetSimulatorFeatures_Response:
+    """`simulation_interfaces/srv/GetSimulatorFeatures_Response`"""
+    features: SimulatorFeatures
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetSpawnables_Request:
+    """`simulation_interfaces/srv/GetSpawnables_Request`"""
+    sources: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetSpawnables_Response:
+    """`simulation_interfaces/srv/GetSpawnables_Response`"""
+    result: Result
+    spawnables: list[Spawnable]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LoadWorld_Request:
+    """`simulation_interfaces/srv/LoadWorld_Request`"""
+    world_resource: Resource
+    fail_on_unsupported_element: bool
+    ignore_missing_or_unsupported_assets: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LoadWorld_Response:
+    """`simulation_interfaces/srv/LoadWorld_Response`"""
+    result: Result
+    world: WorldResource
+    UNSUPPORTED_FORMAT: ClassVar[int] = 101
+    NO_RESOURCE: ClassVar[int] = 102
+    RESOURCE_PARSE_ERROR: ClassVar[int] = 103
+    MISSING_ASSETS: ClassVar[int] = 104
+    UNSUPPORTED_ASSETS: ClassVar[int] = 105
+    UNSUPPORTED_ELEMENTS: ClassVar[int] = 106
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ResetSimulation_Request:
+    """`simulation_interfaces/srv/ResetSimulation_Request`"""
+    scope: int
+    SCOPE_DEFAULT: ClassVar[int] = 0
+    SCOPE_TIME: ClassVar[int] = 1
+    SCOPE_STATE: ClassVar[int] = 2
+    SCOPE_SPAWNED: ClassVar[int] = 4
+    SCOPE_ALL: ClassVar[int] = 255
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ResetSimulation_Response:
+    """`simulation_interfaces/srv/ResetSimulation_Response`"""
+    result: Result
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetEntityInfo_Request:
+    """`simulation_interfaces/srv/SetEntityInfo_Request`"""
+    entity: str
+    info: EntityInfo
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetEntityInfo_Response:
+    """`simulation_interfaces/srv/SetEntityInfo_Response`"""
+    result: Result
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__SetEntityState_Request:
+    """`simulation_interfaces/srv/SetEntityState_Request`"""
+    entity: str
+    state: simulation_interfaces__msg__EntityState
+    set_pose: bool
+    set_twist: bool
+    set_acceleration: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__SetEntityState_Response:
+    """`simulation_interfaces/srv/SetEntityState_Response`"""
+    result: Result
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetSimulationState_Request:
+    """`simulation_interfaces/srv/SetSimulationState_Request`"""
+    state: SimulationState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetSimulationState_Response:
+    """`simulation_interfaces/srv/SetSimulationState_Response`"""
+    result: Result
+    ALREADY_IN_TARGET_STATE: ClassVar[int] = 101
+    STATE_TRANSITION_ERROR: ClassVar[int] = 102
+    INCORRECT_TRANSITION: ClassVar[int] = 103
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__SpawnEntity_Request:
+    """`simulation_interfaces/srv/SpawnEntity_Request`"""
+    name: str
+    allow_renaming: bool
+    entity_resource: Resource
+    entity_namespace: str
+    initial_pose: PoseStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__SpawnEntity_Response:
+    """`simulation_interfaces/srv/SpawnEntity_Response`"""
+    result: Result
+    entity_name: str
+    NAME_NOT_UNIQUE: ClassVar[int] = 101
+    NAME_INVALID: ClassVar[int] = 102
+    UNSUPPORTED_FORMAT: ClassVar[int] = 103
+    NO_RESOURCE: ClassVar[int] = 104
+    NAMESPACE_INVALID: ClassVar[int] = 105
+    RESOURCE_PARSE_ERROR: ClassVar[int] = 106
+    MISSING_ASSETS: ClassVar[int] = 107
+    UNSUPPORTED_ASSETS: ClassVar[int] = 108
+    INVALID_POSE: ClassVar[int] = 109
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class StepSimulation_Request:
+    """`simulation_interfaces/srv/StepSimulation_Request`"""
+    steps: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class StepSimulation_Response:
+    """`simulation_interfaces/srv/StepSimulation_Response`"""
+    result: Result
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UnloadWorld_Request:
+    """`simulation_interfaces/srv/UnloadWorld_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UnloadWorld_Response:
+    """`simulation_interfaces/srv/UnloadWorld_Response`"""
+    result: Result
+    NO_WORLD_LOADED: ClassVar[int] = 101
     __msgtype__: ClassVar[str]
 
 # statistics_msgs
@@ -3145,6 +4944,222 @@ class MultiDOFJointTrajectoryPoint:
     time_from_start: Duration
     __msgtype__: ClassVar[str]
 
+# turtlesim
+
+@dataclass
+class turtlesim__action__RotateAbsolute_Feedback:
+    """`turtlesim/action/RotateAbsolute_Feedback`"""
+    remaining: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__action__RotateAbsolute_Goal:
+    """`turtlesim/action/RotateAbsolute_Goal`"""
+    theta: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__action__RotateAbsolute_Result:
+    """`turtlesim/action/RotateAbsolute_Result`"""
+    delta: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__msg__Color:
+    """`turtlesim/msg/Color`"""
+    r: int
+    g: int
+    b: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__msg__Pose:
+    """`turtlesim/msg/Pose`"""
+    x: float
+    y: float
+    theta: float
+    linear_velocity: float
+    angular_velocity: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__Kill_Request:
+    """`turtlesim/srv/Kill_Request`"""
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__Kill_Response:
+    """`turtlesim/srv/Kill_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__SetPen_Request:
+    """`turtlesim/srv/SetPen_Request`"""
+    r: int
+    g: int
+    b: int
+    width: int
+    off: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__SetPen_Response:
+    """`turtlesim/srv/SetPen_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__Spawn_Request:
+    """`turtlesim/srv/Spawn_Request`"""
+    x: float
+    y: float
+    theta: float
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__Spawn_Response:
+    """`turtlesim/srv/Spawn_Response`"""
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__TeleportAbsolute_Request:
+    """`turtlesim/srv/TeleportAbsolute_Request`"""
+    x: float
+    y: float
+    theta: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__TeleportAbsolute_Response:
+    """`turtlesim/srv/TeleportAbsolute_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__TeleportRelative_Request:
+    """`turtlesim/srv/TeleportRelative_Request`"""
+    linear: float
+    angular: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim__srv__TeleportRelative_Response:
+    """`turtlesim/srv/TeleportRelative_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+# turtlesim_msgs
+
+@dataclass
+class turtlesim_msgs__action__RotateAbsolute_Feedback:
+    """`turtlesim_msgs/action/RotateAbsolute_Feedback`"""
+    remaining: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__action__RotateAbsolute_Goal:
+    """`turtlesim_msgs/action/RotateAbsolute_Goal`"""
+    theta: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__action__RotateAbsolute_Result:
+    """`turtlesim_msgs/action/RotateAbsolute_Result`"""
+    delta: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__msg__Color:
+    """`turtlesim_msgs/msg/Color`"""
+    r: int
+    g: int
+    b: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__msg__Pose:
+    """`turtlesim_msgs/msg/Pose`"""
+    x: float
+    y: float
+    theta: float
+    linear_velocity: float
+    angular_velocity: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__Kill_Request:
+    """`turtlesim_msgs/srv/Kill_Request`"""
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__Kill_Response:
+    """`turtlesim_msgs/srv/Kill_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__SetPen_Request:
+    """`turtlesim_msgs/srv/SetPen_Request`"""
+    r: int
+    g: int
+    b: int
+    width: int
+    off: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__SetPen_Response:
+    """`turtlesim_msgs/srv/SetPen_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__Spawn_Request:
+    """`turtlesim_msgs/srv/Spawn_Request`"""
+    x: float
+    y: float
+    theta: float
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__Spawn_Response:
+    """`turtlesim_msgs/srv/Spawn_Response`"""
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__TeleportAbsolute_Request:
+    """`turtlesim_msgs/srv/TeleportAbsolute_Request`"""
+    x: float
+    y: float
+    theta: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__TeleportAbsolute_Response:
+    """`turtlesim_msgs/srv/TeleportAbsolute_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__TeleportRelative_Request:
+    """`turtlesim_msgs/srv/TeleportRelative_Request`"""
+    linear: float
+    angular: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlesim_msgs__srv__TeleportRelative_Response:
+    """`turtlesim_msgs/srv/TeleportRelative_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
 # type_description_interfaces
 
 @dataclass
@@ -3280,6 +5295,24 @@ class TypeSource:
     type_name: str
     encoding: str
     raw_file_contents: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetTypeDescription_Request:
+    """`type_description_interfaces/srv/GetTypeDescription_Request`"""
+    type_name: str
+    type_hash: str
+    include_type_sources: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetTypeDescription_Response:
+    """`type_description_interfaces/srv/GetTypeDescription_Response`"""
+    successful: bool
+    failure_reason: str
+    type_description: TypeDescription
+    type_sources: list[TypeSource]
+    extra_information: list[type_description_interfaces__msg__KeyValue]
     __msgtype__: ClassVar[str]
 
 # unique_identifier_msgs
@@ -3553,4 +5586,17 @@ class UVCoordinate:
     """`visualization_msgs/msg/UVCoordinate`"""
     u: float
     v: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetInteractiveMarkers_Request:
+    """`visualization_msgs/srv/GetInteractiveMarkers_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetInteractiveMarkers_Response:
+    """`visualization_msgs/srv/GetInteractiveMarkers_Response`"""
+    sequence_number: int
+    markers: list[InteractiveMarker]
     __msgtype__: ClassVar[str]

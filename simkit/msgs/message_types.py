@@ -17,7 +17,13 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs import own_interfaces
 from simkit.msgs.definition_parser import PARTS, MessageDefinition, interface_of
-from simkit.msgs.shipped_interfaces import definition_files, rosbags_types, shipped_message_types, shipped_parts
+from simkit.msgs.shipped_interfaces import (
+    PACKAGES_WITH_LONG_NAMES,
+    definition_files,
+    rosbags_types,
+    shipped_message_types,
+    shipped_parts,
+)
 from simkit.msgs.wide_strings import with_wide_strings
 
 if TYPE_CHECKING:
@@ -137,19 +143,27 @@ def class_names() -> dict[str, str]:
     """Return the type name of each message class by the class's name in `simkit.msgs`.
 
     The name of a class is the last part of its type name: `LaserScan`. If several types have the same last part, ROS's
-    own type has the short name. The other types have their full name: `gazebo_msgs__srv__SpawnEntity_Request`.
+    own type has the short name, and a type of `PACKAGES_WITH_LONG_NAMES` has it only if no other package has the name.
+    The other types have their full name: `gazebo_msgs__srv__SpawnEntity_Request`.
     """
     names = message_type_names()
     candidates: dict[str, list[str]] = {}
-    for name in sorted(names, key=shipped_message_types().__contains__):  # ROS's own types first
+    for name in sorted(names, key=_rank):
         candidates.setdefault(name.rpartition("/")[2], []).append(name)
     found = {}
     for name in names:
         short = name.rpartition("/")[2]
         first, *others = candidates[short]
-        is_ambiguous = bool(others) and (first in shipped_message_types()) == (others[0] in shipped_message_types())
+        is_ambiguous = bool(others) and _rank(first) == _rank(others[0])
         found[short if name == first and not is_ambiguous else name.replace("/", "__")] = name
     return found
+
+
+def _rank(type_name: str) -> int:
+    """Return the priority of a type for a short class name: 0 for ROS's own types."""
+    if type_name not in shipped_message_types():
+        return 0
+    return 2 if type_name.split("/")[0] in PACKAGES_WITH_LONG_NAMES else 1
 
 
 def message_class(class_name: str) -> type[Message]:

@@ -8,7 +8,7 @@ loaded world. A type has one definition in a process.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -49,6 +49,11 @@ class OwnInterface:
     source: str
 
     @property
+    def content(self) -> list[tuple[object, ...]]:
+        """Everything that two equal definitions have in common: not the comments."""
+        return [part.content for part in self.parts]
+
+    @property
     def text(self) -> str:
         """Text of the definition file."""
         return "---\n".join(part.text for part in self.parts)
@@ -58,6 +63,7 @@ InterfaceFinder = Callable[[str, str], Path | None]
 """Function that returns the definition file of a package and a relative path such as `msg/Num.msg`."""
 
 _added: dict[str, OwnInterface] = {}
+_received: dict[str, tuple[str, str]] = {}  # text and sender of definitions that were not used yet
 _used: set[str] = set()  # names that were looked up
 _missing: set[str] = set()  # names that no folder has; looked up again after a change of the folders
 _finders: list[InterfaceFinder] = []
@@ -72,20 +78,30 @@ def find(name: str) -> OwnInterface | None:
     """
     read_environment()
     if name not in _added and name not in _missing:
-        file = _located(name)
-        if file is None:
+        source = _located(name)
+        if source is None:
             _missing.add(name)
         else:
-            _add_all([(name, file)])
+            _add_all([(name, source)])
     if name in _added:
         _used.add(name)
     return _added.get(name)
 
 
-def names() -> list[str]:
-    """Return the full name of every interface that was added or is installed in a ROS workspace, sorted."""
+def has_any() -> bool:
+    """Check whether any interface was added or received."""
+    return bool(_added or _received)
+
+
+def known_names() -> list[str]:
+    """Return the full name of every interface that was added or received, sorted."""
     read_environment()
-    return sorted({*_added, *installed_names()})
+    return sorted({*_added, *_received})
+
+
+def names() -> list[str]:
+    """Return the full name of every interface that was added or received, or is in a ROS workspace, sorted."""
+    return sorted({*known_names(), *installed_names()})
 
 
 def add(name: str, text: str) -> None:
@@ -103,13 +119,35 @@ def add(name: str, text: str) -> None:
     _add_all([(name, text)])
 
 
-def add_texts(texts: Iterable[tuple[str, str]]) -> None:
-    """Define several interfaces that may use each other, given as names and texts.
+def add_received(texts: Mapping[str, str]) -> None:
+    """Define interfaces that another process has sent, given as texts by name. They may use each other.
 
     Raises:
         InterfaceError: see `add`.
     """
-    _add_all(list(texts))
+    _add_all(list(texts.items()))
+
+
+def remember_received(texts: Mapping[str, str], sender: str) -> None:
+    """Store definitions that another process has sent. They are read when their types are used for the first time.
+
+    A client that only forwards messages therefore needs neither rosbags nor NumPy.
+
+    Args:
+        texts: text of each interface by name.
+        sender: description of the other process, for error messages.
+
+    Raises:
+        InterfaceError: a type has another definition in this process.
+    """
+    batch = _Batch([])
+    for name, text in texts.items():
+        if name in _added:
+            batch.read(name, text, f"{name} of {sender}")
+        _received[name] = text, sender
+    if batch.problems:
+        raise InterfaceError(batch.problems)
+    _missing.clear()
 
 
 def add_folders(folders: Iterable[str | os.PathLike[str]]) -> None:
@@ -182,10 +220,12 @@ def used_texts() -> dict[str, str]:
 # ---------------------------------------------------------------------- reading and checks
 
 
-def _located(name: str) -> Path | None:
-    """Return the definition file of an interface in a ROS workspace or near the world; None if there is none."""
+def _located(name: str) -> Path | str | None:
+    """Return the received text of an interface, or its file in a ROS workspace or near the world; None for neither."""
     if name_problem(name) is not None:
         return None
+    if name in _received:
+        return _received[name][0]
     package, kind, short = name.split("/")
     file = f"{kind}/{short}.{kind}"
     return installed_file(package, file) or next((f for find in _finders if (f := find(package, file))), None)
@@ -220,9 +260,15 @@ class _Batch:
         self.interfaces: dict[str, OwnInterface] = {}
         self._waiting: list[OwnInterface] = []
 
-    def read(self, name: str, source: str | Path) -> None:
-        """Parse one definition and compare it with the definition that the type may have already."""
-        file = str(source) if isinstance(source, Path) else name
+    def read(self, name: str, source: str | Path, label: str = "") -> None:
+        """Parse one definition and compare it with the definition that the type may have already.
+
+        Args:
+            name: full name of the interface.
+            source: text or file.
+            label: source of a text in messages; default: the name.
+        """
+        file = str(source) if isinstance(source, Path) else label or name
         wrong = name_problem(name)
         if wrong is not None:
             self._report(file, wrong.code, 0, wrong.message, wrong.hint)
@@ -238,14 +284,16 @@ class _Batch:
         self._put(OwnInterface(name, tuple(parts), file), is_valid=not found)
 
     def _put(self, own: OwnInterface, *, is_valid: bool) -> None:
-        before = self.interfaces.get(own.name) or _added.get(own.name) or _shipped(own.name)
-        if before is None or not is_valid:  # the types of a definition with errors are checked too
+        known = self.interfaces.get(own.name) or _added.get(own.name) or _shipped(own.name)
+        received = _received_interface(own.name)
+        other = next((o for o in (known, received) if o is not None and o.content != own.content), None)
+        if is_valid and other is not None:
+            text = f"{own.name} is defined differently already: {_difference(other, own)}"
+            hint = f"use one definition, or another name; compare with {other.source}"
+            self._report(own.source, _DIFFERS, 0, text, hint)
+        elif known is None:  # the types of a definition with errors are checked too
             self.interfaces[own.name] = own
             self._waiting.append(own)
-        elif [part.content for part in before.parts] != [part.content for part in own.parts]:
-            other = "simkit's own definition" if before.source == "simkit" else before.source
-            text = f"{own.name} is defined differently already: {_difference(before, own)}"
-            self._report(own.source, _DIFFERS, 0, text, f"use one definition, or another name; compare with {other}")
 
     def check(self) -> None:
         """Check that every type that is used exists, has an end and a moderate size."""
@@ -261,9 +309,9 @@ class _Batch:
     def _require(self, own: OwnInterface, line: int, used: str) -> None:
         if used in self.interfaces or used in _added or _shipped(used) is not None:
             return
-        file = _located(used)
-        if file is not None:
-            self.read(used, file)
+        source = _located(used)
+        if source is not None:
+            self.read(used, source)
         elif not any(used == problem.file for problem in self.problems):
             known = [*self.interfaces, *_added, *shipped_message_types(), *rosbags_types()]
             same = sorted(name for name in known if name.endswith(used[used.rindex("/") :]) and "/msg/" in name)
@@ -289,10 +337,16 @@ class _Batch:
         self.problems.append(Diagnostic(code, "error", message, file, line or None, hint))
 
 
+def _received_interface(name: str) -> OwnInterface | None:
+    """Return an interface that was received and not used yet."""
+    text, sender = _received.get(name, ("", ""))
+    return OwnInterface(name, tuple(parse_interface(name, text)[0]), f"{name} of {sender}") if sender else None
+
+
 def _shipped(name: str) -> OwnInterface | None:
     """Return an interface that is shipped with simkit or with rosbags."""
     found = shipped_parts(name)
-    return None if found is None else OwnInterface(name, found, "simkit")
+    return None if found is None else OwnInterface(name, found, "simkit's own definition")
 
 
 def _difference(before: OwnInterface, now: OwnInterface) -> str:

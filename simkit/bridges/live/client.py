@@ -108,6 +108,11 @@ class Client(ClientGraph):
         found: JsonObject = self.ask("model", name=name)
         return found
 
+    def interfaces(self) -> list[str]:
+        """Return the names of the user's messages, services and actions in the simulation, and define them here."""
+        found: list[str] = self.ask("interfaces")
+        return found
+
     # ------------------------------------------------------------------ topics
 
     def subscribe(

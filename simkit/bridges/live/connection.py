@@ -24,6 +24,7 @@ from simkit.bridges.live.protocol import (
 )
 from simkit.msgs.message_types import Message
 from simkit.runtime.communication.service_call import NO_ANSWER
+from simkit.bridges.live.type_exchange import SentTypes
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import GoalHandle
@@ -102,6 +103,7 @@ class ClientConnection:
         self._queue_bytes = 0
         self._next = 0
         self._types: dict[str, int] = {}
+        self._types_sent = SentTypes()
         self._rest: memoryview | None = None  # remaining bytes of a partly sent piece
         self._sent = time.monotonic()
 
@@ -131,7 +133,7 @@ class ClientConnection:
     def send_json(self, kind: int, content: JsonObject, data: bytes = b"") -> None:
         """Queue an answer or a notification. Neither is ever dropped."""
         try:
-            frame = json_frame(kind, content, data)
+            frame = json_frame(kind, self._types_sent.attach(content), data)
         except (TypeError, ValueError) as error:
             frame = json_frame(kind, {**content, "ok": None, "error": f"the answer cannot be sent: {error}"})
         if len(frame) > LARGEST_OUT:

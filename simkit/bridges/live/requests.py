@@ -14,6 +14,7 @@ from simkit.bridges.live.introspection import model_state, node_list, parameter_
 from simkit.bridges.live.protocol import TELL, JsonObject
 from simkit.bridges.live.topic_feed import TopicFeeds
 from simkit.errors import InputError, SimkitError
+from simkit.msgs import own_interfaces
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -38,6 +39,7 @@ class RequestHost(Protocol):
         feeds: topics that clients subscribe to.
         client_topics: topics that a client created, because nothing in the simulation used them.
         is_polling: True while `poll` processes data.
+        client_types: types that clients defined.
     """
 
     sim: Simulation
@@ -49,6 +51,7 @@ class RequestHost(Protocol):
     def poll(self, wait: float = 0.0) -> bool:
         """Read the frames of clients, and send the data that is queued for them."""
         ...
+    client_types: set[str]
 
     def measured_rtf(self) -> float:
         """Return the real-time factor over about the last second of wall time."""
@@ -209,6 +212,15 @@ def advertise(request: Request) -> object:
     return {"topic": topic, "type": type_name}
 
 
+def define_types(server: RequestHost, texts: Mapping[str, str]) -> None:
+    """Define the types that a client sent. Their number is limited, because they are kept until the process ends."""
+    if len(server.client_types.union(texts)) > MOST_OPEN:
+        message = f"clients of this run have already defined {MOST_OPEN} types; no more can be defined"
+        raise RequestRefused(message, "SK-LIVE-007")
+    own_interfaces.add_received(texts)
+    server.client_types.update(texts)
+
+
 def count_new_topic(request: Request, topic: str) -> None:
     """Count a topic that a client creates. Their number is limited, because recordings keep topics until the end."""
     if not _NEW_TOPIC.fullmatch(topic):
@@ -265,6 +277,7 @@ def set_parameter(request: Request) -> object:
 REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
     {
         "ping": lambda _: "pong",
+        "interfaces": lambda _: own_interfaces.known_names(),
         "node": node,
         "state": state,
         "control": control,

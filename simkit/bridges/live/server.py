@@ -23,8 +23,9 @@ from simkit.bridges.live.connection import ClientConnection
 from simkit.bridges.live.endpoint_requests import ENDPOINT_REQUESTS, LATER
 from simkit.bridges.live.message_reader import message_reader
 from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject, read_json_frame
-from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Response
+from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Response, define_types
 from simkit.bridges.live.topic_feed import TopicFeeds
+from simkit.bridges.live.type_exchange import detach
 from simkit.errors import PluginError, SimkitError, SimulationDiverged, SubscriberError
 from simkit.runtime.communication.command_queue import QUEUE_DEPTH
 from simkit.version import __version__
@@ -56,6 +57,7 @@ class Server:
         peers: connections of clients, by file descriptor.
         client_topics: topics that clients created during the run, because nothing in the simulation used them.
         is_polling: True while `poll` processes data.
+        client_types: types that clients defined during the run.
 
     Raises:
         NoSocketFolder: no folder can contain the socket; the message has the reason.
@@ -69,6 +71,7 @@ class Server:
         self.feeds = TopicFeeds(sim)
         self.peers: dict[int, ClientConnection] = {}
         self.client_topics: set[str] = set()
+        self.client_types: set[str] = set()
         self._busy: deque[ClientConnection] = deque()
         self._interest: dict[int, int] = {}
         self._numbers, self.is_polling = 0, False
@@ -238,12 +241,15 @@ class Server:
     def _answer(self, peer: ClientConnection, body: bytes) -> None:
         args, data = read_json_frame(body)
         number, request_name = args.pop("id", None), args.pop("ask", None)
+        interfaces = detach(args)
         if type(number) is not int or not isinstance(request_name, str):
             raise BadFrame("a request needs an id and a name")
         raised: Exception | None = None
         answer: JsonObject = {"id": number}
         found = b""
         try:
+            if interfaces:
+                define_types(self, interfaces)
             if request_name not in _HANDLERS:
                 raise RequestRefused(f"unknown request {request_name!r}")
             result = _HANDLERS[request_name](Request(self, peer, args, data, partial(peer.answer_later, number)))

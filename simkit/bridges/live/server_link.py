@@ -31,6 +31,8 @@ from simkit.bridges.live.protocol import (
     json_frame,
     read_json_frame,
 )
+from simkit.bridges.live.type_exchange import SentTypes, detach
+from simkit.msgs import own_interfaces
 
 _ENDPOINT_TELLS = ("request", "goal_request", "goal_cancel", "parameter")
 _PIECE = 1 << 18  # [bytes] read from the socket at once
@@ -74,6 +76,7 @@ class ServerLink:
         self._reader = FrameReader(LARGEST_OUT, (ANSWER, TELL, MESSAGE))
         self._answers: dict[int, tuple[JsonObject, bytes]] = {}
         self._types: dict[int, str] = {}
+        self._types_sent = SentTypes()
         self._closed: LiveClosed | None = None
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
@@ -134,7 +137,7 @@ class ServerLink:
         """Send a request; return the number of its answer."""
         number = next(self._numbers)
         try:
-            frame = json_frame(ASK, {"id": number, "ask": question, **args}, data)
+            frame = json_frame(ASK, self._types_sent.attach({"id": number, "ask": question, **args}), data)
         except (TypeError, ValueError) as error:
             raise LiveError(f"the arguments of {question!r} cannot be sent: {error}", "SK-LIVE-008") from None
         self.send(frame)
@@ -261,6 +264,9 @@ class ServerLink:
                 subscription(time_ns, self._types[type_number], body[MESSAGE_HEAD.size :], lost)
             return
         words, data = read_json_frame(body)
+        interfaces = detach(words)
+        if interfaces:
+            own_interfaces.remember_received(interfaces, f"simulation {self.path.stem!r}")
         if kind == ANSWER:
             number = int(words["id"])
             if number in self._abandoned:

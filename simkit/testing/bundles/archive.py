@@ -25,7 +25,7 @@ from simkit.writers.zip_checks import MAX_FILES
 MAX_BYTES: Final = 2 << 30
 _MAX_PAGE_BYTES: Final = 64 << 20  # limit for bundle.json
 _MAX_LINE_BYTES: Final = 256 << 20  # limit for one entry of the journal
-FOLDERS: Final = ("world", "model_world", "spawn", "models", "params", "code")
+FOLDERS: Final = ("world", "model_world", "spawn", "models", "params", "code", "interfaces")
 _BAD_NAME, _TOO_LARGE = "SK-BUNDLE-003", "SK-BUNDLE-004"
 
 

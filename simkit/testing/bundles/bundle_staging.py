@@ -20,6 +20,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
 from simkit.loaders import Resolver
 from simkit.loaders.spawned_models import SpawnedModel, parse_spawn
+from simkit.msgs import own_interfaces
 from simkit.run_spec import EMPTY_SPACE, GROUND, FilePath, LoadOptions, RunSpec, SourceOptions
 from simkit.testing.bundles.manifest import PackedModel
 from simkit.writers.vendored_folder import vendor
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 _SEARCH_VARIABLES: Final = (
     "SIMKIT_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH",
-    "ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH", "GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH",
+    "ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH", "GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH", own_interfaces.VARIABLE,
 )  # fmt: skip
 
 
@@ -62,6 +63,7 @@ def packed_run_spec(
         "on_error": original.options.get("on_error"),
         "plugin_paths": tuple(code),
         "params_files": tuple((model, folder / file) for model, file in params),
+        "interfaces": tuple(place for place in (folder / _INTERFACES,) if place.is_dir()),
     }
     return RunSpec(
         str(folder / world),
@@ -115,6 +117,7 @@ def model_hash(model: mujoco.MjModel, originals: Mapping[str, object]) -> str:
     return digest.hexdigest()
 
 
+_INTERFACES: Final = "interfaces"  # folder of definitions of messages, services and actions
 UNPACKED: Final = "SK-BUNDLE-006"
 _CODE_NOT_ALLOWED: Final = ("SK-PLUGIN-001", "SK-PLUGIN-080")
 
@@ -174,7 +177,11 @@ class WorldStager:
         return found
 
     def _main_files(self) -> StagedWorld:
-        """Copy the world and the models that are spawned during loading."""
+        """Copy the world, the models that are spawned during loading, and the user's types that the process used."""
+        for name, text in own_interfaces.used_texts().items():
+            file = self._stage / _INTERFACES / f"{name}.{name.split('/')[1]}"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
         found = StagedWorld(
             self._copy_with_references(self._spec.world, "world", base=self._spec.options.get("base", "auto"))
         )
