@@ -78,7 +78,8 @@ def find(name: str) -> OwnInterface | None:
     """
     read_environment()
     if name not in _added and name not in _missing:
-        source = _located(name)
+        # a package std_msgs of a ROS workspace must not compete with simkit's types
+        source = _located(name) if shipped_parts(name) is None else None
         if source is None:
             _missing.add(name)
         else:
