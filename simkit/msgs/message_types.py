@@ -88,11 +88,12 @@ def _register(type_name: str) -> None:
     found = definition_of(type_name)
     if found is None:
         raise KeyError(type_name)
-    constants = [
+    constants: Any = [
         (name, kind, _SpecialNumber(value) if kind.startswith("float") else value)
         for name, kind, value in found.constants
     ]
-    type_store().register({type_name: (constants, found.fields)})
+    fields: Any = found.fields
+    type_store().register({type_name: (constants, fields)})
 
 
 class _SpecialNumber(float):

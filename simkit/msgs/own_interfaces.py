@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -20,6 +21,7 @@ from simkit.input_file import read_failure, read_input_text
 from simkit.msgs.definition_parser import (
     PARTS,
     UNKNOWN_TYPE,
+    FieldNode,
     MessageDefinition,
     interface_of,
     name_problem,
@@ -59,6 +61,7 @@ class OwnInterface:
         return "---\n".join(part.text for part in self.parts)
 
 
+Fields = list[tuple[str, FieldNode]]
 InterfaceFinder = Callable[[str, str], Path | None]
 """Function that returns the definition file of a package and a relative path such as `msg/Num.msg`."""
 
@@ -321,18 +324,22 @@ class _Batch:
             self._report(own.source, UNKNOWN_TYPE, line, f"unknown type {used!r}", hint)
 
     def _check_size(self, own: OwnInterface) -> None:
-        def fields_of(name: str) -> list[tuple[str, tuple[int, object]]]:
-            found = self.interfaces.get(name) or _added.get(name) or _shipped(name)
-            assert found is not None
-            return found.parts[0].fields
-
+        """Check each field of an interface alone, so that a problem has its line, and then all fields together."""
         for part in own.parts:
-            for field, used in part.used_types():
+            for fields in (*([one] for one in part.fields), part.fields):
                 try:
-                    check_size(own.name, lambda name, part=part: part.fields if name == own.name else fields_of(name))
+                    check_size(own.name, partial(self._fields_of, {own.name: fields}))
                 except DefinitionTooLarge as error:
-                    self._report(own.source, _TOO_LARGE, part.lines[field], f"{field!r} of type {used}: {error}")
-                    return
+                    name = fields[0][0]
+                    self._report(own.source, _TOO_LARGE, part.lines[name], f"{name!r}: {error}")
+                    break
+
+    def _fields_of(self, given: Mapping[str, Fields], type_name: str) -> Fields:
+        if type_name in given:
+            return given[type_name]
+        found = self.interfaces.get(type_name) or _added.get(type_name) or _shipped(type_name)
+        assert found is not None
+        return found.parts[0].fields
 
     def _report(self, file: str, code: str, line: int, message: str, hint: str = "") -> None:
         self.problems.append(Diagnostic(code, "error", message, file, line or None, hint))

@@ -50,8 +50,9 @@ class _Codecs(dict[str, Any]):
 
     def __missing__(self, name: str) -> Any:
         constants, fields = self._store.fielddefs[name]
+        replaced: Any = [(field, _replaced(node)) for field, node in fields]
         store = copy.copy(self._store)
-        store.fielddefs = {name: (constants, [(field, _replaced(node)) for field, node in fields])}
+        store.fielddefs = {name: (constants, replaced)}
         store.cache = _AllOtherCodecs(self._store, name)
         self[name] = store.get_msgdef(name)
         return self[name]

@@ -46,12 +46,12 @@ class RequestHost(Protocol):
     peers: dict[int, ClientConnection]
     feeds: TopicFeeds
     client_topics: set[str]
+    client_types: set[str]
     is_polling: bool
 
     def poll(self, wait: float = 0.0) -> bool:
         """Read the frames of clients, and send the data that is queued for them."""
         ...
-    client_types: set[str]
 
     def measured_rtf(self) -> float:
         """Return the real-time factor over about the last second of wall time."""

@@ -25,7 +25,7 @@ from simkit.bridges.live.message_reader import message_reader
 from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject, read_json_frame
 from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Response, define_types
 from simkit.bridges.live.topic_feed import TopicFeeds
-from simkit.bridges.live.type_exchange import detach
+from simkit.bridges.live.type_exchange import LARGEST_IN, detach
 from simkit.errors import PluginError, SimkitError, SimulationDiverged, SubscriberError
 from simkit.runtime.communication.command_queue import QUEUE_DEPTH
 from simkit.version import __version__
@@ -241,7 +241,7 @@ class Server:
     def _answer(self, peer: ClientConnection, body: bytes) -> None:
         args, data = read_json_frame(body)
         number, request_name = args.pop("id", None), args.pop("ask", None)
-        interfaces = detach(args)
+        interfaces = detach(args, LARGEST_IN)
         if type(number) is not int or not isinstance(request_name, str):
             raise BadFrame("a request needs an id and a name")
         raised: Exception | None = None

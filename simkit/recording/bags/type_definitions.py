@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import InputError
 from simkit.msgs.definition_parser import MessageDefinition, parse_interface
@@ -43,7 +43,8 @@ def definition_store(type_name: str, text: str) -> Typestore:
 
         check_size(type_name, fields_of)
         store = get_typestore(Stores.EMPTY)
-        store.register({name: (part.constants, part.fields) for name, part in types.items()})
+        definitions: Any = {name: (part.constants, part.fields) for name, part in types.items()}
+        store.register(definitions)
         return with_wide_strings(store, store.fielddefs, store.types)
     except Exception as error:  # noqa: BLE001 - rosbags may raise anything on invalid types
         reason = " ".join(str(error).split())[:_LONGEST_REASON]

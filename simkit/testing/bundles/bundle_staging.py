@@ -179,9 +179,9 @@ class WorldStager:
     def _main_files(self) -> StagedWorld:
         """Copy the world, the models that are spawned during loading, and the user's types that the process used."""
         for name, text in own_interfaces.used_texts().items():
-            file = self._stage / _INTERFACES / f"{name}.{name.split('/')[1]}"
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text, encoding="utf-8")
+            target = self._stage / _INTERFACES / f"{name}.{name.split('/')[1]}"
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, encoding="utf-8")
         found = StagedWorld(
             self._copy_with_references(self._spec.world, "world", base=self._spec.options.get("base", "auto"))
         )
