@@ -123,6 +123,7 @@ def play(
             raise InputError(f"SK-CLI-030 {text}", "SK-CLI-030")
         for unknown in [t for t in selected if t not in bag_topics][:1]:
             next(reader.messages([unknown]))
+        reader.define_types(selected)
         publishers = {
             t.name: client.advertise(names.get(t.name, t.name), t.type_name)
             for t in reader.topics

@@ -209,7 +209,8 @@ def texts_used_by(type_names: Iterable[str]) -> dict[str, str]:
     waiting = list(type_names)
     while waiting:
         name = waiting.pop()
-        own = _added.get(name) or _added.get((interface_of(name) or ("", 0))[0])
+        interface = name if name in _added or name in _received else (interface_of(name) or ("", 0))[0]
+        own = _added.get(interface) or _received_interface(interface)
         if own is not None and own.name not in found:
             found[own.name] = own.text
             waiting += [used for part in own.parts for _, used in part.used_types()]

@@ -22,9 +22,9 @@ from simkit.bridges.live.protocol import (
     JsonObject,
     json_frame,
 )
+from simkit.bridges.live.type_exchange import SentTypes
 from simkit.msgs.message_types import Message
 from simkit.runtime.communication.service_call import NO_ANSWER
-from simkit.bridges.live.type_exchange import SentTypes
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import GoalHandle

@@ -7,7 +7,7 @@ with open_bag_to_read("run.mcap") as bag:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +21,7 @@ from simkit.msgs.definition_parser import FieldNode
 from simkit.recording.bags.bag_contents import BagMessage, BagTopic, unreadable
 from simkit.recording.bags.bag_files import bag_layout, open_files
 from simkit.recording.bags.mcap_records import LARGEST_RECORD, decompress
-from simkit.recording.bags.type_definitions import definition_store
+from simkit.recording.bags.type_definitions import define_types, definition_store
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -161,6 +161,17 @@ class BagReader:
         if store is None:
             store = self._stores[type_name] = self._new_store(type_name)
         return store
+
+    def define_types(self, topics: Container[str]) -> None:
+        """Define the types of some topics in this process if it does not know them, so that they can be published.
+
+        Raises:
+            InputError: SK-CLI-036 a definition is invalid; SK-INTERFACE-00x ROS 2 would refuse it.
+        """
+        chosen = [topic for topic in self.topics if topic.name in topics and topic.definition]
+        for topic in chosen:
+            self.store_of(topic.type_name)
+        define_types({topic.type_name: topic.definition for topic in chosen})
 
     def _new_store(self, type_name: str) -> Typestore:
         topics = [topic for topic in self.topics if topic.type_name == type_name]

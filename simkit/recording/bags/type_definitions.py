@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.errors import InputError
+from simkit.errors import InputError, MessageError
+from simkit.msgs import own_interfaces
 from simkit.msgs.definition_parser import MessageDefinition, parse_interface
+from simkit.msgs.message_types import full_name
 from simkit.msgs.type_limits import check_size
 from simkit.msgs.wide_strings import with_wide_strings
 
@@ -49,6 +52,24 @@ def definition_store(type_name: str, text: str) -> Typestore:
     except Exception as error:  # noqa: BLE001 - rosbags may raise anything on invalid types
         reason = " ".join(str(error).split())[:_LONGEST_REASON]
         raise InputError(f"SK-CLI-036 the definition of {type_name!r} is invalid: {reason}", "SK-CLI-036") from None
+
+
+def define_types(definitions: Mapping[str, str]) -> None:
+    """Define message types in this process that it does not know, from the definitions in a bag.
+
+    Args:
+        definitions: definition of each type by name, in the language of ROS 2 (`ros2msg`).
+
+    Raises:
+        InterfaceError: a definition is invalid.
+    """
+    found: dict[str, str] = {}
+    for type_name, text in definitions.items():
+        try:
+            full_name(type_name)
+        except MessageError:
+            found |= {name: part.text for name, part in _parsed(type_name, text).items()}
+    own_interfaces.add_received(found)
 
 
 def _parsed(type_name: str, text: str) -> dict[str, MessageDefinition]:
