@@ -11,7 +11,7 @@ from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused
 from simkit.errors import MessageError
 from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
-from simkit.msgs.message_types import type_of
+from simkit.msgs.message_types import full_name, type_of
 from simkit.msgs.type_hashes import rihs
 
 
@@ -71,5 +71,12 @@ def goal_result(request: Request) -> object:
     return Response(response(status, result))
 
 
-BRIDGE_REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType({"graph": graph, "goal_result": goal_result})
+def default_message(request: Request) -> object:
+    """Return a message of a type with all fields zero."""
+    return Response(builder_of(full_name(request.arg("type", str))).default())
+
+
+BRIDGE_REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
+    {"graph": graph, "goal_result": goal_result, "default_message": default_message}
+)
 """Handler of each request, by the name that a bridge sends."""

@@ -55,10 +55,6 @@ class ServiceEnd:
         with handle:
             handle.service_send_response(response, header.request_id)
 
-    def default_response(self) -> bytes | None:
-        """Return a response with all fields zero; None for a type that is not installed."""
-        return None if self._type.is_opaque else self._type.to_cdr(self._type.cls.Response())
-
 
 class SubscriptionEnd:
     """Subscription whose messages are CDR."""

@@ -64,9 +64,8 @@ class ServiceBridge:
 
         def refuse(error: LiveError) -> None:
             self._report(f"{self.service} failed: {error}")
-            response = self._end.default_response()
-            if response is not None and not self._is_closed:
-                self._end.respond(header, response)
+            args = {"type": f"{self.ros_type.name}_Response"}
+            self._link.ask("default_message", args, then=self._responder(header))
 
         return refuse
 

@@ -1,0 +1,86 @@
+"""Options of the bridge, its environment and its errors, which need no ROS."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from simkit.bridges.ros.bridge_process import RosOptions
+from simkit.bridges.ros.ros_names import parameter_node, ros_name
+from simkit.bridges.ros.ros_python import find_python
+from simkit.cli.terminal.ros_options import join_ros_arguments
+from simkit.errors import InputError
+from simkit.msgs.derived_types import derived_type, interface_hash
+
+
+def test_a_python_without_rclpy_is_an_error_with_the_reason_and_a_remedy() -> None:
+    command = ["run", "turtlebot3_empty", "--duration", "1", "--ros", "--ros-python", sys.executable]
+    found = subprocess.run([sys.executable, "-m", "simkit", *command], capture_output=True, text=True)
+    assert found.returncode == 2
+    assert "SK-ROS-002" in found.stderr and "No module named 'rclpy'" in found.stderr
+    assert "pip install ros-jazzy-rclpy" in found.stderr
+
+
+def test_a_sourced_ros_names_its_python(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    packages = tmp_path / "lib" / f"python{sys.version_info.major}.{sys.version_info.minor}" / "site-packages"
+    (packages / "rclpy").mkdir(parents=True)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    assert find_python(None) == Path(sys.executable)
+    monkeypatch.delenv("AMENT_PREFIX_PATH")
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+    with pytest.raises(InputError, match="SK-ROS-001"):
+        find_python(None)
+
+
+def test_an_environment_is_named_by_its_folder_and_stays_a_link(tmp_path: Path) -> None:
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "python").symlink_to(sys.executable)
+    assert find_python(tmp_path) == tmp_path / "bin" / "python"
+    with pytest.raises(InputError, match="SK-ROS-001 --ros-python: found"):
+        find_python(tmp_path / "none")
+
+
+def test_only_with_a_network_ros_reads_the_users_variables(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_STATIC_PEERS", "10.0.0.1")
+    monkeypatch.setenv("ROS_DOMAIN_ID", "5")
+    found = RosOptions().environment()
+    assert "ROS_STATIC_PEERS" not in found and found["ROS_DOMAIN_ID"] == "5"
+    assert "<address>127.0.0.1</address>" in Path(found["FASTRTPS_DEFAULT_PROFILES_FILE"]).read_text()
+    open_found = RosOptions(domain=7, uses_network=True).environment()
+    assert open_found["ROS_STATIC_PEERS"] == "10.0.0.1" and open_found["ROS_DOMAIN_ID"] == "7"
+    assert "interfaceWhiteList" not in Path(open_found["FASTRTPS_DEFAULT_PROFILES_FILE"]).read_text()
+
+
+@pytest.mark.parametrize(
+    "options", [RosOptions(domain=233), RosOptions(domain=-1), RosOptions(namespace="a b"), RosOptions(namespace="2d")]
+)
+def test_a_domain_or_namespace_that_ros_does_not_accept_is_an_error(options: RosOptions) -> None:
+    with pytest.raises(InputError, match="SK-ROS-003 --ros-(domain|namespace): found"):
+        options.check()
+
+
+def test_names_become_names_of_ros() -> None:
+    assert ros_name("/world/a.b/2d-scan/x") == "/world/a_b/_2d_scan/x"
+    assert ros_name("/scan", "/lab") == "/lab/scan"
+    assert ros_name("/clock", "/lab") == "/clock"
+    assert parameter_node("/arm/list_parameters") == "/arm"
+    assert parameter_node("/arm/other") == ""
+
+
+def test_arguments_of_ros_end_with_two_dashes() -> None:
+    words = ["w.sdf", "--ros-args", "-r", "/scan:=/a b", "--", "--rtf", "1"]
+    assert join_ros_arguments(words) == ["w.sdf", "--ros-args=-r '/scan:=/a b'", "--rtf", "1"]
+
+
+def test_services_have_the_published_hashes() -> None:
+    # share/std_srvs/srv/SetBool.json of ROS 2 Jazzy
+    found = interface_hash("std_srvs/srv/SetBool")
+    assert found == "RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"
+
+
+def test_the_parts_of_an_action_are_types() -> None:
+    response = derived_type("example_interfaces/action/Fibonacci_GetResult_Response")
+    assert [*response.__dataclass_fields__][:2] == ["status", "result"]
