@@ -284,6 +284,7 @@ class SceneModel:
         controls: `<ros2_control>` elements as written in the file, for a plugin that reads them.
         mjcf: MuJoCo's own description of the model; if present, this description is simulated.
         moved_by: object that moves the links of a static model during the run (an actor's script), or None.
+        urdf: root element of a URDF robot's file, after xacro; None for a model of another format.
     """
 
     name: str
@@ -305,6 +306,7 @@ class SceneModel:
     controls: tuple[Params, ...] = ()
     mjcf: MjcfSource | None = None
     moved_by: object | None = None
+    urdf: Params | None = field(default=None, compare=False, repr=False)
 
     def all_models(self) -> list[SceneModel]:
         """Return this model and all nested models, outermost first, in document order."""

@@ -13,16 +13,18 @@ from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_types import full_name, type_of
 from simkit.msgs.type_hashes import rihs
+from simkit.scene.urdf_text import urdf_text
 
 
 def graph(request: Request) -> object:
-    """Return topics, heard topics, services and actions, with the hashes of their types and the simulated time.
+    """Return topics, heard topics, services, actions and URDF robots, with type hashes and the simulated time.
 
     If nothing has changed since the graph with the revision in the request, return only revision and time.
     """
     sim = request.sim
     services, actions = sim.communication.services.names(), sim.communication.actions.names()
-    content = tuple(services.items()), tuple(actions.items()), [p.node for p in request.server.peers.values()]
+    robots = [name for name, model in sim.models.items() if model.scene.urdf is not None]
+    content = tuple(services.items()), tuple(actions.items()), robots, [p.node for p in request.server.peers.values()]
     revision = f"{sim.communication.bus.revision} {content!r}".__hash__()
     found = {"revision": revision, "time_ns": sim.time_ns}
     if request.args.get("revision") == revision:
@@ -41,6 +43,7 @@ def graph(request: Request) -> object:
         "heard": heard,
         "services": services,
         "actions": actions,
+        "robots": robots,
         "hashes": _hashes(names),
     }
 
@@ -71,12 +74,25 @@ def goal_result(request: Request) -> object:
     return Response(response(status, result))
 
 
+def robot_description(request: Request) -> object:
+    """Return the URDF of a robot."""
+    root = request.sim.model(request.arg("name", str)).scene.urdf
+    if root is None:
+        raise RequestRefused("the model is not in URDF")
+    return urdf_text(root)
+
+
 def default_message(request: Request) -> object:
     """Return a message of a type with all fields zero."""
     return Response(builder_of(full_name(request.arg("type", str))).default())
 
 
 BRIDGE_REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
-    {"graph": graph, "goal_result": goal_result, "default_message": default_message}
+    {
+        "graph": graph,
+        "goal_result": goal_result,
+        "default_message": default_message,
+        "robot_description": robot_description,
+    }
 )
 """Handler of each request, by the name that a bridge sends."""

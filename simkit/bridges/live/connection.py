@@ -81,8 +81,10 @@ class ClientConnection:
         subscriptions, publishers, goals: open handles of the client, by the client's numbers.
         endpoints: services, actions, command inputs and parameters of the client, by the client's numbers.
         is_held: True while reading from the client is paused, because further commands would be dropped.
-        drops_invalid: True for a bridge, which passes on messages of others: an invalid message is dropped with a
-            notification. Any other client that sends an invalid message is disconnected.
+        is_bridge: True for a bridge, which passes on messages of others: its invalid messages are dropped with a
+            notification, and it does not receive its own messages. Any other client is disconnected for an invalid
+            message.
+        is_publishing: True while a message of a bridge is published.
         why: reason for disconnecting the client, after the client was informed; None for a connection in use.
     """
 
@@ -93,7 +95,7 @@ class ClientConnection:
         self.goals: dict[int, tuple[GoalHandle, int]] = {}
         self.endpoints: dict[int, ClientEndpoint] = {}
         self.is_held = False
-        self.drops_invalid = False
+        self.is_bridge = self.is_publishing = False
         self.why: str | None = None
         self.is_gone = False
         self.reader = FrameReader(LARGEST_IN, (ASK, MESSAGE))

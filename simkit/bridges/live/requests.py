@@ -132,7 +132,7 @@ RequestHandler = Callable[[Request], object]
 def node(request: Request) -> object:
     """Set the client's node name: the requested name, or the first free of `name_2`, `name_3`, …."""
     node_name = "/" + (re.sub(r"[^A-Za-z0-9_/]+", "_", request.arg("name", str))[:100].strip("/") or "client")
-    request.peer.drops_invalid = bool(request.args.get("is_bridge"))
+    request.peer.is_bridge = bool(request.args.get("is_bridge"))
     names_in_use = {p.node for p in request.server.peers.values() if p is not request.peer}
     request.peer.node, number = node_name, 1
     while request.peer.node in names_in_use:

@@ -207,11 +207,15 @@ class Server:
         try:
             message = message_reader(publisher.type_name)(body, 4)
         except Exception as error:  # noqa: BLE001 - invalid bytes may cause any exception
-            if peer.drops_invalid:
+            if peer.is_bridge:
                 peer.send_json(TELL, {"tell": "invalid", "topic": publisher.topic, "type": publisher.type_name})
                 return
             raise BadFrame(f"the data on {publisher.topic!r} is not a valid {publisher.type_name}: {error!r}") from None
-        publisher.publish(message)
+        peer.is_publishing = peer.is_bridge
+        try:
+            publisher.publish(message)
+        finally:
+            peer.is_publishing = False
         self._hold_back_if_full(peer, publisher.topic)
 
     def _hold_back_if_full(self, peer: ClientConnection, topic: str) -> None:

@@ -68,7 +68,8 @@ class TopicFeed:
     def _deliver(self, time_ns: int, serialised: tuple[str, bytes] | None) -> None:
         if serialised is not None:
             for reader in self._readers:
-                reader.peer.queue_message(reader, time_ns, *serialised)
+                if not reader.peer.is_publishing:
+                    reader.peer.queue_message(reader, time_ns, *serialised)
 
 
 def _serialise(message: object) -> tuple[str, bytes] | None:

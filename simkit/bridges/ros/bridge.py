@@ -5,6 +5,7 @@ from __future__ import annotations
 import select
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from simkit.bridges.ros.ros_session import RosSession
 from simkit.bridges.ros.ros_types import RosType, TypeUnavailable
 from simkit.bridges.ros.service_bridge import ServiceBridge
 from simkit.bridges.ros.simulation_link import SimulationLink
-from simkit.bridges.ros.topic_bridge import IncomingTopic, OutgoingTopic
+from simkit.bridges.ros.topic_bridge import IncomingTopic, OutgoingTopic, RobotDescription
 from simkit.bridges.ros.wait_thread import RosWaiter
 
 _LOOK_PERIOD = 0.1  # [s] between two counts of ROS's subscriptions
@@ -43,6 +44,7 @@ class Bridge:
         self._incoming: dict[str, IncomingTopic] = {}
         self._services: dict[str, ServiceBridge] = {}
         self._actions: dict[str, ActionBridge] = {}
+        self._descriptions: dict[str, RobotDescription] = {}
         self._reported: set[str] = set()
         self._names: dict[str, str] = {}
         self._readers: dict[int, Reader] = {}
@@ -70,11 +72,11 @@ class Bridge:
         """
         while True:
             left = max(0.0, min(self._next_look, self._next_graph) - time.monotonic())
-            ready, _, _ = select.select([self.link, self._waiter], [], [], left)
-            if self.link in ready:
+            ready, _, _ = select.select([self.link.fileno(), self._waiter.fileno()], [], [], left)
+            if self.link.fileno() in ready:
                 self.link.receive(0.0)
                 self.link.dispatch_answers()
-            if self._waiter in ready and self._waiter.is_stopped():
+            if self._waiter.fileno() in ready and self._waiter.is_stopped():
                 self._take_from_ros()
             now = time.monotonic()
             if now >= self._next_look:
@@ -126,10 +128,23 @@ class Bridge:
         self._session.types.hashes.update(found["hashes"])
         self._apply_outgoing()
         self._apply_incoming()
-        self._apply(self._services, found["services"], self._open_service)
-        self._apply(self._actions, found["actions"], self._open_action)
+        self._apply(self._services, found["services"], self._service)
+        self._apply(self._actions, found["actions"], self._action)
+        self._apply_descriptions()
         parameter_nodes = {parameter_node(self._ros_name(name)) for name in found["services"]}
         self._session.close_nodes_except(parameter_nodes)
+
+    def _apply_descriptions(self) -> None:
+        """Publish the URDF of every robot, and that of the first robot without the robot's name."""
+        robots: list[str] = self._graph["robots"]
+        wanted = {f"/{name}/robot_description": name for name in robots}
+        if robots:
+            wanted["/robot_description"] = robots[0]
+        for topic in [t for t, d in self._descriptions.items() if wanted.get(t) != d.robot]:
+            self._descriptions.pop(topic).close()
+        for topic, name in wanted.items():
+            if topic not in self._descriptions and topic not in self._outgoing:
+                self._descriptions[topic] = RobotDescription(self.link, self._session, self._ros_name(topic), name)
 
     def _apply_outgoing(self) -> None:
         wanted: dict[str, tuple[str, bool]] = {}
@@ -146,9 +161,8 @@ class Bridge:
                 # one participant can have only one type for a topic
                 if topic in self._incoming and self._incoming[topic].ros_type != ros_type:
                     self._change(self._incoming.pop(topic).close)
-                self._outgoing[topic] = OutgoingTopic(
-                    self.link, self._session, topic, name, ros_type, is_latched, self._report
-                )
+                arguments = self.link, self._session, topic, name, ros_type, is_latched, self._report
+                self._open(self._outgoing, topic, partial(OutgoingTopic, *arguments))
 
     def _apply_incoming(self) -> None:
         """Open and close subscriptions of ROS, so that their types and qualities of service suit ROS's publishers."""
@@ -175,7 +189,7 @@ class Bridge:
             if current is not None:
                 changes.append(current.close)
             arguments = self.link, self._session, topic, self._ros_name(topic), ros_type, qos, self._report
-            changes.append(lambda topic=topic, a=arguments: self._incoming.__setitem__(topic, IncomingTopic(*a)))
+            changes.append(partial(self._open, self._incoming, topic, partial(IncomingTopic, *arguments)))
         if changes:
             self._change(*changes)
 
@@ -209,9 +223,7 @@ class Bridge:
             for name in gone:
                 table.pop(name).close()
             for name in fresh:
-                bridge = make(name, wanted[name])
-                if bridge is not None:
-                    table[name] = bridge
+                self._open(table, name, partial(make, name, wanted[name]))
 
         self._change(change)
 
@@ -220,29 +232,33 @@ class Bridge:
         self._waiter.stop()
         for change in changes:
             change()
-        subscriptions = {incoming.subscription: incoming for incoming in self._incoming.values()}
-        services = {
-            end.service: bridge for bridge in (*self._services.values(), *self._actions.values()) for end in bridge.ends
-        }
-        self._readers = {
-            entity.handle.pointer: reader for entity, reader in (*subscriptions.items(), *services.items())
-        }
-        self._waiter.watch(list(subscriptions), list(services))
+        subscriptions = [incoming.subscription for incoming in self._incoming.values()]
+        bridges: list[ServiceBridge | ActionBridge] = [*self._services.values(), *self._actions.values()]
+        services = [(end.service, bridge) for bridge in bridges for end in bridge.ends]
+        self._readers = {incoming.subscription.handle.pointer: incoming for incoming in self._incoming.values()}
+        self._readers |= {service.handle.pointer: bridge for service, bridge in services}
+        self._waiter.watch(subscriptions, [service for service, _ in services])
 
-    def _open_service(self, service: str, type_name: str) -> ServiceBridge | None:
-        ros_type = self._type(service, type_name)
-        if ros_type is None:
-            return None
+    def _open(self, table: dict[str, Any], name: str, make: Callable[[], Any]) -> None:
+        """Open a topic, service or action; report one that ROS does not accept."""
+        try:
+            table[name] = make()
+        except LiveClosed:
+            raise
+        except Exception as error:  # noqa: BLE001 - rclpy raises many errors for names and types
+            self._note(name, f"{name} is left out: {error}")
+
+    def _service(self, service: str, type_name: str) -> ServiceBridge:
+        ros_type = self._session.types.find(type_name)
         return ServiceBridge(self.link, self._session, service, self._ros_name(service), ros_type, self._report)
 
-    def _open_action(self, action: str, type_name: str) -> ActionBridge | None:
+    def _action(self, action: str, type_name: str) -> ActionBridge:
         name = self._ros_name(action)
-        try:
-            now = lambda: self._now_ns  # noqa: E731
-            return ActionBridge(self.link, self._session, action, name, type_name, now, self._report)
-        except TypeUnavailable as reason:
-            self._note(action, f"{action} is left out: {reason}")
-            return None
+        return ActionBridge(self.link, self._session, action, name, type_name, self._now, self._report)
+
+    def _now(self) -> int:
+        """Return the simulated time of the last look at the graph [ns]."""
+        return self._now_ns
 
     def _type(self, name: str, type_name: str) -> RosType | None:
         """Return a type for a topic or service; None with a note if the type cannot be passed on."""

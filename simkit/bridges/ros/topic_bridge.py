@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 from typing import Any
 
 from simkit.bridges.live.protocol import LiveError
+from simkit.bridges.ros.opaque_types import CDR_HEADER
 from simkit.bridges.ros.ros_session import Qos, RosSession, SubscriptionEnd, publisher_qos
 from simkit.bridges.ros.ros_types import RosType
 from simkit.bridges.ros.simulation_link import SimulationLink
@@ -134,3 +136,32 @@ class IncomingTopic:
         if self._number is not None:
             self._link.unadvertise(self._number)
         self._session.node.destroy_subscription(self.subscription)
+
+
+class RobotDescription:
+    """Latched topic with the URDF of a robot, which the simulation itself does not publish.
+
+    Args:
+        link: connection to the simulation.
+        session: session of ROS.
+        name: name of the topic in ROS.
+        robot: name of the model.
+    """
+
+    def __init__(self, link: SimulationLink, session: RosSession, name: str, robot: str) -> None:
+        self.robot, self._session = robot, session
+        self._publisher = session.advertise(
+            name, session.types.find("std_msgs/msg/String"), Qos(is_latched=True, depth=1)
+        )
+        self._is_closed = False
+        link.ask("robot_description", {"name": robot}, then=self._publish)
+
+    def _publish(self, text: str, _: bytes) -> None:
+        if not self._is_closed:
+            data = text.encode()
+            self._publisher.publish(CDR_HEADER + struct.pack("<I", len(data) + 1) + data + b"\0")
+
+    def close(self) -> None:
+        """Close the topic in ROS."""
+        self._is_closed = True
+        self._session.node.destroy_publisher(self._publisher)

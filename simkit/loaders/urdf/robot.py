@@ -122,6 +122,7 @@ def build_robot(
         allow_auto_disable=read_flag(robot, "allow_auto_disable") is not False,
         transmissions=read_transmissions(draft),
         controls=read_controls(draft),
+        urdf=draft.element,
     )
     draft.assets.report_packages()
     _report_frames(draft, links)

@@ -78,6 +78,27 @@ def test_the_graph_has_the_published_type_hash_of_every_topic(simkit_run: Simkit
     assert found == {name: msgs.rihs(name) for name in found}
 
 
+def test_a_robot_in_urdf_is_described(simkit_run: SimkitRun, ros_node: RosNode, tmp_path: Path) -> None:
+    (tmp_path / "cart.urdf").write_text(CART)
+    with simkit_run(str(tmp_path / "cart.urdf"), "--rtf", "1"):
+        found = ros_node("""
+            from std_msgs.msg import String
+
+            client = Client()
+            texts = client.hear("/robot_description", String, LATCHED)
+            own = client.hear("/cart/robot_description", String, LATCHED)
+            client.until(lambda: texts and own)
+            tell([texts[0].data, own[0].data])
+        """)
+    assert found[0] == found[1]
+    assert '<robot name="cart">' in found[0] and 'radius="0.25"' in found[0]
+
+
+CART = """<robot name="cart"><link name="base"><inertial><mass value="1"/>
+<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+<collision><geometry><sphere radius="0.25"/></geometry></collision></link></robot>"""
+
+
 def test_services_answer_with_installed_and_with_missing_types(simkit_run: SimkitRun, ros_node: RosNode) -> None:
     with simkit_run("turtlebot3_world", "--rtf", "1") as run:
         found = ros_node("""
