@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 from simkit.bridges.ros.ros_types import RosType, TypeFinder
 
-_DEPTH = 10  # messages that a publisher keeps for a slow subscription, as in most nodes of ROS 2
-_COMMAND_DEPTH = 100  # commands that wait until the bridge reads them
+_DEPTH, _LARGE_DEPTH = 100, 10  # messages that a publisher keeps for a slow subscription
+_LARGE = frozenset({"sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"})
 _LATCHED_DEPTHS = {"/tf_static": 100, "/rosout": 1000}  # the last message is not enough of these latched topics
 
 
@@ -20,15 +20,17 @@ class Qos(NamedTuple):
     depth: int = _DEPTH
 
 
-def publisher_qos(topic: str, *, is_latched: bool) -> Qos:
+def publisher_qos(topic: str, type_name: str, *, is_latched: bool) -> Qos:
     """Return the quality of service of an outgoing topic; a reliable publisher serves every subscription.
 
     Args:
         topic: name of the topic in the simulation.
+        type_name: type of its messages.
         is_latched: True if later subscriptions receive the last message.
     """
     name = "/" + topic.rpartition("/")[2]
-    return Qos(True, is_latched or name == "/rosout", _LATCHED_DEPTHS.get(name, 1 if is_latched else _DEPTH))
+    usual = 1 if is_latched else _LARGE_DEPTH if type_name in _LARGE else _DEPTH
+    return Qos(True, is_latched or name == "/rosout", _LATCHED_DEPTHS.get(name, usual))
 
 
 class ServiceEnd:
@@ -166,7 +168,7 @@ class RosSession:
     def subscription_qos(self, publishers: Sequence[tuple[str, bool, bool]]) -> Qos:
         """Return the strictest quality of service that all publishers of a topic offer."""
         is_reliable = all(reliable for _, reliable, _ in publishers)
-        return Qos(is_reliable, bool(publishers) and all(latched for *_, latched in publishers), _COMMAND_DEPTH)
+        return Qos(is_reliable, bool(publishers) and all(latched for *_, latched in publishers), _DEPTH)
 
     # ------------------------------------------------------------------ services
 

@@ -45,7 +45,7 @@ class OutgoingTopic:
     ) -> None:
         self._link, self.topic, self.ros_type, self._is_latched = link, topic, ros_type, is_latched
         self._session, self._report = session, report
-        self._publisher = session.advertise(name, ros_type, publisher_qos(topic, is_latched=is_latched))
+        self._publisher = session.advertise(name, ros_type, publisher_qos(topic, ros_type.name, is_latched=is_latched))
         self._number: int | None = None
         self._is_failed = False
         self.count = 0
