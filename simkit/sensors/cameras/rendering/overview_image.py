@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -15,6 +17,11 @@ from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Colours, Shot, View, look_at
 from simkit.sensors.values_with_expiry import temporary_values
+
+_DARKEST: Final = 0.12
+"""Least brightest channel of a drawn colour. Images are not encoded in sRGB, like those of Gazebo Classic. Images of gz
+Sim are encoded: Create 3 has the colour 3/255 and is dark grey there. Without this limit, a black model would be a
+silhouette without edges. Cameras show the colours as they are."""
 
 
 def render_view(
@@ -62,7 +69,7 @@ def render_view(
 
     renderer = renderer_of(sim)
     data = sim.engine.physics.fresh()
-    with temporary_values(model.geom_group, _collisions_to_draw(sim), VISUAL):
+    with temporary_values(model.geom_group, _collisions_to_draw(sim), VISUAL), _visible_colours(model):
         composition = renderer.composer.compose(model, data, position, look_at(position, middle), prepare)
     render_thread.drain()  # the render thread uses the same buffers
     colours = renderer.draw(composition, Shot(view)).colours
@@ -78,6 +85,19 @@ def _collisions_to_draw(sim: Simulation) -> list[int]:
         by_model.setdefault(link.model, []).append(link)
     invisible = (n for n, links in by_model.items() if not sim.models[n].static and not any(li.visuals for li in links))
     return [geom for name in invisible for link in by_model[name] for geom in link.geoms]
+
+
+@contextmanager
+def _visible_colours(model: mujoco.MjModel) -> Iterator[None]:
+    """Brighten nearly black surfaces that do not glow, inside the `with` block; their hue becomes greyer."""
+    glow = np.append(model.mat_emission, 0.0) > 0.0  # a geom without a material has the index -1
+    with ExitStack() as stack:
+        for colours, glows in ((model.geom_rgba, glow[model.geom_matid]), (model.mat_rgba, glow[:-1])):
+            lift = _DARKEST - colours[:, :3].max(axis=1)
+            dark = np.flatnonzero((lift > 0.0) & ~glows)
+            visible = colours[dark] + lift[dark, None] * (1.0, 1.0, 1.0, 0.0)
+            stack.enter_context(temporary_values(colours, dark, visible))
+        yield
 
 
 def _add_headlight(scene: mujoco.MjvScene) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, ExitStack, contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from typing import Final
 
 import mujoco
@@ -21,11 +21,6 @@ from simkit.sensors.values_with_expiry import temporary_values
 
 SOLID: Final = 0.995
 """Opacity below which the engine draws a shape as transparent."""
-
-_DARKEST: Final = 0.12
-"""Least brightest channel of a drawn colour. Images are not encoded in sRGB, like those of Gazebo Classic. Images of gz
-Sim are encoded: Create 3 has the colour 3/255 and is dark grey there. Without this limit, a black model would be a
-silhouette without edges."""
 
 _ALL: Final = int(mujoco.mjtCatBit.mjCAT_ALL)
 _MAX_SCENES: Final = 8  # number of scenes kept for reuse
@@ -100,7 +95,7 @@ class Composer:
         """
         scene = self._spare_scene(model) if decorate is None else self._fresh_scene(model, _DECORATIONS)
         hidden = temporary_values(model.geom_group, unseen, _NOWHERE)
-        with keep_strongest_lights(model, data, position, rotation), hidden, _visible_colours(model):
+        with keep_strongest_lights(model, data, position, rotation), hidden:
             mujoco.mjv_updateScene(model, data, self._option, None, self._aside, _ALL, scene)
             bounds = bounds_of(model, data, scene, self._option.geomgroup) if self._culls else None
         if _POINT in model.light_type:
@@ -140,19 +135,6 @@ class Composer:
         scene.flags[:] = 0
         scene.flags[self._flags] = 1
         return scene
-
-
-@contextmanager
-def _visible_colours(model: mujoco.MjModel) -> Iterator[None]:
-    """Brighten nearly black surfaces that do not glow, inside the `with` block; their hue becomes greyer."""
-    glow = np.append(model.mat_emission, 0.0) > 0.0  # a geom without a material has the index -1
-    with ExitStack() as stack:
-        for colours, glows in ((model.geom_rgba, glow[model.geom_matid]), (model.mat_rgba, glow[:-1])):
-            lift = _DARKEST - colours[:, :3].max(axis=1)
-            dark = np.flatnonzero((lift > 0.0) & ~glows)
-            visible = colours[dark] + lift[dark, None] * (1.0, 1.0, 1.0, 0.0)
-            stack.enter_context(temporary_values(colours, dark, visible))
-        yield
 
 
 def _has_transparent_geoms(model: mujoco.MjModel) -> bool:
