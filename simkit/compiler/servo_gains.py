@@ -138,13 +138,15 @@ class ServoTraits:
     Attributes:
         gain: kv [N·m·s/rad].
         max_effort: effort limit [N·m]; infinite without one.
-        largest_load: largest constant load that is corrected [N·m].
+        largest_load: largest constant load that is corrected, with the joint's own friction [N·m].
+        damping: damping of the joint, a load that is corrected at any velocity [N·m·s/rad].
         response_time: time constant of the servo when it moves the whole robot [s].
     """
 
     gain: float
     max_effort: float
     largest_load: float
+    damping: float
     response_time: float
 
 
@@ -218,15 +220,15 @@ def servo_traits(
 
     A wheel on the ground moves the mass of the robot at the radius of the wheel. All servos of the robot share this
     mass. The largest load is twice the weight of the robot at that radius, because a tyre cannot transmit more. On a
-    fixed base it is ten times the weight of the links that the joint moves.
+    fixed base it is ten times the weight of the links that the joint moves. The friction of the joint adds to it.
 
     Args:
         model: MuJoCo's model.
         refs: actuators of the servos.
         compiled: compiled values of the model fields that were changed after the compile, by name.
     """
-    names = "actuator_gainprm", "actuator_forcerange", "actuator_forcelimited"
-    strengths, ranges, limited = ((compiled or {}).get(name, getattr(model, name)) for name in names)
+    names = "actuator_gainprm", "actuator_forcerange", "actuator_forcelimited", "dof_damping", "dof_frictionloss"
+    strengths, ranges, limited, damping, friction = ((compiled or {}).get(name, getattr(model, name)) for name in names)
     data = first_state(model)
     mujoco.mj_makeM(model, data)
     ids = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name) for ref in refs]
@@ -243,7 +245,8 @@ def servo_traits(
         weights = 2.0 if model.jnt_type[model.dof_jntid[first]] == _FREE else 10.0
         most = float(ranges[i, 1]) if limited[i] else math.inf
         response = inertia / gain if gain > 0.0 else math.inf
-        found.append(ServoTraits(gain, most, min(most, weights * mass * _GRAVITY * reach), response))
+        load = weights * mass * _GRAVITY * reach + float(friction[dof])
+        found.append(ServoTraits(gain, most, min(most, load), float(damping[dof]), response))
     return found
 
 

@@ -15,7 +15,8 @@ to accelerate the robot. The rest is caused by a load: the load / kv that the co
 - The recent change of the command is subtracted: a start without a load has no overshoot.
 - A command of zero resets the correction. A robot that scrubs its wheels has other loads at rest, and wheels that push
   against each other would creep.
-- The corrected effort is at most twice the weight of the robot at the rim of the wheel. No tyre transmits more.
+- The corrected effort is at most twice the weight of the robot at the rim of the wheel, because no tyre transmits more.
+  The friction and the damping of the joint are added.
 
 The period is a grid of simulated time, so that readers and the division of a run into steps make no difference.
 """
@@ -87,8 +88,9 @@ class _BoundServo:
     Attributes:
         index: index of the actuator.
         widest: error at which the servo gives its full effort [rad/s or m/s].
-        largest: largest correction [rad/s or m/s].
-        share: fraction of an uncompensated load that one update adds to the correction.
+        largest: largest correction [rad/s or m/s] at rest.
+        damping: largest further correction for each rad/s or m/s of the command.
+        share: factor of an uncompensated load that one update adds to the correction; above 1 only with damping.
         foresight: response time divided by the update period.
     """
 
@@ -96,6 +98,7 @@ class _BoundServo:
     index: int
     widest: float
     largest: float
+    damping: float
     share: float
     foresight: float
 
@@ -155,7 +158,8 @@ class VelocityServos:
             servo.tick, servo.position, servo.velocity, servo.last_command = tick, position, velocity, servo.command
             if load:
                 is_changed = True
-                servo.correction = max(-row.largest, min(row.largest, servo.correction + row.share * load))
+                largest = row.largest + row.damping * abs(servo.command)
+                servo.correction = max(-largest, min(largest, servo.correction + row.share * load))
                 data.ctrl[row.index] = servo.command + servo.correction
         if is_changed:
             physics.changed(CONTROL)
@@ -225,5 +229,7 @@ def _bind_servo(servo: _ServoState, index: int, traits: ServoTraits, period: flo
     """Return the constants of a servo's correction, all in rad/s or m/s."""
     gain = max(traits.gain, 1e-300)
     share = min(1.0, period / max(SHORTEST_INTEGRAL_TIME, MIN_RESPONSE_TIMES * traits.response_time))
+    share *= 1.0 + traits.damping / gain  # damping weakens the effect of the correction on the velocity
     foresight = traits.response_time / period
-    return _BoundServo(servo, index, traits.max_effort / gain, traits.largest_load / gain, share, foresight)
+    widest, largest, damping = (v / gain for v in (traits.max_effort, traits.largest_load, traits.damping))
+    return _BoundServo(servo, index, widest, largest, damping, share, foresight)

@@ -148,6 +148,18 @@ def test_a_constant_torque_on_a_wheel_is_compensated_within_a_quarter_of_a_secon
     assert released.min() > 0.99
 
 
+def test_friction_and_damping_of_the_wheel_joints_do_not_slow_the_robot_down() -> None:
+    # as in Stretch's file: at 5 rad/s 110 N·m, five times the effort that the tyres can transmit
+    losses = "<xyz>0 0 1</xyz><dynamics><damping>20</damping><friction>10</friction></dynamics>"
+    with simkit.load(world(GROUND, vehicle().replace("<xyz>0 0 1</xyz>", losses))) as sim:
+        drive(sim, linear=0.5)
+        sim.run(2.0)
+        assert speeds(sim, 0.5) == pytest.approx(5.0, rel=0.01)
+        drive(sim)
+        sim.run(0.5)
+        assert abs(wheel(sim).velocity) < 1e-3
+
+
 @pytest.mark.parametrize("step", [0.001, 0.002])
 def test_a_servo_at_its_effort_limit_does_not_wind_up(step: float) -> None:
     """With 2 N·m against 3 N·m, the wheel turns backwards, and recovers without overshoot."""
