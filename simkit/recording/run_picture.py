@@ -46,7 +46,9 @@ class DrivenPath:
         self.sample()
 
     def sample(self) -> None:
-        """Store the present positions."""
+        """Store the present positions, except in a diverged state, which the next step reports."""
+        if not np.isfinite(self._sim.mj_data.qpos).all():
+            return
         for name, model in self._sim.models.items():
             if model.static:
                 continue

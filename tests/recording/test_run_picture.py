@@ -53,6 +53,14 @@ def test_paths_follow_moving_models_and_leave_out_static_ones() -> None:
         np.testing.assert_allclose([p[0] for p in driven.tracks["rover"]], np.arange(11) * 0.05, atol=1e-9)
 
 
+def test_a_path_leaves_out_a_diverged_state() -> None:
+    with simkit.load(WORLD) as sim:
+        driven = DrivenPath(sim)
+        sim.mj_data.qpos[0] = np.nan
+        driven.sample()
+        assert len(driven.tracks["rover"]) == 1
+
+
 def viewpoint(tmp_path: Path, world: str) -> tuple[np.ndarray, np.ndarray]:
     """Return eye and target of the picture of a world."""
     seen: list[tuple[np.ndarray, np.ndarray]] = []
