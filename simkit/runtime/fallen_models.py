@@ -30,7 +30,7 @@ def find_fallen_models(sim: Simulation) -> Diagnostics:
     """
     found = Diagnostics()
     gravity = float(sim.mj_model.opt.gravity[2])
-    if not gravity < 0.0:
+    if not gravity < 0.0 or not np.isfinite(sim.mj_data.qpos).all():  # a divergence has its own report
         return found
     lowest, extent = _lowest_height(sim.mj_model), float(sim.mj_model.stat.extent)
     for name, model in sim.models.items():
