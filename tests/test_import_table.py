@@ -48,7 +48,7 @@ ROOMS: dict[str, set[str]] = {
     "recording": {"runtime", "writers"},
     "plugins": {*BELOW_RUNTIME, "recording", "runtime", "sensors"},
     "build": BELOW_BUILD,
-    "bridges": {"recording", "runtime"},
+    "bridges": {"recording", "runtime", "scene"},
     "live": {"bridges"},
     "testing": {*BELOW_BUILD, "build"},
     "pytest_plugin": {*BELOW_BUILD, "build", "testing"},

@@ -6,13 +6,13 @@ A service `S` is itself a type of its request, response and event. An action `A`
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 from simkit.errors import MessageError
 from simkit.msgs.definition_parser import BASE, NAME, PARTS, SEQUENCE, FieldNode
 from simkit.msgs.message_types import Message, type_of, type_store
 
-Fields = list[tuple[str, FieldNode]]
+Fields = list[tuple[str, Any]]
 _EVENT_INFO: Final = "service_msgs/msg/ServiceEventInfo"
 
 

@@ -31,7 +31,7 @@ def with_wide_strings(store: Typestore, fielddefs: dict[str, Any], types: dict[s
     store.fielddefs, store.types = fielddefs, types
     store.cache = codecs = _Codecs(store)
     # one look into a table for each nested message: with rosbags' method, a message with a header takes 10 % longer
-    store.get_msgdef = codecs.__getitem__  # type: ignore[method-assign]
+    store.get_msgdef = codecs.__getitem__  # type: ignore[method-assign, assignment]
     return store
 
 

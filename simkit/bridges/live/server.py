@@ -13,20 +13,16 @@ import socket
 import time
 from collections import deque
 from contextlib import suppress
-from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.bridges.live import socket_files
-from simkit.bridges.live.bridge_requests import BRIDGE_REQUESTS
+from simkit.bridges.live.answering import answer_request
 from simkit.bridges.live.connection import ClientConnection
-from simkit.bridges.live.endpoint_requests import ENDPOINT_REQUESTS, LATER
 from simkit.bridges.live.message_reader import message_reader
-from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject, read_json_frame
-from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Response, define_types
+from simkit.bridges.live.protocol import ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject
 from simkit.bridges.live.topic_feed import TopicFeeds
-from simkit.bridges.live.type_exchange import LARGEST_IN, detach
-from simkit.errors import PluginError, SimkitError, SimulationDiverged, SubscriberError
+from simkit.errors import SimkitError
 from simkit.runtime.communication.command_queue import QUEUE_DEPTH
 from simkit.version import __version__
 
@@ -39,7 +35,6 @@ BUDGET: Final = 0.005  # [s] of wall time for clients between two slices
 _SLICE, _BUSY_SLICE = 0.4, 0.08  # share of a slice's usual wall time with idle clients, and with busy clients
 _REQUESTS_PER_TURN = 64  # frames that are read from one client before the turn of the next client
 _LONGEST_HOLD = 0.2  # [s] of wall time, longest pause in reading from a client that avoids dropped commands
-_HANDLERS: Final = {**REQUESTS, **BRIDGE_REQUESTS, **ENDPOINT_REQUESTS}
 _MOST_CALLERS = 16  # connections that are accepted in one poll
 
 
@@ -190,7 +185,7 @@ class Server:
                     return not peer.is_clogged and peer.read()
                 kind, body = frame
                 if kind == ASK:
-                    self._answer(peer, body)
+                    answer_request(self, peer, body)
                 else:
                     publish(peer, body)
         except BadFrame as error:
@@ -241,41 +236,6 @@ class Server:
                     self._update_interest(peer)
                     if peer not in self._busy:
                         self._busy.append(peer)
-
-    def _answer(self, peer: ClientConnection, body: bytes) -> None:
-        args, data = read_json_frame(body)
-        number, request_name = args.pop("id", None), args.pop("ask", None)
-        interfaces = detach(args, LARGEST_IN)
-        if type(number) is not int or not isinstance(request_name, str):
-            raise BadFrame("a request needs an id and a name")
-        raised: Exception | None = None
-        answer: JsonObject = {"id": number}
-        found = b""
-        try:
-            if interfaces:
-                define_types(self, interfaces)
-            if request_name not in _HANDLERS:
-                raise RequestRefused(f"unknown request {request_name!r}")
-            result = _HANDLERS[request_name](Request(self, peer, args, data, partial(peer.answer_later, number)))
-            if result is LATER:
-                return
-            if isinstance(result, Response):
-                answer["type"], found = msgs.type_name(result.message), msgs.serialize(result.message)
-            else:
-                answer["ok"] = result
-        except KeyError as error:
-            answer |= {"error": str(error.args[0] if error.args else error), "code": "SK-LIVE-008"}
-        except SimkitError as error:
-            answer |= {"error": str(error), "code": error.code}
-            if isinstance(error, (PluginError, SimulationDiverged, SubscriberError)):
-                raised = error  # the error ends the run, as it would for a caller in the process
-        except Exception as error:  # noqa: BLE001 - a service that a script offers may raise anything
-            answer |= {"error": f"{request_name} failed: {error!r}", "code": "SK-LIVE-008"}
-            raised = error
-        peer.send_json(ANSWER, answer, found)
-        if raised is not None:
-            peer.write()
-            raise raised
 
     # ------------------------------------------------------------------ notifications
 

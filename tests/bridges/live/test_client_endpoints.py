@@ -100,7 +100,7 @@ def request_of(request: Any) -> dict[str, int]:
     [
         (raising, r"callback 'raising' \(.*:\d+\) of service '/add' raised: ValueError\('no bricks left'\)"),
         (lambda _: {"sun": 1}, "AddTwoInts_Response has no field 'sun'; did you mean 'sum'"),
-        (lambda _: 3, "int is not a message"),
+        (lambda _: 3, r"3 \(int\) is not a message"),
     ],
 )
 def test_a_service_that_fails_reports_to_its_caller_and_raises_in_its_own_process(

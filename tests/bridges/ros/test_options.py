@@ -13,7 +13,8 @@ from simkit.bridges.ros.ros_names import parameter_node, ros_name
 from simkit.bridges.ros.ros_python import find_python
 from simkit.cli.terminal.ros_options import join_ros_arguments
 from simkit.errors import InputError
-from simkit.msgs.derived_types import derived_type, interface_hash
+from simkit.msgs.derived_types import derived_type
+from simkit.msgs.type_hashes import rihs
 
 
 def test_a_python_without_rclpy_is_an_error_with_the_reason_and_a_remedy() -> None:
@@ -77,7 +78,7 @@ def test_arguments_of_ros_end_with_two_dashes() -> None:
 
 def test_services_have_the_published_hashes() -> None:
     # share/std_srvs/srv/SetBool.json of ROS 2 Jazzy
-    found = interface_hash("std_srvs/srv/SetBool")
+    found = rihs("std_srvs/srv/SetBool")
     assert found == "RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"
 
 
