@@ -67,8 +67,8 @@ def test_a_message_object_opens_an_unknown_topic_and_a_dict_does_not(sim: simkit
 @pytest.mark.parametrize(
     ("value", "text"),
     [
-        (None, "'/chatter' needs std_msgs/msg/String, or a dict of its fields; NoneType is not a message"),
-        (3, "int is not a message"),
+        (None, "'/chatter' needs std_msgs/msg/String, or a dict of its fields; None (NoneType) is not a message"),
+        (3, "3 (int) is not a message"),
         (msgs.type_of("std_msgs/msg/String"), "the class std_msgs__msg__String is not a message"),
         ({"dat": "x"}, "'/chatter': std_msgs/msg/String has no field 'dat'; did you mean 'data'"),
         ({"data": 5}, "'/chatter': std_msgs/msg/String.data: found 5"),
@@ -113,7 +113,7 @@ def test_a_service_of_a_script_can_be_closed_and_survives_reset_and_restore(sim:
     [
         (raising, r"'raising' \(.*:\d+\) of service '/add' raised at t=0 s: ValueError\('no bricks left'\)"),
         (lambda _: {"sun": 1}, "AddTwoInts_Response has no field 'sun'; did you mean 'sum'"),
-        (lambda _: 5, "response of '/add' needs .*AddTwoInts_Response, or a dict of its fields; int is not a message"),
+        (lambda _: 5, "response of '/add' needs .*AddTwoInts_Response, or a dict of its fields; 5 \\(int\\) is not a message"),
     ],
 )
 def test_an_error_in_a_service_of_a_script_names_service_and_function(
