@@ -9,6 +9,7 @@ from typing import IO, TYPE_CHECKING
 
 from simkit import msgs
 from simkit.errors import InputError
+from simkit.recording.bags.mcap_writer import McapWriter
 from simkit.writers.atomic_output import write_obstacle
 
 if TYPE_CHECKING:
@@ -84,8 +85,6 @@ class McapBag:
     """
 
     def __init__(self, path: Path, *, overwrite: bool = False) -> None:
-        from mcap.writer import CompressionType, Writer
-
         self.path = path
         self.span = Span()
         self.channels: dict[tuple[str, str], Channel] = {}
@@ -93,8 +92,7 @@ class McapBag:
         self._second = -1
         self._file: IO[bytes] = path.open("wb" if overwrite else "xb")
         # Half a minute of an RGB-D camera is 2 GB; compression reduces images without noise to a tenth.
-        self._writer = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
-        self._writer.start(profile="ros2", library="simkit")
+        self._writer = McapWriter(self._file, "ros2", "simkit", _CHUNK_BYTES)
         self._file.flush()
 
     def channel(self, topic: str, type_name: str, latched: bool) -> Channel:

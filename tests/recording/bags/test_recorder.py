@@ -177,7 +177,7 @@ def test_a_full_disk_stops_the_recording_and_not_the_publisher(tmp_path: Path) -
     with simkit.load(WORLD) as sim:
         recorder = Recorder(sim, tmp_path / "run.mcap")
         writer = recorder._bag._writer  # type: ignore[union-attr]
-        writer._Writer__stream = _FullDisk(writer._Writer__stream)  # type: ignore[attr-defined]
+        writer._file = _FullDisk(writer._file)
         sim.run(3.0)
         assert sim.time == 3.0
         with pytest.raises(RecordError, match="No space left") as error:
