@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from simkit import msgs
 from simkit.errors import SimkitError
 from simkit.msgs.message_types import Message
-from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
+from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage, Settle
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation, Subscription
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 Receiver = Callable[[Message | LazyMessage], None]
 """Callback for each message of a topic, which may be a `LazyMessage`."""
 _Label = TypeVar("_Label")
+_MOST_DEFERRED = 1 << 15  # queued messages at which those are delivered that are serialised together
 
 
 def is_available(sim: Simulation, topic: str) -> bool:
@@ -36,10 +38,13 @@ class TopicTaps:
     Args:
         sim: simulation to observe.
         receiver_of: function that returns the callback for a topic and type, or None for no tap; called once per topic.
+        settle: function that makes all messages that the callbacks have stored; see `TopicBus.tap`.
     """
 
-    def __init__(self, sim: Simulation, receiver_of: Callable[[str, str], Receiver | None]) -> None:
-        self._sim, self._receiver_of = sim, receiver_of
+    def __init__(
+        self, sim: Simulation, receiver_of: Callable[[str, str], Receiver | None], settle: Settle = None
+    ) -> None:
+        self._sim, self._receiver_of, self._settle = sim, receiver_of, settle
         self._taps: dict[str, Subscription] = {}
         self._is_open = False
 
@@ -63,7 +68,15 @@ class TopicTaps:
             return
         receiver = self._receiver_of(topic, type_name)
         if receiver is not None:
-            self._taps[topic] = self._sim.communication.bus.tap(topic, receiver, takes_later=True)
+            bus = self._sim.communication.bus
+            self._taps[topic] = bus.tap(topic, receiver, takes_later=True, settle=self._settle)
+
+
+def serialised(message: Message | LazyMessage) -> Any:
+    """Return the type and CDR of a message; NO_MESSAGE if the message cannot be made."""
+    if isinstance(message, LazyMessage):
+        return message.serialised()
+    return msgs.type_name(message), msgs.serialize(message)
 
 
 class MessageQueue(Generic[_Label]):
@@ -71,9 +84,10 @@ class MessageQueue(Generic[_Label]):
 
     Args:
         deliver: callback with the label of a message, and the message.
-        freeze: function that copies a message, because its publisher may change the message while it is queued; every
-            message is delivered as a copy. Without this function only images are queued: a message after an image then
-            waits until the image is rendered.
+        freeze: `serialised`, or a function like it. The publisher may change a message while it is queued, so every
+            message is delivered in this form. A message with `is_packed` is queued until `deliver_ready`, because many
+            of these are serialised together. Without `freeze` only images are queued: a message after an image
+            then waits until the image is rendered.
     """
 
     def __init__(
@@ -84,19 +98,34 @@ class MessageQueue(Generic[_Label]):
 
     def add(self, label: _Label, message: Message | LazyMessage) -> None:
         """Deliver a message that was just published, or queue the message if an image before it is not rendered yet."""
-        is_lazy = type(message) is LazyMessage
-        if self._waiting or (is_lazy and not message.is_ready):
-            if is_lazy or self._freeze is not None:
-                self._waiting.append((label, message if is_lazy or self._freeze is None else self._freeze(message)))
+        freeze, waiting = self._freeze, self._waiting
+        is_lazy = isinstance(message, LazyMessage)
+        if is_lazy and freeze is not None and message.is_packed:
+            waiting.append((label, message))
+            if len(waiting) > _MOST_DEFERRED:
                 self.deliver_ready()
+            return
+        is_pending = is_lazy and not message.is_ready
+        if not (waiting or is_pending):
+            self._resolve(label, message)
+            return
+        if freeze is not None and not is_pending:
+            message = freeze(message)
+            if message is NO_MESSAGE:
                 return
+        elif not is_lazy:
             self.deliver_all()
-        self._resolve(label, message)
+            self._resolve(label, message)
+            return
+        waiting.append((label, message))
+        first = waiting[0][1]
+        if is_pending or not (isinstance(first, LazyMessage) and first.is_packed):
+            self.deliver_ready()
 
     def deliver_ready(self) -> None:
         """Deliver the messages that are ready, in order."""
         waiting = self._waiting
-        while waiting and (type(waiting[0][1]) is not LazyMessage or waiting[0][1].is_ready):
+        while waiting and (not isinstance(waiting[0][1], LazyMessage) or waiting[0][1].is_ready):
             self._deliver_first()
 
     def deliver_all(self) -> None:
@@ -117,12 +146,15 @@ class MessageQueue(Generic[_Label]):
 
     def _deliver_first(self) -> None:
         label, message = self._waiting.popleft()
-        if type(message) is LazyMessage:
+        if isinstance(message, LazyMessage):
             self._resolve(label, message)
         else:  # already frozen
             self._deliver(label, message)
 
     def _resolve(self, label: _Label, message: Message | LazyMessage) -> None:
-        resolved = message.get() if type(message) is LazyMessage else message
+        if self._freeze is not None:
+            resolved = self._freeze(message)
+        else:
+            resolved = message.get() if isinstance(message, LazyMessage) else message
         if resolved is not NO_MESSAGE:
-            self._deliver(label, resolved if self._freeze is None else self._freeze(resolved))
+            self._deliver(label, resolved)

@@ -282,6 +282,25 @@ class Noise:
         white = self._white.normal(index).tolist()
         return list(map(add, map(add, values, constant), map(mul, stddev, white)))
 
+    def apply_to_samples(self, values: Vector, first: int) -> Vector:
+        """Return the values of consecutive samples, shape (n, width), with the same bits as `apply` for each of them.
+
+        Args:
+            values: values without noise.
+            first: number of the first sample.
+        """
+        state = self.state
+        out: Vector = values + state.constant
+        white = self._white
+        if white is not None:
+            parts: list[Vector] = []
+            while (done := sum(map(len, parts))) < len(values):
+                parts.append(white.normals(first + done, len(values) - done))
+            out += state.interval.stddev * np.concatenate(parts)
+        if self._is_quantised:
+            out = quantise(out, self._precision)
+        return out
+
     def covariance(self, first_channel: int = 0) -> Vector:
         """Return the read-only row-major covariance, shape (9,), of the white noise of three channels."""
         covariances = self.state.interval.covariances

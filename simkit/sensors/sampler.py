@@ -15,13 +15,15 @@ from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.engine_state import InProcess
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
-from simkit.sensors.sample import Batch, Memory, NoiseProcess, Product, Reading, ReadingFunction, Sample
+from simkit.sensors.noise_keeper import NoiseKeeper
+from simkit.sensors.sample import Batch, Memory, Product, Reading, Sample
+from simkit.sensors.sample_packing import SampleGroup
 from simkit.sensors.sample_times import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
 
 _MAX_GATHERED = 64  # number of gathered captures at which samples are made from them
 
 
-class Sampler(InProcess, abc.ABC):
+class Sampler(NoiseKeeper, InProcess, abc.ABC):
     """Base class of `Sensor` that takes, keeps and publishes the samples."""
 
     needs_acceleration: ClassVar[bool] = False
@@ -36,14 +38,14 @@ class Sampler(InProcess, abc.ABC):
     _times: SampleTimes
 
     def __init__(self) -> None:
-        self._noises: list[NoiseProcess] = []
-        self._evolving: tuple[NoiseProcess, ...] = ()
+        super().__init__()
         self._topics: dict[str, str] = {}
         self._products: Mapping[str, Product] = {}
         self._has_plugin_topics = False
         self._publishers: list[tuple[str, Publisher, bool]] = []
         self._newest: Sample | None = None
         self._gathered: list[tuple[int, Reading]] = []
+        self._group: SampleGroup | None = None  # samples that only recorders read
         self._revision, self._patience = -1, 0.0
         self._read_publishers: list[tuple[str, Publisher, bool]] = []
         self._is_read = self._gathers = self._is_served = self._is_unread = False
@@ -86,26 +88,6 @@ class Sampler(InProcess, abc.ABC):
         """Return the reading with the noise of a sample; the same object if there is no noise."""
         return reading
 
-    def evolve(self, index: int, dt: float) -> None:
-        """Advance noise that has a state by `dt` [s], also for samples without a reader; 0 at the first sample."""
-        for noise in self._noises:
-            if noise.evolves:
-                noise.evolve(index, dt)
-
-    def restart(self) -> None:
-        """Return to t = 0, and draw the constant biases again."""
-        for noise in self._noises:
-            noise.restart()
-
-    def memory(self) -> object:
-        """Return the state that continues from sample to sample, as values that are never modified."""
-        return tuple(noise.state for noise in self._noises)
-
-    def remember(self, memory: Memory) -> None:
-        """Restore the state that `memory` returned."""
-        for noise, state in zip(self._noises, memory, strict=True):
-            noise.state = state
-
     def accepts(self, tick: int) -> bool:
         """Check whether a sample is taken at a due tick."""
         return True
@@ -116,6 +98,18 @@ class Sampler(InProcess, abc.ABC):
 
     def check_available(self) -> None:
         """Raise a SimkitError if this machine cannot make the readings; called for every reader of a reading."""
+
+    def pack_samples(self, first: int, times: Sequence[int], captures: Sequence[Reading]) -> Sequence[bytes]:
+        """Return the serialised messages of samples; empty if only `finish` and the product can make them now.
+
+        Overridden by kinds with one product and many samples a second, whose noise does not drift.
+
+        Args:
+            first: number of the first sample.
+            times: time of each sample [ns].
+            captures: captured values of each sample.
+        """
+        return ()
 
     @classmethod
     def make_batches(cls, sensors: Sequence[Self]) -> None:
@@ -165,6 +159,11 @@ class Sampler(InProcess, abc.ABC):
             self._held = tick, sim.engine.physics.hold()
             return
         if self._is_served and self.batch is not None and self.batch.publish_sample(self, tick):
+            return
+        if self._group is not None:
+            packed = self._group.add(tick, self._capture_now(tick))
+            for _, publisher, _ in self._read_publishers:
+                publisher.publish_packed(packed)
             return
         if self._gathers:
             self._gathered.append((tick, self._capture_now(tick)))
@@ -224,7 +223,7 @@ class Sampler(InProcess, abc.ABC):
     @property
     def _sample(self) -> Sample | None:
         """Newest sample that has arrived."""
-        if self._gathered or self._skipped:
+        if self._gathered or self._skipped or self._group is not None:
             self._process_pending()
         return self._newest
 
@@ -273,6 +272,9 @@ class Sampler(InProcess, abc.ABC):
         changes = self._evolves or self._evolving or self._overrides("_begin_sample")
         self._is_unread = not (self._read_publishers or changes or self._delayed)
         self._patience = max(patience, default=0.0)
+        is_packed = is_plain and self.is_deferred and not changes and self._overrides("pack_samples")
+        is_packed = is_packed and self._is_read and all(publisher.is_streamed for publisher in publishers)
+        self._group = SampleGroup(self, next(iter(self._products))) if is_packed else None
 
     def _process_pending(self) -> None:
         """Make samples of the gathered captures, and publish the newest ones, which a reader's queue can keep."""
@@ -282,6 +284,8 @@ class Sampler(InProcess, abc.ABC):
             self._index += count - 1
             self._newest = self._begin_sample(tick)
             self._newest.held = held
+        if self._group is not None:
+            self._end_group(self._group)
         if not self._gathered:
             return
         rows, self._gathered = self._gathered, []
@@ -291,6 +295,14 @@ class Sampler(InProcess, abc.ABC):
             sample.raw = raw
             if number >= unseen:
                 self._publish(sample, self._read_publishers)
+
+    def _end_group(self, group: SampleGroup) -> None:
+        """Begin a new group of samples, if samples are added to this one."""
+        if group is self._group and group.ticks:
+            count = len(group.ticks)
+            self._index, self._time_ns = self._index + count, self.sim.engine.clock.time_ns(group.ticks[-1])
+            self._newest = group.sample(count - 1)
+            self._group = SampleGroup(self, next(iter(self._products)))
 
     def _apply_rate(self, rate: float) -> None:
         self.update_rate = rate
@@ -384,14 +396,3 @@ class Sampler(InProcess, abc.ABC):
         if sample.noise_states:
             return self._with_noise_of(sample, make, reading, sample.time_ns)
         return make(reading, sample.time_ns)
-
-    def _with_noise_of(self, sample: Sample, make: ReadingFunction, reading: Reading, number: int) -> object:
-        """Call `make(reading, number)` while the noise has its state of that sample."""
-        now = [noise.state for noise in self._evolving]
-        for noise, state in zip(self._evolving, sample.noise_states, strict=True):
-            noise.state = state
-        try:
-            return make(reading, number)
-        finally:
-            for noise, state in zip(self._evolving, now, strict=True):
-                noise.state = state

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from simkit import msgs
 from simkit.bridges.live.connection import ClientSubscription
 from simkit.errors import MessageError
 from simkit.msgs.message_types import Message
-from simkit.recording.message_taps import MessageQueue
+from simkit.recording.message_taps import MessageQueue, serialised
+from simkit.runtime.communication.subscription import NO_MESSAGE
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.subscription import LazyMessage, Subscription
@@ -24,7 +24,7 @@ class TopicFeed:
         self._sim, self.topic = sim, topic
         self._readers: list[ClientSubscription] = []
         # a message is serialised at once, even if it waits for an image, because its publisher may change it later
-        self._queue = MessageQueue(self._deliver, _serialise)
+        self._queue = MessageQueue(self._deliver, _serialise_valid)
         self._tap: Subscription | None = None
 
     def add(self, reader: ClientSubscription) -> None:
@@ -32,7 +32,8 @@ class TopicFeed:
         if self._tap is None:
             self._sim.communication.bus.check_available(self.topic)
             self._readers.append(reader)
-            self._tap = self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
+            settle = self._queue.deliver_ready
+            self._tap = self._sim.communication.bus.tap(self.topic, self._take, takes_later=True, settle=settle)
             return
         if self.topic in self._sim.communication.bus.latched():
             only = TopicFeed(self._sim, self.topic)
@@ -61,23 +62,24 @@ class TopicFeed:
         """Queue a message that was just published."""
         self._queue.add(self._sim.time_ns, message)
         if len(self._queue) > _MOST_WAITING:
+            self._queue.deliver_ready()
+        if len(self._queue) > _MOST_WAITING:
             self._queue.drop_oldest()
             for reader in self._readers:
                 reader.lost += 1
 
-    def _deliver(self, time_ns: int, serialised: tuple[str, bytes] | None) -> None:
-        if serialised is not None:
-            for reader in self._readers:
-                if not reader.peer.is_publishing:
-                    reader.peer.queue_message(reader, time_ns, *serialised)
+    def _deliver(self, time_ns: int, content: tuple[str, bytes]) -> None:
+        for reader in self._readers:
+            if not reader.peer.is_publishing:
+                reader.peer.queue_message(reader, time_ns, *content)
 
 
-def _serialise(message: object) -> tuple[str, bytes] | None:
-    """Return type and CDR of a message, or None if it cannot be serialised; the feed drops an invalid message."""
+def _serialise_valid(message: object) -> object:
+    """Return type and CDR of a message; `NO_MESSAGE` if it cannot be serialised: the feed drops an invalid message."""
     try:
-        return msgs.type_name(message), msgs.serialize(message)
+        return serialised(message)
     except MessageError:
-        return None
+        return NO_MESSAGE
 
 
 class TopicFeeds:

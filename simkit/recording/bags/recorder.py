@@ -7,18 +7,15 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from simkit import msgs
 from simkit.errors import SimkitError
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.writer import McapBag, open_bag
-from simkit.recording.message_taps import MessageQueue, TopicTaps
+from simkit.recording.message_taps import MessageQueue, TopicTaps, serialised
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
-
-def _serialise(message: object) -> tuple[str, bytes]:
-    return msgs.type_name(message), msgs.serialize(message)
+_SECOND = 1_000_000_000
 
 
 class RecordError(SimkitError):
@@ -62,13 +59,15 @@ class Recorder:
         self._check_available()
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
         # while an image is rendered, later messages wait as bytes, so that all messages stay in order
-        self._queue = MessageQueue(self._write, _serialise)
-        self._taps = TopicTaps(sim, self._receiver_of)
+        self._queue = MessageQueue(self._write, serialised)
+        self._second = -1
+        self._taps = TopicTaps(sim, self._receiver_of, self._queue.deliver_ready)
         self._taps.open()
 
     @property
     def message_count(self) -> int:
         """Number of messages written so far."""
+        self._queue.deliver_ready()
         return self._count if self._bag is None else self._bag.span.count
 
     def __enter__(self) -> Recorder:
@@ -105,7 +104,24 @@ class Recorder:
         if not self._is_recorded(topic):
             return None
         sim, queue = self._sim, self._queue
-        return lambda message: queue.add((topic, sim.time_ns), message)
+
+        def receive(message: object) -> None:
+            time_ns = sim.time_ns
+            if time_ns // _SECOND != self._second:
+                self._end_second(time_ns // _SECOND)
+            queue.add((topic, time_ns), message)
+
+        return receive
+
+    def _end_second(self, next_second: int) -> None:
+        """Pass the messages of a simulated second to the operating system, unless one of its images is not rendered."""
+        self._second = next_second
+        self._queue.deliver_ready()
+        if self._bag is not None and not self._queue:
+            try:
+                self._bag.flush()
+            except OSError as error:
+                self._stop(error)
 
     def _check_available(self) -> None:
         """Check before the bag is created that the messages of all recorded topics can be made."""
@@ -143,10 +159,13 @@ class Recorder:
                 channel = bag.channel(topic, type_name, topic in self._sim.communication.bus.latched())
             bag.write_raw(channel, data, time_ns)
         except OSError as error:
-            # The error is stored instead of raised, because the publisher that calls this function did not cause it.
-            self._fail(error)
-            self._queue.clear()
-            self.close()
+            self._stop(error)
+
+    def _stop(self, error: OSError) -> None:
+        """Store an error instead of raising it, because the publisher that calls the recorder did not cause it."""
+        self._fail(error)
+        self._queue.clear()
+        self.close()
 
     def _fail(self, error: OSError) -> None:
         self.failure = self.failure or RecordError(

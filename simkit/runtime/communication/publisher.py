@@ -92,6 +92,11 @@ class Publisher:
         return readers.is_called or readers.feeds or self.latched
 
     @property
+    def is_streamed(self) -> bool:
+        """True if a recorder receives each message when it is published, but needs it only later."""
+        return self._readers.is_streamed and not self.is_live
+
+    @property
     def patience(self) -> float:
         """Number of newest messages that the subscribers keep; 0 if the owner must publish each message at once.
 
@@ -146,6 +151,11 @@ class Publisher:
         for receive in self._readers.receivers:
             receive(later)
         return later
+
+    def publish_packed(self, later: LazyMessage) -> None:
+        """Pass on a message that nobody uses at once; see `LazyMessage.is_packed` and `is_live`."""
+        for receive in self._readers.receivers:
+            receive(later)
 
     def __deepcopy__(self, memo: dict[int, object]) -> Publisher:
         return self

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import Any, Final, Literal, Protocol
+from typing import Any, ClassVar, Final, Literal, Protocol
 
+from simkit import msgs
 from simkit.runtime.communication.journal import JournalKeeper
 
 Message = Any
@@ -14,6 +15,8 @@ Message = Any
 
 Callback = Callable[[Message], object]
 CallbackPolicy = Literal["stop", "drop"]
+Settle = Callable[[], None] | None
+"""Function that makes the messages that a reader has stored; None if it stores none."""
 
 MAX_KEPT_MESSAGES: Final = 1_000_000
 """Number of newest messages that a subscription without `keep` keeps."""
@@ -36,9 +39,12 @@ class LazyMessage:
     Attributes:
         is_awaited: True if a reader keeps or records every message, so that the message will be read.
         work: work on another thread that must end before the message can be made; None if there is none.
+        is_packed: True if many messages are serialised together. A reader of bytes should then wait for more messages
+            before it calls `serialised`.
     """
 
     __slots__ = ("_make", "_message", "is_awaited", "work")
+    is_packed: ClassVar[bool] = False
 
     def __init__(self, make: Callable[[], Message], is_awaited: bool = False, work: PendingWork | None = None) -> None:
         self.is_awaited, self.work = is_awaited, work
@@ -58,6 +64,11 @@ class LazyMessage:
             self._message = make()
             self._make = self.work = None
         return self._message
+
+    def serialised(self) -> Any:
+        """Return the message's type and CDR; NO_MESSAGE if it cannot be made."""
+        message = self.get()
+        return message if message is NO_MESSAGE else (msgs.type_name(message), msgs.serialize(message))
 
 
 class SubscriptionFailures(Protocol):
@@ -141,7 +152,7 @@ class Subscription:
         self._bus.gather(self.topic)
         if len(self._messages) == MAX_KEPT_MESSAGES and self.keeps == math.inf:
             self._bus.failures.report_full(self.topic)
-        found = [m.get() if type(m) is LazyMessage else m for m in self._messages]
+        found = [m.get() if isinstance(m, LazyMessage) else m for m in self._messages]
         return [m for m in found if m is not NO_MESSAGE]
 
     @property
@@ -151,7 +162,7 @@ class Subscription:
         if not self._messages:
             return None
         newest = self._messages[-1]
-        if type(newest) is LazyMessage:
+        if isinstance(newest, LazyMessage):
             newest = newest.get()
         if newest is NO_MESSAGE:  # treated as not sent
             self._messages.pop()
@@ -161,7 +172,7 @@ class Subscription:
     def settle(self) -> None:
         """Make every message that is not made yet."""
         for message in self._messages:
-            if type(message) is LazyMessage:
+            if isinstance(message, LazyMessage):
                 message.get()
 
     def close(self) -> None:
@@ -187,7 +198,9 @@ class Subscription:
 class StreamSubscription(Subscription):
     """Subscription that calls a function with each message and keeps no message, for recorders."""
 
-    def __init__(self, bus: SubscribingBus, topic: str, callback: Callback, takes_later: bool) -> None:
+    def __init__(self, bus: SubscribingBus, topic: str, callback: Callback, takes_later: bool, settle: Settle) -> None:
         super().__init__(bus, topic, callback, 0, "stop")
         self.receive = callback
         self.is_called = not takes_later
+        if settle is not None:
+            self.settle = settle  # type: ignore[method-assign]

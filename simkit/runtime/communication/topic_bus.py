@@ -21,6 +21,7 @@ from simkit.runtime.communication.subscription import (
     CallbackPolicy,
     LazyMessage,
     Message,
+    Settle,
     StreamSubscription,
     Subscription,
     TopicReaders,
@@ -157,16 +158,16 @@ class TopicBus:
             self.journal.hears(subscription.topic, subscription)
         return self._add_reader(subscription)
 
-    def tap(self, topic: str, callback: Callback, *, takes_later: bool = False) -> Subscription:
+    def tap(self, topic: str, callback: Callback, *, takes_later: bool = False, settle: Settle = None) -> Subscription:
         """Receive a topic without keeping its messages.
 
         Args:
             topic: name of the topic; a missing leading slash is added.
             callback: function that receives each message.
-            takes_later: True if the callback accepts a `LazyMessage` instead of a message; it may store the
-                `LazyMessage`.
+            takes_later: True if the callback accepts a `LazyMessage` instead of a message; it may store it.
+            settle: function that is called before the source data of stored messages change; it must make them.
         """
-        return self._add_reader(StreamSubscription(self, absolute_name(topic), callback, takes_later))
+        return self._add_reader(StreamSubscription(self, absolute_name(topic), callback, takes_later, settle))
 
     def close(self, end: Publisher | Listener) -> None:
         """Remove a publisher or a listener permanently."""
@@ -370,7 +371,7 @@ class TopicBus:
         readers.count()
         for publisher in self._publishers.get(topic, ()):
             if publisher.latched and publisher.active and publisher.last is not None:
-                if type(publisher.last) is LazyMessage:
+                if isinstance(publisher.last, LazyMessage):
                     publisher.last = publisher.last.get()
                 subscription.receive(publisher.last)
         self._report_change(topic)

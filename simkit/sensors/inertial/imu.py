@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.msgs.cdr_template import CdrTemplate
 from simkit.pose import Vector
 from simkit.sensors.base import Product
 from simkit.sensors.bias_drift import NoiseInterval, NoiseState
@@ -22,6 +23,11 @@ _BATCH_TYPES = *_TYPES, "std_msgs/msg/Header", "builtin_interfaces/msg/Time"
 _NUMBERS = 31  # numbers captured per sensor
 _NOISE_BLOCK = 64  # samples whose noise is drawn at a time
 _NS = 1_000_000_000
+_VARIABLE_FIELDS = (
+    *("header.stamp.sec", "header.stamp.nanosec"),
+    *(f"orientation.{axis}" for axis in "wxyz"),
+    *(f"{vector}.{axis}" for vector in ("angular_velocity", "linear_acceleration") for axis in "xyz"),
+)
 
 
 def _batch_key(imu: ImuMeasurement) -> Hashable | None:
@@ -143,11 +149,35 @@ class Imu(ImuMeasurement):
 
     kinds = ("imu",)
     example = "<imu/>"
+    _template_of: tuple[list[Vector], str] = ([], "")
 
     @classmethod
     def make_batches(cls, sensors: Sequence[ImuMeasurement]) -> None:
         if cls is Imu:
             form_batches(sensors, ImuBatch, _batch_key)
+
+    def pack_samples(self, first: int, times: Sequence[int], captures: Sequence[bytes]) -> list[bytes]:
+        if _batch_key(self) is None:
+            return []
+        rows = np.frombuffer(b"".join(captures)).reshape(-1, _NUMBERS).T
+        mount = None if self.is_mounted_straight else self._mount
+        reference = None if self.is_against_world else self._from_reference
+        attitude, motion = sensor_motion(np.ascontiguousarray(rows), self._arm, mount, self._rotation, reference)
+        noisy = np.column_stack(motion)
+        if not self.noise.is_silent:
+            noisy = self.noise.apply_to_samples(noisy, first)
+        if not self.options.enable_orientation:
+            attitude = NO_ROTATION
+        columns = [np.array(times) // _NS, np.array(times) % _NS, *attitude, *noisy.T]
+        return self._template().fill(len(times), dict(zip(_VARIABLE_FIELDS, columns, strict=True)))
+
+    def _template(self) -> CdrTemplate:
+        """Return the serialised message whose numbers are replaced; it changes with the covariances."""
+        covariances, frame = self.covariances(), self.frame_id
+        if self._template_of[0] is not covariances or self._template_of[1] != frame:
+            message = self._message_of(ImuReading(NO_ROTATION, (0.0,) * 6), 0)
+            self._templates, self._template_of = CdrTemplate(message, _VARIABLE_FIELDS), (covariances, frame)
+        return self._templates
 
     def products(self) -> dict[str, Product]:
         return {"imu": Product(_TYPES[0], self._message_of)}

@@ -119,6 +119,7 @@ class ImuMeasurement(Sensor):
 
     def set_orientation_reference(self, reference: Vector | QuaternionTuple) -> None:
         """Set the reference frame of the orientation, as a rotation (w, x, y, z) in the world."""
+        self._make_pending_messages()
         self.batch = None  # the sensor samples alone until the batches are formed again
         self.reference = np.array(reference, dtype=np.float64)
         w, x, y, z = self.reference.tolist()
@@ -130,9 +131,15 @@ class ImuMeasurement(Sensor):
 
     def add_white_noise(self, stddev: float) -> None:
         """Add white noise with one standard deviation to each rate [rad/s], acceleration [m/s²] and angle [rad]."""
+        self._make_pending_messages()
         self.batch = None
         self._more_noise = self._make_noise((NoiseModel(stddev=stddev),) * 9, "more")
         self._covariances_of = None
+
+    def _make_pending_messages(self) -> None:
+        """Make the messages of earlier samples with the present reference and noise."""
+        for _, publisher, _ in self._publishers:
+            self.sim.communication.bus.settle_topic(publisher.topic)
 
     @property
     def is_mounted_straight(self) -> bool:

@@ -89,7 +89,7 @@ class MessageWindow:
         for steps, tick, topic, content in tuple(self._kept):
             if steps < since:
                 continue
-            message = content.get() if type(content) is LazyMessage else content
+            message = content.get() if isinstance(content, LazyMessage) else content
             if message is NO_MESSAGE:
                 continue
             packed = message if type(message) is tuple else (msgs.type_name(message), msgs.serialize(message))
@@ -108,7 +108,7 @@ class MessageWindow:
             if message is last:
                 is_packed = True
             last = message
-            if is_packed and type(message) is not LazyMessage:
+            if is_packed and not isinstance(message, LazyMessage):
                 message = msgs.type_name(message), msgs.serialize(message)
                 self._packed += len(message[1])
             kept.append((steps, sim.tick, topic, message))

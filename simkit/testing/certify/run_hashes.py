@@ -191,7 +191,7 @@ class _TopicHash:
     def take(self) -> None:
         kept, self._kept = self._kept, []
         for message in kept:
-            made = message.get() if type(message) is LazyMessage else message
+            made = message.get() if isinstance(message, LazyMessage) else message
             if made is not NO_MESSAGE:
                 self._count(made, UNKNOWN)
 

@@ -1,0 +1,105 @@
+"""Serialisation of many samples of a sensor in one call, for recorders and sockets that need only bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+from simkit import msgs
+from simkit.msgs.message_types import Message
+from simkit.runtime.communication.subscription import LazyMessage
+from simkit.runtime.simulation import Simulation
+from simkit.sensors.sample import Product, Reading, Sample
+
+MOST_SAMPLES = 4096
+"""Number of samples at which a new group begins, because a kept message keeps its whole group in memory."""
+_MIN_SAMPLES = 4  # smallest number of samples that are serialised together; fewer one by one take no longer
+
+
+class GroupedSampler(Protocol):
+    """Interface of a sampler that a group needs; see `simkit.sensors.sampler.Sampler`."""
+
+    sim: Simulation
+    _index: int
+    _products: Mapping[str, Product]
+
+    def _message(self, sample: Sample, product: str) -> Message: ...
+
+    def _end_group(self, group: SampleGroup) -> None: ...
+
+    def pack_samples(self, first: int, times: Sequence[int], captures: Sequence[Reading]) -> Sequence[bytes]: ...
+
+
+class SampleGroup:
+    """Consecutive captured samples of a sensor, whose messages are made or serialised when one of them is needed.
+
+    Args:
+        sampler: sensor of the samples; its noise does not depend on earlier samples.
+        product: product that is published.
+
+    Attributes:
+        ticks, captures: tick and captured values of each sample.
+    """
+
+    def __init__(self, sampler: GroupedSampler, product: str) -> None:
+        self._sampler, self._product = sampler, product
+        self._first = 0  # number of the first sample
+        self.ticks: list[int] = []
+        self.captures: list[Reading] = []
+        self._samples: dict[int, Sample] = {}
+        self._packed: Sequence[bytes] | None = None
+
+    def add(self, tick: int, captured: Reading) -> PackedMessage:
+        """Add a sample; return its message."""
+        position = len(self.ticks)
+        if not position:
+            self._first = self._sampler._index + 1
+        self.ticks.append(tick)
+        self.captures.append(captured)
+        if position == MOST_SAMPLES - 1:
+            self._sampler._end_group(self)
+        return PackedMessage(self, position)
+
+    def sample(self, position: int) -> Sample:
+        """Return a sample of the group, always the same object."""
+        found = self._samples.get(position)
+        if found is None:
+            time_ns = self._sampler.sim.engine.clock.time_ns(self.ticks[position])
+            found = self._samples[position] = Sample(self._first + position, time_ns)
+            found.raw = self.captures[position]
+        return found
+
+    def message(self, position: int) -> Message:
+        """Return the message of a sample."""
+        return self._sampler._message(self.sample(position), self._product)
+
+    def serialised(self, position: int) -> tuple[str, bytes]:
+        """Return the type and the CDR of the message of a sample."""
+        packed = self._packed
+        if packed is None:
+            self._sampler._end_group(self)
+            packed = self._packed = self._pack()
+        type_name = self._sampler._products[self._product].type_name
+        return type_name, packed[position] if packed else msgs.serialize(self.message(position))
+
+    def _pack(self) -> Sequence[bytes]:
+        if len(self.ticks) < _MIN_SAMPLES:
+            return ()
+        clock = self._sampler.sim.engine.clock
+        return self._sampler.pack_samples(self._first, [clock.time_ns(tick) for tick in self.ticks], self.captures)
+
+
+class PackedMessage(LazyMessage):
+    """Message of one sample of a group."""
+
+    __slots__ = ("_group", "_position")
+    is_awaited, is_packed, is_ready, work = True, True, True, None
+
+    def __init__(self, group: SampleGroup, position: int) -> None:
+        self._group, self._position = group, position
+
+    def get(self) -> Message:
+        return self._group.message(self._position)
+
+    def serialised(self) -> Any:
+        return self._group.serialised(self._position)
