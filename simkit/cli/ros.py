@@ -48,6 +48,4 @@ def ros(
     with Interrupts() as interrupts, RosBridge(found, print_status) as bridge:
         bridge.start(socket)
         code = bridge.wait(lambda: bool(interrupts.exit_code))
-        if bridge.end_text:
-            print_status(f"note: {bridge.end_text}")
     return interrupts.exit_code or code

@@ -161,40 +161,49 @@ class RosBridge:
         text = f"SK-ROS-002 the bridge to ROS 2 cannot start with {self._python}: {reason}{helps}"
         return InputError(text, "SK-ROS-002")
 
-    def check(self) -> bool:
-        """Report new notes, and once the unexpected end of the process; return True while the process runs."""
-        if self._is_over or self._process is None:
-            return False
-        self._report_notes()
-        code = self._process.poll()
-        if code is None:
-            return True
-        self._is_over = True
-        self._report_notes(0.5)
-        if "ended" not in self._last:
-            reason = self._last.get("error") or (
-                f"signal {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
-            )
-            self._report(f"warning SK-ROS-004: the bridge to ROS 2 has ended ({reason}); the simulation continues")
-        return False
+    def check(self) -> None:
+        """Report new notes of a bridge whose run continues, and once the end of the process."""
+        if not self._is_over and not self._is_alive():
+            self._is_over = True
+            text = f"the bridge to ROS 2 has ended ({self._end_reason()}); the simulation continues without ROS"
+            self._report(f"warning SK-ROS-004: {text}")
 
     def wait(self, is_interrupted: Callable[[], bool]) -> int:
-        """Wait until the process ends or a function returns True; return 0 if the simulation had ended, else 1."""
-        while self.check():
+        """Wait until the process ends or a function returns True.
+
+        Returns:
+            Exit code: 0 if the simulation has ended, 1 if the bridge has failed.
+        """
+        while self._is_alive():
             time.sleep(_POLL)
             if is_interrupted():
                 self._end()
-        return 0 if "ended" in self._last else 1
+                return 0
+        if "ended" in self._last:
+            self._report(f"note: {self._end_reason()}")
+            return 0
+        self._report(f"error: SK-ROS-004 the bridge to ROS 2 has ended ({self._end_reason()})")
+        return 1
+
+    def _is_alive(self) -> bool:
+        """Report new notes, and check whether the process runs."""
+        self._report_notes()
+        if self._process is None or self._process.poll() is None:
+            return self._process is not None
+        self._report_notes(0.5)
+        return False
+
+    def _end_reason(self) -> str:
+        reason = self._last.get("ended") or self._last.get("error")
+        if reason or self._process is None:
+            return str(reason)
+        code = self._process.returncode
+        return f"signal {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
 
     def _end(self) -> None:
         """Ask the process to end."""
         if self._process is not None and self._process.stdin is not None:
             self._process.stdin.close()
-
-    @property
-    def end_text(self) -> str:
-        """Reason of the end of the process; empty if it is not known."""
-        return str(self._last.get("ended") or self._last.get("error") or "")
 
     def _take_line(self, line: str) -> None:
         try:

@@ -298,6 +298,23 @@ def test_a_run_goes_on_bit_for_bit_when_its_bridge_is_killed(simkit_run: SimkitR
         assert _state(run) == expected
 
 
+def test_a_node_that_floods_a_topic_changes_nothing_but_the_commands(simkit_run: SimkitRun, ros_node: RosNode) -> None:
+    with simkit_run("turtlebot3_world", "--rtf", "1", "--duration", "8") as run:
+        ros_node("""
+            from geometry_msgs.msg import Twist
+
+            client = Client()
+            publisher = client.node.create_publisher(Twist, "/cmd_vel", 1000)
+            client.until(publisher.get_subscription_count)
+            for _ in range(30000):
+                publisher.publish(Twist())
+            tell(True)
+        """)
+        assert run.end() == 0
+        assert float(run.until(r"simulated 8.000 s in ([\d.]+) s")[1]) < 30.0
+        assert "SK-ROS-004" not in run.text
+
+
 def test_a_bridge_ends_when_its_run_is_killed(simkit_run: SimkitRun) -> None:
     with simkit_run("turtlebot3_world", "--rtf", "1") as run:
         bridge = os.pidfd_open(run.bridge())
