@@ -4,6 +4,7 @@
     msgs.type_of("sensor_msgs/msg/Imu")  # the class itself; calling it is faster than `make`
     msgs.header(sim.time_ns, "imu_link")
     msgs.add("my_msgs/msg/Num", "int64 num")  # a type of one's own
+    msgs.image(message)  # a NumPy array; also `points`, `pose` and `yaw`
 
 This package builds, encodes and decodes messages, and formats messages and definitions as text. It does not depend on
 topics, simulations or bags. `import simkit.msgs` imports neither rosbags nor NumPy.
@@ -11,22 +12,26 @@ topics, simulations or bags. `import simkit.msgs` imports neither rosbags nor Nu
 
 from __future__ import annotations
 
+import importlib
 import struct
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from simkit.errors import MessageError, NoMessageError
+from simkit.errors import ArgumentTypeError, MessageError, NoMessageError
 from simkit.msgs.cdr_serializer import make_serializer
 from simkit.msgs.message_types import Message, definition, full_name, message_class, type_of, type_store, types_of
 from simkit.msgs.own_interfaces import add
 from simkit.msgs.type_hashes import rihs
 
 if TYPE_CHECKING:
+    from simkit.msgs.image_arrays import image, image_message
     from simkit.msgs.message_builder import MessageBuilder
     from simkit.msgs.message_classes import *  # noqa: F403
     from simkit.msgs.message_classes import Duration, Header, Time
     from simkit.msgs.message_types import FieldValue
+    from simkit.msgs.point_arrays import points
+    from simkit.msgs.pose_messages import pose, pose_message, yaw
 
 __all__ = [
     "Message",
@@ -38,25 +43,53 @@ __all__ = [
     "full_name",
     "header",
     "headers",
+    "image",
+    "image_message",
     "make",
+    "points",
+    "pose",
+    "pose_message",
     "rihs",
     "serialize",
+    "stamp",
     "stamp_ns",
     "time",
     "type_name",
     "type_of",
     "type_store",
     "types_of",
+    "yaw",
 ]
+
+
+class _Timed(Protocol):
+    """Simulation, or another object with a simulated time."""
+
+    @property
+    def time_ns(self) -> int:
+        """Simulated time [ns]."""
+
 
 _NS = 1_000_000_000
 _SERIALIZERS: dict[type[Message], Callable[[Message], bytes]] = {}  # by class: the fastest way to find one
 
+_CONVERSIONS = {
+    "image": "simkit.msgs.image_arrays",
+    "image_message": "simkit.msgs.image_arrays",
+    "points": "simkit.msgs.point_arrays",
+    "pose": "simkit.msgs.pose_messages",
+    "pose_message": "simkit.msgs.pose_messages",
+    "yaw": "simkit.msgs.pose_messages",
+}
+"""Modules of the functions that convert messages; they need NumPy."""
+
 if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown classes
 
-    def __getattr__(class_name: str) -> type[Message]:
+    def __getattr__(name: str) -> type[Message] | Callable[..., object]:
         # stored as a global, because each lookup through this function would take 2 µs
-        found = globals()[class_name] = message_class(class_name)
+        module = _CONVERSIONS.get(name)
+        found = message_class(name) if module is None else getattr(importlib.import_module(module), name)
+        globals()[name] = found
         return found
 
 
@@ -149,6 +182,18 @@ def headers(time_ns: int) -> Callable[[str], Header]:
     stamp, _, header_type = _stamp_types()
     seconds, rest = divmod(time_ns, _NS)
     return lambda frame_id: header_type(stamp(seconds, rest), frame_id)
+
+
+def stamp(sim: _Timed) -> Time:
+    """Return the time of a simulation as a `builtin_interfaces/msg/Time`, for the header of a message.
+
+    Raises:
+        ArgumentTypeError: the value is not a simulation.
+    """
+    now = getattr(sim, "time_ns", None)
+    if not isinstance(now, int):
+        raise ArgumentTypeError(f"a stamp needs a simulation, got {type(sim).__name__}; for nanoseconds use msgs.time")
+    return time(now)
 
 
 def stamp_ns(stamp: Time | Duration) -> int:

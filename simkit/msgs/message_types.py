@@ -17,6 +17,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs import own_interfaces
 from simkit.msgs.definition_parser import PARTS, MessageDefinition, interface_of
+from simkit.msgs.message_repr import with_readable_text
 from simkit.msgs.shipped_interfaces import (
     PACKAGES_WITH_LONG_NAMES,
     definition_files,
@@ -53,6 +54,7 @@ def type_store() -> Typestore:
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_JAZZY)
+    with_readable_text(store.types.values())
     return with_wide_strings(store, _ReadOnDemand(store.fielddefs), _ReadOnDemand(store.types))
 
 
@@ -94,6 +96,7 @@ def _register(type_name: str) -> None:
     ]
     fields: Any = found.fields
     type_store().register({type_name: (constants, fields)})
+    with_readable_text([type_store().types[type_name]])
 
 
 class _SpecialNumber(float):

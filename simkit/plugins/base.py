@@ -357,6 +357,10 @@ class Plugin(abc.ABC):
         """Report attributes that cannot be copied; called after `load`, not only at the first snapshot."""
         self.get_state()
 
+    def __repr__(self) -> str:
+        name = f"{self.scoped}::{self.name}" if self.scoped else self.name
+        return f"<{type(self).__name__} {name!r}>"
+
     def __deepcopy__(self, memo: dict[int, object]) -> Plugin:
         return self
 

@@ -309,6 +309,13 @@ class Simulation(ScriptGraph, InProcess):
         if first is not None:
             raise first
 
+    def __repr__(self) -> str:
+        if "_loaded" not in vars(self):
+            return "<Simulation (being loaded)>"
+        count = len(self.contents.models)
+        state = "closed" if self.engine.is_closed else f"t={self.time:g} s, {count} model{'' if count == 1 else 's'}"
+        return f"<Simulation {self.world.name!r}: {state}>"
+
     def __enter__(self) -> Simulation:
         self.engine.check_open()
         return self

@@ -239,6 +239,10 @@ class Client(ClientGraph):
         content = {"name": name, "type": msgs.type_name(message), **more}
         return self.request(question, content, msgs.serialize(message), timeout)
 
+    def __repr__(self) -> str:
+        name, world = self.info.get("name", ""), self.info.get("world", "")
+        return f"<Client of {name!r}, world {world!r}{' (closed)' if self.is_closed else ''}>"
+
     def __enter__(self) -> Client:
         return self
 

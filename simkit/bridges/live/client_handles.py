@@ -68,6 +68,9 @@ class LiveSubscription:
             self._link.wait(lambda: bool(self.waiting), timeout)
         return self.waiting.popleft() if self.waiting else None
 
+    def __repr__(self) -> str:
+        return f"<LiveSubscription {self.topic!r}, {len(self.waiting)} waiting, {self.lost} lost>"
+
     def __iter__(self) -> Iterator[Received]:
         return self
 
@@ -140,6 +143,9 @@ class LivePublisher:
             data = msgs.serialize(checked_message(message, (self.type_name,), repr(self.topic)))
         self._link.send(message_frame(self.number, data))
 
+    def __repr__(self) -> str:
+        return f"<LivePublisher {self.topic!r} {self.type_name}>"
+
     def close(self) -> None:
         """Stop publishing."""
         if not self._link.is_closed:
@@ -187,6 +193,9 @@ class LiveGoal:
     def cancel(self) -> None:
         """Request the cancellation of the goal. The action may ignore the request."""
         self._link.request("cancel", {"number": self.number})
+
+    def __repr__(self) -> str:
+        return f"<LiveGoal {self.id} of {self.action!r}: {self.status.name}>"
 
     def take(self, update: JsonObject, data: bytes) -> None:
         """Process feedback, a status or a result from the simulation."""

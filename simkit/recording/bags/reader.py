@@ -66,6 +66,11 @@ class BagReader:
         self.end = max((file.end for file in filled), default=0)
         self._stores: dict[str, Typestore] = {}
 
+    def __repr__(self) -> str:
+        return (
+            f"<BagReader {str(self.path)!r}: {len(self.topics)} topics, {self.count} messages, {self.duration:.6g} s>"
+        )
+
     def __enter__(self) -> BagReader:
         return self
 

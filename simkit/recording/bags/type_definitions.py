@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit.errors import InputError, MessageError
 from simkit.msgs import own_interfaces
 from simkit.msgs.definition_parser import MessageDefinition, parse_interface
+from simkit.msgs.message_repr import with_readable_text
 from simkit.msgs.message_types import full_name
 from simkit.msgs.type_limits import check_size
 from simkit.msgs.wide_strings import with_wide_strings
@@ -48,6 +49,7 @@ def definition_store(type_name: str, text: str) -> Typestore:
         store = get_typestore(Stores.EMPTY)
         definitions: Any = {name: (part.constants, part.fields) for name, part in types.items()}
         store.register(definitions)
+        with_readable_text(store.types.values())
         return with_wide_strings(store, store.fielddefs, store.types)
     except Exception as error:  # noqa: BLE001 - rosbags may raise anything on invalid types
         reason = " ".join(str(error).split())[:_LONGEST_REASON]

@@ -7,21 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from simkit.errors import InputError
+from simkit.msgs.image_arrays import Pixels, decode_compressed, read_pixels
 from simkit.msgs.message_types import Message
 
 if TYPE_CHECKING:
-    from simkit.msgs import CompressedImage
     from simkit.msgs import Image as ImageMessage
 
-Pixels = npt.NDArray[Any]
-_CHANNELS: Final = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
-_ENCODINGS: Final = {
-    f"{order}{bits}": (f"u{bits // 8}", count) for order, count in _CHANNELS.items() for bits in (8, 16)
-}
-_SIZES: Final = {"8U": "u1", "8S": "i1", "16U": "u2", "16S": "i2", "32S": "i4", "32F": "f4", "64F": "f8"}
 _MM: Final = 1000.0
 _SAMPLE = 8  # number of images that determine the frame rate of a video
 _RATE: Final = 30.0  # [Hz] frame rate of a video with one image
@@ -63,41 +56,6 @@ class NumberedFiles(MessageWriter):
     def _write(self, target: Path, message: Message) -> Path:
         """Write a message to a file; return its path, which is `target` with the suffix of the format."""
         raise NotImplementedError
-
-
-def read_pixels(message: ImageMessage) -> tuple[Pixels, str]:
-    """Return the values of an image and the order of its channels.
-
-    Returns:
-        Values, shape (height, width) or (height, width, channels), and the order: gray, rgb or bgr.
-
-    Raises:
-        ValueError: the encoding is unknown, or the image has too few bytes.
-    """
-    encoding = str(message.encoding)
-    kind, channels = _layout(encoding)
-    dtype = np.dtype(kind).newbyteorder(">" if message.is_bigendian else "<")
-    height, width = int(message.height), int(message.width)
-    row, step = width * channels * dtype.itemsize, int(message.step) or width * channels * dtype.itemsize
-    data = np.asarray(message.data).view(np.uint8).ravel()
-    if step < row or data.size < step * (height - 1) + row or not height or not width:
-        raise ValueError(f"an image of {width} × {height} {encoding} has {data.size} bytes")
-    rows = np.lib.stride_tricks.as_strided(data, (height, row), (step, 1))
-    found = np.ascontiguousarray(rows).view(dtype).astype(dtype.newbyteorder("="), copy=False)
-    order = "rgb" if encoding.startswith("rgb") else "gray" if channels == 1 else "bgr"
-    return found.reshape((height, width) if channels == 1 else (height, width, channels)), order
-
-
-def _layout(encoding: str) -> tuple[str, int]:
-    found = _ENCODINGS.get(encoding)
-    if found is not None:
-        return found
-    if encoding.startswith("bayer_"):
-        return ("u2" if encoding.endswith("16") else "u1"), 1
-    size, _, channels = encoding.partition("C")
-    if size in _SIZES and (channels in ("", "1", "2", "3", "4")):
-        return _SIZES[size], int(channels or 1)
-    raise ValueError(f"unknown encoding {encoding!r}")
 
 
 def png_pixels(message: ImageMessage) -> Pixels:
@@ -158,7 +116,7 @@ class NpzFile(NumberedFiles):
         target = target.with_suffix(".npz")
         with target.open("wb") as file:
             np.savez_compressed(
-                file, pixels=read_pixels(message)[0] if hasattr(message, "encoding") else _decode_compressed(message)
+                file, pixels=read_pixels(message)[0] if hasattr(message, "encoding") else decode_compressed(message)
             )
         return target
 
@@ -240,27 +198,13 @@ class VideoFile(MessageWriter):
         self._last = frame
 
 
-def _decode_compressed(message: CompressedImage) -> Pixels:
-    """Decode a compressed image, with the blue channel first.
-
-    Raises:
-        ValueError: the format is unknown.
-    """
-    import cv2
-
-    found = cv2.imdecode(np.frombuffer(bytes(message.data), np.uint8), cv2.IMREAD_UNCHANGED)
-    if found is None:
-        raise ValueError(f"a compressed image of the format {str(message.format)!r} cannot be decoded")
-    return np.asarray(found)
-
-
 def _video_pixels(message: Message) -> Pixels:
     """Convert an image to three channels of 8 bits, with the blue channel first.
 
     Depths and 16-bit values are scaled from black (0) to white (the largest value).
     """
     if not hasattr(message, "encoding"):
-        values = _decode_compressed(message)
+        values = decode_compressed(message)
     elif is_depth(message) or str(message.encoding) in ("16UC1", "mono16"):
         values, _ = read_pixels(message)
         finite = np.where(np.isfinite(values), values, 0).astype(np.float64)

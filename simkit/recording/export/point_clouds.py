@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.msgs.point_arrays import PointArray, read_points
 from simkit.recording.export.images import NumberedFiles
 
 if TYPE_CHECKING:
     from simkit.msgs import PointCloud2
 
-PointArray = npt.NDArray[np.void]
-"""Structured array with the fields of a point cloud."""
-_KINDS: Final = ("", "i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8")  # sensor_msgs/msg/PointField
 _PLY: Final = {
     "i1": "char",
     "u1": "uchar",
@@ -26,39 +24,6 @@ _PLY: Final = {
     "f4": "float",
     "f8": "double",
 }
-
-
-def read_points(message: PointCloud2) -> PointArray:
-    """Return the points of a point cloud as a structured array with its fields, including NaN and infinite points.
-
-    Raises:
-        ValueError: the fields and the size of the data do not match.
-    """
-    order = ">" if message.is_bigendian else "<"
-    names, formats, offsets = [], [], []
-    for field in message.fields:
-        if not 1 <= int(field.datatype) < len(_KINDS):
-            raise ValueError(f"a field {field.name!r} of a point cloud has the unknown type {field.datatype}")
-        for number in range(max(1, int(field.count))):
-            kind = np.dtype(order + _KINDS[int(field.datatype)])
-            names.append(str(field.name) if int(field.count) <= 1 else f"{field.name}_{number}")
-            formats.append(kind)
-            offsets.append(int(field.offset) + number * kind.itemsize)
-    height, width, step = int(message.height), int(message.width), int(message.point_step)
-    row = int(message.row_step) or width * step
-    data = np.asarray(message.data).view(np.uint8).ravel()
-    ends = [offset + kind.itemsize for offset, kind in zip(offsets, formats, strict=True)]
-    if (
-        len(set(names)) != len(names)
-        or (ends and max(ends) > step)
-        or (height and data.size < row * (height - 1) + width * step)
-    ):
-        raise ValueError(f"a point cloud of {width} × {height} points of {step} bytes has {data.size} bytes")
-    layout = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": max(step, 1)})
-    if not height or not width or not names:
-        return np.empty(0, dtype=layout)
-    rows = np.lib.stride_tricks.as_strided(data, (height, width * step), (row, 1))
-    return np.ascontiguousarray(rows).reshape(-1).view(layout)
 
 
 class CloudFiles(NumberedFiles):

@@ -153,6 +153,9 @@ class GoalHandle:
             value, (f"{self._action.type_name}_{part}",), repr(self._action.name), none_is_default=True
         )
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.id} of {self._action.name!r}: {self.status.name}>"
+
     def __deepcopy__(self, memo: dict[int, object]) -> GoalHandle:
         return self
 
@@ -234,6 +237,9 @@ class Action:
         except Exception as error:
             name, where = getattr(owner, "name", "") or self.name, str(getattr(owner, "where", ""))
             raise PluginError(name, hook, self.engine.time, where, repr(error)) from error
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name!r} {self.type_name}>"
 
     def __deepcopy__(self, memo: dict[int, object]) -> Action:
         return self

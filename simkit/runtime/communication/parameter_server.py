@@ -113,6 +113,9 @@ class Parameter(Generic[T]):
         high = math.inf if self.maximum is None else self.maximum
         return all(math.isfinite(v) and low <= v <= high for v in (value if isinstance(value, tuple) else (value,)))
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name!r} of {self.node!r}: {self.value!r}>"
+
     def __deepcopy__(self, memo: dict[int, object]) -> Parameter[T]:
         return self
 

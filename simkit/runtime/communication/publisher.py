@@ -157,6 +157,10 @@ class Publisher:
         for receive in self._readers.receivers:
             receive(later)
 
+    def __repr__(self) -> str:
+        heard = f"{self.subscribers} subscriber{'' if self.subscribers == 1 else 's'}"
+        return f"<Publisher {self.topic!r} {self.type_name}, {heard}>"
+
     def __deepcopy__(self, memo: dict[int, object]) -> Publisher:
         return self
 
@@ -200,6 +204,9 @@ class Listener:
     def close(self) -> None:
         """Close the command input permanently."""
         self._bus.close(self)
+
+    def __repr__(self) -> str:
+        return f"<Listener {self.topic!r} {' or '.join(self.types)}>"
 
     def __deepcopy__(self, memo: dict[int, object]) -> Listener:
         return self

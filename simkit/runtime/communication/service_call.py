@@ -89,6 +89,9 @@ class Service:
         types = (f"{self.type_name}_Response",)
         return checked_message(value, types, f"response of {self.name!r}", none_is_default=True)
 
+    def __repr__(self) -> str:
+        return f"<Service {self.name!r} {self.type_name}>"
+
     def __deepcopy__(self, memo: dict[int, object]) -> Service:
         return self
 
@@ -115,6 +118,10 @@ class ServiceCall:
     def end(self, response: Message, error: ServiceError | None) -> None:
         """Store the response or the error."""
         self.response, self.error, self.is_done = response, error, True
+
+    def __repr__(self) -> str:
+        state = "waits" if not self.is_done else "failed" if self.error is not None else "done"
+        return f"<ServiceCall {self.id} of {self.service.name!r}: {state}>"
 
     def __deepcopy__(self, memo: dict[int, object]) -> ServiceCall:
         return self

@@ -191,6 +191,11 @@ class Subscription:
         except Exception as error:  # noqa: BLE001 - user code may raise anything
             self._bus.failures.subscriber_failed(self, error)
 
+    def __repr__(self) -> str:
+        self._bus.gather(self.topic)
+        count = len(self._messages)
+        return f"<{type(self).__name__} {self.topic!r}, {count} message{'' if count == 1 else 's'}>"
+
     def __deepcopy__(self, memo: dict[int, object]) -> Subscription:
         return self
 

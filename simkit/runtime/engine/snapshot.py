@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.sleep import RestState
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Snapshot(InProcess):
     """State that `restore` brings back; made by `Simulation.snapshot`.
 
@@ -58,6 +58,9 @@ class Snapshot(InProcess):
     def is_complete(self) -> bool:
         """True if the snapshot can be restored, because the step in which it was requested has ended."""
         return "data" in vars(self)
+
+    def __repr__(self) -> str:
+        return f"<Snapshot at tick {self.tick}>" if self.is_complete else "<Snapshot of a step that has not ended>"
 
     def __getattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"a snapshot has no {name!r} before the end of the step in which it was requested")
