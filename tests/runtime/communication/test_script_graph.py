@@ -113,7 +113,10 @@ def test_a_service_of_a_script_can_be_closed_and_survives_reset_and_restore(sim:
     [
         (raising, r"'raising' \(.*:\d+\) of service '/add' raised at t=0 s: ValueError\('no bricks left'\)"),
         (lambda _: {"sun": 1}, "AddTwoInts_Response has no field 'sun'; did you mean 'sum'"),
-        (lambda _: 5, "response of '/add' needs .*AddTwoInts_Response, or a dict of its fields; 5 \\(int\\) is not a message"),
+        (
+            lambda _: 5,
+            "response of '/add' needs .*AddTwoInts_Response, or a dict of its fields; 5 \\(int\\) is not a message",
+        ),
     ],
 )
 def test_an_error_in_a_service_of_a_script_names_service_and_function(
