@@ -17,7 +17,7 @@ DTYPES = {"byte": "uint8", "char": "uint8"}
 
 
 def random_number(name: str, source: random.Random) -> Any:
-    if name == "string":
+    if name in ("string", "wstring"):
         return "".join(source.choice("aß€_/") for _ in range(source.randrange(12)))
     if name == "bool":
         return source.random() < 0.5
@@ -35,7 +35,7 @@ def random_value(node: Any, source: random.Random) -> Any:
         return random_number(content[0], source)
     (inner_kind, inner), length = content
     count = length if kind == ARRAY else source.choice((0, 0, 1, 2, 3, 5))
-    if int(inner_kind) != BASE or inner[0] == "string":
+    if int(inner_kind) != BASE or inner[0] in ("string", "wstring"):
         return [random_value((inner_kind, inner), source) for _ in range(count)]
     if inner[0] == "bool":
         return np.array([source.random() < 0.5 for _ in range(count)], dtype=bool)
