@@ -24,7 +24,6 @@ import numpy as np
 from simkit import progress
 from simkit.child_process import ChildProcesses
 from simkit.compiler.meshes.convex_pieces import (
-    PRISMS_MOST,
     convex_pieces,
     filled_ratio,
     hull_volume,
@@ -33,10 +32,10 @@ from simkit.compiler.meshes.convex_pieces import (
     mesh_volume,
     piece_hulls,
     surface_prisms,
-    thin_mesh,
 )
 from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.meshes.mesh_part import Floats, Ints
+from simkit.compiler.meshes.surface_patches import TRIANGLES_FROM, large_surface_pieces
 
 THRESHOLD: Final = 0.05
 """Concavity of CoACD, relative to the size of the mesh, below which a piece counts as convex."""
@@ -124,8 +123,11 @@ LARGEST_RATIO: Final = 1.1
 LARGEST_ESTIMATE: Final = 1.25
 """The same limit for meshes that are not closed, whose volume is an estimate."""
 
+LARGEST_ERROR: Final = 0.005
+"""Largest error [m] of the contacts of a large static mesh that is not reported as a warning."""
+
 _REPORTS: Final = (
-    3  # version of the texts of the findings, which are cached with the bodies: raise it with every change of a text
+    4  # version of the texts of the findings, which are cached with the bodies: raise it with every change of a text
 )
 _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
 _KEPT: Final = 128
@@ -225,16 +227,23 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
 
 def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
     findings: list[CollisionFinding] = []
-    coarse = vertices, faces
-    if len(faces) > PRISMS_MOST:
-        coarse = thin_mesh(vertices, faces, PRISMS_MOST)
-        text = f"is simplified for contacts from {len(faces)} to {len(coarse[1])} triangles"
-        findings.append(("warning", "SK-MESH-005", text, "give the collision a coarser mesh"))
-    pieces = convex_pieces(*coarse)
-    thin = sum(not p.exact for p in pieces)
-    text = f"is not convex: it collides as {len(pieces) - thin} convex pieces and {thin} prisms on its surface"
+    if len(faces) > TRIANGLES_FROM:
+        pieces, error = large_surface_pieces(vertices, faces)
+        kind = f"{sum(not p.exact for p in pieces)} patches of"
+        shapes = tuple((p.points, np.zeros((0, 3), np.int32)) for p in pieces)
+        if error > LARGEST_ERROR:
+            text = (
+                f"has {len(faces)} triangles; it is simplified for contacts, and its surface is exact to {error:.2g} m"
+            )
+            findings.append(("warning", "SK-MESH-005", text, "give the collision a coarser mesh or several meshes"))
+    else:
+        pieces = convex_pieces(vertices, faces)
+        kind = f"{sum(not p.exact for p in pieces)} prisms on"
+        shapes = _hulls([p.points for p in pieces])
+    closed = sum(p.exact for p in pieces)
+    text = f"is not convex: it collides as {closed} convex pieces and {kind} its surface"
     findings.append(("note", "SK-MESH-006", text, ""))
-    return ConvexBodies(_hulls([p.points for p in pieces]), False, tuple(findings))
+    return ConvexBodies(shapes, False, tuple(findings))
 
 
 def _surface_plates(vertices: Floats, faces: Ints) -> ConvexBodies:

@@ -10,9 +10,6 @@ import numpy.typing as npt
 
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 
-PRISMS_MOST: Final = 10_000
-"""Largest number of patches; a larger mesh is simplified first (and reported)."""
-
 HULLS_MOST: Final = 64
 THICKNESS: Final = 0.05
 _THINNEST: Final = 0.002
@@ -92,27 +89,6 @@ def is_inside_out(vertices: Floats, faces: Ints) -> bool:
     return float(np.einsum("ij,ij->", a, np.cross(b, c))) < 0.0  # six times the volume
 
 
-def thin_mesh(vertices: Floats, faces: Ints, most: int) -> tuple[Floats, Ints]:
-    """Simplify a mesh to at most `most` faces.
-
-    The vertices in each cell of a grid are replaced by their mean; the grid gets coarser until the mesh is small
-    enough.
-    """
-    low, size = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
-    cells = 1024.0
-    while True:
-        cell = np.floor((vertices - low) / size * cells).astype(np.int64)
-        _, inverse, count = np.unique(cell, axis=0, return_inverse=True, return_counts=True)
-        inverse = np.asarray(inverse).reshape(-1)
-        means = np.column_stack([np.bincount(inverse, vertices[:, k]) for k in range(3)]) / count[:, None]
-        f = inverse[faces]
-        f = f[(f[:, 0] != f[:, 1]) & (f[:, 1] != f[:, 2]) & (f[:, 2] != f[:, 0])]
-        f = f[np.sort(np.unique(np.sort(f, axis=1), axis=0, return_index=True)[1])]
-        if len(f) <= most:
-            return means, f.astype(np.int32)
-        cells *= 0.8
-
-
 def surface_prisms(vertices: Floats, faces: Ints) -> list[Floats]:
     """Return one prism for each flat convex patch: the patch and its copy moved inwards."""
     import trimesh
@@ -130,6 +106,26 @@ def surface_prisms(vertices: Floats, faces: Ints) -> list[Floats]:
     for (points, normal), free in zip(patches, room, strict=True):
         out.append(np.vstack([points, points - normal * float(np.clip(0.95 * free, least, most))]))
     return out
+
+
+def layer_depths(vertices: Floats, faces: Ints, of: Ints) -> Floats:
+    """Return the thickness [m] of the layer of contacts below some faces of a mesh, shape (n,), as for prisms.
+
+    Args:
+        vertices: vertices of the mesh [m], shape (n, 3).
+        faces: vertex indices of the whole mesh, shape (m, 3).
+        of: vertex indices of the faces that have an area, shape (k, 3).
+    """
+    import trimesh
+
+    corners = np.asarray(vertices, float)[of]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+    room = _inward_distances(
+        trimesh.Trimesh(vertices, faces, process=False), list(corners.mean(axis=1)[:, None]), normals
+    )
+    most = min(THICKNESS, 0.1 * float(np.ptp(vertices, axis=0).max()))
+    return np.clip(0.95 * room, min(_THINNEST, most), most)
 
 
 Trimesh = Any

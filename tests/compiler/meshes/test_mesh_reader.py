@@ -12,7 +12,6 @@ import pytest
 import trimesh
 
 from simkit.compiler import SpecBuilder, geom_groups
-from simkit.compiler.meshes.convex_pieces import thin_mesh
 from simkit.compiler.meshes.mesh_part import join_parts
 from simkit.compiler.meshes.mesh_reader import load_file, load_mesh
 from simkit.compiler.shape_geometry import polyline_triangles
@@ -233,13 +232,6 @@ def test_an_outline_inside_another_is_a_hole():
     mesh = trimesh.Trimesh(vertices, faces)
     assert mesh.is_watertight
     assert mesh.volume == pytest.approx((4.0 - 1.0) * 0.5)
-
-
-def test_a_huge_static_mesh_is_thinned_out_but_keeps_its_place():
-    ball = trimesh.creation.icosphere(subdivisions=6, radius=2.0)
-    vertices, faces = thin_mesh(np.asarray(ball.vertices), np.asarray(ball.faces, np.int32), 10_000)
-    assert 2_000 < len(faces) <= 10_000
-    np.testing.assert_allclose(np.linalg.norm(vertices, axis=1), 2.0, atol=0.02)
 
 
 def test_equal_meshes_are_stored_once(make, compiled, dae):
