@@ -138,7 +138,8 @@ def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[
     Args:
         corners: corners of the triangles, counter-clockwise from outside [m], shape (n, 3, 3).
         depths: thickness of the layer below each triangle [m], shape (n,).
-        most: number of pieces from which only patches are cut whose error is not computed yet.
+        most: number of pieces from which only patches with ten times the tolerance are cut. Four times as many pieces
+            are the limit.
     """
     normals = _area_vectors(corners)
     lengths = np.linalg.norm(normals, axis=1)
@@ -146,6 +147,7 @@ def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[
     corners, depths, normals = corners[has_area], depths[has_area], normals[has_area] / lengths[has_area, None]
     size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     tolerance = max(LEAST_TOLERANCE, TOLERANCE * size)
+    coarse = 10.0 * tolerance
     axis = np.abs(normals).argmax(axis=1)
     side = 2 * axis + (normals[np.arange(len(axis)), axis] < 0.0)
     waiting = [_Patch(corners[side == k], normals[side == k], depths[side == k]) for k in range(6) if (side == k).any()]
@@ -160,7 +162,8 @@ def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[
                 heapq.heappush(heap, (-patch.error, count, patch))
             else:
                 done.append(patch)
-        if not heap or (len(heap) + len(done) >= most and heap[0][0] != -np.inf):
+        number, worst = len(heap) + len(done), -heap[0][0] if heap else 0.0
+        if not heap or (number >= most and worst <= coarse) or (number >= 4 * most and worst < np.inf):
             break
         waiting = _cut(heapq.heappop(heap)[2], _SNAP * size)
     done += [patch for _, _, patch in sorted(heap, key=lambda item: item[1])]
@@ -189,7 +192,7 @@ def _measure(patch: _Patch, tolerance: float) -> None:
         hull = ConvexHull(np.vstack([points[chosen], below[chosen]]))
         outside = float((points @ hull.equations[:, :3].T + hull.equations[:, 3]).max())
         if outside > tolerance:
-            chosen, outside = np.arange(len(points)), 0.0
+            chosen, outside = np.arange(len(points), dtype=np.int32), 0.0
             hull = ConvexHull(np.vstack([points, below]))
     except (QhullError, ValueError):
         patch.error = 0.0
@@ -231,13 +234,14 @@ def _support_points(points: Floats, up: Floats) -> Ints:
     u = np.cross(up, np.eye(3)[int(np.argmin(np.abs(up)))])
     u /= np.linalg.norm(u)
     directions = _DIRECTIONS @ np.stack([u, np.cross(up, u), up])
-    return np.unique((points @ directions.T).argmax(axis=0))
+    return np.unique((points @ directions.T).argmax(axis=0)).astype(np.int32)
 
 
 def _distinct(points: Floats) -> Floats:
     """Return each point once; `np.unique` needs ten times as long for rows."""
     ordered = points[np.lexsort(points.T)]
-    return ordered[np.append(True, (ordered[1:] != ordered[:-1]).any(axis=1))]
+    distinct: Floats = ordered[np.append(True, (ordered[1:] != ordered[:-1]).any(axis=1))]
+    return distinct
 
 
 def _area_vectors(corners: Floats) -> Floats:
