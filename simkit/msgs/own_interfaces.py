@@ -146,11 +146,11 @@ def remember_received(texts: Mapping[str, str], sender: str) -> None:
     """
     batch = _Batch([])
     for name, text in texts.items():
-        if name in _added:
+        if name in _added or name in _received:
             batch.read(name, text, f"{name} of {sender}")
-        _received[name] = text, sender
     if batch.problems:
         raise InterfaceError(batch.problems)
+    _received.update({name: (text, sender) for name, text in texts.items()})
     _missing.clear()
 
 
