@@ -45,8 +45,10 @@ def write_mjcf(builder: SpecBuilder, path: Path, *, overwrite: bool = False) -> 
         overwrite: replace existing files.
 
     Raises:
-        InputError: SK-CLI-016 a file exists or is not writable, or MuJoCo cannot read the result.
+        InputError: SK-CLI-016 a file exists or is not writable, its path is not valid text, or MuJoCo cannot read the
+            result.
     """
+    _check_text(path)
     writing = progress.task(f"writing {path.name}")
     with AtomicOutput(path, f"{path.stem}_assets", overwrite=overwrite) as staging, writing:
         # work on a copy: file names in the spec of a running simulation would affect later spawns
@@ -65,6 +67,19 @@ def write_mjcf(builder: SpecBuilder, path: Path, *, overwrite: bool = False) -> 
             raise InputError(f"SK-CLI-016 cannot write {path}: MuJoCo reports: {error}", "SK-CLI-016") from None
     balanced = [name for record in builder.records.values() for name in record.exact]
     return WrittenMjcf(path, count, balanced)
+
+
+def _check_text(path: Path) -> None:
+    """Raise an error if a path has bytes that are no text, which MuJoCo and XML do not take.
+
+    In an ASCII locale, these are all bytes of letters that are not ASCII.
+    """
+    try:
+        str(path.absolute()).encode()
+    except UnicodeEncodeError:
+        reason = "MuJoCo needs a path that is valid text in the locale"
+        hint = "choose another name and folder, or set LC_ALL=C.UTF-8"
+        raise InputError(f"SK-CLI-016 cannot write {path}: {reason}\n    help: {hint}", "SK-CLI-016") from None
 
 
 @contextmanager

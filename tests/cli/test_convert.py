@@ -304,6 +304,14 @@ def test_a_folder_that_is_not_empty_is_left_alone(here: Path) -> None:
     assert [p.name for p in (here / "box").iterdir()] == ["mine.txt"]
 
 
+def test_an_mjcf_file_whose_path_is_not_text_is_refused(here: Path) -> None:
+    before = sorted(here.rglob("*"))
+    refused = run("convert", "arm_description/urdf/arm.urdf", "-o", "a\udcff.xml")
+    assert refused.exit_code == 2
+    assert "SK-CLI-016 cannot write a\\udcff.xml: MuJoCo needs a path that is valid text" in refused.stderr
+    assert sorted(here.rglob("*")) == before
+
+
 def test_a_world_with_errors_leaves_nothing_behind(here: Path) -> None:
     (here / "w.sdf").write_text(
         "<sdf version='1.9'><world name='w'><include><uri>model://none</uri></include></world></sdf>"
