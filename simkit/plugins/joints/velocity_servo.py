@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
@@ -151,6 +152,22 @@ def _between(values: Vector, low: Vector, high: Vector) -> Vector:
     return found
 
 
+def _tree_by_tree(function: Callable[..., Vector], *matrices: Vector) -> Vector:
+    """Apply a function to the matrices of all trees (trees, …); the result is zero for trees with a singular matrix.
+
+    A matrix is singular within the precision of its numbers if the inertias of a tree differ extremely. The engine then
+    reports the divergence.
+    """
+    try:
+        return function(*matrices)
+    except np.linalg.LinAlgError:
+        found = np.zeros_like(matrices[-1])
+        for index, of_tree in enumerate(zip(*matrices, strict=True)):
+            with suppress(np.linalg.LinAlgError):
+                found[index] = function(*of_tree)
+        return found
+
+
 class _EffortEvaluation:
     """Evaluation of efforts in one step by the engine; all vectors refer to the layout's joints (n,)."""
 
@@ -212,8 +229,7 @@ class _EffortEvaluation:
         mobility = self._mobilities()
         damping = self._sim.mj_model.dof_damping[layout.all] * layout.is_any * self.step
         implicit = np.eye(mobility.shape[1]) + mobility * damping[:, None, :]
-        found: Vector = np.linalg.solve(implicit, accelerations)
-        return found
+        return _tree_by_tree(np.linalg.solve, implicit, accelerations)
 
     def bound(self, free: Vector, efforts: Vector) -> None:
         """Limit the efforts of joints without a limit of their own, so that they cannot push through an obstacle.
@@ -250,8 +266,7 @@ class _EffortEvaluation:
             mobility = self._damped(mobility)
         slots = is_used.shape[1]
         both = is_used[:, :, None] & is_used[:, None, :]
-        found: Vector = np.linalg.inv(np.where(both, mobility[:, :slots, :slots], np.eye(slots)))
-        return found
+        return _tree_by_tree(np.linalg.inv, np.where(both, mobility[:, :slots, :slots], np.eye(slots)))
 
     def _mobilities(self) -> Vector:
         """Return the inverse inertia of all relevant degrees of freedom of each tree (trees, all slots, all slots)."""

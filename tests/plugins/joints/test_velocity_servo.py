@@ -11,6 +11,7 @@ import trimesh
 from plugin_worlds import GROUND, element, world
 
 import simkit
+from simkit.plugins.joints.velocity_servo import _tree_by_tree
 
 RADIUS = 0.1
 WHEELS = ("front_left", "rear_left", "front_right", "rear_right")
@@ -290,3 +291,11 @@ def test_reading_chunked_runs_and_snapshots_change_no_bit() -> None:
         sim.step(267)
         ends.append(state(sim))
         assert ends == [whole, whole]
+
+
+def test_a_tree_with_a_singular_inverse_inertia_gets_zero_gains_and_the_others_keep_theirs() -> None:
+    fine, singular = np.diag([2.0, 4.0]), np.full((2, 2), 2.5565e103)
+    for one, other in ((fine, singular), (singular, fine)):
+        found = _tree_by_tree(np.linalg.inv, np.stack([one, other]))
+        expected = [np.diag([0.5, 0.25]) if each is fine else np.zeros((2, 2)) for each in (one, other)]
+        assert np.array_equal(found, np.stack(expected))
