@@ -8,10 +8,10 @@ from simkit.bridges.live.connection import ClientSubscription
 from simkit.errors import MessageError
 from simkit.msgs.message_types import Message
 from simkit.recording.message_taps import MessageQueue, serialised
-from simkit.runtime.communication.subscription import NO_MESSAGE
+from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.subscription import LazyMessage, Subscription
+    from simkit.runtime.communication.subscription import Subscription
     from simkit.runtime.simulation import Simulation
 
 _MOST_WAITING = 100  # largest number of messages of a topic that wait until an image is rendered
@@ -61,8 +61,8 @@ class TopicFeed:
     def _take(self, message: Message | LazyMessage) -> None:
         """Queue a message that was just published."""
         self._queue.add(self._sim.time_ns, message)
-        if len(self._queue) > _MOST_WAITING:
-            self._queue.deliver_ready()
+        if not isinstance(message, LazyMessage) or len(self._queue) > _MOST_WAITING:
+            self._queue.deliver_ready()  # a bridge's own message does not go back to the bridge
         if len(self._queue) > _MOST_WAITING:
             self._queue.drop_oldest()
             for reader in self._readers:

@@ -60,8 +60,7 @@ class TopicBus:
         self._watchers: list[Callable[[str, str], None]] = []
         self.owner: object = None
         self.inbox = CommandQueue(self.failures.report_dropped)
-        self.refuses_clashes = False
-        self.revision = 0
+        self.refuses_clashes, self.revision = False, 0
         self.aside: set[str] = set()
         self.unlisted: set[str] = set()
         self.journal: Journal | None = None
@@ -159,13 +158,13 @@ class TopicBus:
         return self._add_reader(subscription)
 
     def tap(self, topic: str, callback: Callback, *, takes_later: bool = False, settle: Settle = None) -> Subscription:
-        """Receive a topic without keeping its messages.
+        """Receive a topic (a missing leading slash is added) without keeping its messages.
 
         Args:
-            topic: name of the topic; a missing leading slash is added.
+            topic: name of the topic.
             callback: function that receives each message.
             takes_later: True if the callback accepts a `LazyMessage` instead of a message; it may store it.
-            settle: function that is called before the source data of stored messages change; it must make them.
+            settle: function that makes the stored messages; called before their source data change.
         """
         return self._add_reader(StreamSubscription(self, absolute_name(topic), callback, takes_later, settle))
 
