@@ -30,7 +30,7 @@ JointReading = tuple[str, "float | Vector", "float | Vector", "float | Vector"]
 
 def joint_readings(joints: Sequence[Joint]) -> list[JointReading]:
     """Return the current name, position, velocity and applied effort of each joint."""
-    return [(joint.name, joint.position, joint.velocity, joint.effort) for joint in joints]
+    return [(joint.name, *joint.reading()) for joint in joints]
 
 
 def joint_state_message(time_ns: int, joints: list[JointReading]) -> msgs.JointState:

@@ -85,8 +85,8 @@ class MessageQueue(Generic[_Label]):
     Args:
         deliver: callback with the label of a message, and the message.
         freeze: `serialised`, or a function like it. The publisher may change a message while it is queued, so every
-            message is delivered in this form. A message with `is_packed` is queued until `deliver_ready`, because many
-            of these are serialised together. Without `freeze` only images are queued: a message after an image
+            message is delivered in this form. A message with `can_wait` is queued until `deliver_ready`, because many
+            at a time are serialised faster. Without `freeze` only images are queued: a message after an image
             then waits until the image is rendered.
     """
 
@@ -100,7 +100,7 @@ class MessageQueue(Generic[_Label]):
         """Deliver a message that was just published, or queue the message if an image before it is not rendered yet."""
         freeze, waiting = self._freeze, self._waiting
         is_lazy = isinstance(message, LazyMessage)
-        if is_lazy and freeze is not None and message.is_packed:
+        if is_lazy and freeze is not None and message.can_wait:
             waiting.append((label, message))
             if len(waiting) > _MOST_DEFERRED:
                 self.deliver_ready()
@@ -119,19 +119,29 @@ class MessageQueue(Generic[_Label]):
             return
         waiting.append((label, message))
         first = waiting[0][1]
-        if is_pending or not (isinstance(first, LazyMessage) and first.is_packed):
+        if is_pending or not (isinstance(first, LazyMessage) and first.can_wait):
             self.deliver_ready()
 
     def deliver_ready(self) -> None:
         """Deliver the messages that are ready, in order."""
-        waiting = self._waiting
-        while waiting and (not isinstance(waiting[0][1], LazyMessage) or waiting[0][1].is_ready):
-            self._deliver_first()
+        self._deliver_queued(waits=False)
 
     def deliver_all(self) -> None:
         """Deliver all messages; wait for the rendering of images."""
-        while self._waiting:
-            self._deliver_first()
+        self._deliver_queued(waits=True)
+
+    def _deliver_queued(self, waits: bool) -> None:
+        waiting = self._waiting
+        while waiting:
+            label, message = waiting[0]
+            if not isinstance(message, LazyMessage):  # already frozen
+                waiting.popleft()
+                self._deliver(label, message)
+            elif waits or message.can_wait or message.is_ready:
+                waiting.popleft()
+                self._resolve(label, message)
+            else:
+                return
 
     def __len__(self) -> int:
         return len(self._waiting)
@@ -143,13 +153,6 @@ class MessageQueue(Generic[_Label]):
     def clear(self) -> None:
         """Drop all queued messages."""
         self._waiting.clear()
-
-    def _deliver_first(self) -> None:
-        label, message = self._waiting.popleft()
-        if isinstance(message, LazyMessage):
-            self._resolve(label, message)
-        else:  # already frozen
-            self._deliver(label, message)
 
     def _resolve(self, label: _Label, message: Message | LazyMessage) -> None:
         if self._freeze is not None:

@@ -93,7 +93,7 @@ class PackedMessage(LazyMessage):
     """Message of one sample of a group."""
 
     __slots__ = ("_group", "_position")
-    is_awaited, is_packed, is_ready, work = True, True, True, None
+    is_awaited, can_wait, is_ready, work = True, True, True, None
 
     def __init__(self, group: SampleGroup, position: int) -> None:
         self._group, self._position = group, position

@@ -344,7 +344,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
                 continue
             if self.is_deferred and not publisher.is_live:
                 work = self._pending_job(sample) if needs_reading else None
-                later = publisher.publish_later(partial(self._message_on_demand, sample, product), work)
+                make = partial(self._message_on_demand, sample, product)
+                later = publisher.publish_later(make, work, can_wait=self.gathers)
                 if needs_reading and later is not None:
                     deferred.append(later)
             else:

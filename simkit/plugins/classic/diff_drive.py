@@ -9,7 +9,9 @@ its forward speed is negative when the robot drives backwards.
 from __future__ import annotations
 
 import abc
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar, Self
 
 from simkit.params import Params
@@ -22,6 +24,7 @@ from simkit.plugins.drives.odometry import (
     BodyTwist,
     DeadReckoning,
     odometry_message,
+    planar_pose,
     rolling_twist,
     wheel_angles,
 )
@@ -262,8 +265,11 @@ class GazeboRosDiffDrive(CommandedDrive):
             self._outputs.tell(*self._measured(), *self._covariances())
         self._outputs.tell_joints()
 
-    def _measured(self) -> tuple[Pose, BodyTwist]:
-        """Return pose and twist from `<odometry_source>`; the twist is in the robot's own axes."""
+    def _measured(self) -> tuple[Pose | Callable[[], Pose], BodyTwist]:
+        """Return pose and twist from `<odometry_source>`; the twist is in the robot's own axes.
+
+        The pose may be a function that computes it later.
+        """
         if self._erring is not None:
             reckoned, twist = self._erring.reckoning, self._erring.twist
             return (
@@ -272,7 +278,9 @@ class GazeboRosDiffDrive(CommandedDrive):
         if not self.options.from_encoders:
             return self._true.state()
         pair = self.options.pairs[0]
-        return self._reckoning.pose, rolling_twist(self._wheels, pair.radius, pair.separation)
+        reckoned = self._reckoning
+        pose_then = partial(planar_pose, reckoned.x, reckoned.y, reckoned.yaw)
+        return pose_then, rolling_twist(self._wheels, pair.radius, pair.separation)
 
     def _create_noisy_odometry(self) -> tuple[NoisyOdometry | None, EquivalentWheelAngles | None]:
         """Return the odometry with noise; for ground truth, also return the wheel angles of the true motion."""

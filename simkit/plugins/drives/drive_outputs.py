@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
+from simkit import msgs
 from simkit.plugins.drives.odometry import (
     ODOMETRY,
     TRANSFORMS,
@@ -81,28 +82,41 @@ class DriveOutputs(SharedByCopies):
     @property
     def wants_odometry(self) -> bool:
         """True while the odometry or transform topic has a subscriber."""
-        return any(out is not None and out.wanted for out in (self._odom, self._tf))
+        odom, tf = self._odom, self._tf
+        return (odom is not None and odom.wanted) or (tf is not None and tf.wanted)
 
-    def tell(self, pose: Pose, twist: BodyTwist, *covariances: Vector) -> None:
+    def tell(self, pose: Pose | Callable[[], Pose], twist: BodyTwist, *covariances: Vector) -> None:
         """Publish odometry and transforms.
 
         Args:
-            pose: Pose of the base in the odometry frame.
+            pose: Pose of the base in the odometry frame, or a function that returns this pose at any later time.
             twist: Twist in the axes of the base.
             covariances: Covariances of the pose and of the twist; none for the variances of the options.
         """
         options, now = self._options, self._sim.time_ns
-        frames = options.odometry_frame, options.robot_base_frame
         if self._odom is not None and self._odom.wanted:
-            shown = Pose((*pose.position[:2], 0.0), pose.quaternion) if options.is_level else pose
-            spread = covariances or (self._covariance,)
-            self._odom.publish_later(partial(odometry_message, now, *frames, shown, twist, *spread))
+            self._odom.publish_later(partial(self._odometry, now, pose, twist, covariances or (self._covariance,)))
         if self._tf is not None and self._tf.wanted:
-            found = [(*frames, pose)] if options.publishes_odom_tf else []
+            found = []
             for above, below in self._links if options.publish_wheel_tf else ():
                 parent, child = self._sim.link(above), self._sim.link(below)
                 found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
-            self._tf.publish_later(partial(transforms, now, *found))
+            self._tf.publish_later(partial(self._transforms, now, pose, found))
+
+    def _odometry(
+        self, now: int, pose: Pose | Callable[[], Pose], twist: BodyTwist, covariances: Sequence[Vector]
+    ) -> msgs.Odometry:
+        options, pose = self._options, pose() if callable(pose) else pose
+        if options.is_level:
+            pose = Pose((*pose.position[:2], 0.0), pose.quaternion)
+        return odometry_message(now, options.odometry_frame, options.robot_base_frame, pose, twist, *covariances)
+
+    def _transforms(
+        self, now: int, pose: Pose | Callable[[], Pose], wheels: list[tuple[str, str, Pose]]
+    ) -> msgs.TFMessage:
+        options, pose = self._options, pose() if callable(pose) else pose
+        base = [(options.odometry_frame, options.robot_base_frame, pose)] if options.publishes_odom_tf else []
+        return transforms(now, *base, *wheels)
 
     def tell_joints(self) -> None:
         """Publish joint states."""

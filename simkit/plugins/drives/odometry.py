@@ -72,7 +72,12 @@ class DeadReckoning:
     @property
     def pose(self) -> Pose:
         """Pose with z = 0."""
-        return Pose((self.x, self.y, 0.0), quat_from_rpy(0.0, 0.0, self.yaw))
+        return planar_pose(self.x, self.y, self.yaw)
+
+
+def planar_pose(x: float, y: float, yaw: float) -> Pose:
+    """Return the pose of x, y [m] and yaw [rad] with z = 0."""
+    return Pose((x, y, 0.0), quat_from_rpy(0.0, 0.0, yaw))
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +96,15 @@ def rolling_twist(wheels: Sequence[Joint], radius: float, separation: float) -> 
         radius: Radius of the wheels [m].
         separation: Distance between the wheels [m].
     """
-    left, right = (float(np.ravel(wheel.velocity)[0]) * radius for wheel in wheels[:2])
+    left, right = (_first_velocity(wheel) * radius for wheel in wheels[:2])
     return BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, (right - left) / separation))
+
+
+def _first_velocity(joint: Joint) -> float:
+    """Return the velocity of a joint about its first axis [rad/s]."""
+    if joint._one_dof >= 0:
+        return joint._physics.data.qvel.item(joint._one_dof)
+    return float(np.ravel(joint.velocity)[0])
 
 
 class TravelOdometry(abc.ABC):

@@ -114,7 +114,7 @@ class WorldStats(WorldPlugin):
         )
 
     def _clock(self, _topic: str) -> Any:
-        return msgs.type_of(CLOCK)(msgs.time(self.sim.time_ns))
+        return partial(_clock_message, self.sim.time_ns)
 
     def _all_poses(self, _topic: str) -> Callable[[], msgs.TFMessage]:
         sim = self.sim
@@ -147,6 +147,11 @@ class WorldStats(WorldPlugin):
             yield from self._of_model(nested, with_visuals)
 
 
+def _clock_message(time_ns: int) -> msgs.Clock:
+    message: msgs.Clock = msgs.type_of(CLOCK)(msgs.time(time_ns))
+    return message
+
+
 class ClockPublisher(WorldPlugin):
     """Publishes `rosgraph_msgs/msg/Clock` on `/clock` at 100 Hz of simulated time; every world has this plugin."""
 
@@ -157,4 +162,4 @@ class ClockPublisher(WorldPlugin):
 
     def after_step(self) -> None:
         if self._clock.wanted:
-            self._clock.publish(msgs.type_of(CLOCK)(msgs.time(self.sim.time_ns)))
+            self._clock.publish_later(partial(_clock_message, self.sim.time_ns))

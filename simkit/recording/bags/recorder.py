@@ -60,7 +60,7 @@ class Recorder:
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
         # while an image is rendered, later messages wait as bytes, so that all messages stay in order
         self._queue = MessageQueue(self._write, serialised)
-        self._second = -1
+        self._first_tick = self._end_tick = 0  # ticks of the present second, from the first message of the second on
         self._taps = TopicTaps(sim, self._receiver_of, self._queue.deliver_ready)
         self._taps.open()
 
@@ -103,19 +103,23 @@ class Recorder:
     def _receiver_of(self, topic: str, _: str) -> Callable[[object], None] | None:
         if not self._is_recorded(topic):
             return None
-        sim, queue = self._sim, self._queue
+        physics, add = self._sim.engine.physics, self._queue.add
 
         def receive(message: object) -> None:
-            time_ns = sim.time_ns
-            if time_ns // _SECOND != self._second:
-                self._end_second(time_ns // _SECOND)
-            queue.add((topic, time_ns), message)
+            tick = physics.tick
+            if not self._first_tick <= tick < self._end_tick:
+                self._end_second()
+            add((topic, tick), message)
 
         return receive
 
-    def _end_second(self, next_second: int) -> None:
+    def _end_second(self) -> None:
         """Pass the messages of a simulated second to the operating system, unless one of its images is not rendered."""
-        self._second = next_second
+        tick, clock = self._sim.tick, self._sim.engine.clock
+        second = clock.time_ns(tick) // _SECOND
+        end = clock.ticks_to_cover(second + 1)
+        is_rounded = clock.time_ns(end - 1) // _SECOND > second
+        self._first_tick, self._end_tick = tick, end - 1 if is_rounded else end
         self._queue.deliver_ready()
         if self._bag is not None and not self._queue:
             try:
@@ -150,14 +154,14 @@ class Recorder:
         return topic in self._taps
 
     def _write(self, label: tuple[str, int], message: tuple[str, bytes]) -> None:
-        bag, (topic, time_ns), (type_name, data) = self._bag, label, message
+        bag, (topic, tick), (type_name, data) = self._bag, label, message
         if bag is None:
             return
         try:
             channel = bag.channels.get((topic, type_name))
             if channel is None:
                 channel = bag.channel(topic, type_name, topic in self._sim.communication.bus.latched())
-            bag.write_raw(channel, data, time_ns)
+            bag.write_raw(channel, data, self._sim.engine.clock.time_ns(tick))
         except OSError as error:
             self._stop(error)
 

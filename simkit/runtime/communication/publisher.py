@@ -128,7 +128,9 @@ class Publisher:
         if readers.feeds:
             self._bus.inbox.put(self.topic, message)
 
-    def publish_later(self, make: Callable[[], Message], work: PendingWork | None = None) -> LazyMessage | None:
+    def publish_later(
+        self, make: Callable[[], Message], work: PendingWork | None = None, *, can_wait: bool = True
+    ) -> LazyMessage | None:
         """Publish the message that `make()` returns; `make` is called when the message is read.
 
         If a subscriber has a callback, the message is made at once. On a latched topic without subscribers, the message
@@ -137,6 +139,7 @@ class Publisher:
         Args:
             make: function that returns the message.
             work: work on another thread that `make` waits for.
+            can_wait: False if `make` keeps so much memory that a recorder should call it at once.
 
         Returns:
             Placeholder of the message; None if the message was made at once.
@@ -147,13 +150,13 @@ class Publisher:
         if self.is_live:
             self.publish(make())
             return None
-        later = LazyMessage(make, self._readers.looks_at_all, work)
+        later = LazyMessage(make, self._readers.looks_at_all, work, can_wait)
         for receive in self._readers.receivers:
             receive(later)
         return later
 
     def publish_packed(self, later: LazyMessage) -> None:
-        """Pass on a message that nobody uses at once; see `LazyMessage.is_packed` and `is_live`."""
+        """Pass on a message that nobody uses at once; see `LazyMessage.can_wait` and `is_live`."""
         for receive in self._readers.receivers:
             receive(later)
 
@@ -184,10 +187,12 @@ class ExternalPublisher(Publisher):
         with journal.passing("send", {"publisher": self, "message": message}):
             super().publish(message)
 
-    def publish_later(self, make: Callable[[], Message], work: PendingWork | None = None) -> LazyMessage | None:
+    def publish_later(
+        self, make: Callable[[], Message], work: PendingWork | None = None, *, can_wait: bool = True
+    ) -> LazyMessage | None:
         """Publish the message that `make()` returns. If a journal is active, the message is made at once."""
         if self._bus.journal is None:
-            return super().publish_later(make, work)
+            return super().publish_later(make, work, can_wait=can_wait)
         self.publish(make())
         return None
 

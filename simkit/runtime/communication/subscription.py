@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import Any, ClassVar, Final, Literal, Protocol
+from typing import Any, Final, Literal, Protocol
 
 from simkit import msgs
 from simkit.runtime.communication.journal import JournalKeeper
@@ -39,15 +39,20 @@ class LazyMessage:
     Attributes:
         is_awaited: True if a reader keeps or records every message, so that the message will be read.
         work: work on another thread that must end before the message can be made; None if there is none.
-        is_packed: True if many messages are serialised together. A reader of bytes should then wait for more messages
-            before it calls `serialised`.
+        can_wait: True if the source data are so small that many messages may be kept. A reader of bytes should then
+            serialise many messages at a time, which is several times faster than one at a time between two steps.
     """
 
-    __slots__ = ("_make", "_message", "is_awaited", "work")
-    is_packed: ClassVar[bool] = False
+    __slots__ = ("_make", "_message", "can_wait", "is_awaited", "work")
 
-    def __init__(self, make: Callable[[], Message], is_awaited: bool = False, work: PendingWork | None = None) -> None:
-        self.is_awaited, self.work = is_awaited, work
+    def __init__(
+        self,
+        make: Callable[[], Message],
+        is_awaited: bool = False,
+        work: PendingWork | None = None,
+        can_wait: bool = True,
+    ) -> None:
+        self.is_awaited, self.work, self.can_wait = is_awaited, work, can_wait and work is None
         self._make: Callable[[], Message] | None = make
         self._message: Message = None
 

@@ -120,6 +120,17 @@ class Joint(Handle):
         total = pending[self._dofs] + data.qfrc_actuator[self._dofs]
         return np.clip(self._to_joint(total), -self._limit(), self._limit())
 
+    def reading(self) -> tuple[JointValue, JointValue, JointValue]:
+        """Return position, velocity and effort, faster than one by one."""
+        if self._one_qpos < 0 or self._one_dof < 0:
+            return self.position, self.velocity, self.effort
+        self._check()
+        physics, dof = self._physics, self._one_dof
+        data = physics.fresh()
+        pending = physics.data.qfrc_applied if physics.one_shot else physics.last_applied
+        limit, effort = self._effort_limit.item(0), pending.item(dof) + data.qfrc_actuator.item(dof)
+        return data.qpos.item(self._one_qpos), data.qvel.item(dof), max(-limit, min(limit, effort))
+
     @property
     def transmitted_wrench(self) -> tuple[Vector, Vector]:
         """Force [N] and torque [N·m] of the parent on the child, at the joint origin, in the joint frame.
