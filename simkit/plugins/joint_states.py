@@ -39,6 +39,12 @@ def joint_state_message(time_ns: int, joints: list[JointReading]) -> msgs.JointS
     A joint with several degrees of freedom becomes several joints `name[0]`, `name[1]`, …. A fixed joint has the
     position, velocity and effort 0.
     """
+    if joints and all(type(position) is float for _, position, _, _ in joints):  # the usual case
+        first, *numbers_of_all = zip(*joints, strict=True)
+        simple: msgs.JointState = msgs.type_of(JOINT_STATE)(
+            msgs.header(time_ns, ""), list(first), *map(np.array, numbers_of_all)
+        )
+        return simple
     names: list[str] = []
     columns: tuple[list[float], list[float], list[float]] = ([], [], [])
     for name, *values in joints:

@@ -143,7 +143,13 @@ class McapBag:
         publish_ns = time_ns if publish_ns is None else publish_ns
         self._writer.add_message(channel.id, time_ns, data, publish_ns, channel.count)
         channel.count += 1
-        self.span.add(time_ns)
+        span = self.span
+        if span.count and span.start <= time_ns:
+            span.count += 1
+            if time_ns > span.end:
+                span.end = time_ns
+        else:
+            span.add(time_ns)
 
     def flush(self) -> None:
         """Complete the chunk and pass all data to the operating system."""
