@@ -9,7 +9,8 @@ SimkitError                 exit 1
 │   ├── MessageError                 a message does not fit its topic; NoMessageError is also a TypeError
 │   ├── ServiceError                 a service is unknown, or its name is already used
 │   ├── ActionError                  an action is unknown, or its name is already used
-│   └── ParameterError               a parameter is unknown, or its value is not allowed
+│   ├── ParameterError               a parameter is unknown, or its value is not allowed
+│   └── TransformError               no pose of a frame in another; also a LookupError
 ├── SimulationDiverged      exit 3   the physics diverged
 ├── PluginError             exit 4   a plugin raised
 ├── SubscriberError         exit 4   a callback of a script raised
@@ -129,6 +130,12 @@ class ParameterError(InputError):
     """Live parameter that does not exist, or a value that the parameter does not accept."""
 
     code = "SK-PARAMETER-001"
+
+
+class TransformError(InputError, LookupError):
+    """Pose of a frame in another frame that is not known."""
+
+    code = "SK-TF-001"
 
 
 class SimulationDiverged(SimkitError):

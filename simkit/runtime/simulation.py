@@ -189,7 +189,7 @@ class Simulation(ScriptGraph, InProcess):
     def _stateful(self) -> list[Stateful]:
         """Return every part with a state, except sensors and plugins, in the order of restoring."""
         engine, interfaces, control, handles = self.engine, self.communication, self.control, self.contents.handles
-        calls = (interfaces.live_parameters, interfaces.services, interfaces.actions)
+        calls = (interfaces.live_parameters, interfaces.services, interfaces.actions, interfaces.transforms)
         own = (engine.faults, *calls, control.pausing, control.origin)
         return [*handles.stateful(), *own, engine.velocity_servos, *handles.tables["model"].values()]
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
 from typing import Final
 
 from simkit import msgs
 from simkit.bridges.live.client_graph import DEFAULT_DEPTH, ClientGraph, absolute, check_callback
 from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription
+from simkit.bridges.live.client_transforms import TOPICS, LiveTransforms
 from simkit.bridges.live.discovery import find_socket
 from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
 from simkit.bridges.live.server_link import CONNECT_PERIOD
@@ -176,6 +178,11 @@ class Client(ClientGraph):
         number = self.next_number()
         found = self.ask("advertise", number=number, topic=topic, type=type_name, latched=latched)
         return LivePublisher(self, number, found["topic"], found["type"])
+
+    @cached_property
+    def tf(self) -> LiveTransforms:
+        """Poses of frames in other frames, from `/tf` and `/tf_static`; received from the first use on."""
+        return LiveTransforms(self, self.subscribe_all(TOPICS), int(self.state()["time_ns"]))
 
     # ------------------------------------------------------------------ services and actions
 

@@ -149,7 +149,7 @@ class GazeboRosAckermannDrive(CommandedDrive):
         self._pids = {name: Pid.of(numbers) for name, numbers in self._gains.items()}
         self._distance = 0.0
         self._place = self._true.place()[:2]
-        self._outputs = DriveOutputs(self, self.options, [*self._turned, *self._wheels])
+        self._outputs = DriveOutputs(self, self.options, [*self._turned, *self._wheels], lambda: self._true.state()[0])
         self._distance_out = self.advertise("distance", _FLOAT) if self.options.publish_distance else None
         self._angle_out = self.advertise("steerangle", _FLOAT) if self.options.publish_steerangle else None
 

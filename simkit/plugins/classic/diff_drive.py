@@ -226,7 +226,9 @@ class GazeboRosDiffDrive(CommandedDrive):
         self._angles = self._first_angles()
         self._erring, self._followed = self._create_noisy_odometry()
         self._last_read_ns = self.sim.time_ns
-        self._outputs = DriveOutputs(self, options, [wheel.scene for wheel in self._wheels])
+        self._outputs = DriveOutputs(
+            self, options, [wheel.scene for wheel in self._wheels], lambda: self._measured()[0]
+        )
         self._truth = self.advertise("ground_truth/odom", ODOMETRY) if options.publish_ground_truth else None
 
     # ------------------------------------------------------------------ commands

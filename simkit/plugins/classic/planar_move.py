@@ -130,7 +130,7 @@ class GazeboRosPlanarMove(KinematicPlugin):
             message = f"plugin {self.name!r}: model {self.scoped!r} has a joint to the world and cannot move"
             params.diagnostics.warning("SK-PLUGIN-053", message, self.where, "remove the joint to the world")
         self.listen(options.command_topic, COMMAND_TYPES, self._on_command)
-        self._outputs = DriveOutputs(self, options, ())
+        self._outputs = DriveOutputs(self, options, (), lambda: self._reading()[0])
 
     # ------------------------------------------------------------------ commands
 

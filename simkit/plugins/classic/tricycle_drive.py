@@ -27,6 +27,7 @@ from simkit.plugins.ros_names import is_ros_1
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.pose import Pose
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -147,7 +148,7 @@ class GazeboRosTricycleDrive(CommandedDrive):
         self._speed, self._steering_target = 0.0, 0.0
         self._reckoning = DeadReckoning()
         self._angles = wheel_angles(*self._pair)
-        self._outputs = DriveOutputs(self, self.options, self._all)
+        self._outputs = DriveOutputs(self, self.options, self._all, self._pose)
 
     # ------------------------------------------------------------------ commands
 
@@ -184,6 +185,10 @@ class GazeboRosTricycleDrive(CommandedDrive):
         return math.copysign(most, missing)
 
     # ------------------------------------------------------------------ readings
+
+    def _pose(self) -> Pose:
+        """Return the pose of the base in the odometry frame."""
+        return self._reckoning.pose if self._from_encoders else self._true.state()[0]
 
     def after_step(self) -> None:
         """Publish odometry, transforms and joint states."""

@@ -21,6 +21,7 @@ from simkit.plugins.options import Options
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
+    from simkit.msgs import TFMessage
     from simkit.plugins.base import Plugin
     from simkit.scene import SceneJoint
 
@@ -67,9 +68,16 @@ class DriveOutputs(SharedByCopies):
         plugin: Drive that publishes; its `load` creates this object.
         options: Selection and names of the outputs.
         joints: Joints whose transforms and states are published.
+        present_pose: Function that returns the present pose of the base in the odometry frame.
     """
 
-    def __init__(self, plugin: Plugin, options: DriveOutputOptions, joints: Sequence[SceneJoint]) -> None:
+    def __init__(
+        self,
+        plugin: Plugin,
+        options: DriveOutputOptions,
+        joints: Sequence[SceneJoint],
+        present_pose: Callable[[], Pose],
+    ) -> None:
         self._sim, self._options = plugin.sim, options
         self._links = [(joint.parent_link, joint.child_link) for joint in joints]
         self._joints = [plugin.sim.joint(joint.scoped) for joint in joints]
@@ -77,6 +85,8 @@ class DriveOutputs(SharedByCopies):
         self._odom = plugin.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
         has_tf = options.publishes_odom_tf or options.publish_wheel_tf
         self._tf = plugin.advertise("/tf", TRANSFORMS) if has_tf else None
+        if self._tf is not None:
+            self._tf.present = lambda: self._transforms(self._sim.time_ns, present_pose(), self._wheel_poses())
         self._states = plugin.advertise("joint_states", JOINT_STATE) if options.publish_wheel_joint_state else None
 
     @property
@@ -97,11 +107,15 @@ class DriveOutputs(SharedByCopies):
         if self._odom is not None and self._odom.wanted:
             self._odom.publish_later(partial(self._odometry, now, pose, twist, covariances or (self._covariance,)))
         if self._tf is not None and self._tf.wanted:
-            found = []
-            for above, below in self._links if options.publish_wheel_tf else ():
-                parent, child = self._sim.link(above), self._sim.link(below)
-                found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
-            self._tf.publish_later(partial(self._transforms, now, pose, found))
+            self._tf.publish_later(partial(self._transforms, now, pose, self._wheel_poses()))
+
+    def _wheel_poses(self) -> list[tuple[str, str, Pose]]:
+        """Return the parent frame, the child frame and the present pose of each published joint."""
+        found = []
+        for above, below in self._links if self._options.publish_wheel_tf else ():
+            parent, child = self._sim.link(above), self._sim.link(below)
+            found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
+        return found
 
     def _odometry(
         self, now: int, pose: Pose | Callable[[], Pose], twist: BodyTwist, covariances: Sequence[Vector]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ from simkit.pose import Pose
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import TFMessage
     from simkit.runtime import Model, Simulation
     from simkit.scene import SceneModel
 
@@ -128,12 +129,17 @@ class RobotStatePublisher(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         self._robot = parent
         self._out = self.advertise("/tf", TRANSFORMS)
+        self._out.present = lambda: self._message()()
         publish_while_subscribed(self, self._out, self._rate, "tell")
 
     def tell(self) -> None:
         """Publish the transforms of all joints."""
+        self._out.publish_later(self._message())
+
+    def _message(self) -> Callable[[], TFMessage]:
+        """Return a function that makes the message of the present transforms."""
         poses: EntityPoses = self.sim.engine.names.shared(f"joint frames {id(self)}", self._poses)
-        self._out.publish_later(partial(transforms_message, self.sim.time_ns, poses.take()))
+        return partial(transforms_message, self.sim.time_ns, poses.take())
 
     def _poses(self) -> EntityPoses:
         frames, joints = frame_names(self.sim), list(self._robot.scene.all_joints())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import math
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -90,6 +91,7 @@ class TwistDrive(ModelPlugin):
         self._child = params.text("child_frame_id", f"{model}/{link}")
         self._odom = self.advertise(read_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
         self._tf = self.advertise(read_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
+        self._tf.present = lambda: transforms(self.sim.time_ns, (self._frame, self._child, self.odometry_pose()))
 
     # ------------------------------------------------------------------ commands
 
@@ -127,6 +129,10 @@ class TwistDrive(ModelPlugin):
                 self.sim.engine.set_control(servo, rim / self._radius)
 
     # ------------------------------------------------------------------ readings
+
+    @abc.abstractmethod
+    def odometry_pose(self) -> Pose:
+        """Return the pose of the base in the odometry frame."""
 
     def publish_odometry(self, pose: Pose, twist: BodyTwist, *covariances: Vector) -> None:
         """Publish the pose of the base and its transform, if the topics have subscribers.

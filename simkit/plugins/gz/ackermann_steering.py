@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.compiler.name_map import ActuatorRef
     from simkit.msgs import Actuators, Float32, Float64
+    from simkit.pose import Pose
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -247,6 +248,9 @@ class AckermannSteering(TwistDrive):
         return max(low, min(high, speed)) if high >= low else speed
 
     # ------------------------------------------------------------------ readings
+
+    def odometry_pose(self) -> Pose:
+        return self._odometry.reckoning.pose
 
     def after_step(self) -> None:
         """Publish odometry and its transform."""

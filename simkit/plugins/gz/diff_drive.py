@@ -25,7 +25,7 @@ from simkit.plugins.drives.odometry_noise import NoisyOdometry, OdometryNoiseOpt
 from simkit.plugins.drives.speed_limits import speed_limits
 from simkit.plugins.drives.twist_drive import Speeds, TwistDrive, WheeledDriveOptions
 from simkit.plugins.options import OptionsOf, block, boolean, texts
-from simkit.pose import Vector
+from simkit.pose import Pose, Vector
 
 _NS = 1_000_000_000
 
@@ -123,6 +123,9 @@ class DiffDrive(TwistDrive):
         self.turn_wheels((linear - half, linear + half))
 
     # ------------------------------------------------------------------ readings
+
+    def odometry_pose(self) -> Pose:
+        return (self._noisy or self._odometry).reckoning.pose
 
     def after_step(self) -> None:
         """Publish odometry and its transform."""

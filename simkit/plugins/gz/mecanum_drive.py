@@ -19,6 +19,7 @@ from simkit.plugins.options import OptionsOf, number, texts
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.msgs import Twist
+    from simkit.pose import Pose
     from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneModel
 
@@ -102,6 +103,9 @@ class MecanumDrive(TwistDrive):
         if not self._settled:
             ahead, left, turn = self.next_speeds()
             self.turn_wheels([a * ahead + b * left + c * turn * self._arm for a, b, c in _SIGNS])
+
+    def odometry_pose(self) -> Pose:
+        return self._odometry.reckoning.pose
 
     def after_step(self) -> None:
         """Publish odometry and its transform."""

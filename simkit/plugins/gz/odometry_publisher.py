@@ -81,6 +81,7 @@ class OdometryPublisher(ModelPlugin):
         self._odom = self.advertise(read_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
         self._noisy = self.advertise(covariance, ODOMETRY)
         self._tf = self.advertise(read_topic(params, "tf_topic", f"{own}/pose"), TRANSFORMS)
+        self._tf.present = lambda: transforms(self.sim.time_ns, (self._frame, self._base, self._reading()[0]))
 
     def before_step(self) -> None:
         """Store the pose of the model."""

@@ -317,6 +317,9 @@ class TrackedVehicle(TwistDrive):
 
     # ------------------------------------------------------------------ readings
 
+    def odometry_pose(self) -> Pose:
+        return self._odometry.at(self.sim.time_ns)[0]
+
     def publish_pose(self) -> None:
         """Publish the odometry of the commanded track speeds."""
         now = self.sim.time_ns

@@ -72,6 +72,8 @@ class ReferenceDrive(Controller):
         self.listen(f"{command}_unstamped", COMMAND_TYPES, self._on_reference)
         self._odometry = self.advertise(odometry, ODOMETRY)
         self._transform = self.advertise(transform, TRANSFORMS) if has_transform else None
+        if self._transform is not None:
+            self._transform.present = lambda: transforms(self.sim.time_ns, self.odometry_frame)
 
     @abc.abstractmethod
     def read_wheels(self, params: Params) -> None:

@@ -14,6 +14,7 @@ from simkit.runtime.communication.action_server import ActionTable
 from simkit.runtime.communication.parameter_server import Parameter, ParameterTable
 from simkit.runtime.communication.script_callback import ScriptCallback
 from simkit.runtime.communication.service_server import ServiceTable
+from simkit.runtime.communication.transform_buffer import TransformBuffer
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.publisher import Listener, Publisher
@@ -118,6 +119,7 @@ class Communication:
         actions: actions, and the goals that were sent.
         live_parameters: parameters of all plugins.
         on_demand: tasks that are scheduled only while they are needed.
+        transforms: transforms of `/tf` and `/tf_static`, received from their first use on.
     """
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
@@ -126,6 +128,7 @@ class Communication:
         self.actions = ActionTable(bus, engine)
         self.live_parameters = ParameterTable(bus, engine)
         self.on_demand = OnDemandTasks(bus, engine.reschedule)
+        self.transforms = TransformBuffer(bus, lambda: engine.time_ns)
 
     def set_active(self, owners: Sequence[object]) -> None:
         """Enable the interfaces of these plugins and sensors and those without an owner; disable the others."""

@@ -44,6 +44,8 @@ class Publisher:
         last: last message of a latched topic.
         pending: function that publishes the deferred messages of the owner; None if nothing is ever deferred.
         check: function that is called for every new reader; None if the owner can always make its messages.
+        present: function that returns the message of the present state, for a reader that cannot wait for the next one;
+            None if the owner has no such function. It changes nothing.
     """
 
     __slots__ = (
@@ -56,6 +58,7 @@ class Publisher:
         "latched",
         "owner",
         "pending",
+        "present",
         "topic",
         "type_name",
     )
@@ -69,6 +72,7 @@ class Publisher:
         self.active = True
         self.pending: Callable[[], None] | None = None
         self.check: Check | None = None
+        self.present: Callable[[], Message] | None = None
 
     @property
     def wanted(self) -> bool:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.publisher import Listener, Publisher
     from simkit.runtime.communication.service_call import CallEnd, Service, ServiceHandler
     from simkit.runtime.communication.subscription import Callback, CallbackPolicy, Message, Subscription
+    from simkit.runtime.communication.transform_buffer import TransformBuffer
     from simkit.runtime.engine.engine import Engine
 
 T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
@@ -94,6 +95,12 @@ class ScriptGraph:
         self.engine.check_open()
         bus = self.communication.bus
         return dict(sorted(({s.topic: "" for s in bus.subscriptions()} | bus.topics()).items()))
+
+    @property
+    def tf(self) -> TransformBuffer:
+        """Poses of frames in other frames, from `/tf` and `/tf_static`; transforms are kept from the first use on."""
+        self.engine.check_open()
+        return self.communication.transforms.open()
 
     # ------------------------------------------------------------------ services
 

@@ -223,3 +223,19 @@ def test_an_error_in_a_service_of_a_script_is_reported_and_raised(
             client.call("/build")
         with pytest.raises(LiveClosed, match="ended: SK-TOPIC-002 .*no bricks left"):
             client.flush()
+
+
+def test_a_client_looks_up_poses_between_frames(client: Client) -> None:
+    fixed = client.advertise("/tf_static", "tf2_msgs/msg/TFMessage")
+    fixed.publish({"transforms": [{"header": {"frame_id": "map"}, "child_frame_id": "hall",
+                                   "transform": {"translation": {"x": 3.0}}}]})  # fmt: skip
+    client.flush()
+    moving = client.advertise("/tf", "tf2_msgs/msg/TFMessage")
+    assert client.tf.frames(timeout=0.0).get("tag", "") == ""
+    for second in (1, 3):
+        stamp = {"frame_id": "hall", "stamp": {"sec": second}}
+        moving.publish({"transforms": [{"header": stamp, "child_frame_id": "tag",
+                                        "transform": {"translation": {"y": float(second)}}}]})  # fmt: skip
+    assert client.tf.lookup("hall", "tag", 2.0, timeout=10.0).position.tolist() == [0.0, 2.0, 0.0]
+    with pytest.raises(LookupError, match=r"unknown frame 'tga' \(did you mean 'tag'\?\)"):
+        client.tf.lookup("hall", "tga", timeout=0.0)

@@ -133,6 +133,8 @@ class DiffDriveController(Controller):
             self.listen("~/cmd_vel_unstamped", COMMAND_TYPES, self._on_command)
         self._odom = self.advertise("~/odom", ODOMETRY)
         self._tf = self.advertise("/tf", TRANSFORMS) if options.publish_tf else None
+        if self._tf is not None:
+            self._tf.present = lambda: transforms(self.sim.time_ns, self.odometry_frame)
         self._limited = self.advertise("~/cmd_vel_out", _STAMPED) if options.publish_limited else None
 
     def speed_bounds(self, topic: str) -> tuple[tuple[float, float], tuple[float, float]] | None:

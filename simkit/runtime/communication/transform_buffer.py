@@ -1,0 +1,77 @@
+"""Transforms of a running simulation: `sim.tf`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Final
+
+from simkit.msgs.message_types import FieldValue
+from simkit.msgs.transform_tree import TransformTree, TreeState
+from simkit.pose import Pose
+from simkit.runtime.communication.publisher import Publisher
+from simkit.runtime.communication.subscription import LazyMessage
+from simkit.runtime.communication.topic_bus import TopicBus
+
+_TOPICS: Final = {"/tf_static": True, "/tf": False}
+"""Topics of transforms, and whether their transforms are valid at all times."""
+
+BufferState = tuple[int | None, TreeState] | None
+"""Time from which on transforms are received, and the transforms; None before the first use."""
+
+
+class TransformBuffer(TransformTree):
+    """Transforms of a simulation. Nothing is received, and nothing is published for it, before its first use.
+
+    Args:
+        bus: topic bus.
+        now_ns: function that returns the simulated time [ns].
+    """
+
+    def __init__(self, bus: TopicBus, now_ns: Callable[[], int]) -> None:
+        super().__init__()
+        self._bus, self._now_ns = bus, now_ns
+        self._is_open = self._has_present = False
+
+    def open(self) -> TransformBuffer:
+        """Begin to receive transforms, if this has not begun; the present transforms are known at once."""
+        if not self._is_open:
+            self._is_open = True
+            for topic, is_static in _TOPICS.items():
+                self._bus.tap(topic, partial(self.take, is_static=is_static))
+        if not self._has_present:
+            self._has_present, self.since_ns = True, self._now_ns()
+            self._take_present()
+        return self
+
+    def _take_present(self) -> None:
+        """Store the present transforms, because the next message of a publisher may be far away."""
+        for topic, is_static in _TOPICS.items():
+            for _, end, _, _ in tuple(self._bus.endpoints(topic)):
+                if isinstance(end, Publisher) and end.active:
+                    message = end.last if end.present is None else end.present()
+                    self.take(message.get() if type(message) is LazyMessage else message, is_static=is_static)
+
+    def lookup(self, target: str, source: str, time: FieldValue = None) -> Pose:
+        """Return the pose of the frame `source` in the frame `target`; see `TransformTree.lookup`."""
+        return super(TransformBuffer, self.open()).lookup(target, source, time)
+
+    def frames(self) -> dict[str, str]:
+        """Return the parent of each frame, sorted by name; an empty text for a root."""
+        return super(TransformBuffer, self.open()).frames()
+
+    # ------------------------------------------------------------------ state
+
+    def get_state(self) -> BufferState:
+        """Return the transforms for a snapshot; None before the first use."""
+        return (self.since_ns, self.copied()) if self._has_present else None
+
+    def set_state(self, state: BufferState) -> None:
+        """Restore a state from `get_state`.
+
+        The state before the first use has no transforms. They are read at the next use, because plugins have their
+        restored state only then.
+        """
+        self._has_present = state is not None
+        self.since_ns, frames = (None, ()) if state is None else state
+        self.replace(frames)
