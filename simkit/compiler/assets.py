@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.meshes.companion_files import Pixels, read_pixels
+from simkit.compiler.meshes.convex_decomposition import ConvexBodies
 from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshPart
 from simkit.scene import Material, SceneVisual
 
@@ -24,6 +25,7 @@ AssetKey = tuple[str, str]
 """Kind and MuJoCo name of an asset."""
 
 _names: WeakKeyDictionary[MeshPart, dict[bool, str]] = WeakKeyDictionary()
+_body_names: WeakKeyDictionary[ConvexBodies, list[str]] = WeakKeyDictionary()
 
 
 class Assets:
@@ -62,6 +64,16 @@ class Assets:
         if self._is_new("mesh", names[has_uv]):
             self._add_mesh(names[has_uv], mesh_bytes(part.vertices, part.faces, uv))
         return names[has_uv]
+
+    def convex_bodies(self, bodies: ConvexBodies) -> list[str]:
+        """Add the convex bodies of a mesh and return their names, which are computed once for each mesh."""
+        names = _body_names.get(bodies)
+        if names is None:
+            names = _body_names[bodies] = ["mesh#" + _digest(*shape, None) for shape in bodies.shapes]
+        for name, shape in zip(names, bodies.shapes, strict=True):
+            if self._is_new("mesh", name):
+                self._add_mesh(name, mesh_bytes(*shape))
+        return names
 
     def _add_mesh(self, name: str, content: bytes) -> None:
         """Add a mesh as a file in memory: MuJoCo caches the conversion of a file and does not repeat it.

@@ -20,6 +20,7 @@ from simkit.compiler.meshes.mesh_part import Colour, MeshFileError, MeshPart, ha
 from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
 from simkit.compiler.name_map import GeomOwner, ModelRecord
 from simkit.compiler.wheel_cylinders import RoundMesh, TurningAxis, round_mesh
+from simkit.compiler.world_geoms import WorldGeoms
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
 from simkit.scene import Cone, Empty, Geometry, Heightmap, Material, Mesh, Plane, Polyline, SceneCollision, SceneVisual
@@ -41,6 +42,7 @@ class GeomParent:
         fixed: True if only the user moves the body (world geoms and mocap bodies).
         mass: mass of the moving tree [kg]; 0 if fixed.
         axis: axis about which the link turns without limits; None if there is no such axis.
+        is_world: True if the body is the world body.
     """
 
     body: mujoco.MjsBody
@@ -49,6 +51,7 @@ class GeomParent:
     mass: float
     link: str
     axis: TurningAxis | None = None
+    is_world: bool = False
 
 
 GeomSettings = dict[str, Any]
@@ -59,6 +62,7 @@ class GeomWriter:
     """Writer of the geoms of one top-level model. The record receives each geom's name with its owner.
 
     Args:
+        world: writer of the geoms of the world body.
         assets: assets of the spec.
         record: record of the model.
         timestep: length of a step [s].
@@ -67,19 +71,26 @@ class GeomWriter:
     """
 
     def __init__(
-        self, assets: Assets, record: ModelRecord, timestep: float, diagnostics: Diagnostics, ambient: Colour
+        self,
+        world: WorldGeoms,
+        assets: Assets,
+        record: ModelRecord,
+        timestep: float,
+        diagnostics: Diagnostics,
+        ambient: Colour,
     ) -> None:
         self.assets, self.record, self.timestep, self.diagnostics = assets, record, timestep, diagnostics
-        self._ambient = ambient
+        self._world, self._ambient = world, ambient
         self._count: Counter[str] = Counter()
 
-    def _add(self, parent: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> mujoco.MjsGeom:
+    def _add(self, parent: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> None:
         base = owner.scoped + ("#v" if owner.is_visual else "#")
         name = f"{base}{self._count[base]}"
         self._count[base] += 1
         self.record.geoms[name] = owner
         local = parent.offset @ pose
-        return parent.body.add_geom(name=name, pos=local.position, quat=local.quaternion, mass=0.0, **settings)
+        add = self._world.add if parent.is_world else parent.body.add_geom
+        add(name=name, pos=local.position, quat=local.quaternion, mass=0.0, **settings)
 
     # ------------------------------------------------------------------ collisions
 
@@ -144,8 +155,7 @@ class GeomWriter:
         for severity, code, text, hint in bodies.findings:
             report_once(self.diagnostics, severity, code, f"{_collision_title(shape)} {text}", collision.where, hint)
         settings = solid if bodies.is_exact else {**solid, "group": COLLISION_CONTACT}
-        for corners, triangles in bodies.shapes:
-            name = self.assets.surface(corners, triangles)
+        for name in self.assets.convex_bodies(bodies):
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
         if not bodies.is_exact:
             drawn: GeomSettings = {"contype": 0, "conaffinity": 0, "group": COLLISION_RAY}

@@ -18,6 +18,7 @@ from simkit.compiler.lights import add_light, report_light
 from simkit.compiler.name_map import LightBinding, LinkBinding, ModelRecord
 from simkit.compiler.refused_inertias import BodyInertia, plan_inertials
 from simkit.compiler.wheel_cylinders import turning_axis
+from simkit.compiler.world_geoms import WorldGeoms
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY
 from simkit.scene import SceneJoint, SceneLink, SceneModel, SceneWorld
@@ -30,12 +31,17 @@ class ModelWriter:
     """Writer of one model that fills its record."""
 
     def __init__(
-        self, spec: mujoco.MjSpec, assets: Assets, record: ModelRecord, world: SceneWorld, diagnostics: Diagnostics
+        self,
+        world_geoms: WorldGeoms,
+        assets: Assets,
+        record: ModelRecord,
+        world: SceneWorld,
+        diagnostics: Diagnostics,
     ) -> None:
-        self.spec, self.record, self.world, self.diagnostics = spec, record, world, diagnostics
-        step = float(spec.option.timestep)
-        self.geoms = GeomWriter(assets, record, step, diagnostics, world.surroundings.ambient)
-        self.joints = JointWriter(spec, record, step, diagnostics)
+        self.spec, self.record, self.world, self.diagnostics = world_geoms.spec, record, world, diagnostics
+        step = float(self.spec.option.timestep)
+        self.geoms = GeomWriter(world_geoms, assets, record, step, diagnostics, world.surroundings.ambient)
+        self.joints = JointWriter(self.spec, record, step, diagnostics)
 
     def write(self, joints: list[SceneJoint]) -> None:
         """Add the whole model with `joints` (its own joints and its joints to the world)."""
@@ -119,7 +125,8 @@ class ModelWriter:
             binding = replace(binding, body_name=link.scoped, offset=IDENTITY)
             self.record.root_bodies.append(link.scoped)
         self.record.links[link.scoped] = binding
-        self._add_contents(GeomParent(body, binding.offset, True, 0.0, link.scoped), link)
+        is_world = binding.body_name == WORLD
+        self._add_contents(GeomParent(body, binding.offset, True, 0.0, link.scoped, is_world=is_world), link)
 
     def _bodies(self, tree: KinematicTree) -> None:
         model = self.record.scene

@@ -22,6 +22,7 @@ from simkit.compiler.model_writer import FIRST_OWN_BIT, PAIRS_MOST, ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
 from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_armature
 from simkit.compiler.state_transfer import transfer_state
+from simkit.compiler.world_geoms import WorldGeoms
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import SceneJoint, SceneModel, SceneWorld
@@ -53,7 +54,6 @@ class SpecBuilder:
         diagnostics: collection for approximations and errors.
 
     Attributes:
-        spec: MuJoCo's specification. `copy` makes its element handles invalid, so look elements up by name.
         records: elements of each top-level model, by scoped name; those of the world under the empty name.
         find_file: function that returns the file of a URI, relative to a folder; None for a missing one.
         files_read: files that plugins have read.
@@ -65,29 +65,35 @@ class SpecBuilder:
         self.find_file: FileFinder = _existing_file
         self.files_read: list[Path] = []
         self.parameter_files: tuple[Any, ...] = ()
-        self.spec = mujoco.MjSpec()
-        self.spec.modelname = world.name
-        self.assets = Assets(self.spec)
+        spec = mujoco.MjSpec()
+        spec.modelname = world.name
+        self._world_geoms, self.assets = WorldGeoms(spec), Assets(spec)
         self.records: dict[str, ModelRecord] = {"": ModelRecord(SceneModel(name="", scoped="", pose_world=Pose()))}
         self._names: NameMap | None = None
         self._cut: list[tuple[SceneJoint, bool]] = []
-        apply_options(self.spec, world, diagnostics)
+        apply_options(spec, world, diagnostics)
         own = mjcf_attachment.models_of_own_file(world)
-        mjcf_attachment.adopt_settings(self.spec, world)
+        mjcf_attachment.adopt_settings(spec, world)
         for light in world.lights:
             if not own:
-                add_light(self.spec.worldbody, light, light.pose_world, world.surroundings.shadows)
+                add_light(spec.worldbody, light, light.pose_world, world.surroundings.shadows)
                 report_light(light, world, diagnostics)
             self.records[""].lights[light.scoped] = LightBinding(light.scoped, light, "")
         if own:
             self.records.update({model.scoped: ModelRecord(model) for model in own})
-            mjcf_attachment.attach_world(self.spec, [self.records[model.scoped] for model in own])
+            mjcf_attachment.attach_world(spec, [self.records[model.scoped] for model in own])
         with progress.task("building models", len(world.models)) as task:
             for model in world.models:
                 if model not in own:
                     self.add_model(model)
                 task.advance()
         self._join_models()
+
+    @property
+    def spec(self) -> mujoco.MjSpec:
+        """MuJoCo's specification. `copy` makes its element handles invalid, so look elements up by name."""
+        self._world_geoms.attach_waiting()
+        return self._world_geoms.spec
 
     # ------------------------------------------------------------------ models
 
@@ -116,7 +122,7 @@ class SpecBuilder:
             self._rejoin_model(model)
 
     def _writer(self, record: ModelRecord) -> ModelWriter:
-        return ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
+        return ModelWriter(self._world_geoms, self.assets, record, self.world, self.diagnostics)
 
     def _write_model(self, record: ModelRecord) -> None:
         """Write a model, then nested models with a specification of their own, then the joints between them."""
@@ -144,18 +150,14 @@ class SpecBuilder:
         spec = self.spec
         for ref in record.actuators:
             spec.delete(spec.actuator(ref.name))
-        for name in record.equalities:
-            spec.delete(spec.equality(name))
-        for name in record.excludes:
-            spec.delete(spec.exclude(name))
+        named = (spec.equality, record.equalities), (spec.exclude, record.excludes), (spec.site, record.world_sites)
+        for element, names in named:
+            for name in names:
+                spec.delete(element(name))
         for light in record.lights.values():
             if light.body_name == WORLD:
                 spec.delete(spec.light(light.scoped))
-        for name in record.world_sites:
-            spec.delete(spec.site(name))
-        for name, owner in record.geoms.items():
-            if record.links[owner.link].body_name == WORLD:
-                spec.delete(spec.geom(name))
+        self._world_geoms.remove(n for n, o in record.geoms.items() if record.links[o.link].body_name == WORLD)
         for name in record.root_bodies:
             spec.delete(spec.body(name))
         mjcf_attachment.detach_model(spec, record)
@@ -388,10 +390,9 @@ class SpecBuilder:
         """Return an independent builder with the same content."""
         other = SpecBuilder.__new__(SpecBuilder)
         other.world, other.diagnostics = self.world, self.diagnostics
-        other.find_file, other.parameter_files = self.find_file, self.parameter_files
-        other.files_read = self.files_read
-        other.spec = self.spec.copy()
-        other.assets = Assets(other.spec, self.assets.known)
+        other.find_file, other.files_read, other.parameter_files = self.find_file, self.files_read, self.parameter_files
+        spec = self.spec.copy()
+        other._world_geoms, other.assets = self._world_geoms.copy_to(spec), Assets(spec, self.assets.known)
         other.records = {name: record.copy() for name, record in self.records.items()}
         other._names = None
         other._cut = list(self._cut)
