@@ -21,7 +21,6 @@ from simkit.plugins.options import Options
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
-    from simkit.msgs import TFMessage
     from simkit.plugins.base import Plugin
     from simkit.scene import SceneJoint
 
@@ -103,7 +102,7 @@ class DriveOutputs(SharedByCopies):
             twist: Twist in the axes of the base.
             covariances: Covariances of the pose and of the twist; none for the variances of the options.
         """
-        options, now = self._options, self._sim.time_ns
+        now = self._sim.time_ns
         if self._odom is not None and self._odom.wanted:
             self._odom.publish_later(partial(self._odometry, now, pose, twist, covariances or (self._covariance,)))
         if self._tf is not None and self._tf.wanted:
