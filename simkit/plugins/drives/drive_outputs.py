@@ -75,7 +75,7 @@ class DriveOutputs(SharedByCopies):
         plugin: Plugin,
         options: DriveOutputOptions,
         joints: Sequence[SceneJoint],
-        present_pose: Callable[[], Pose],
+        present_pose: Callable[[], Pose | Callable[[], Pose]],
     ) -> None:
         self._sim, self._options = plugin.sim, options
         self._links = [(joint.parent_link, joint.child_link) for joint in joints]
