@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from simkit.params import Params
     from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
     from simkit.pose import Pose
+    from simkit.recording.export.data_frames import to_dataframe
     from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
 
@@ -59,6 +60,7 @@ __all__ = [
     "check",
     "describe",
     "load",
+    "to_dataframe",
 ]
 
 # Lazy imports: MuJoCo takes most of the import time and NumPy most of the rest. Test runs that open no world do not pay
@@ -78,6 +80,7 @@ _MODULES = {
     ),
     "simkit.params": ("Params",),
     "simkit.pose": ("Pose",),
+    "simkit.recording.export.data_frames": ("to_dataframe",),
     "simkit.run_spec": ("RunSpec",),
     "simkit.plugins.base": ("Plugin", "WorldPlugin", "ModelPlugin", "SensorPlugin", "VisualPlugin"),
 }

@@ -80,6 +80,7 @@ HEAVY = {
     "numpy": "0.11 s; the pytest plugin and `--help` do without",
     "OpenGL": "needs a renderer",
     "PIL": "only pictures need it",
+    "pandas": "optional: the extra `pandas`",
     "pvlib": "optional: the extra `sun`",
     "pyarrow": "optional: the extra `parquet`",
     "pytest": "only tests have it",

@@ -26,6 +26,8 @@ from simkit.recording.bags.type_definitions import define_types, definition_stor
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
+    from simkit.msgs.data_frames import DataFrame
+
 __all__ = ["LATEST_SIMULATED_TIME", "BagMessage", "BagReader", "BagTopic", "open_bag_to_read"]
 
 LATEST_SIMULATED_TIME: Final = 100_000_000 * 1_000_000_000
@@ -154,6 +156,20 @@ class BagReader:
             reason = str(error).strip() or type(error).__name__
             text = f"{self.path}: a message on {message.topic} is not a valid {message.type_name}: {reason:.300}"
             raise InputError(f"SK-CLI-036 {text}", _UNKNOWN_TYPE) from None
+
+    def to_dataframe(self, topic: str) -> DataFrame:
+        """Return the messages of a topic as a pandas DataFrame, one row for each; see `simkit.to_dataframe`.
+
+        Raises:
+            InputError: SK-CLI-030 the topic is not in the bag; SK-CLI-035 the bag is damaged.
+        """
+        from simkit.msgs.data_frames import to_dataframe  # imported late: bags are listed without NumPy
+
+        messages = list(self.messages([topic]))
+        times = [message.time_ns for message in messages]
+        types = dict.fromkeys(message.type_name for message in messages)
+        stores = [self.store_of(name) for name in types]
+        return to_dataframe([self.decode(message) for message in messages], times, *stores[:1])
 
     def store_of(self, type_name: str) -> Typestore:
         """Return the type store for a type: the bag's own if its definition differs from simkit's, else simkit's.

@@ -16,11 +16,12 @@ from simkit import progress
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.input_file import read_input_text
+from simkit.msgs.message_columns import TEXT, Column, columns_of
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.reader import BagTopic, open_bag_to_read
 from simkit.recording.export.images import MessageWriter, NpzFile, PngFiles, VideoFile
 from simkit.recording.export.point_clouds import CloudFiles
-from simkit.recording.export.tables import TEXT, WRITERS, Column, check_parquet, columns_of
+from simkit.recording.export.tables import WRITERS, check_parquet
 from simkit.writers.atomic_output import abandoned_folders, current_umask, unfinished_folder, write_obstacle
 
 if TYPE_CHECKING:

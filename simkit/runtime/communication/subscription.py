@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any, Final, Literal, Protocol
 
 from simkit import msgs
+from simkit.msgs.data_frames import DataFrame, to_dataframe
 from simkit.runtime.communication.journal import JournalKeeper
 
 Message = Any
@@ -173,6 +174,10 @@ class Subscription:
             self._messages.pop()
             return self.latest
         return newest
+
+    def to_dataframe(self) -> DataFrame:
+        """Return the messages as a pandas DataFrame, one row for each; see `simkit.to_dataframe`."""
+        return to_dataframe(self.messages)
 
     def settle(self) -> None:
         """Make every message that is not made yet."""
