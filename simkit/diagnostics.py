@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import functools
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from simkit.diagnostic_record import NOWHERE, TEXT_SOURCE, Diagnostic, Severity, Where
 from simkit.errors import LoadError
@@ -34,7 +34,12 @@ class Diagnostics:
     """Collection of diagnostics in order; identical diagnostics are stored once.
 
     After `MOST_ERRORS` errors LoadError is raised, because a search for a hundred thousand errors would take minutes.
+
+    Attributes:
+        on_new: function that receives each new diagnostic; None without one.
     """
+
+    on_new: Callable[[Diagnostic], None] | None = None
 
     def __init__(self, items: Iterable[Diagnostic] = ()) -> None:
         self._items: dict[Diagnostic, None] = {}
@@ -76,6 +81,8 @@ class Diagnostics:
             self._errors += item.severity == "error"
             if self._successor is not None:
                 self._successor._put(item)
+            if self.on_new is not None:
+                self.on_new(item)
 
     def error(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
         self.add("error", code, message, where, hint)

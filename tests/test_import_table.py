@@ -32,7 +32,7 @@ SMALL_MODULES = frozenset(
         "params",
         "pose",
     }
-    | {"progress", "registry", "run_spec", "save_path", "version", "yaml_reader"}
+    | {"progress", "registry", "run_spec", "save_path", "topic_logger", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""
 

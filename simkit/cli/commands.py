@@ -43,6 +43,7 @@ COMMANDS = {
     "param": "List, read and set the parameters of a running simulation.",
     "action": "List the actions of a running simulation and send goals.",
     "node": "List the nodes of a running simulation.",
+    "log": "Print the log messages of a running simulation or of a bag.",
     "interface": "List and show the types of messages, services and actions.",
     "model": "Show models, poses and joints of a running simulation.",
     "ros": "Connect a running simulation to ROS 2.",

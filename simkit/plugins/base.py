@@ -12,7 +12,6 @@ A plugin is a class with a `load` method; all other methods are optional:
 from __future__ import annotations
 
 import abc
-import logging
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, TypeVar
@@ -25,6 +24,7 @@ from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options
 from simkit.plugins.ros_names import RosNames
 from simkit.plugins.unread_parameters import report_unread
+from simkit.topic_logger import TopicLogger
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef, SpecBuilder
@@ -98,7 +98,7 @@ class Plugin(abc.ABC):
     params: Params
     where: Where = NOWHERE
     ros: RosNames
-    log: logging.Logger
+    log: TopicLogger
 
     def __init__(self, **values: Any) -> None:
         """Create a plugin in Python instead of in a file.
@@ -305,7 +305,7 @@ class Plugin(abc.ABC):
             from simkit.runtime.engine.plugin_faults import PLUGIN_ERROR_POLICIES
 
             self.on_error = "disable" if self.params.choice("on_error", PLUGIN_ERROR_POLICIES) == "disable" else "stop"
-        self.log = logging.getLogger(f"simkit.plugins.{self.name}")
+        self.log = TopicLogger(f"simkit.plugins.{self.name}", self)
 
     def _set_before_step_rate(self, rate: float | None) -> None:
         """Change the rate of `before_step` [Hz] from now on."""

@@ -123,6 +123,7 @@ class Simulation(ScriptGraph, InProcess):
 
     def _advance(self, target: int, *, is_served: bool = False) -> None:
         self.engine.check_open()
+        self.communication.log_topic.use_thread()
         journal = self._bus.journal
         if journal is not None:
             journal.before_steps()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from simkit.bridges.live.connection import ClientConnection
 from simkit.bridges.live.protocol import JsonObject
+from simkit.runtime.communication.node_names import name_part, node_of
 
 if TYPE_CHECKING:
     from simkit.pose import Pose
@@ -132,7 +132,7 @@ class NodeNames:
     """Names of the nodes that own publishers, subscribers, services and actions."""
 
     def __init__(self, sim: Simulation, clients: Iterable[ClientConnection]) -> None:
-        self._world = "/" + _name_part(sim.world.name)
+        self._world = "/" + name_part(sim.world.name)
         self._nodes: dict[int, str] = {
             id(p.owner): node
             for node, found in sim.communication.parameters.items()
@@ -153,14 +153,4 @@ class NodeNames:
         known = self._nodes.get(id(owner))
         if known is not None:
             return known
-        scoped, name = str(getattr(owner, "scoped", "")), str(getattr(owner, "name", ""))
-        parts = scoped.split("::") if scoped else []
-        if not parts or parts[-1] != name:
-            parts.append(name)
-        words = [_name_part(part) for part in parts if part]
-        return "/" + "/".join(words) if words else self._world
-
-
-def _name_part(text: str) -> str:
-    """Convert a text to one component of a ROS name."""
-    return re.sub(r"[^A-Za-z0-9_]+", "_", text).strip("_") or "_"
+        return node_of(owner) or self._world

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import abc
-import logging
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -15,6 +14,7 @@ from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros2_control.hardware_interfaces import InterfaceSelection
 from simkit.runtime.communication.parameter_server import Parameter
+from simkit.topic_logger import TopicLogger
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
@@ -98,7 +98,7 @@ class Controller(SharedByCopies, abc.ABC):
     states: InterfaceSelection
     commands: InterfaceSelection
     update_rate: int = 0
-    log: logging.Logger
+    log: TopicLogger
     endpoints: ControllerEndpoints
 
     def __init__(self, name: str, plugin: Plugin, params: Params, hardware: Hardware) -> None:
@@ -111,7 +111,7 @@ class Controller(SharedByCopies, abc.ABC):
             hardware: joints and sensors that the controller may use.
         """
         self.name, self.plugin, self.params, self.hardware = name, plugin, params, hardware
-        self.log = logging.getLogger(f"simkit.plugins.ros2_control.{name}")
+        self.log = TopicLogger(f"simkit.plugins.ros2_control.{name}", plugin, f"{plugin.ros.namespace}/{name}")
         self.endpoints = ControllerEndpoints()
 
     # ------------------------------------------------------------------ methods that a controller implements

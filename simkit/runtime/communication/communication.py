@@ -11,10 +11,12 @@ from simkit.errors import MessageError
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
 from simkit.runtime.communication.action_server import ActionTable
+from simkit.runtime.communication.log_topic import LogTopic
 from simkit.runtime.communication.parameter_server import Parameter, ParameterTable
 from simkit.runtime.communication.script_callback import ScriptCallback
 from simkit.runtime.communication.service_server import ServiceTable
 from simkit.runtime.communication.transform_buffer import TransformBuffer
+from simkit.topic_logger import TopicLogger
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.publisher import Listener, Publisher
@@ -120,6 +122,7 @@ class Communication:
         live_parameters: parameters of all plugins.
         on_demand: tasks that are scheduled only while they are needed.
         transforms: transforms of `/tf` and `/tf_static`, received from their first use on.
+        log_topic: topic `/rosout`.
     """
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
@@ -129,6 +132,9 @@ class Communication:
         self.live_parameters = ParameterTable(bus, engine)
         self.on_demand = OnDemandTasks(bus, engine.reschedule)
         self.transforms = TransformBuffer(bus, lambda: engine.time_ns)
+        self.log_topic = LogTopic(bus, engine, self.live_parameters)
+        engine.log = TopicLogger("simkit", self, "simkit")
+        self.log_topic.hear(engine.reports)
 
     def set_active(self, owners: Sequence[object]) -> None:
         """Enable the interfaces of these plugins and sensors and those without an owner; disable the others."""

@@ -205,6 +205,11 @@ class ParameterTable:
     def _is_free(self, node: str, owner: object) -> bool:
         return all(p.owner is owner or not p.active for p in self._parameters.get(node, {}).values())
 
+    def node_with(self, owner: object) -> str:
+        """Return the first node with a parameter of a plugin; empty if there is none."""
+        found = (p.node for table in self._parameters.values() for p in table.values() if p.owner is owner)
+        return next(found, "")
+
     def nodes(self) -> dict[str, dict[str, AnyParameter]]:
         """Return the parameters by node and name, sorted by node."""
         active = ((n, [p for p in self._parameters[n].values() if p.active]) for n in sorted(self._parameters))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -42,6 +43,7 @@ class Publisher:
 
     Attributes:
         last: last message of a latched topic.
+        history: messages for later subscribers of a latched topic, instead of the last one; None for the last one.
         pending: function that publishes the deferred messages of the owner; None if nothing is ever deferred.
         check: function that is called for every new reader; None if the owner can always make its messages.
         present: function that returns the message of the present state, for a reader that cannot wait for the next one;
@@ -54,6 +56,7 @@ class Publisher:
         "_readers",
         "active",
         "check",
+        "history",
         "last",
         "latched",
         "owner",
@@ -69,6 +72,7 @@ class Publisher:
         self._bus, self.topic, self.type_name, self.latched, self.owner = bus, topic, type_name, latched, owner
         self._readers, self._publishers = sides
         self.last: Message = None
+        self.history: deque[Message] | None = None
         self.active = True
         self.pending: Callable[[], None] | None = None
         self.check: Check | None = None
@@ -163,6 +167,15 @@ class Publisher:
         """Pass on a message that nobody uses at once; see `LazyMessage.can_wait` and `is_live`."""
         for receive in self._readers.receivers:
             receive(later)
+
+    def send_kept(self, receive: Callable[[Message], object]) -> None:
+        """Pass the last message of a latched topic, or its history, to a new subscriber."""
+        if self.history is None and isinstance(self.last, LazyMessage):
+            self.last = self.last.get()
+        kept = (self.last,) if self.history is None else tuple(self.history)
+        for message in kept:
+            if message is not None:
+                receive(message.get() if isinstance(message, LazyMessage) else message)
 
     def __repr__(self) -> str:
         heard = f"{self.subscribers} subscriber{'' if self.subscribers == 1 else 's'}"

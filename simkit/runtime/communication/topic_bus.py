@@ -19,7 +19,6 @@ from simkit.runtime.communication.subscription import (
     MAX_KEPT_MESSAGES,
     Callback,
     CallbackPolicy,
-    LazyMessage,
     Message,
     Settle,
     StreamSubscription,
@@ -369,10 +368,8 @@ class TopicBus:
         readers.readers.append(subscription)
         readers.count()
         for publisher in self._publishers.get(topic, ()):
-            if publisher.latched and publisher.active and publisher.last is not None:
-                if isinstance(publisher.last, LazyMessage):
-                    publisher.last = publisher.last.get()
-                subscription.receive(publisher.last)
+            if publisher.latched and publisher.active:
+                publisher.send_kept(subscription.receive)
         self._report_change(topic)
         return subscription
 

@@ -1,0 +1,139 @@
+"""Topic `/rosout`: log messages of plugins and diagnostics of simkit as `rcl_interfaces/msg/Log`.
+
+The newest 1000 messages are sent to later subscribers, as ROS 2 does. Messages below the level of the Python logger
+are made only while the topic has subscribers, and before the first step.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from functools import partial
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from simkit import msgs
+from simkit.runtime.communication.node_names import node_of
+from simkit.runtime.communication.subscription import LazyMessage, Message
+
+if TYPE_CHECKING:
+    from simkit.diagnostics import Diagnostic, Diagnostics
+    from simkit.runtime.communication.parameter_server import ParameterTable
+    from simkit.runtime.communication.publisher import Publisher
+    from simkit.runtime.communication.topic_bus import TopicBus
+    from simkit.runtime.engine.engine import Engine
+
+ROSOUT: Final = "/rosout"
+LOG: Final = "rcl_interfaces/msg/Log"
+KEPT_MESSAGES: Final = 1000
+"""Number of messages for later subscribers, as with ROS 2's QoS of the topic."""
+
+_LEVELS: Final = {"error": logging.ERROR, "warning": logging.WARNING, "note": logging.INFO}
+
+
+def open_own_topic(bus: TopicBus, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
+    """Open a topic of the simulation itself; recorders and counters ignore it unless the user names it."""
+    with bus.owned_by(bus):  # the messages are no external inputs
+        publisher = bus.advertise(topic, type_name, latched=latched)
+    publisher.owner = None  # no plugin whose removal would disable the topic
+    bus.aside.add(topic)
+    return publisher
+
+
+class _Entry(NamedTuple):
+    """Log message with the fields of `rcl_interfaces/msg/Log`; `owner` is its plugin or the name of its node."""
+
+    time_ns: int
+    level: int
+    owner: object
+    text: str
+    file: str
+    function: str
+    line: int
+
+
+class LogTopic:
+    """Publisher of `/rosout`.
+
+    Args:
+        bus: topic bus.
+        engine: engine of the simulation.
+        parameters: live parameters, whose nodes are the nodes of the plugins.
+    """
+
+    def __init__(self, bus: TopicBus, engine: Engine, parameters: ParameterTable) -> None:
+        self._engine, self._parameters = engine, parameters
+        self._publisher = open_own_topic(bus, ROSOUT, LOG, latched=True)
+        self._publisher.history = self._history = deque[Message](maxlen=KEPT_MESSAGES)
+        self._waiting: deque[_Entry] = deque(maxlen=KEPT_MESSAGES)
+        self._thread = threading.get_ident()
+        self._is_publishing = False
+
+    def hear(self, reports: Diagnostics) -> None:
+        """Publish all present and future diagnostics of a collection."""
+        for item in reports:
+            self._add_diagnostic(item)
+        reports.on_new = self._add_diagnostic
+
+    @property
+    def is_wanted(self) -> bool:
+        """True if messages that no Python handler prints are needed: for subscribers, and before the first step."""
+        return self._engine.tick == 0 or self._publisher.subscribers > 0
+
+    def use_thread(self) -> None:
+        """Publish from the present thread from now on, and publish messages that other threads have logged."""
+        self._thread = threading.get_ident()
+        while self._waiting:
+            self._publish(self._waiting.popleft())
+
+    def add_record(self, owner: object, record: logging.LogRecord) -> None:
+        """Publish a message of a Python logger."""
+        text = record.getMessage()
+        if record.exc_info:
+            text = f"{text}\n{logging.Formatter().formatException(record.exc_info)}"
+        level = max(logging.DEBUG, min(logging.CRITICAL, record.levelno // 10 * 10))
+        now, function = self._engine.time_ns, record.funcName or ""
+        self._add(_Entry(now, level, owner, text, record.pathname, function, record.lineno))
+
+    def _add_diagnostic(self, item: Diagnostic) -> None:
+        text = f"{item.code} {item.message}" + (f"; help: {item.hint}" if item.hint else "")
+        now, level = self._engine.time_ns, _LEVELS[item.severity]
+        self._add(_Entry(now, level, "simkit", text, item.file or "", "", item.line or 0))
+
+    def _add(self, entry: _Entry) -> None:
+        if threading.get_ident() != self._thread:
+            self._waiting.append(entry)  # subscribers are called only by the thread of the simulation
+        else:
+            self._publish(entry)
+
+    def _publish(self, entry: _Entry) -> None:
+        message = LazyMessage(partial(self._message, entry))
+        self._history.append(message)
+        if self._publisher.subscribers and not self._is_publishing:  # a subscriber may log, too
+            self._is_publishing = True
+            try:
+                self._publisher.publish(message.get())
+            finally:
+                self._is_publishing = False
+
+    def _message(self, entry: _Entry) -> Message:
+        return msgs.make(
+            LOG,
+            stamp=msgs.time(entry.time_ns),
+            level=entry.level,
+            name=self._logger_name(entry.owner),
+            msg=_valid(entry.text),
+            file=_valid(entry.file),
+            function=_valid(entry.function),
+            line=max(0, entry.line),
+        )
+
+    def _logger_name(self, owner: object) -> str:
+        """Return the name of a node's logger in ROS: `tb3.diff_drive` for the node `/tb3/diff_drive`."""
+        node = owner if isinstance(owner, str) else self._parameters.node_with(owner) or node_of(owner)
+        return node.strip("/").replace("/", ".")
+
+
+def _valid(text: str) -> str:
+    """Replace what UTF-8 cannot encode, such as half of a surrogate pair."""
+    return text.encode("utf-8", "replace").decode()
