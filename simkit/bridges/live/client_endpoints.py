@@ -11,13 +11,15 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit import msgs
-from simkit.bridges.live.connection import MOST_OPEN, ClientConnection, ClientSubscription
+from simkit.bridges.live.connection import MOST_OPEN, ClientConnection
+from simkit.bridges.live.message_log import ClientSubscription, MessageLog
 from simkit.bridges.live.protocol import TELL, JsonObject, LiveError
 from simkit.errors import MessageError
 from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_types import Message
 
 if TYPE_CHECKING:
+    from simkit.bridges.live.topic_feed import TopicFeeds
     from simkit.runtime.communication.action_server import Action, GoalHandle
     from simkit.runtime.communication.parameter_server import Parameter
     from simkit.runtime.communication.publisher import Listener
@@ -36,10 +38,12 @@ class EndpointHost(Protocol):
 
     Attributes:
         sim: simulation.
+        feeds: topics that clients subscribe to.
         is_polling: True while `poll` processes data.
     """
 
     sim: Simulation
+    feeds: TopicFeeds
     is_polling: bool
 
     def poll(self, wait: float = 0.0) -> bool:
@@ -251,20 +255,23 @@ class ClientInput(ClientEndpoint):
     ) -> None:
         super().__init__(host, peer, number)
         self._subscribed = ClientSubscription(peer, number, topic, depth)
+        self._log = MessageLog(host.feeds.memory)
         self.opened: Listener = self.sim.communication.listen(topic, types, self._take, records=False)
+        self._log.add(self._subscribed)
 
     def _take(self, message: Message) -> None:
         try:
             data = msgs.serialize(message)
         except MessageError:
-            self._subscribed.lost += 1
+            self._log.count_lost()
         else:
-            self.peer.queue_message(self._subscribed, self.sim.time_ns, msgs.type_name(message), data)
+            self._log.append(self.sim.time_ns, msgs.type_name(message), data)
 
     def close(self) -> None:
         """Close the command input, and drop its queued messages."""
         self.opened.close()
         self.peer.drop_waiting(self._subscribed)
+        self._subscribed.close()
 
 
 class ClientParameter(ClientEndpoint):

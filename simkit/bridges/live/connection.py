@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import socket
 import time
-from collections import OrderedDict, deque
+from collections import deque
 from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit import msgs
+from simkit.bridges.live.fair_queue import FairQueue
+from simkit.bridges.live.message_log import ClientSubscription
 from simkit.bridges.live.protocol import (
     ANSWER,
     ASK,
@@ -30,8 +33,6 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import GoalHandle
     from simkit.runtime.communication.publisher import Publisher
 
-MOST_BYTES = 32 << 20  # [bytes] of queued messages for one client
-MOST_DEPTH = 100_000  # queued messages for one subscription
 MOST_OPEN = 1000  # open subscriptions, publishers or goals of one client
 _ANSWERS_FULL = 1 << 18  # [bytes] of queued answers; above this limit no more requests of the client are read
 _UNREAD_TIMEOUT = 10.0  # [s] of wall time after which a client that reads no answers is disconnected
@@ -54,25 +55,6 @@ class ClientEndpoint(Protocol):
         """Close the endpoint in the simulation."""
 
 
-class ClientSubscription:
-    """Subscription of a client.
-
-    Attributes:
-        number: number that the client chose for the subscription.
-        depth: highest number of queued messages.
-        lost: number of dropped messages.
-        waiting: keys of the subscription's messages in the client's queue, the oldest first.
-    """
-
-    __slots__ = ("depth", "lost", "number", "peer", "topic", "waiting")
-
-    def __init__(self, peer: ClientConnection, number: int, topic: str, depth: int) -> None:
-        self.peer, self.number, self.topic = peer, number, topic
-        self.depth = max(1, min(depth, MOST_DEPTH))
-        self.lost = 0
-        self.waiting: deque[int] = deque()
-
-
 class ClientConnection:
     """Connection of one client.
 
@@ -84,7 +66,6 @@ class ClientConnection:
         is_bridge: True for a bridge, which passes on messages of others: its invalid messages are dropped with a
             notification, and it does not receive its own messages. Any other client is disconnected for an invalid
             message.
-        is_publishing: True while a message of a bridge is published.
         why: reason for disconnecting the client, after the client was informed; None for a connection in use.
     """
 
@@ -95,18 +76,16 @@ class ClientConnection:
         self.goals: dict[int, tuple[GoalHandle, int]] = {}
         self.endpoints: dict[int, ClientEndpoint] = {}
         self.is_held = False
-        self.is_bridge = self.is_publishing = False
+        self.is_bridge = False
         self.why: str | None = None
         self.is_gone = False
         self.reader = FrameReader(LARGEST_IN, (ASK, MESSAGE))
         self._answers: deque[bytes] = deque()
         self._answer_bytes = 0
-        self._queue: OrderedDict[int, tuple[ClientSubscription, int, int, bytes]] = OrderedDict()
-        self._queue_bytes = 0
-        self._next = 0
+        self._queue = FairQueue()
         self._types: dict[str, int] = {}
         self._types_sent = SentTypes()
-        self._rest: memoryview | None = None  # remaining bytes of a partly sent piece
+        self._pieces: deque[memoryview] = deque()  # bytes to send next
         self._sent = time.monotonic()
 
     # ------------------------------------------------------------------ from the client
@@ -160,75 +139,50 @@ class ClientConnection:
         for endpoint in list(self.endpoints.values()):
             endpoint.send_due()
 
-    def queue_message(self, subscribed: ClientSubscription, time_ns: int, type_name: str, data: bytes) -> None:
-        """Queue a message. If the queue is full, the oldest messages are dropped."""
-        size = len(data)
-        if size > MOST_BYTES:
-            subscribed.lost += 1
-            return
-        type_number = self._types.get(type_name)
-        if type_number is None:
-            type_number = self._types[type_name] = len(self._types)
-            self.send_json(TELL, {"tell": "type", "number": type_number, "type": type_name})
-        waiting, key = subscribed.waiting, self._next
-        if not self._queue and not self._answers and self._rest is None:
+    def activate(self, subscribed: ClientSubscription) -> None:
+        """Queue a subscription that has new messages."""
+        if not self.is_waiting:
             self._sent = time.monotonic()
-        self._next = key + 1
-        if len(waiting) >= subscribed.depth:
-            self._drop(waiting.popleft())
-        waiting.append(key)
-        self._queue[key] = subscribed, time_ns, type_number, data
-        self._queue_bytes += size
-        while self._queue_bytes > MOST_BYTES:
-            oldest = next(iter(self._queue))
-            self._queue[oldest][0].waiting.popleft()
-            self._drop(oldest)
-
-    def _drop(self, key: int) -> None:
-        subscribed, _, _, data = self._queue.pop(key)
-        subscribed.lost += 1
-        self._queue_bytes -= len(data)
+        self._queue.activate(subscribed)
 
     def drop_waiting(self, subscribed: ClientSubscription) -> None:
         """Drop the queued messages of a subscription that is closed."""
-        for key in subscribed.waiting:
-            self._queue_bytes -= len(self._queue.pop(key)[3])
-        subscribed.waiting.clear()
+        self._queue.remove(subscribed)
 
     def clear(self) -> None:
         """Close the endpoints of the client, and release its handles and queued data."""
         for endpoint in list(self.endpoints.values()):
             endpoint.close()
-        for table in (self.subscriptions, self.publishers, self.goals, self.endpoints, self._queue):
+        for table in (self.subscriptions, self.publishers, self.goals, self.endpoints, self._answers, self._pieces):
             table.clear()
-        self._answers.clear()
-        self._rest = None
+        self._queue.clear()
 
     @property
     def is_waiting(self) -> bool:
         """True while something is queued for sending."""
-        return bool(self._answers or self._queue or self._rest is not None)
+        return bool(self._answers or self._queue or self._pieces)
 
-    def write(self) -> None:
-        """Send as many bytes as the socket accepts."""
+    def write(self, until: float = math.inf) -> None:
+        """Send as many bytes as the socket accepts, at least one piece, until the time `until` of `perf_counter`."""
         try:
-            while True:
-                if self._rest is None:
-                    piece = self._next_piece()
-                    if not piece:
-                        return
-                    self._rest = memoryview(piece)
-                sent = self.socket.send(self._rest)
+            while self._pieces or self._fill():
+                piece = self._pieces[0]
+                sent = self.socket.send(piece)
                 self._sent = time.monotonic()
-                self._rest = self._rest[sent:] if sent < len(self._rest) else None
+                if sent < len(piece):
+                    self._pieces[0] = piece[sent:]
+                else:
+                    self._pieces.popleft()
+                if time.perf_counter() > until:
+                    return
         except (BlockingIOError, InterruptedError):
             if (self._answers or self.why is not None) and time.monotonic() - self._sent > _UNREAD_TIMEOUT:
                 self.is_gone = True
         except OSError:
             self.is_gone = True
 
-    def _next_piece(self) -> bytes:
-        """Return the next bytes to send: answers first, then messages in the order of their publication."""
+    def _fill(self) -> bool:
+        """Prepare the next bytes to send: answers first, then messages; return False if there are none."""
         found: list[bytes] = []
         size = 0
         while self._answers and size < _PIECE:
@@ -236,12 +190,23 @@ class ClientConnection:
             self._answer_bytes -= len(frame)
             found.append(frame)
             size += len(frame)
-        while not self._answers and self._queue and size < _PIECE:
-            _, (subscribed, time_ns, type_number, data) = self._queue.popitem(last=False)
-            subscribed.waiting.popleft()
-            self._queue_bytes -= len(data)
+        while not self._answers and size < _PIECE and (item := self._queue.next()) is not None:
+            subscribed, (_, time_ns, type_name, data, _) = item
+            if type_name not in self._types:
+                found.append(self._type_frame(type_name))
             found.append(HEAD.pack(MESSAGE_HEAD.size + len(data), MESSAGE))
-            found.append(MESSAGE_HEAD.pack(subscribed.number, type_number, time_ns, subscribed.lost))
-            found.append(data)
+            found.append(MESSAGE_HEAD.pack(subscribed.number, self._types[type_name], time_ns, subscribed.lost))
             size += len(data) + 29
-        return b"".join(found)
+            if len(data) < _PIECE:
+                found.append(data)
+            else:  # large data are not copied
+                self._pieces += memoryview(b"".join(found)), memoryview(data)
+                return True
+        if found:
+            self._pieces.append(memoryview(b"".join(found)))
+        return bool(found)
+
+    def _type_frame(self, type_name: str) -> bytes:
+        """Return the notification that gives a type its number."""
+        number = self._types[type_name] = len(self._types)
+        return json_frame(TELL, self._types_sent.attach({"tell": "type", "number": number, "type": type_name}))

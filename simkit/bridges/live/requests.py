@@ -9,8 +9,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from simkit import msgs
-from simkit.bridges.live.connection import MOST_OPEN, ClientConnection, ClientSubscription
+from simkit.bridges.live.connection import MOST_OPEN, ClientConnection
 from simkit.bridges.live.introspection import model_state, node_list, parameter_list, topic_list
+from simkit.bridges.live.message_log import ClientSubscription
 from simkit.bridges.live.protocol import TELL, JsonObject
 from simkit.bridges.live.topic_feed import TopicFeeds
 from simkit.errors import InputError, SimkitError

@@ -7,6 +7,7 @@ Reading changes no bits.
 
 from __future__ import annotations
 
+import math
 import os
 import selectors
 import socket
@@ -69,7 +70,7 @@ class Server:
         self.client_types: set[str] = set()
         self._busy: deque[ClientConnection] = deque()
         self._interest: dict[int, int] = {}
-        self._numbers, self.is_polling = 0, False
+        self._numbers, self._first, self.is_polling = 0, 0, False
         self._taken: dict[str, int] = {}
         self._taken_at, self._taken_since = -1, 0.0
         self._fewest = 1  # smallest queue depth for the next step, over all topics
@@ -108,8 +109,11 @@ class Server:
         for peer in list(self.peers.values()):
             peer.send_requests()
         self._release_held()
-        for peer in [p for p in self.peers.values() if p.is_waiting]:
-            self._write(peer)
+        until = time.perf_counter() + BUDGET
+        waiting = [p for p in self.peers.values() if p.is_waiting]
+        self._first = (self._first + 1) % max(1, len(waiting))  # another client begins each time
+        for peer in waiting[self._first :] + waiting[: self._first]:
+            self._write(peer, until)
         ready = self._selector.select(0.0 if self._busy else max(0.0, wait))
         for key, mask in ready:
             peer = key.data
@@ -117,7 +121,7 @@ class Server:
                 self._accept_callers()
                 continue
             if mask & selectors.EVENT_WRITE:
-                self._write(peer)
+                self._write(peer, until)
             if mask & selectors.EVENT_READ and peer.read() and peer not in self._busy:
                 self._busy.append(peer)
             if peer.is_gone:
@@ -163,18 +167,18 @@ class Server:
         try:
             while busy:
                 peer = busy.popleft()
-                if self._serve(peer) and not peer.is_gone:
+                if self._serve(peer, until) and not peer.is_gone:
                     busy.append(peer)
                 if peer.is_waiting:
-                    self._write(peer)
+                    self._write(peer, until)
                 if time.perf_counter() > until:
                     return
         finally:
             for peer in [p for p in self.peers.values() if p.is_gone]:
                 self._disconnect(peer)
 
-    def _serve(self, peer: ClientConnection) -> bool:
-        """Process a few frames of one client; return True if the client may have more frames."""
+    def _serve(self, peer: ClientConnection, until: float) -> bool:
+        """Process a few frames of one client, until the time `until`; return True if it may have more frames."""
         try:
             take, publish = peer.reader.next, self._publish
             for _ in range(_REQUESTS_PER_TURN):
@@ -186,6 +190,8 @@ class Server:
                 kind, body = frame
                 if kind == ASK:
                     answer_request(self, peer, body)
+                    if time.perf_counter() > until:
+                        return True
                 else:
                     publish(peer, body)
         except BadFrame as error:
@@ -206,11 +212,11 @@ class Server:
                 peer.send_json(TELL, {"tell": "invalid", "topic": publisher.topic, "type": publisher.type_name})
                 return
             raise BadFrame(f"the data on {publisher.topic!r} is not a valid {publisher.type_name}: {error!r}") from None
-        peer.is_publishing = peer.is_bridge
+        self.feeds.memory.publishing = peer if peer.is_bridge else None
         try:
             publisher.publish(message)
         finally:
-            peer.is_publishing = False
+            self.feeds.memory.publishing = None
         self._hold_back_if_full(peer, publisher.topic)
 
     def _hold_back_if_full(self, peer: ClientConnection, topic: str) -> None:
@@ -299,8 +305,8 @@ class Server:
             peer.write()
             peer.is_gone = True
 
-    def _write(self, peer: ClientConnection) -> None:
-        peer.write()
+    def _write(self, peer: ClientConnection, until: float = math.inf) -> None:
+        peer.write(until)
         if peer.is_gone:
             self._disconnect(peer)
             return

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from simkit.bridges.live.connection import ClientSubscription
+from simkit.bridges.live.message_log import MOST_DEPTH, ClientSubscription, LogMemory, MessageLog
 from simkit.errors import MessageError
 from simkit.msgs.message_types import Message
 from simkit.recording.message_taps import MessageQueue, serialised
@@ -20,39 +20,52 @@ _MOST_WAITING = 100  # largest number of messages of a topic that wait until an 
 class TopicFeed:
     """Feed of one topic to all clients that subscribe to the topic."""
 
-    def __init__(self, sim: Simulation, topic: str) -> None:
-        self._sim, self.topic = sim, topic
-        self._readers: list[ClientSubscription] = []
+    def __init__(self, sim: Simulation, topic: str, memory: LogMemory) -> None:
+        self._sim, self.topic, self._memory = sim, topic, memory
+        self._log = MessageLog(memory)
         # a message is serialised at once, even if it waits for an image, because its publisher may change it later
         self._queue = MessageQueue(self._deliver, _serialise_valid)
         self._tap: Subscription | None = None
 
     def add(self, reader: ClientSubscription) -> None:
-        """Add a subscription. Only the new subscription receives the last message of a latched topic."""
+        """Add a subscription. Only the new subscription receives the last messages of a latched topic."""
+        bus = self._sim.communication.bus
         if self._tap is None:
-            self._sim.communication.bus.check_available(self.topic)
-            self._readers.append(reader)
+            bus.check_available(self.topic)
+            self._log.add(reader)
             settle = self._queue.deliver_ready
-            self._tap = self._sim.communication.bus.tap(self.topic, self._take, takes_later=True, settle=settle)
+            self._tap = bus.tap(self.topic, self._take, takes_later=True, settle=settle)
             return
-        if self.topic in self._sim.communication.bus.latched():
-            only = TopicFeed(self._sim, self.topic)
-            only.add(reader)
-            only.remove(reader)
-        self._readers.append(reader)
+        if self.topic in bus.latched():
+            self._add_latched(reader)
+        self._log.add(reader)
+
+    def _add_latched(self, reader: ClientSubscription) -> None:
+        """Queue the last messages of a latched topic for one subscription."""
+        log = MessageLog(self._memory)
+        first = ClientSubscription(reader.peer, reader.number, reader.topic, MOST_DEPTH)
+        log.add(first, is_first=True)
+
+        def keep(message: Message) -> None:
+            content = _serialise_valid(message)
+            if content is not NO_MESSAGE:
+                log.append(self._sim.time_ns, *content)
+
+        self._sim.communication.bus.tap(self.topic, keep).close()
+        reader.first = first
+        reader.peer.activate(reader)
 
     def remove(self, reader: ClientSubscription) -> None:
         """Remove a subscription."""
-        if reader in self._readers:
-            self._readers.remove(reader)
-        if not self._readers and self._tap is not None:
+        reader.close()
+        if not self._log.has_readers and self._tap is not None:
             self._tap.close()
             self._tap = None
             self._queue.clear()
 
     @property
     def has_readers(self) -> bool:
-        return bool(self._readers)
+        return self._log.has_readers
 
     def deliver_ready(self) -> None:
         """Deliver the messages that are ready, in order."""
@@ -65,16 +78,13 @@ class TopicFeed:
             self._queue.deliver_ready()  # a bridge's own message does not go back to the bridge
         if len(self._queue) > _MOST_WAITING:
             self._queue.drop_oldest()
-            for reader in self._readers:
-                reader.lost += 1
+            self._log.count_lost()
 
     def _deliver(self, time_ns: int, content: tuple[str, bytes]) -> None:
-        for reader in self._readers:
-            if not reader.peer.is_publishing:
-                reader.peer.queue_message(reader, time_ns, *content)
+        self._log.append(time_ns, *content)
 
 
-def _serialise_valid(message: object) -> object:
+def _serialise_valid(message: Message | LazyMessage) -> Any:
     """Return type and CDR of a message; `NO_MESSAGE` if it cannot be serialised: the feed drops an invalid message."""
     try:
         return serialised(message)
@@ -83,17 +93,21 @@ def _serialise_valid(message: object) -> object:
 
 
 class TopicFeeds:
-    """Feeds of all topics that clients subscribe to."""
+    """Feeds of all topics that clients subscribe to.
+
+    Attributes:
+        memory: memory of the queued messages.
+    """
 
     def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+        self._sim, self.memory = sim, LogMemory()
         self._feeds: dict[str, TopicFeed] = {}
 
     def add(self, reader: ClientSubscription) -> None:
         """Add a subscription to a topic."""
         feed = self._feeds.get(reader.topic)
         if feed is None:
-            feed = TopicFeed(self._sim, reader.topic)
+            feed = TopicFeed(self._sim, reader.topic, self.memory)
         feed.add(reader)
         self._feeds[reader.topic] = feed
 

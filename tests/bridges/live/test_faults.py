@@ -15,7 +15,8 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.bridges.live.connection import MOST_BYTES, MOST_OPEN
+from simkit.bridges.live.connection import MOST_OPEN, ClientConnection
+from simkit.bridges.live.message_log import MOST_BYTES, Entry
 from simkit.bridges.live.protocol import (
     ASK,
     HEAD,
@@ -58,6 +59,14 @@ class Caller:
                 self._reader.feed(data)
         frames = iter(self._reader.next, None)
         return [read_json_frame(body)[0] for kind, body in frames if kind != MESSAGE]
+
+
+def queued(peer: ClientConnection, number: int) -> list[Entry]:
+    """The messages that wait for a subscription of a client."""
+    subscribed = peer.subscriptions[number]
+    subscribed.next_entry()  # goes to the oldest that is still there
+    log = subscribed.log
+    return [] if log is None else [log.entries[n] for n in range(subscribed.position, log.end)]
 
 
 Disturbance = Callable[[Server, int, list[Any]], None]
@@ -323,8 +332,9 @@ def test_a_slow_client_does_not_exceed_its_memory_limit(court: simkit.Simulation
         peer = next(iter(server.peers.values()))
         for _ in range(100):
             talker.publish(big)
-        assert MOST_BYTES - (2 << 20) < peer._queue_bytes <= MOST_BYTES
-        assert peer.subscriptions[1].lost == 100 - len(peer._queue)
+        memory = server.feeds.memory
+        assert MOST_BYTES - (2 << 20) < memory.total <= MOST_BYTES
+        assert peer.subscriptions[1].lost == 100 - len(queued(peer, 1))
         caller.socket.close()
 
 
@@ -344,12 +354,10 @@ def test_images_that_are_still_being_rendered_arrive_in_order(court: simkit.Simu
         talker.publish(msgs.make("std_msgs/msg/Int32", data=2))
         server.poll()
         peer = next(iter(server.peers.values()))
-        assert not peer._queue, "the second waits for the first"
+        assert not queued(peer, 1), "the second waits for the first"
         drawing.is_done = True
         server.feeds.deliver_ready()
-        found = [
-            (time_ns, msgs.deserialize(data, "std_msgs/msg/Int32").data) for _, time_ns, _, data in peer._queue.values()
-        ]
+        found = [(entry[1], msgs.deserialize(entry[3], "std_msgs/msg/Int32").data) for entry in queued(peer, 1)]
         assert found == [(0, 1), (10_000_000, 2)]
         caller.socket.close()
 
@@ -368,7 +376,8 @@ def test_a_reset_keeps_the_open_handles_of_clients(court: simkit.Simulation) -> 
         server.poll(0.1)
         court.step(50)
         assert heard.latest is not None and heard.latest.linear.x == 0.5
-        times = [time_ns for _, time_ns, _, _ in next(iter(server.peers.values()))._queue.values()]
+        server.feeds.deliver_ready()
+        times = [entry[1] for entry in queued(next(iter(server.peers.values())), 1)]
         assert times[-5:] == [10_000_000, 20_000_000, 30_000_000, 40_000_000, 50_000_000]
         caller.socket.close()
 
