@@ -1,10 +1,11 @@
 """Clients of a running simulation: commands a second, answers, what it costs the run, and memory over an hour.
 
-python benchmarks/live.py [--world NAME] [--seconds S] [--hour [SECONDS]]
+python benchmarks/live.py [--world NAME] [--seconds S] [--hour [SECONDS]] [--faults]
 
 Commands are Twists on `/cmd_vel`, from one client in another process. A percentage is of the speed that the run has
 while its client does nothing. `--hour` keeps eight clients at it for an hour of wall time and prints the memory of the
-run every 10 s.
+run every 10 s. `--faults` shows the real-time factor that `--rtf 1` keeps, and the messages on `/imu` that a client
+which behaves well gets and loses, while others misbehave.
 """
 
 from __future__ import annotations
@@ -177,7 +178,7 @@ def _open_and_close(client: Client) -> None:
 
 def _break_off(client: Client) -> None:
     client.subscribe("/odom")
-    client._link._socket.send(b"\xff\xff\x00\x00\x01 half a frame")
+    client._socket.send(b"\xff\xff\x00\x00\x01 half a frame")
     time.sleep(0.2)
 
 
@@ -203,13 +204,110 @@ def hour(world: str, seconds: float) -> None:
         print(f"{half[-1][1] - half[0][1]:+.2f} MB over the second half ({half[-1][0] - half[0][0]:.0f} s)")
 
 
+# ---------------------------------------------------------------------- clients that misbehave
+
+
+def misbehave(kind: str, name: str) -> None:
+    """What a client does that kind of wrong until it is ended."""
+    while True:
+        with contextlib.suppress(LiveError, OSError):
+            client = connect(name, node="fault")
+            while True:
+                FAULTS[kind](client)
+
+
+def _never_read(client: Client) -> None:
+    client.subscribe_all([topic["name"] for topic in client.topics()], depth=100_000)
+    time.sleep(60.0)
+
+
+def _subscribe_12000_times(client: Client) -> None:
+    for number in range(12_000):
+        client.send_request("subscribe", {"number": number, "topic": "/imu", "depth": 1000})
+        if number % 500 == 0:
+            client.flush()
+    time.sleep(60.0)
+
+
+def _subscribe_and_read(client: Client) -> None:
+    client.subscribe_all(["/imu"] * 1000)
+    while True:
+        client.receive(None)
+
+
+def _flood(client: Client) -> None:
+    publisher = client.advertise("/cmd_vel")
+    still = msgs.serialize(msgs.make(publisher.type_name))
+    while True:
+        publisher.publish(still)
+
+
+def _flood_large(client: Client) -> None:
+    publisher = client.advertise("/flood", "std_msgs/msg/UInt8MultiArray")
+    large = msgs.serialize(msgs.make(publisher.type_name, data=bytes(10 << 20)))
+    client.subscribe("/flood")
+    while True:
+        publisher.publish(large)
+
+
+def _ask_only(client: Client) -> None:
+    while True:
+        client.send_request("topics", {})
+
+
+def _garbage(client: Client) -> None:
+    with connect(client.info["name"]) as other:
+        other.send(b"\xff\xff\x00\x00\x09" + bytes(5000))
+        other.flush()
+
+
+FAULTS = {
+    "nobody": lambda _: time.sleep(60.0),
+    "never read": _never_read,
+    "12,000 subscriptions": _subscribe_12000_times,
+    "1000 subscriptions, read": _subscribe_and_read,
+    "flood of commands": _flood,
+    "flood of 10 MB": _flood_large,
+    "questions, answers unread": _ask_only,
+    "garbage": _garbage,
+}
+
+
+def faults(world: str, seconds: float) -> None:
+    """The real-time factor, and what a client that behaves well gets, beside two that do not."""
+    context = multiprocessing.get_context("spawn")
+    for kind in FAULTS:
+        with run(world, "--rtf", "1") as (name, pid), connect(name, timeout=60.0) as client:
+            workers = [context.Process(target=misbehave, args=(kind, name), daemon=True) for _ in range(2)]
+            for worker in workers:
+                worker.start()
+            time.sleep(3.0)
+            imu = client.subscribe("/imu")
+            before, began, count = client.state()["time_ns"], time.perf_counter(), 0
+            while time.perf_counter() - began < seconds:
+                client.receive(0.1)
+                count += len(imu.waiting)
+                imu.waiting.clear()
+            simulated = (client.state()["time_ns"] - before) / 1e9
+            factor = simulated / (time.perf_counter() - began)
+            for worker in workers:
+                worker.terminate()
+            rate = count / simulated
+            print(
+                f"{kind:26} {factor:.3f} x, {rate:4.0f} /imu per s, {imu.lost} lost, {memory(pid):5.0f} MB", flush=True
+            )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--world", default="turtlebot3_world", help="file, or bare name of a world")
     parser.add_argument("--seconds", type=float, default=3.0, help="wall time of each figure")
     parser.add_argument("--hour", type=float, nargs="?", const=3600.0, help="seconds of wall time instead of an hour")
+    parser.add_argument("--faults", action="store_true", help="clients that misbehave, at --rtf 1")
     args = parser.parse_args()
-    if args.hour:
+    if args.faults:
+        faults(args.world, args.seconds)
+    elif args.hour:
         hour(args.world, args.hour)
     else:
         figures(args.world, args.seconds)

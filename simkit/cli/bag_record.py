@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from simkit.recording.bags.writer import McapBag
 
 _DEPTH = 20_000  # queued messages of a topic while the disk is busy
+_BATCH_BYTES = 64 << 20  # [bytes] that are received before they are written, so that memory has a limit
 _RECEIVE_TIMEOUT = 0.2  # [s] of wall time between two checks for Ctrl-C
 _DISCOVERY_PERIOD = 1.0  # [s] of wall time between two searches for new topics
 
@@ -68,13 +69,17 @@ def record(
                 recording.run(bag, stop)
             finally:
                 bag.close()
-    summary = {"path": str(target), "messages": bag.span.count, "topics": len(bag.channels), "lost": recording.lost}
+    lost = recording.lost_by_topic()
+    summary = {"path": str(target), "messages": bag.span.count, "topics": len(bag.channels)}
+    summary |= {"lost": sum(lost.values()), "lost_by_topic": lost}
     if json_:
         print_json(summary)
     else:
         print_note(f"{target}: {bag.span.count} messages on {len(bag.channels)} topics")
-        if recording.lost:
-            print_note(f"note: {recording.lost} messages were dropped; `simkit run --record` drops none")
+        if lost:
+            counts = ", ".join(f"{count} of {topic}" for topic, count in lost.items())
+            text = f"note: {sum(lost.values())} messages were dropped ({counts})"
+            print_note(f"{text}; `simkit run --record` drops none")
     return stop.exit_code
 
 
@@ -111,16 +116,17 @@ class _Recording:
         self._latched: set[str] = set()
         self._looked = -_DISCOVERY_PERIOD
         self._begun_ns: int | None = None
+        self._is_past_end = False
         existing = source.topics()
         for name in selection.named:
             if name not in existing:
                 hint = did_you_mean(name, existing)
                 print_note(f"note: topic {name} does not exist yet{'; ' + hint if hint else ''}")
 
-    @property
-    def lost(self) -> int:
-        """Number of dropped messages."""
-        return sum(feed.lost for feed in self._feeds)
+    def lost_by_topic(self) -> dict[str, int]:
+        """Return the number of dropped messages of each topic that has lost any, the largest number first."""
+        found = {topic: count for feed in self._feeds for topic, count in feed.lost_by_topic().items() if count}
+        return dict(sorted(found.items(), key=lambda item: -item[1]))
 
     def run(self, bag: McapBag, stop: Interrupts) -> None:
         """Record until the end of the simulation, the end of the duration or Ctrl-C."""
@@ -149,25 +155,36 @@ class _Recording:
         return int(self._source.client.state()["time_ns"])
 
     def _write(self, bag: McapBag, messages: list[ReceivedMessage]) -> bool:
-        """Write messages; return True at the first message after the end of the duration."""
+        """Write the messages within the duration; return True after its end, when no more of them arrive.
+
+        Large messages arrive later than small ones that were published at the same time.
+        """
+        count = 0
         for received in messages:
             time_ns = int(received.time_ns)
             self._begun_ns = time_ns if self._begun_ns is None else min(self._begun_ns, time_ns)
             if self._duration is not None and time_ns - self._begun_ns > self._duration * 1e9:
-                return True
+                self._is_past_end = True
+                continue
             channel = bag.channel(received.topic, received.type_name, received.topic in self._latched)
             bag.write_raw(channel, received.data, time_ns)
-        return False
+            count += 1
+        return self._is_past_end and not count
 
     def _take_messages(self, wait: float = _RECEIVE_TIMEOUT) -> list[ReceivedMessage]:
-        """Return the received messages, sorted by time; if there are none, wait for them [s, wall time]."""
+        """Return received messages, sorted by time; if there are none, wait for them [s, wall time]."""
         if not self._feeds:
             time.sleep(wait)
             return []
         found: list[ReceivedMessage] = []
+        size = 0
         for number, feed in enumerate(self._feeds):
-            while (received := feed.take(wait if number == 0 and not found else 0.0)) is not None:
+            while size < _BATCH_BYTES:
+                received = feed.take(wait if number == 0 and not found else 0.0)
+                if received is None:
+                    break
                 found.append(received)
+                size += len(received.data)
             if feed.is_over:
                 break
         for feed in self._feeds if any(f.is_over for f in self._feeds) else ():

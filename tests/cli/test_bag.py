@@ -67,6 +67,31 @@ def test_a_running_simulation_is_recorded(start: Any, simkit_line: Any, tmp_path
     assert "SK-CLI-018" in simkit_line("bag", "record", "-o", str(tmp_path / "x")).stderr
 
 
+def test_a_recording_loses_large_messages_only_and_says_which(start: Any, simkit_line: Any, tmp_path: Path) -> None:
+    sim = start(paused=True).sim
+    camera = sim.advertise("/picture", "std_msgs/msg/UInt8MultiArray")
+    counter = sim.advertise("/count", "std_msgs/msg/Int32")
+    burst = iter([{"data": bytes(4 << 20)}])
+
+    def publish(_: Any) -> None:
+        for message in burst if camera.subscribers and counter.subscribers else ():
+            for value in range(60):
+                camera.publish(message)
+                counter.publish({"data": value})
+
+    sim.subscribe("/imu", publish)
+    sim.paused = False
+    target = tmp_path / "rec.mcap"
+    found = simkit_line("bag", "record", "/picture", "/count", "/imu", "-o", str(target), "--duration", "0.5", "--json")
+    summary = json.loads(found.stdout)
+    counts = {
+        t["name"]: t["count"] for t in json.loads(simkit_line("bag", "info", str(target), "--json").stdout)["topics"]
+    }
+    assert counts["/count"] == 60
+    assert summary["lost_by_topic"] == {"/picture": 60 - counts["/picture"]}
+    assert summary["lost"] == 60 - counts["/picture"] and 7 <= counts["/picture"] < 60
+
+
 def test_the_commands_of_a_bag_drive_the_robot_again(bag: Path, start: Any, simkit_line: Any) -> None:
     live = start()
     before = float(live.sim.model("rover").pose.position[0])

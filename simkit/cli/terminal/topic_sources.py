@@ -166,7 +166,11 @@ class LiveFeed:
     @property
     def lost(self) -> int:
         """Number of messages dropped because they arrived faster than they were read."""
-        return sum(s.lost for s in self._subscriptions.values())
+        return sum(self.lost_by_topic().values())
+
+    def lost_by_topic(self) -> dict[str, int]:
+        """Return the number of dropped messages of each topic."""
+        return {topic: subscription.lost for topic, subscription in self._subscriptions.items()}
 
     def take(self, timeout: float | None = None) -> ReceivedMessage | None:
         """Return the next message; None after the timeout [s, wall time] or the end of the simulation."""
