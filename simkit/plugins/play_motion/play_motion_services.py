@@ -29,13 +29,15 @@ class MotionPlayer(Protocol):
         sim: Simulation of the robot.
         robot: Robot that plays the motions.
         known: Motions by key.
-        log: Logger for the reasons why motions cannot be added.
     """
 
     sim: Simulation
     robot: Model
     known: dict[str, Motion]
-    log: logging.Logger
+
+    @property
+    def log(self) -> logging.Logger:
+        """Logger for the reasons why motions cannot be added."""
 
     @property
     def is_idle(self) -> bool:
