@@ -1,0 +1,35 @@
+"""Serialised messages with replaced numbers have the bytes of the complete messages."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from simkit import msgs
+from simkit.msgs.cdr_template import CdrTemplate
+
+
+def test_filled_templates_have_the_bytes_of_the_messages_with_these_numbers() -> None:
+    constant = {"name": ["left", "right_wheel"], "position": [0.0, 0.0], "effort": [1.0, 2.0]}
+    template = CdrTemplate(
+        msgs.make("sensor_msgs/msg/JointState", header={"frame_id": "base"}, **constant),
+        ("header.stamp.sec", "position[1]", "effort[0]"),
+    )
+    columns = {
+        "header.stamp.sec": np.array([3, 4, 5]),
+        "position[1]": np.array([0.1, -0.2, np.inf]),
+        "effort[0]": np.array([7.0, 8.0, 9.0]),
+    }
+    for row, found in enumerate(template.fill(3, columns)):
+        message = msgs.make("sensor_msgs/msg/JointState", header={"frame_id": "base"}, **constant)
+        message.header.stamp.sec = int(columns["header.stamp.sec"][row])
+        message.position[1], message.effort[0] = columns["position[1]"][row], columns["effort[0]"][row]
+        assert found == msgs.serialize(message)
+
+
+def test_a_template_finds_numbers_behind_texts_lists_and_nested_messages() -> None:
+    transforms = [{"child_frame_id": "a"}, {"child_frame_id": "bcd", "transform": {"translation": {"x": 1.0}}}]
+    field = "transforms[1].transform.rotation.w"
+    template = CdrTemplate(msgs.make("tf2_msgs/msg/TFMessage", transforms=transforms), (field,))
+    transforms[1]["transform"] = {"translation": {"x": 1.0}, "rotation": {"w": 0.5}}
+    expected = msgs.serialize(msgs.make("tf2_msgs/msg/TFMessage", transforms=transforms))
+    assert template.fill(1, {field: np.array([0.5])}) == [expected]
