@@ -18,6 +18,7 @@ from simkit.compiler.meshes.companion_files import Pixels
 from simkit.compiler.meshes.convex_decomposition import convex_bodies, convex_hull
 from simkit.compiler.meshes.mesh_part import Colour, MeshFileError, MeshPart, has_area, join_parts
 from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
+from simkit.compiler.meshes.surface_patches import TRIANGLES_FROM
 from simkit.compiler.name_map import GeomOwner, ModelRecord
 from simkit.compiler.wheel_cylinders import RoundMesh, TurningAxis, round_mesh
 from simkit.compiler.world_geoms import WorldGeoms
@@ -159,7 +160,8 @@ class GeomWriter:
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
         if not bodies.is_exact:
             drawn: GeomSettings = {"contype": 0, "conaffinity": 0, "group": COLLISION_RAY}
-            name = self.assets.surface(vertices, faces)
+            is_shared = len(parts) == 1 and len(faces) > TRIANGLES_FROM  # with the visual of the same file
+            name = self.assets.part(parts[0], False) if is_shared else self.assets.surface(vertices, faces)
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **drawn)
 
     def _wheel(

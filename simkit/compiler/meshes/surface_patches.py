@@ -19,7 +19,7 @@ from simkit.compiler.meshes.mesh_part import Floats, Ints
 TRIANGLES_FROM: Final = 4000
 """Number of triangles from which a static mesh is divided into patches instead of prisms."""
 
-_PIECES_MOST, _TRIANGLES_PER_PIECE = 2500, 4
+_PIECES_MOST, _TRIANGLES_PER_PIECE = 2500, 8
 _CLOSED_MOST: Final = 8000
 """Largest number of closed convex parts of a mesh that are pieces of their own."""
 
@@ -34,6 +34,12 @@ _MOST_TRIANGLES: Final = 128
 
 _FEW_TRIANGLES: Final = 6
 """Number of triangles up to which a patch is divided between triangles, and never through one: a triangle is exact."""
+
+_FEW_POINTS: Final = 16
+"""Number of points up to which a patch keeps all of them."""
+
+_BATCH: Final = 256
+"""Largest number of patches that are cut before their parts are measured together."""
 
 _SNAP: Final = 1e-7
 """Distance to a plane, relative to the size of the mesh, below which a corner lies in the plane."""
@@ -55,6 +61,7 @@ class _Patch:
         depths: largest depth of a piece below each triangle [m], shape (n,).
         error: largest distance between the piece and the layer below the triangles [m]; infinite if it is not computed.
         cut: normal and offset of the plane that divides the patch.
+        deepest: point of the triangles that is deepest below the piece [m]; None if another error is larger.
         piece: corners of the convex piece [m], shape (n, 3).
     """
 
@@ -63,6 +70,7 @@ class _Patch:
     depths: Floats
     error: float = np.inf
     cut: tuple[Floats, float] | None = None
+    deepest: Floats | None = None
     piece: Floats | None = None
 
 
@@ -155,8 +163,8 @@ def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[
     done: list[_Patch] = []
     count = 0
     while True:
+        _measure(waiting, tolerance)
         for patch in waiting:
-            _measure(patch, tolerance)
             count += 1
             if patch.error > tolerance and patch.cut is not None:
                 heapq.heappush(heap, (-patch.error, count, patch))
@@ -165,59 +173,95 @@ def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[
         number, worst = len(heap) + len(done), -heap[0][0] if heap else 0.0
         if not heap or (number >= most and worst <= coarse) or (number >= 4 * most and worst < np.inf):
             break
-        waiting = _cut(heapq.heappop(heap)[2], _SNAP * size)
+        waiting = []
+        # patches with a similar error are measured together; none is cut that could stay
+        least, room = max(0.5 * worst, coarse if number >= most else 0.0), _BATCH
+        if worst <= coarse:
+            room = min(room, most - number)
+        while room and heap and (not waiting or -heap[0][0] >= least):
+            waiting += _cut(heapq.heappop(heap)[2], _SNAP * size)
+            room -= 1
     done += [patch for _, _, patch in sorted(heap, key=lambda item: item[1])]
     pieces = [(p.piece, p.error) for p in done if p.piece is not None]
     return [points for points, _ in pieces], max((error for _, error in pieces), default=0.0)
 
 
-def _measure(patch: _Patch, tolerance: float) -> None:
-    """Compute the piece of a patch, its error, and the plane that would divide it best."""
+def _measure(patches: list[_Patch], tolerance: float) -> None:
+    """Compute the pieces of patches, their errors, and the planes that would divide them best.
+
+    Sums over the triangles of all patches are computed together, because calls of NumPy for few triangles are slow.
+    """
+    if not patches:
+        return
+    corners, normals = (np.concatenate([getattr(p, name) for p in patches]) for name in ("corners", "normals"))
+    counts = np.array([len(p.corners) for p in patches])
+    starts = np.append(0, np.cumsum(counts))
+    areas = 0.5 * np.linalg.norm(_area_vectors(corners), axis=1)
+    ups = np.add.reduceat(normals * areas[:, None], starts[:-1])
+    ups /= np.maximum(np.linalg.norm(ups, axis=1), 1e-300)[:, None]
+    up_of_face = np.repeat(ups, counts, axis=0)
+    levels = np.einsum("ijk,ik->ij", corners, up_of_face)
+    covered = np.add.reduceat(areas * np.einsum("ij,ij->i", normals, up_of_face), starts[:-1])
+    heights = np.maximum.reduceat(levels.max(axis=1), starts[:-1]) - np.minimum.reduceat(
+        levels.min(axis=1), starts[:-1]
+    )
+    middles = np.concatenate([corners.mean(axis=1)[:, None], 0.5 * (corners + corners[:, (2, 0, 1)])], axis=1)
+    for i, patch in enumerate(patches):
+        of = slice(starts[i], starts[i + 1])
+        if counts[i] > _MOST_TRIANGLES and heights[i] > tolerance:
+            points = patch.corners.reshape(-1, 3)
+            patch.cut = _between_layers(levels[of], ups[i]) or _middle(points, patch.corners)
+            continue
+        # between its corners, a triangle may be further below the piece than at its corners
+        _measure_hull(patch, ups[i], middles[of].reshape(-1, 3), float(covered[i]), tolerance)
+        if patch.error > tolerance and patch.cut is None:
+            patch.cut = _between_layers(levels[of], ups[i]) or _best_cut(patch, ups[i], areas[of])
+
+
+def _measure_hull(patch: _Patch, up: Floats, middles: Floats, covered: float, tolerance: float) -> None:
+    """Compute the piece of a patch and its error.
+
+    Args:
+        patch: patch that receives the results.
+        up: normal of the patch.
+        middles: centres of the triangles and of their edges [m], shape (n, 3).
+        covered: area of the triangles, seen along the normal [m²].
+        tolerance: largest error that is not divided [m].
+    """
     from scipy.spatial import ConvexHull, QhullError
 
-    corners, normals = patch.corners, patch.normals
-    areas = 0.5 * np.linalg.norm(_area_vectors(corners), axis=1)
-    up = (normals * areas[:, None]).sum(axis=0)
-    up /= max(float(np.linalg.norm(up)), 1e-300)
-    points = corners.reshape(-1, 3)
-    if len(corners) > _MOST_TRIANGLES and np.ptp(points @ up) > tolerance:
-        patch.cut = _between_layers(corners @ up, up) or _middle(points, corners)
-        return
-    points = _distinct(points)
-    heights = points @ up
+    points = _distinct(patch.corners.reshape(-1, 3))
     depth = float(patch.depths.min())
-    below = points - depth * up
+    chosen, outside = points, 0.0
     try:
-        chosen = _support_points(points, up)
-        hull = ConvexHull(np.vstack([points[chosen], below[chosen]]))
-        outside = float((points @ hull.equations[:, :3].T + hull.equations[:, 3]).max())
-        if outside > tolerance:
-            chosen, outside = np.arange(len(points), dtype=np.int32), 0.0
-            hull = ConvexHull(np.vstack([points, below]))
+        if len(points) > _FEW_POINTS:
+            chosen = points[_support_points(points, up)]
+            hull = ConvexHull(np.concatenate([chosen, chosen - depth * up]))
+            outside = float((points @ hull.equations[:, :3].T + hull.equations[:, 3]).max())
+        if len(points) <= _FEW_POINTS or outside > tolerance:
+            chosen, outside = points, 0.0
+            hull = ConvexHull(np.concatenate([points, points - depth * up]))
     except (QhullError, ValueError):
         patch.error = 0.0
         return
-    planes = hull.equations
-    slopes = planes[:, :3] @ up
-    # between its corners, a triangle may be further below the piece than at its corners
-    probes = np.vstack([points, corners.mean(axis=1), *((corners[:, k] + corners[:, k - 1]) / 2.0 for k in range(3))])
-    sags = -(probes @ planes[slopes > _STEEP, :3].T + planes[slopes > _STEEP, 3]).max(axis=1)
-    lows = -(below @ planes[slopes < -_STEEP, :3].T + planes[slopes < -_STEEP, 3]).max(axis=1)
-    low = max(0.0, float(lows.max()))
+    planes, offsets = hull.equations[:, :3], hull.equations[:, 3]
+    slopes = planes @ up
+    probes = np.concatenate([points, middles])
+    is_top, is_bottom = slopes > _STEEP, slopes < -_STEEP
+    sags = -(probes @ planes[is_top].T + offsets[is_top]).max(axis=1)
+    lows = (points @ planes[is_bottom].T + (offsets[is_bottom] - depth * slopes[is_bottom])).max(axis=1)
+    low = max(0.0, -float(lows.min()))
     triangles = hull.points[hull.simplices]
-    shadows = np.abs(_area_vectors(triangles) @ up)
-    covered = float((areas * (normals @ up)).sum())
-    shadow = 0.25 * float(shadows.sum())  # the hull has two sides
-    flat = points - heights[:, None] * up
-    around = 2.0 * float(np.linalg.norm(np.ptp(flat, axis=0)))
-    gap = max(0.0, shadow - covered) / max(around, 1e-300)
-    patch.error = max(float(sags.max()), low - depth, gap, outside)
+    shadow = 0.25 * float(np.abs(_area_vectors(triangles) @ up).sum())  # the hull has two sides
+    flat = points - (points @ up)[:, None] * up
+    sides = flat.max(axis=0) - flat.min(axis=0)
+    gap = max(0.0, shadow - covered) / max(2.0 * float(np.sqrt(sides @ sides)), 1e-300)
+    deepest = int(sags.argmax())
+    sag = float(sags[deepest])
+    patch.error = max(sag, low - depth, gap, outside)
     thickness = max(_LEAST_SHARE * depth, depth - low)
-    patch.piece = np.vstack([points[chosen], points[chosen] - thickness * up])[hull.vertices]
-    if patch.error > tolerance:
-        patch.cut = _between_layers(corners @ up, up) or _best_cut(
-            patch, points, up, areas, probes[int(sags.argmax())], float(sags.max()) >= patch.error
-        )
+    patch.piece = np.concatenate([chosen, chosen - thickness * up])[hull.vertices]
+    patch.deepest = probes[deepest] if sag >= patch.error else None
 
 
 _TILTS: Final = np.radians([3.0, 10.0, 30.0, 90.0, 150.0, 170.0, 177.0])
@@ -231,10 +275,15 @@ _DIRECTIONS: Final = np.array(
 
 def _support_points(points: Floats, up: Floats) -> Ints:
     """Return the indices of the extreme points of a patch: hulls of a few points are fast to compute and to collide."""
-    u = np.cross(up, np.eye(3)[int(np.argmin(np.abs(up)))])
-    u /= np.linalg.norm(u)
-    directions = _DIRECTIONS @ np.stack([u, np.cross(up, u), up])
-    return np.unique((points @ directions.T).argmax(axis=0)).astype(np.int32)
+    x, y, z = up.tolist()
+    u = (0.0, z, -y) if abs(x) <= 0.6 else (-z, 0.0, x)
+    length = (u[0] ** 2 + u[1] ** 2 + u[2] ** 2) ** 0.5
+    a, b, c = u[0] / length, u[1] / length, u[2] / length
+    axes = np.array([(a, b, c), (y * c - z * b, z * a - x * c, x * b - y * a), (x, y, z)])
+    directions = _DIRECTIONS @ axes
+    chosen = np.zeros(len(points), bool)
+    chosen[(points @ directions.T).argmax(axis=0)] = True
+    return np.flatnonzero(chosen).astype(np.int32)
 
 
 def _distinct(points: Floats) -> Floats:
@@ -274,20 +323,20 @@ def _middle(points: Floats, corners: Floats) -> tuple[Floats, float]:
     return along, float(np.clip(at, low + 0.2 * (high - low), high - 0.2 * (high - low)))
 
 
-def _best_cut(
-    patch: _Patch, points: Floats, up: Floats, areas: Floats, deepest: Floats, sags: bool
-) -> tuple[Floats, float]:
+def _best_cut(patch: _Patch, up: Floats, areas: Floats) -> tuple[Floats, float]:
     """Return the plane across the bend through the deepest point, or through the middle."""
-    if sags:
+    points = patch.corners.reshape(-1, 3)
+    if patch.deepest is not None:
         across = patch.normals - (patch.normals @ up)[:, None] * up
         values, vectors = np.linalg.eigh((across * areas[:, None]).T @ across)
         direction = vectors[:, 2]
         places = points @ direction
-        at, start, end = float(deepest @ direction), places.min(), places.max()
+        at, start, end = float(patch.deepest @ direction), places.min(), places.max()
         if values[2] > 0.0 and start + 0.15 * (end - start) < at < end - 0.15 * (end - start):
             return direction, float(at)
     flat = points - (points @ up)[:, None] * up
-    _, vectors = np.linalg.eigh(np.cov(flat.T))
+    flat -= flat.mean(axis=0)
+    _, vectors = np.linalg.eigh(flat.T @ flat)
     direction = vectors[:, 2]
     places = points @ direction
     return direction, float(0.5 * (places.min() + places.max()))
