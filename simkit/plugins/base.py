@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from simkit.run_spec import PluginErrorPolicy
     from simkit.runtime import Simulation
     from simkit.runtime.communication.action_server import Action, GoalHandle
-    from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.parameter import Parameter
     from simkit.runtime.communication.publisher import Listener, Publisher
     from simkit.runtime.communication.service_call import Service
     from simkit.runtime.communication.subscription import Subscription
@@ -233,7 +233,7 @@ class Plugin(abc.ABC):
             The parameter; its attribute `value` is always the current value.
         """
         from simkit.plugins.live_parameters import declare_at
-        from simkit.runtime.communication.parameter_server import Parameter
+        from simkit.runtime.communication.parameter import Parameter
 
         own = f"{self.ros.namespace}/{self.name}"
         otherwise = "/" + "/".join(filter(None, (*self.scoped.split("::"), self.name)))

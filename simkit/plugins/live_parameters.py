@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from simkit.params import Params
-from simkit.runtime.communication.parameter_server import Parameter, offer_parameter_services
+from simkit.runtime.communication.parameter import Parameter
+from simkit.runtime.communication.parameter_server import offer_parameter_services
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation

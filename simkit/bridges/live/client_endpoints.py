@@ -21,7 +21,7 @@ from simkit.msgs.message_types import Message
 if TYPE_CHECKING:
     from simkit.bridges.live.topic_feed import TopicFeeds
     from simkit.runtime.communication.action_server import Action, GoalHandle
-    from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.parameter import Parameter
     from simkit.runtime.communication.publisher import Listener
     from simkit.runtime.communication.service_call import Service, ServiceCall
     from simkit.runtime.simulation import Simulation

@@ -17,7 +17,7 @@ from simkit.bridges.live.client_endpoints import (
 from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response, count_new_topic
 from simkit.errors import SimkitError
 from simkit.msgs.topic_names import absolute_name
-from simkit.runtime.communication.parameter_server import checked_parameter
+from simkit.runtime.communication.parameter import checked_parameter
 
 E = TypeVar("E", bound=ClientEndpoint)
 _NAME = re.compile(r"(/[A-Za-z0-9_.-]+)+")

@@ -27,7 +27,7 @@ from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel, Sphere
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model, Simulation
-    from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.parameter import Parameter
 
 
 LATERAL, LONGITUDINAL = "slip_compliance_unitless_lateral", "slip_compliance_unitless_longitudinal"

@@ -14,7 +14,7 @@ from simkit.plugins.options import OptionsOf, boolean, integer, number
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model
-    from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.parameter import Parameter
     from simkit.scene import SceneModel
 
 _ACTUATORS = listens("/actuators", ACTUATORS, named_by=("topic", "sub_topic"))

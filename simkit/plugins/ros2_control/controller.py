@@ -13,7 +13,7 @@ from simkit.plugins.live_parameters import declare_at
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros2_control.hardware_interfaces import InterfaceSelection
-from simkit.runtime.communication.parameter_server import Parameter
+from simkit.runtime.communication.parameter import Parameter
 from simkit.topic_logger import TopicLogger
 
 if TYPE_CHECKING:

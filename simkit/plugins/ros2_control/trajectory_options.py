@@ -16,7 +16,7 @@ from simkit.pose import Vector
 
 if TYPE_CHECKING:
     from simkit.plugins.ros2_control.controller import Controller
-    from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.parameter import Parameter
 
 _GAINS: Final = {"p": "p", "i": "i", "d": "d", "ff_velocity_scale": "feedforward"}
 

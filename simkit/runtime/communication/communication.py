@@ -12,7 +12,8 @@ from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
 from simkit.runtime.communication.action_server import ActionTable
 from simkit.runtime.communication.log_topic import LogTopic
-from simkit.runtime.communication.parameter_server import Parameter, ParameterTable
+from simkit.runtime.communication.parameter import Parameter
+from simkit.runtime.communication.parameter_server import ParameterTable
 from simkit.runtime.communication.script_callback import ScriptCallback
 from simkit.runtime.communication.service_server import ServiceTable
 from simkit.runtime.communication.transform_buffer import TransformBuffer
@@ -132,7 +133,7 @@ class Communication:
         self.live_parameters = ParameterTable(bus, engine)
         self.on_demand = OnDemandTasks(bus, engine.reschedule)
         self.transforms = TransformBuffer(bus, lambda: engine.time_ns)
-        self.log_topic = LogTopic(bus, engine, self.live_parameters)
+        self.log_topic = LogTopic(bus, engine, self.live_parameters.node_with)
         engine.log = TopicLogger("simkit", self, "simkit")
         self.log_topic.hear(engine.reports)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections import deque
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -18,7 +19,6 @@ from simkit.runtime.communication.subscription import LazyMessage, Message
 
 if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostic, Diagnostics
-    from simkit.runtime.communication.parameter_server import ParameterTable
     from simkit.runtime.communication.publisher import Publisher
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
@@ -58,11 +58,11 @@ class LogTopic:
     Args:
         bus: topic bus.
         engine: engine of the simulation.
-        parameters: live parameters, whose nodes are the nodes of the plugins.
+        parameter_node: function that returns the node of a plugin with live parameters; empty for another plugin.
     """
 
-    def __init__(self, bus: TopicBus, engine: Engine, parameters: ParameterTable) -> None:
-        self._engine, self._parameters = engine, parameters
+    def __init__(self, bus: TopicBus, engine: Engine, parameter_node: Callable[[object], str]) -> None:
+        self._engine, self._parameter_node = engine, parameter_node
         self._publisher = open_own_topic(bus, ROSOUT, LOG, latched=True)
         self._publisher.history = self._history = deque[Message](maxlen=KEPT_MESSAGES)
         self._waiting: deque[_Entry] = deque(maxlen=KEPT_MESSAGES)
@@ -130,7 +130,7 @@ class LogTopic:
 
     def _logger_name(self, owner: object) -> str:
         """Return the name of a node's logger in ROS: `tb3.diff_drive` for the node `/tb3/diff_drive`."""
-        node = owner if isinstance(owner, str) else self._parameters.node_with(owner) or node_of(owner)
+        node = owner if isinstance(owner, str) else self._parameter_node(owner) or node_of(owner)
         return node.strip("/").replace("/", ".")
 
 

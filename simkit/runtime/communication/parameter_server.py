@@ -9,17 +9,22 @@ A change takes effect between two steps.
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from simkit.argument_checks import check_text, checked_number, shown
+from simkit.argument_checks import check_text
 from simkit.diagnostics import did_you_mean, name_hint
 from simkit.errors import ParameterError
-from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.journal import journaled
+from simkit.runtime.communication.parameter import (
+    USE_SIM_TIME,
+    VALUE_FIELDS,
+    AnyParameter,
+    descriptor,
+    sim_time_parameter,
+    value_message,
+)
+from simkit.runtime.communication.parameter_events import ParameterEvents
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.service_call import Service, ServiceHandler
@@ -27,127 +32,6 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.subscription import Message
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
-
-
-ParameterValue = bool | int | float | str | tuple[float, ...]
-T = TypeVar("T", bound=ParameterValue)
-
-_INTEGER_LIMIT = 2**63  # ROS has integers of 64 bits
-_TYPE_NAMES = {bool: "a boolean", int: "an integer", float: "a number", str: "text", tuple: "numbers"}
-
-
-class Parameter(Generic[T]):
-    """Value that may change while the simulation runs.
-
-    Attributes:
-        node: node of the parameter, such as `/tb3/diff_drive`.
-        name: name of the parameter.
-        value: present value.
-        default: value at the declaration.
-        minimum: lower bound of a number; None without one.
-        maximum: upper bound of a number; None without one.
-        choices: allowed values; empty if not limited to a list.
-        description: meaning, with its unit.
-        on_change: function that receives each new value; None without one.
-        owner: plugin of the parameter.
-        active: True if the plugin is part of the simulation; False if only a restore can bring the plugin back.
-    """
-
-    def __init__(
-        self,
-        node: str,
-        name: str,
-        value: T,
-        *,
-        minimum: float | None = None,
-        maximum: float | None = None,
-        choices: Sequence[T] = (),
-        description: str = "",
-        on_change: Callable[[T], None] | None = None,
-        owner: object = None,
-    ) -> None:
-        self.node, self.name, self.value = node, name, value
-        self.minimum, self.maximum, self.choices = minimum, maximum, tuple(choices)
-        self.description, self.owner = description, owner
-        self.default, self.on_change = value, on_change
-        self.active = True
-
-    @property
-    def allowed(self) -> str:
-        """Text of the allowed values."""
-        if self.choices:
-            return "one of " + ", ".join(map(repr, self.choices))
-        words = _TYPE_NAMES[type(self.value)]
-        if isinstance(self.value, tuple):
-            words = f"{len(self.value)} {words}"
-        if self.minimum is not None and self.maximum is not None:
-            return f"{words} from {self.minimum:g} to {self.maximum:g}"
-        if self.minimum is not None:
-            return f"{words} of at least {self.minimum:g}"
-        return f"{words} of at most {self.maximum:g}" if self.maximum is not None else words
-
-    def checked(self, value: object) -> T:
-        """Check a value, convert it to the type of the parameter, and return it.
-
-        Raises:
-            ParameterError: the value has another type or is out of bounds; the message lists the allowed values.
-        """
-        found = _convert(value, self.value)
-        if found is None or not self.is_within(found):
-            raise ParameterError(f"{self.node} {self.name}: found {value!r}; expected {self.allowed}")
-        return found  # type: ignore[no-any-return]
-
-    def take(self, value: T) -> None:
-        """Store a checked value and notify the plugin."""
-        self.value = value
-        if self.on_change is not None:
-            self.on_change(value)
-
-    def is_within(self, value: object) -> bool:
-        """Check whether a value of the right type is allowed."""
-        if self.choices and value not in self.choices:
-            return False
-        if isinstance(value, (bool, str)):
-            return True
-        low = -math.inf if self.minimum is None else self.minimum
-        high = math.inf if self.maximum is None else self.maximum
-        return all(math.isfinite(v) and low <= v <= high for v in (value if isinstance(value, tuple) else (value,)))
-
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.name!r} of {self.node!r}: {self.value!r}>"
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Parameter[T]:
-        return self
-
-
-AnyParameter = Parameter[Any]
-
-
-def checked_parameter(node: str, name: str, value: object, **options: Any) -> AnyParameter:
-    """Return a parameter of a script or of another process.
-
-    Args:
-        node: node of the parameter.
-        name: name of the parameter.
-        value: first value; a list of numbers is a tuple.
-        options: other arguments of `Parameter`.
-
-    Raises:
-        ParameterError: a parameter cannot have this value, or not within these bounds.
-    """
-    check_text(node, "node")
-    check_text(name, "name")
-    bounds = {end: options.get(end) for end in ("minimum", "maximum")}
-    bounds = {end: None if found is None else checked_number(found, end) for end, found in bounds.items()}
-    if isinstance(value, (np.generic, np.ndarray)):
-        value = value.tolist()
-    value, *choices = (tuple(v) if isinstance(v, list) else v for v in (value, *options.get("choices", ())))
-    if type(value) not in _TYPE_NAMES or (isinstance(value, tuple) and _convert(value, value) is None):
-        kinds = "a boolean, an integer, a number, text or a tuple of numbers"
-        raise ParameterError(f"{node} {name}: found {shown(value)}; expected {kinds}")
-    parameter: AnyParameter = Parameter(absolute_name(node), name, value, **{**options, **bounds, "choices": choices})
-    parameter.value = parameter.default = parameter.checked(parameter.value)
-    return parameter
 
 
 ParameterState = tuple[tuple[AnyParameter, Any], ...]
@@ -167,10 +51,12 @@ class ParameterTable:
         self._services: dict[str, list[Service]] = {}
         # a new model may have the name, and so the node, of a removed model that a restore can bring back
         self._parameters: dict[str, dict[tuple[int, str], AnyParameter]] = {}
+        self._events = ParameterEvents(bus, engine)
 
     def add(self, parameter: AnyParameter) -> None:
         """Add a parameter to its node."""
         self._parameters.setdefault(parameter.node, {})[id(parameter.owner), parameter.name] = parameter
+        self._events.publish("new", [parameter])
 
     def declare(self, services: ServiceTable, parameter: AnyParameter) -> None:
         """Add a parameter of a script or of another process, with the parameter services of a new node.
@@ -193,6 +79,7 @@ class ParameterTable:
         if found.get((id(parameter.owner), parameter.name)) is parameter:
             with self._bus.passing("close", endpoint=parameter):
                 del found[id(parameter.owner), parameter.name]
+                self._events.publish("deleted", [parameter])
                 if not any(p.active for p in found.values()):
                     for service in self._services.pop(parameter.node, ()):
                         service.close()
@@ -215,6 +102,11 @@ class ParameterTable:
         active = ((n, [p for p in self._parameters[n].values() if p.active]) for n in sorted(self._parameters))
         return {node: {p.name: p for p in found} for node, found in active if found}
 
+    def served(self, node: str) -> dict[str, AnyParameter]:
+        """Return the parameters of a node as its services show them: also `use_sim_time`; empty for no such node."""
+        found = self.nodes().get(node, {})
+        return found and {USE_SIM_TIME: sim_time_parameter(node), **found}
+
     def find(self, node: str, name: str) -> AnyParameter:
         """Return a parameter.
 
@@ -224,6 +116,8 @@ class ParameterTable:
         check_text(node, "node")
         check_text(name, "name")
         nodes = self.nodes()
+        if node in nodes and name == USE_SIM_TIME:
+            return self.served(node)[name]
         if node not in nodes:
             hint = name_hint(node, nodes)
             raise ParameterError(f"no node {node!r} has parameters; {hint}")
@@ -242,15 +136,25 @@ class ParameterTable:
         parameter = self.find(node, name)
         checked = parameter.checked(value)
         if self._engine.is_stepping:
-            self._bus.enqueue(lambda: parameter.take(checked))
+            self._bus.enqueue(lambda: self._change(parameter, checked))
         else:
-            parameter.take(checked)
+            self._change(parameter, checked)
+
+    def _change(self, parameter: AnyParameter, value: object) -> None:
+        parameter.take(value)
+        self._events.publish("changed", [parameter])
 
     def set_active(self, owners: Sequence[object]) -> None:
         """Enable the parameters of these plugins; disable all others."""
         living = {id(owner) for owner in owners}
+        changed: dict[bool, list[AnyParameter]] = {True: [], False: []}
         for parameter in (p for found in self._parameters.values() for p in found.values()):
-            parameter.active = parameter.owner is None or id(parameter.owner) in living
+            is_active = parameter.owner is None or id(parameter.owner) in living
+            if is_active != parameter.active:
+                parameter.active = is_active
+                changed[is_active].append(parameter)
+        self._events.publish("new", changed[True])
+        self._events.publish("deleted", changed[False])
 
     def forget(self, owners: Sequence[object]) -> None:
         """Remove every parameter of these plugins permanently."""
@@ -277,58 +181,22 @@ class ParameterTable:
             parameter.value = value
 
 
-def _convert(value: Any, like: object) -> Any:
-    """Convert a value to the type of `like`; return None if the conversion is not allowed."""
-    if isinstance(value, (np.generic, np.ndarray)):
-        value = value.tolist()
-    if isinstance(like, (bool, str)):
-        return value if isinstance(value, type(like)) else None
-    if isinstance(like, tuple):
-        if not isinstance(value, (list, tuple)) or len(value) != len(like):
-            return None
-        found = tuple(_convert(v, 0.0) for v in value)
-        return None if None in found else found
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return None
-    if isinstance(like, int):
-        is_whole = isinstance(value, int) or value.is_integer()
-        return int(value) if is_whole and abs(value) < _INTEGER_LIMIT else None
-    try:
-        return float(value)
-    except OverflowError:
-        return None
-
-
-# rcl_interfaces/msg/ParameterType
-_ROS_TYPES = {bool: 1, int: 2, float: 3, str: 4, tuple: 8}
-_VALUE_FIELDS = {
-    1: "bool_value",
-    2: "integer_value",
-    3: "double_value",
-    4: "string_value",
-    6: "bool_array_value",
-    7: "integer_array_value",
-    8: "double_array_value",
-    9: "string_array_value",
-}
-
-
 def offer_parameter_services(services: ServiceTable, parameters: ParameterTable, node: str) -> list[Service]:
     """Open the six parameter services of a node."""
 
     def find(name: str) -> AnyParameter | None:
-        return parameters.nodes().get(node, {}).get(name)
+        return parameters.served(node).get(name)
 
     def set_all(values: list[Message]) -> dict[str, object]:
         return _set_parameters(parameters, node, values)
 
     handlers: dict[str, ServiceHandler] = {
-        "GetParameters": lambda request: {"values": [_value_message(find(n)) for n in request.names]},
-        "GetParameterTypes": lambda request: {"types": [_value_message(find(n))["type"] for n in request.names]},
+        "GetParameters": lambda request: {"values": [value_message(find(n)) for n in request.names]},
+        "GetParameterTypes": lambda request: {"types": [value_message(find(n))["type"] for n in request.names]},
         "SetParameters": lambda request: {"results": [set_all([value]) for value in request.parameters]},
         "SetParametersAtomically": lambda request: {"result": set_all(request.parameters)},
         "ListParameters": lambda request: {"result": {"names": _list_names(parameters, node, request.prefixes)}},
-        "DescribeParameters": lambda request: {"descriptors": [_descriptor(find(n)) for n in request.names]},
+        "DescribeParameters": lambda request: {"descriptors": [descriptor(find(n)) for n in request.names]},
     }
     opened = []
     for name, handler in handlers.items():
@@ -338,17 +206,8 @@ def offer_parameter_services(services: ServiceTable, parameters: ParameterTable,
 
 
 def _list_names(parameters: ParameterTable, node: str, prefixes: list[str]) -> list[str]:
-    names = list(parameters.nodes().get(node, {}))
+    names = list(parameters.served(node))
     return [n for n in names if not prefixes or any(n == p or n.startswith(f"{p}.") for p in prefixes)]
-
-
-def _value_message(parameter: AnyParameter | None) -> dict[str, object]:
-    """Return a `ParameterValue`, with type 0 for a missing parameter."""
-    if parameter is None:
-        return {"type": 0}
-    kind = _ROS_TYPES[type(parameter.value)]
-    value = parameter.value
-    return {"type": kind, _VALUE_FIELDS[kind]: list(value) if isinstance(value, tuple) else value}
 
 
 def _set_parameters(parameters: ParameterTable, node: str, values: list[Message]) -> dict[str, object]:
@@ -357,28 +216,10 @@ def _set_parameters(parameters: ParameterTable, node: str, values: list[Message]
         checked = []
         for item in values:
             parameter = parameters.find(node, item.name)
-            field = _VALUE_FIELDS.get(int(item.value.type))
+            field = VALUE_FIELDS.get(int(item.value.type))
             checked.append((parameter.name, parameter.checked(getattr(item.value, field) if field else None)))
     except ParameterError as error:
         return {"successful": False, "reason": str(error)}
     for name, value in checked:
         parameters.set(node, name, value)
     return {"successful": True}
-
-
-def _descriptor(parameter: AnyParameter | None) -> dict[str, object]:
-    if parameter is None:
-        return {}
-    found: dict[str, object] = {
-        "name": parameter.name,
-        "type": _ROS_TYPES[type(parameter.value)],
-        "description": parameter.description,
-        "additional_constraints": parameter.allowed,
-    }
-    if parameter.minimum is not None and parameter.maximum is not None and not isinstance(parameter.value, tuple):
-        bounds = {"from_value": parameter.minimum, "to_value": parameter.maximum}
-        if isinstance(parameter.value, int):
-            found["integer_range"] = [{k: int(v) for k, v in bounds.items()}]
-        else:
-            found["floating_point_range"] = [bounds]
-    return found

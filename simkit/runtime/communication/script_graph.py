@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from simkit.runtime.communication.parameter_server import Parameter, checked_parameter
+from simkit.runtime.communication.parameter import Parameter, checked_parameter
 from simkit.runtime.communication.script_callback import ScriptCallback
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from simkit.errors import InputError, MessageError, SimkitError
 from simkit.msgs.goal_status import GoalStatus
 from simkit.pose import Pose
 from simkit.run_spec import JsonMapping
-from simkit.runtime.communication.parameter_server import Parameter
+from simkit.runtime.communication.parameter import Parameter
 from simkit.testing.bundles.direct_changes import apply_changes
 from simkit.testing.bundles.journal_values import decode_message, decode_value
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
     from simkit.runtime.communication.action_server import Action
     from simkit.runtime.communication.journal import ResultStore
-    from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.parameter import Parameter
     from simkit.runtime.communication.service_call import Service
 
 _MAX_BYTES_IN_MEMORY: Final = 16 << 20  # beyond this size [bytes], the journal continues in a temporary file

@@ -94,7 +94,7 @@ def test_a_reset_and_a_restore_restore_the_values(sim: Any) -> None:
 
 def test_parameters_are_read_and_changed_by_the_services_of_ros(sim: Any) -> None:
     listed = sim.call("/Tuner/list_parameters").result.names
-    assert listed == ["p_gain", "mode", "count", "on", "offset", "speed"]
+    assert listed == ["use_sim_time", "p_gain", "mode", "count", "on", "offset", "speed"]
     found = sim.call("/Tuner/get_parameters", {"names": ["p_gain", "mode", "nothing"]}).values
     assert [(v.type, v.double_value, v.string_value) for v in found] == [(3, 2.0, ""), (4, 0.0, "position"), (0, 0, "")]
     wanted = [
@@ -184,3 +184,45 @@ def test_unusual_values_are_accepted_unchanged_or_rejected(default: Any, value: 
             sim.set_parameter("/One", "value", value)
         now = sim.communication.parameters["/One"]["value"].value
         assert now == (default if stored is None else stored) and type(now) is type(default)
+
+
+def test_every_node_with_parameters_uses_simulated_time(sim: Any) -> None:
+    names = sim.call("/Tuner/list_parameters").result.names
+    assert names[0] == "use_sim_time" and "p_gain" in names
+    value, *_ = sim.call("/Tuner/get_parameters", {"names": ["use_sim_time"]}).values
+    assert (value.type, value.bool_value) == (1, True)
+    sim.set_parameter("/Tuner", "use_sim_time", True)
+    request = {"parameters": [{"name": "use_sim_time", "value": {"type": 1, "bool_value": False}}]}
+    answer = sim.call("/Tuner/set_parameters", request).results[0]
+    assert not answer.successful and "expected one of True" in answer.reason
+    assert "use_sim_time" not in sim.communication.parameters["/Tuner"]
+
+
+def test_declared_set_and_removed_parameters_are_events(sim: Any) -> None:
+    heard = sim.subscribe("/parameter_events")
+    sim.step(3)
+    sim.set_parameter("/Tuner", "p_gain", 5)
+    parameter = sim.declare("rate", 10, node="/mine")
+    sim.communication.live_parameters.remove(parameter)
+    changed, declared, removed = heard.messages
+    assert (changed.node, changed.stamp.nanosec) == ("/Tuner", 3_000_000)
+    assert [(p.name, p.value.type, p.value.double_value) for p in changed.changed_parameters] == [("p_gain", 3, 5.0)]
+    assert [(p.name, p.value.integer_value) for p in declared.new_parameters] == [("rate", 10)]
+    assert (removed.node, [p.name for p in removed.deleted_parameters]) == ("/mine", ["rate"])
+    assert not removed.new_parameters and not removed.changed_parameters
+
+
+def test_parameters_of_a_removed_model_are_deleted_and_come_back_with_a_restore() -> None:
+    class Gain(simkit.ModelPlugin):
+        def load(self, parent: Any, params: simkit.Params) -> None:
+            self.gain = self.declare("gain", 1.0)
+
+    text = '<sdf version="1.9"><world name="w"><model name="m"><link name="l"/></model></world></sdf>'
+    with simkit.load(text, plugins=[("m", Gain())]) as sim:
+        heard = sim.subscribe("/parameter_events")
+        before = sim.snapshot()
+        sim.remove("m")
+        sim.restore(before)
+    deleted, new = heard.messages
+    assert [p.name for p in deleted.deleted_parameters] == [p.name for p in new.new_parameters] == ["gain"]
+    assert deleted.node == new.node and not deleted.new_parameters and not new.deleted_parameters

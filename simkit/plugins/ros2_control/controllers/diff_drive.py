@@ -29,7 +29,7 @@ from simkit.scene import Cylinder, Sphere
 
 if TYPE_CHECKING:
     from simkit.msgs import Twist, TwistStamped
-    from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.parameter import Parameter
 
 
 _SHORTEST_PERIOD = 1e-4  # [s]; shorter periods give no useful speed
