@@ -14,7 +14,7 @@ PREFIX: Final = "simkit:"
 
 OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
     {
-        "world": frozenset({"gazebo_quirks"}),
+        "world": frozenset({"entity_services", "gazebo_quirks"}),
         "actor": frozenset({"person"}),
         "scene": frozenset({"quality"}),
         "light": frozenset({"irradiance"}),

@@ -138,6 +138,7 @@ class SceneActor:
     person: PersonLook | None = None
 
 
+ENTITY_SERVICES: Final = ("auto", "classic", "standard")
 QUALITIES: Final = ("fast", "gazebo", "high")
 """Rendering qualities: as fast as possible, with Gazebo's shadows and smooth edges, or finer than Gazebo's."""
 
@@ -184,6 +185,8 @@ class SceneWorld:
         magnetic_field: magnetic field [T] in the world frame.
         quality: requested rendering quality: fast, gazebo or high.
         gazebo_quirks: true if sensors reproduce Gazebo's known errors (`<simkit:gazebo_quirks>`).
+        entity_services: owner of service names that Gazebo Classic and `simulation_interfaces` share (`/spawn_entity`):
+            auto, classic or standard.
         wind: velocity of the air [m/s] in the world frame.
         mjcf: function that returns a new specification of a world in MuJoCo's own format; its engine settings are used.
     """
@@ -201,6 +204,7 @@ class SceneWorld:
     spherical_coordinates: SphericalCoordinates | None = None
     quality: str = "fast"
     gazebo_quirks: bool = False
+    entity_services: str = "auto"
     where: Where = NOWHERE
     wind: Vec3 = (0.0, 0.0, 0.0)
     atmosphere: Atmosphere = Atmosphere()

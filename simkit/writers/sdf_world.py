@@ -90,7 +90,7 @@ class _Writer:
             element("wind", [text_element("linear_velocity", world.wind)]) if any(world.wind) else None,
             atmosphere_element(world.atmosphere),
             spherical_coordinates_element(world.spherical_coordinates),
-            *changed_elements(world, "gazebo_quirks"),
+            *changed_elements(world, "entity_services", "gazebo_quirks"),
             scene_element(world),
             *(parts.plugin(p) for p in world.plugins),
             *(parts.light(li, li.pose_world) for li in world.lights),

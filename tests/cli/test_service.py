@@ -82,7 +82,9 @@ def test_parameters_are_set_dumped_and_loaded(start: Any, simkit_line: Any, tmp_
 
 
 def test_actions_are_listed_and_described(yard: Any, simkit_line: Any) -> None:
-    assert simkit_line("action", "list", "-t").stdout == "/countdown [example_interfaces/action/Fibonacci]\n"
+    listed = simkit_line("action", "list", "-t").stdout.splitlines()
+    steps = "/simulate_steps [simulation_interfaces/action/SimulateSteps]"
+    assert listed == ["/countdown [example_interfaces/action/Fibonacci]", steps]
     told = simkit_line("action", "info", "/countdown", "-t").stdout
     assert told.startswith("Action: /countdown\nAction clients: 0\nAction servers: 1\n    /")
     assert told.endswith(" [example_interfaces/action/Fibonacci]\n")

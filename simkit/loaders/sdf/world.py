@@ -42,6 +42,7 @@ from simkit.loaders.sdf.world_settings import (
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import SceneFrame, SceneLight, SceneWorld
+from simkit.scene.world import ENTITY_SERVICES
 
 _MAGNETIC = (5.5645e-6, 22.8758e-6, -42.3884e-6)
 
@@ -96,6 +97,7 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         spherical_coordinates=read_spherical_coordinates(element),
         quality=read_quality(element),
         gazebo_quirks=element.boolean("gazebo_quirks", False),
+        entity_services=element.choice("entity_services", ENTITY_SERVICES, "auto"),
         where=element.where,
         wind=element.block("wind").vector3("linear_velocity", (0.0, 0.0, 0.0)),
         atmosphere=read_atmosphere(element),

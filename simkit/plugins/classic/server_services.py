@@ -342,6 +342,11 @@ def _plugins(world: SceneWorld) -> Iterator[ScenePlugin]:
                 yield from sensor.plugins
 
 
+def has_classic_plugins(world: SceneWorld) -> bool:
+    """Check whether a world has plugins of gazebo_ros, so that programs expect Gazebo Classic's services."""
+    return any(_LIBRARY.search(plugin.filename) for plugin in _plugins(world))
+
+
 def _is_of_ros_1(plugin: ScenePlugin) -> bool:
     """Check whether a plugin has the spelling of gazebo_ros for ROS 1: parameters in camelCase, and no `<ros>`."""
     if not _LIBRARY.search(plugin.filename):

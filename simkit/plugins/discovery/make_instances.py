@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from simkit import progress
 from simkit.diagnostics import Diagnostics, did_you_mean, follows_from
 from simkit.errors import LoadError, RenderError, SimkitError
-from simkit.plugins.classic.server_services import ClassicServices
+from simkit.plugins.classic.server_services import ClassicServices, has_classic_plugins
 from simkit.plugins.discovery.find_plugin_class import find_plugin
 from simkit.plugins.discovery.python_plugins import Attachment, ParentGetter, SceneEntity, attach_plugins, handle_getter
 from simkit.plugins.discovery.user_plugins import find_user_plugin
@@ -268,10 +268,15 @@ def report_unavailable_sensors(parts: Iterable[SensorsAndPlugins], diagnostics: 
 def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple[Plugin, ...]]:
     """Return the plugins that every world has: first those that run before the file's plugins, then those after."""
     from simkit.plugins.actors import ActorMover
+    from simkit.plugins.world.simulation_interfaces import SimulationInterfaces
     from simkit.plugins.world.world_services import WorldServices
 
     actors = (ActorMover(),) if world.actors else ()
-    return (ClockPublisher(), StaticTransforms(), *actors), (WorldStats(), WorldServices(), ClassicServices())
+    services: list[Plugin] = [SimulationInterfaces(), ClassicServices()]  # the first one owns the names of both
+    is_classic = has_classic_plugins(world) if world.entity_services == "auto" else world.entity_services == "classic"
+    if is_classic:
+        services.reverse()
+    return (ClockPublisher(), StaticTransforms(), *actors), (WorldStats(), WorldServices(), *services)
 
 
 def add_actor_models(

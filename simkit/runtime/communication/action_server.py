@@ -170,6 +170,7 @@ class Action:
         on_goal: function that receives each new goal.
         on_cancel: function that receives a goal whose cancellation is requested; None if every goal continues.
         node: other process that executes the goals, and accepts or rejects them later; empty for this process.
+        is_immediate: True if a goal reaches the callback at once while no step is made, so also in a paused world.
     """
 
     def __init__(
@@ -183,7 +184,7 @@ class Action:
     ) -> None:
         self._table, self.bus, self.engine = table, table.bus, table.engine
         self.name, self.type_name, self.owner = name, type_name, self.bus.owner
-        self.active = True
+        self.active, self.is_immediate = True, False
         self.on_goal, self.on_cancel, self.node = on_goal, on_cancel, node
         if self.owner is None and not node:
             self.on_goal = ScriptCallback(self.bus, _succeeding(on_goal), "action", name)
@@ -339,7 +340,10 @@ class ActionTable(EndpointTable[Action]):
             handle._on_feedback, handle._on_done = on_feedback, on_done
             self._goals = [g for g in self._goals if not g.is_done]
             self._goals.append(handle)
-            self._bus.enqueue(lambda: action.offer(handle))
+            if action.is_immediate and not self._engine.is_stepping:
+                action.offer(handle)
+            else:
+                self._bus.enqueue(lambda: action.offer(handle))
         return handle
 
     def abandon(self, owner: object, reason: str) -> None:

@@ -10,10 +10,19 @@ response. The simulation does not wait for it.
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from simkit.argument_checks import check_function, checked_number
-from simkit.errors import InputError, PluginError, ServiceError, SimkitError, SubscriberError, callback_name
+from simkit.errors import (
+    InputError,
+    MessageError,
+    PluginError,
+    ServiceError,
+    SimkitError,
+    SubscriberError,
+    callback_name,
+)
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.script_callback import ScriptCallback
@@ -110,8 +119,7 @@ class ServiceTable(EndpointTable[Service]):
             SubscriberError: the function of a script that answers raised.
         """
         self._engine.check_open()
-        service = self.get(absolute_name(name))
-        message = self.checked(service, request)
+        service, message = self._service_for(absolute_name(name), request)
         timeout = checked_number(timeout, "timeout", 0.0, unit="s", finite=False)
         if on_done is not None:
             check_function(on_done, "on_done")
@@ -129,8 +137,20 @@ class ServiceTable(EndpointTable[Service]):
             request: request message.
             on_done: function that receives the call, before the step after the response has arrived.
         """
-        service = self.get(absolute_name(name))
-        return self._begin(service, self.checked(service, request), on_done)
+        service, message = self._service_for(absolute_name(name), request)
+        return self._begin(service, message, on_done)
+
+    def _service_for(self, name: str, request: Message) -> tuple[Service, Message]:
+        """Return the service of a name and the request message.
+
+        Gazebo Classic and `simulation_interfaces` have services of the same names. A request that fits only the other
+        type goes to the other service.
+        """
+        first = self.get(name)
+        for service in (first, *(s for s in self._endpoints[name] if s.active and s.yields and s is not first)):
+            with suppress(MessageError):
+                return service, self.checked(service, request)
+        return first, self.checked(first, request)
 
     def _begin(self, service: Service, request: Message, on_done: CallEnd | None) -> ServiceCall:
         if self._bus.journal is not None:

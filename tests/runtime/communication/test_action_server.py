@@ -67,7 +67,7 @@ def test_a_goal_is_executed_and_ends_with_its_result(sim: Any) -> None:
     assert list(goal.result.sequence) == [0, 1, 1, 2, 3, 5]
     assert told == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3], [0, 1, 1, 2, 3, 5]]
     assert ended == [goal]
-    assert sim.communication.actions.names() == {"/fibonacci": FIBONACCI}
+    assert sim.communication.actions.names()["/fibonacci"] == FIBONACCI
 
 
 def test_a_goal_is_rejected_with_a_reason(sim: Any) -> None:

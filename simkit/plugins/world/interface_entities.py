@@ -1,0 +1,216 @@
+"""Entities of ROS 2's `simulation_interfaces`: lists, states, categories and bounds of the models of a world."""
+
+from __future__ import annotations
+
+import enum
+import itertools
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.plugins.classic.state_services import twist_fields, velocity_of
+from simkit.plugins.world.service_entities import (
+    RequestRefused,
+    find_entity,
+    frame_of,
+    handle_of,
+    pose_fields,
+    pose_of,
+    vector_fields,
+    vector_of,
+)
+from simkit.pose import IDENTITY, Pose, Vector
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+PACKAGE: Final = "simulation_interfaces"
+_KINDS: Final = ("model", "link", "light")
+_UNKNOWN, _ROBOT, _HUMAN, _DYNAMIC, _STATIC = 0, 2, 3, 4, 5
+_LONGEST_PATTERN: Final = 200
+_EMPTY, _BOX, _HULL, _SPHERE = range(4)
+
+
+class ResultCode(enum.IntEnum):
+    """Codes of `simulation_interfaces/msg/Result`."""
+
+    UNSUPPORTED = 0
+    OK = 1
+    NOT_FOUND = 2
+    INCORRECT_STATE = 3
+    FAILED = 4
+
+
+class Refusal(Exception):
+    """Error for a request that is not fulfilled.
+
+    Attributes:
+        code: result code of the response.
+    """
+
+    def __init__(self, code: int, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
+
+
+def find(sim: Simulation, name: str, kinds: tuple[str, ...] = _KINDS) -> tuple[str, str]:
+    """Return kind and scoped name of an entity; raises `Refusal`."""
+    try:
+        return find_entity(sim, name, kinds, "entity")
+    except RequestRefused as error:
+        raise Refusal(ResultCode.NOT_FOUND, str(error)) from error
+
+
+# ---------------------------------------------------------------------- states
+
+
+def entity_state(sim: Simulation, request: Any) -> dict[str, object]:
+    """Return pose and velocity of an entity in the world."""
+    return {"state": _state_fields(sim, *find(sim, request.entity))}
+
+
+def _state_fields(sim: Simulation, kind: str, scoped: str) -> dict[str, object]:
+    linear, angular = velocity_of(sim, kind, scoped)
+    pose = pose_fields(handle_of(sim, kind, scoped).pose)
+    return {"header": msgs.header(sim.time_ns, "world"), "pose": pose, "twist": twist_fields(linear, angular)}
+
+
+def set_entity_state(sim: Simulation, request: Any) -> None:
+    """Set pose, velocity or both of an entity, in the world or in the frame that the header names."""
+    kind, scoped = find(sim, request.entity)
+    if request.set_acceleration:
+        raise Refusal(ResultCode.UNSUPPORTED, "an acceleration cannot be set; apply a wrench instead")
+    state, handle = request.state, handle_of(sim, kind, scoped)
+    frame = frame_of(sim, state.header.frame_id)
+    pose = frame @ pose_of(state.pose)
+    linear = frame.rotate(vector_of(state.twist.linear, "twist.linear"))
+    angular = frame.rotate(vector_of(state.twist.angular, "twist.angular"))
+    if request.set_twist and (kind == "light" or (kind == "model" and handle.static)):
+        raise Refusal(ResultCode.FAILED, f"{scoped!r} is static, so it has no velocity")
+    if request.set_pose:
+        handle.set_pose(pose)
+    if request.set_twist:
+        handle.set_velocity(linear, angular)
+
+
+# ---------------------------------------------------------------------- lists
+
+
+def list_entities(sim: Simulation, request: Any) -> dict[str, object]:
+    """Return the names of all models that the filters select."""
+    return {"entities": _selected(sim, request.filters)}
+
+
+def list_states(sim: Simulation, request: Any) -> dict[str, object]:
+    """Return the names and states of all models that the filters select."""
+    names = _selected(sim, request.filters)
+    return {"entities": names, "states": [_state_fields(sim, "model", name) for name in names]}
+
+
+def entity_info(sim: Simulation, request: Any) -> dict[str, object]:
+    """Return the category of a model."""
+    _, scoped = find(sim, request.entity, ("model",))
+    return {"info": {"category": {"category": _category(sim, scoped)}}}
+
+
+def _selected(sim: Simulation, filters: Any) -> list[str]:
+    if len(filters.tags.tags):
+        raise Refusal(ResultCode.UNSUPPORTED, "entities have no tags")
+    if len(filters.filter) > _LONGEST_PATTERN:
+        raise Refusal(ResultCode.FAILED, f"the filter is longer than {_LONGEST_PATTERN} characters")
+    try:
+        pattern = re.compile(filters.filter)
+    except re.error as error:
+        raise Refusal(ResultCode.FAILED, f"{filters.filter!r} is not a regular expression: {error}") from error
+    categories = {int(entry.category) for entry in filters.categories}
+    reaches = _bounds_test(filters.bounds)
+    names = [name for name in sim.contents.handles.tables["model"] if pattern.search(name)]
+    return [
+        name
+        for name in names
+        if (not categories or _category(sim, name) in categories) and (reaches is None or reaches(sim, name))
+    ]
+
+
+def _category(sim: Simulation, scoped: str) -> int:
+    """Return the category of a model: human, static object, robot (it has plugins or sensors), or dynamic object."""
+    if any(actor.name == scoped for actor in sim.world.actors):
+        return _HUMAN
+    scene = sim.model(scoped).scene
+    if scene.static:
+        return _STATIC
+    models = list(scene.all_models())
+    links = list(scene.all_links())
+    has_parts = any(model.plugins for model in models) or any(link.plugins or link.sensors for link in links)
+    return _ROBOT if has_parts else _DYNAMIC
+
+
+# ---------------------------------------------------------------------- bounds
+
+
+def entity_bounds(sim: Simulation, request: Any) -> dict[str, object]:
+    """Return the box around the collisions of a model or a link, along the axes of its own frame."""
+    kind, scoped = find(sim, request.entity, ("model", "link"))
+    corners = _corners(sim, kind, scoped, handle_of(sim, kind, scoped).pose)
+    if corners is None:
+        return {"bounds": {"type": _EMPTY}}
+    if not np.isfinite(corners).all():
+        raise Refusal(ResultCode.FAILED, f"{scoped!r} has a plane, which is infinite")
+    return {"bounds": {"type": _BOX, "points": [vector_fields(corners[1]), vector_fields(corners[0])]}}
+
+
+def _corners(sim: Simulation, kind: str, scoped: str, frame: Pose = IDENTITY) -> np.ndarray[Any, Any] | None:
+    """Return the lower and the upper corner of the box around all collisions, shape (2, 3); None without collisions.
+
+    Args:
+        sim: simulation.
+        kind: "model" or "link".
+        scoped: name of the entity.
+        frame: pose in the world of the frame of the corners.
+    """
+    engine = sim.engine
+    model, data = engine.mj_model, engine.physics.fresh()
+    links = [scoped] if kind == "link" else [link.scoped for link in sim.model(scoped).scene.all_links()]
+    geoms = [geom for link in links for geom in engine.names.link(link).geoms]
+    back, points = frame.inverse(), []
+    for geom in geoms:
+        if model.geom_rbound[geom] == 0.0:
+            return np.array([[-np.inf] * 3, [np.inf] * 3])
+        centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+        rotation = data.geom_xmat[geom].reshape(3, 3)
+        for signs in itertools.product((-1.0, 1.0), repeat=3):
+            points.append(back.transform(data.geom_xpos[geom] + rotation @ (centre + half * signs)))
+    return np.array([np.min(points, axis=0), np.max(points, axis=0)]) if points else None
+
+
+def _bounds_test(bounds: Any) -> Callable[[Simulation, str], bool] | None:
+    """Return the condition that a model's box in the world overlaps the bounds; None for empty bounds."""
+    kind, points = int(bounds.type), [np.array(vector_of(point, "bounds")) for point in bounds.points]
+    if kind == _EMPTY:
+        return None
+    if kind == _HULL:
+        raise Refusal(ResultCode.UNSUPPORTED, "bounds of the type convex hull are not supported; use a box or a sphere")
+    if kind not in (_BOX, _SPHERE) or len(points) != 2:
+        raise Refusal(ResultCode.FAILED, f"found bounds of type {kind} with {len(points)} points; expected two points")
+    if kind == _SPHERE:
+        return lambda sim, name: _distance(sim, name, points[0]) <= points[1][0]
+    low, high = np.minimum(*points), np.maximum(*points)
+
+    def overlaps(sim: Simulation, name: str) -> bool:
+        found = _corners_or_point(sim, name)
+        return bool((found[0] <= high).all() and (found[1] >= low).all())
+
+    return overlaps
+
+
+def _corners_or_point(sim: Simulation, name: str) -> Any:
+    found = _corners(sim, "model", name)
+    return found if found is not None else np.array([sim.model(name).pose.position] * 2)
+
+
+def _distance(sim: Simulation, name: str, centre: Vector) -> float:
+    low, high = _corners_or_point(sim, name)
+    return float(np.linalg.norm(centre - np.clip(centre, low, high)))

@@ -1,0 +1,207 @@
+"""Services and action of ROS 2's `simulation_interfaces`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from service_worlds import load, model
+
+import simkit
+
+OPTION = "<simkit:entity_services>{}</simkit:entity_services>"
+PLUGIN = '<plugin name="p" filename="libgazebo_ros_state.so"/>'
+UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = range(5)
+
+
+def result_of(sim: simkit.Simulation, service: str, request: Any = None) -> int:
+    return int(sim.call(service, request).result.result)
+
+
+def spawning(name: str = "one", **fields: Any) -> dict[str, Any]:
+    return {"name": name, "entity_resource": {"resource_string": model("one", "0 0 7 0 0 0")}, **fields}
+
+
+# ---------------------------------------------------------------------- which type a world serves
+
+
+@pytest.mark.parametrize(
+    ("more", "package"),
+    [
+        ("", "simulation_interfaces"),
+        (PLUGIN, "gazebo_msgs"),
+        (OPTION.format("classic"), "gazebo_msgs"),
+        (OPTION.format("standard") + PLUGIN, "simulation_interfaces"),
+    ],
+)
+def test_the_world_says_which_services_have_the_names_of_both(more: str, package: str) -> None:
+    with load(more) as sim:
+        types = sim.communication.services.names()
+        assert types["/spawn_entity"] == f"{package}/srv/SpawnEntity"
+        assert types["/get_entities"] == "simulation_interfaces/srv/GetEntities"
+        features = list(sim.call("/get_simulator_features").features.features)
+        assert (0 in features) == (1 in features) == (package == "simulation_interfaces") and 33 in features
+        # a request that fits only the other type goes to the other service
+        assert sim.call("/spawn_entity", {"xml": model("two"), "name": "two"}).success
+        assert result_of(sim, "/spawn_entity", spawning()) == OK
+        assert {"one", "two"} <= set(sim.models)
+
+
+def test_an_unknown_value_of_the_option_is_an_error() -> None:
+    with pytest.raises(simkit.LoadError, match="<entity_services>classik</entity_services>; expected one of auto"):
+        load(OPTION.format("classik"))
+
+
+# ---------------------------------------------------------------------- entities
+
+
+def test_a_model_is_spawned_at_the_pose_renamed_and_deleted() -> None:
+    with load() as sim:
+        pose = {"header": {"frame_id": "arm"}, "pose": {"position": {"x": 2.0}}}
+        assert sim.call("/spawn_entity", spawning(initial_pose=pose)).entity_name == "one"
+        assert sim.model("one").pose.position.tolist() == [2.0, 5.0, 1.0]
+        assert result_of(sim, "/spawn_entity", spawning()) == 101
+        assert sim.call("/spawn_entity", spawning(allow_renaming=True)).entity_name == "one_1"
+        assert sim.call("/spawn_entity", spawning("")).result.result == 101  # the name in the text is taken
+        assert result_of(sim, "/delete_entity", {"entity": "one"}) == OK
+        assert result_of(sim, "/delete_entity", {"entity": "one"}) == NOT_FOUND
+        assert result_of(sim, "/delete_entity", {"entity": "sun"}) == FAILED
+        assert "one" not in sim.models and "one_1" in sim.models
+
+
+@pytest.mark.parametrize(
+    ("fields", "code"),
+    [
+        ({"name": "a::b"}, 102),
+        ({"entity_resource": {"uri": "box.usd"}}, 103),
+        ({"entity_resource": {}}, 104),
+        ({"entity_resource": {"uri": "missing.sdf"}}, 104),
+        ({"entity_namespace": "a b"}, 105),
+        ({"entity_resource": {"resource_string": "<sdf"}}, 106),
+        ({"initial_pose": {"header": {"frame_id": "nowhere"}}}, 109),
+        ({"initial_pose": {"pose": {"position": {"x": float("nan")}}}}, 109),
+    ],
+)
+def test_a_model_that_cannot_be_spawned_has_the_published_code(fields: dict[str, Any], code: int) -> None:
+    with load() as sim:
+        before = list(sim.models)
+        answer = sim.call("/spawn_entity", {**spawning(), **fields})
+        assert answer.result.result == code and answer.result.error_message and list(sim.models) == before
+
+
+def test_states_are_set_and_read_in_the_frame_of_the_header() -> None:
+    with load() as sim:
+        state = {"header": {"frame_id": "arm"}, "pose": {"position": {"z": 3.0}}, "twist": {"linear": {"x": 2.0}}}
+        request = {"entity": "box", "state": state, "set_pose": True, "set_twist": True}
+        assert result_of(sim, "/set_entity_state", request) == OK
+        found = sim.call("/get_entity_state", {"entity": "box"}).state
+        assert (found.pose.position.y, found.pose.position.z, found.twist.linear.x) == (5.0, 4.0, 2.0)
+        assert found.header.frame_id == "world"
+        pose_only = {"entity": "box", "state": {}, "set_pose": True}
+        assert result_of(sim, "/set_entity_state", pose_only) == OK
+        assert sim.model("box").pose.position.tolist() == [0.0, 0.0, 0.0]
+        assert result_of(sim, "/set_entity_state", {"entity": "box", "set_acceleration": True}) == UNSUPPORTED
+        assert result_of(sim, "/set_entity_state", {"entity": "ground", "set_twist": True}) == FAILED
+        assert result_of(sim, "/get_entity_state", {"entity": "bax"}) == NOT_FOUND
+
+
+def test_entities_are_selected_by_name_category_and_bounds() -> None:
+    with load() as sim:
+
+        def names(**filters: Any) -> list[str]:
+            return list(sim.call("/get_entities", {"filters": filters}).entities)
+
+        assert names() == ["ground", "box", "arm"] and names(filter="^.o") == ["box"]
+        assert names(categories=[{"category": 5}]) == ["ground"]
+        assert names(categories=[{"category": 4}, {"category": 2}]) == ["box", "arm"]
+        corners = [{"x": 0.4, "y": 0.0, "z": 0.9}, {"x": 3.0, "y": 1.0, "z": 2.0}]
+        assert names(bounds={"type": 1, "points": corners}) == ["ground", "box"]
+        sphere = [{"x": 2.0, "z": 0.5}, {"x": 1.4}]
+        assert names(filter="b", bounds={"type": 3, "points": sphere}) == []
+        sphere[1] = {"x": 1.6}
+        assert names(filter="b", bounds={"type": 3, "points": sphere}) == ["box"]
+        assert result_of(sim, "/get_entities", {"filters": {"filter": "("}}) == FAILED
+        assert result_of(sim, "/get_entities", {"filters": {"tags": {"tags": ["a"]}}}) == UNSUPPORTED
+        states = sim.call("/get_entities_states", {"filters": {"filter": "box"}})
+        assert states.entities == ["box"] and states.states[0].pose.position.z == 0.5
+
+
+def test_bounds_are_in_the_frame_of_the_entity() -> None:
+    with load() as sim:
+        sim.model("box").set_pose(simkit.Pose.from_rpy(3, 4, 5, 0, 0, 1))
+        bounds = sim.call("/get_entity_bounds", {"entity": "box"}).bounds
+        assert bounds.type == 1
+        upper, lower = ([p.x, p.y, p.z] for p in bounds.points)
+        assert upper == pytest.approx([0.5] * 3) and lower == pytest.approx([-0.5] * 3)
+        assert sim.call("/get_entity_bounds", {"entity": "arm"}).bounds.type == 0
+        assert result_of(sim, "/get_entity_bounds", {"entity": "ground"}) == FAILED
+
+
+# ---------------------------------------------------------------------- time
+
+
+def test_states_of_the_simulation_and_steps() -> None:
+    with load() as sim:
+
+        def change(state: int) -> int:
+            return result_of(sim, "/set_simulation_state", {"state": {"state": state}})
+
+        def state() -> int:
+            return int(sim.call("/get_simulation_state").state.state)
+
+        assert state() == 1 and change(1) == 101 and result_of(sim, "/step_simulation", {"steps": 1}) == INCORRECT_STATE
+        assert change(2) == OK and state() == 2
+        assert result_of(sim, "/step_simulation", {"steps": 4}) == OK and sim.tick == 4
+        assert result_of(sim, "/step_simulation", {"steps": 0}) == FAILED
+        assert result_of(sim, "/step_simulation", {"steps": 2**63}) == FAILED and sim.tick == 4
+        assert change(0) == OK and state() == 0 and sim.tick == 0 and sim.paused
+        assert change(3) == 103 and change(1) == OK and state() == 1
+
+
+def test_steps_of_the_action_are_reported_and_need_a_pause() -> None:
+    with load() as sim:
+        refused = sim.send_goal("/simulate_steps", {"steps": 3})
+        assert refused.status.name == "ABORTED" and refused.result.result.result == INCORRECT_STATE
+        sim.paused = True
+        seen: list[tuple[int, int]] = []
+        goal = sim.send_goal(
+            "/simulate_steps", {"steps": 250}, lambda m: seen.append((m.completed_steps, m.remaining_steps))
+        )
+        assert goal.status.name == "SUCCEEDED" and goal.result.result.result == OK
+        assert sim.tick == 250 and sim.paused and seen[0] == (2, 248) and seen[-1] == (250, 0) and len(seen) == 125
+
+
+def test_a_pause_or_a_cancellation_ends_the_steps_of_a_served_run() -> None:
+    with load() as sim, sim.control.pausing.served():
+        sim.paused = True
+        first = sim.send_goal("/simulate_steps", {"steps": 100})
+        sim.control.pausing.advance(10)
+        sim.paused = True
+        assert first.status.name == "ABORTED" and "paused" in first.reason and sim.tick == 10
+        second = sim.send_goal("/simulate_steps", {"steps": 100})
+        sim.control.pausing.advance(10)
+        second.cancel()
+        sim.control.pausing.advance(10)
+        assert second.status.name == "CANCELED" and sim.paused and 20 <= sim.tick <= 21
+
+
+def test_a_reset_has_scopes() -> None:
+    with load() as sim:
+
+        def reset(scope: int) -> int:
+            return result_of(sim, "/reset_simulation", {"scope": scope})
+
+        sim.call("/spawn_entity", spawning())
+        sim.model("box").set_pose(simkit.Pose((9, 9, 9)))
+        sim.step(5)
+        assert reset(4) == OK and "one" not in sim.models and sim.model("box").pose.position[0] == 9
+        assert reset(2) == OK and sim.model("box").pose.position[0] == 0 and sim.tick == 5
+        assert reset(1) == reset(8) == UNSUPPORTED and sim.tick == 5
+        assert reset(0) == OK and sim.tick == 0
+
+
+@pytest.mark.parametrize("service", ["get_spawnables", "get_named_poses", "load_world", "get_available_worlds"])
+def test_a_service_without_a_function_says_so(service: str) -> None:
+    with load() as sim:
+        answer = sim.call(f"/{service}")
+        assert answer.result.result == UNSUPPORTED and answer.result.error_message
