@@ -4,8 +4,8 @@ python benchmarks/live.py [--world NAME] [--seconds S] [--hour [SECONDS]] [--fau
 
 Commands are Twists on `/cmd_vel`, from one client in another process. A percentage is of the speed that the run has
 while its client does nothing. `--hour` keeps eight clients at it for an hour of wall time and prints the memory of the
-run every 10 s. `--faults` shows the real-time factor that `--rtf 1` keeps, and the messages on `/imu` that a client
-which behaves well gets and loses, while others misbehave.
+run every 10 s. `--faults` shows the real-time factor that `--rtf 1` keeps, the run's processor time, and the messages
+on `/imu` that a client which behaves well gets and loses, while two others misbehave.
 """
 
 from __future__ import annotations
@@ -273,6 +273,12 @@ FAULTS = {
 }
 
 
+def processor_time(pid: int) -> float:
+    """Processor time of a process so far [s], all threads."""
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def faults(world: str, seconds: float) -> None:
     """The real-time factor, and what a client that behaves well gets, beside two that do not."""
     context = multiprocessing.get_context("spawn")
@@ -281,9 +287,10 @@ def faults(world: str, seconds: float) -> None:
             workers = [context.Process(target=misbehave, args=(kind, name), daemon=True) for _ in range(2)]
             for worker in workers:
                 worker.start()
-            time.sleep(3.0)
+            time.sleep(8.0)  # after 5 s, a client that reads nothing counts as stuck
             imu = client.subscribe("/imu")
             before, began, count = client.state()["time_ns"], time.perf_counter(), 0
+            busy = processor_time(pid)
             while time.perf_counter() - began < seconds:
                 client.receive(0.1)
                 count += len(imu.waiting)
@@ -292,10 +299,9 @@ def faults(world: str, seconds: float) -> None:
             factor = simulated / (time.perf_counter() - began)
             for worker in workers:
                 worker.terminate()
-            rate = count / simulated
-            print(
-                f"{kind:26} {factor:.3f} x, {rate:4.0f} /imu per s, {imu.lost} lost, {memory(pid):5.0f} MB", flush=True
-            )
+            busy = (processor_time(pid) - busy) / simulated
+            print(f"{kind:26} {factor:.3f} x, {busy:.2f} s of CPU per s, ", end="")
+            print(f"{count / simulated:4.0f} /imu per s, {imu.lost} lost, {memory(pid):5.0f} MB", flush=True)
 
 
 def main() -> None:

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 MOST_OPEN = 1000  # open subscriptions, publishers or goals of one client
 _ANSWERS_FULL = 1 << 18  # [bytes] of queued answers; above this limit no more requests of the client are read
 _UNREAD_TIMEOUT = 10.0  # [s] of wall time after which a client that reads no answers is disconnected
+_STUCK_SECONDS = 5.0  # [s] of wall time after which a client that reads nothing is stuck
 _PIECE = 1 << 16  # [bytes] read or written at once
 
 
@@ -161,6 +162,11 @@ class ClientConnection:
     def is_waiting(self) -> bool:
         """True while something is queued for sending."""
         return bool(self._answers or self._queue or self._pieces)
+
+    @property
+    def is_stuck(self) -> bool:
+        """True while something is queued for the client and it has read nothing for some seconds of wall time."""
+        return self.is_waiting and time.monotonic() - self._sent > _STUCK_SECONDS
 
     def write(self, until: float = math.inf) -> None:
         """Send as many bytes as the socket accepts, at least one piece, until the time `until` of `perf_counter`."""

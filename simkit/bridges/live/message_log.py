@@ -20,7 +20,16 @@ _FIRST_TRIM: Final = 1 << 20  # [bytes] in a log above which it is searched for 
 
 
 class LogClient(Protocol):
-    """Protocol of the connection that subscriptions belong to."""
+    """Protocol of the connection that subscriptions belong to.
+
+    Attributes:
+        is_stuck: True while the client reads nothing.
+    """
+
+    @property
+    def is_stuck(self) -> bool:
+        """True while the client reads nothing."""
+        ...
 
     def activate(self, subscribed: ClientSubscription) -> None:
         """Queue a subscription that has new messages."""
@@ -94,6 +103,11 @@ class MessageLog:
     @property
     def has_readers(self) -> bool:
         return bool(self._readers)
+
+    @property
+    def is_read(self) -> bool:
+        """True if a client with a subscription still reads."""
+        return any(not reader.peer.is_stuck for reader in self._readers)
 
     def append(self, time_ns: int, type_name: str, data: bytes) -> None:
         """Add a message, and drop the oldest messages above the limits."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Any
 
 from simkit.bridges.live.message_log import MOST_DEPTH, ClientSubscription, LogMemory, MessageLog
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.subscription import Subscription
     from simkit.runtime.simulation import Simulation
 
+_REVIEW_PERIOD = 0.5  # [s] of wall time between two searches for topics of images that nobody reads
 _MOST_WAITING = 100  # largest number of messages of a topic that wait until an image is rendered
 
 
@@ -36,19 +38,34 @@ class TopicFeed:
         # a message is serialised at once, even if it waits for an image, because its publisher may change it later
         self._queue = MessageQueue(self.deliver, _serialise_valid)
         self._tap: Subscription | None = None
+        self._is_rendered = False  # True for images, whose rendering costs much more than anything else here
 
     def add(self, reader: ClientSubscription) -> None:
         """Add a subscription. Only the new subscription receives the last messages of a latched topic."""
         bus = self._sim.communication.bus
-        if self._tap is None:
+        if not self.has_readers:
             bus.check_available(self.topic)
             self._log.add(reader)
-            settle = self._common.deliver_ready
-            self._tap = bus.tap(self.topic, self._take, takes_later=True, settle=settle)
+            self._open_tap()
             return
         if self.topic in bus.latched():
             self._add_latched(reader)
         self._log.add(reader)
+
+    def _open_tap(self) -> None:
+        settle = self._common.deliver_ready
+        self._tap = self._sim.communication.bus.tap(self.topic, self._take, takes_later=True, settle=settle)
+
+    def suspend_unread(self) -> None:
+        """Render no images while all clients of the topic are stuck. Messages that are not made are not counted."""
+        if not self._is_rendered or not self.has_readers:
+            return
+        is_read = self._log.is_read
+        if is_read and self._tap is None:
+            self._open_tap()
+        elif not is_read and self._tap is not None:
+            self._tap.close()
+            self._tap = None
 
     def _add_latched(self, reader: ClientSubscription) -> None:
         """Queue the last messages of a latched topic for one subscription."""
@@ -68,8 +85,9 @@ class TopicFeed:
     def remove(self, reader: ClientSubscription) -> None:
         """Remove a subscription."""
         reader.close()
-        if not self._log.has_readers and self._tap is not None:
-            self._tap.close()
+        if not self.has_readers:
+            if self._tap is not None:
+                self._tap.close()
             self._tap = None
             self._queue.clear()
 
@@ -84,12 +102,16 @@ class TopicFeed:
     def _take(self, message: Message | LazyMessage) -> None:
         """Queue a message that was just published."""
         time_ns, is_lazy = self._sim.time_ns, isinstance(message, LazyMessage)
+        if is_lazy and message.work is not None:
+            self._is_rendered = True
         if not self._queue and (not is_lazy or message.can_wait):
             self._common.add((self, time_ns), message)
             if not is_lazy:  # at once, because a bridge does not receive what it publishes at this moment
                 self._common.deliver_ready()
             return
         self._queue.add(time_ns, message)
+        if len(self._queue) > _MOST_WAITING:
+            self._queue.deliver_ready()
         if len(self._queue) > _MOST_WAITING:
             self._queue.drop_oldest()
             self._log.count_lost()
@@ -123,6 +145,7 @@ class TopicFeeds:
         self._sim, self.memory = sim, LogMemory()
         self._feeds: dict[str, TopicFeed] = {}
         self._common: MessageQueue[tuple[TopicFeed, int]] = MessageQueue(_deliver, _serialise_valid)
+        self._reviewed = 0.0
 
     def add(self, reader: ClientSubscription) -> None:
         """Add a subscription to a topic."""
@@ -143,5 +166,10 @@ class TopicFeeds:
     def deliver_ready(self) -> None:
         """Deliver the messages that were not ready when they were published."""
         self._common.deliver_ready()
+        now = time.monotonic()
+        is_due = now - self._reviewed > _REVIEW_PERIOD
+        self._reviewed = now if is_due else self._reviewed
         for feed in self._feeds.values():
             feed.deliver_ready()
+            if is_due:
+                feed.suspend_unread()

@@ -10,7 +10,7 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.bridges.live import message_log
+from simkit.bridges.live import connection, message_log, topic_feed
 from simkit.bridges.live.connection import MOST_OPEN
 from simkit.bridges.live.message_log import MOST_BYTES
 from simkit.bridges.live.protocol import ASK, MESSAGE, MESSAGE_HEAD, FrameReader, json_frame, message_frame
@@ -200,6 +200,41 @@ def test_a_message_that_is_larger_than_the_queue_arrives(court: simkit.Simulatio
         camera.publish(picture(5))
         assert len(caller.messages()) == 1 and caller.lost == {0: 1}
         caller.socket.close()
+
+
+def test_no_images_are_rendered_for_clients_that_read_nothing(
+    court: simkit.Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Rendering:
+        is_done = True
+
+    rendered = [0]
+
+    def render() -> Any:
+        rendered[0] += 1
+        return picture(MB)
+
+    monkeypatch.setattr(topic_feed, "_REVIEW_PERIOD", -1.0)
+    camera = court.communication.bus.advertise("/picture", "std_msgs/msg/UInt8MultiArray")
+    with Server(court) as server:
+        caller = Caller(server)
+        caller.subscribe("/picture")
+        for _ in range(3):
+            camera.publish_later(render, Rendering())
+            server.poll()
+        monkeypatch.setattr(connection, "_STUCK_SECONDS", -1.0)
+        server.poll()
+        assert not court.communication.bus.wanted("/picture"), "the socket is full"
+        camera.publish_later(render, Rendering())
+        assert rendered == [3]
+        assert len(caller.messages()) == 3, "what was queued is still sent"
+        server.poll()
+        camera.publish_later(render, Rendering())
+        assert len(caller.messages()) == 1 and rendered == [4] and caller.lost == {0: 0}
+        caller.socket.close()
+        server.poll()
+        server.poll()
+        assert not court.communication.bus.wanted("/picture")
 
 
 def test_a_bridge_does_not_count_its_own_messages_as_lost(court: simkit.Simulation) -> None:
