@@ -61,6 +61,7 @@ FRONT = {"__init__", "__main__"}
 
 HEAVY = {
     "action_msgs": "only the Python of ROS has it",
+    "cbor2": "optional: the extra `rosbridge`",
     "coacd": "optional: the extra `decompose`",
     "cv2": "0.1 s",
     "embreex": "optional: has no wheels for some machines",
@@ -91,6 +92,7 @@ HEAVY = {
     "trimesh": "0.2 s",
     "termios": "only some systems have it",
     "typer": "only the command line needs it",
+    "websockets": "optional: the extras `foxglove` and `rosbridge`",
     "xacro": "only xacro files need it",
     "yaml": "only YAML files need it",
     "zstandard": "only bags need it",

@@ -16,7 +16,7 @@ from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
 from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.gazebo_options import remove_gazebo_options
 from simkit.cli.run_options import RunDisplay, load_options
-from simkit.cli.terminal import options, ros_options
+from simkit.cli.terminal import options, ros_options, web_options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, report_errors_and_json
 from simkit.cli.terminal.options import option
@@ -34,7 +34,7 @@ _TOPIC = re.compile(r"/[A-Za-z0-9_/]*")
 class RunCommand(TyperCommand):
     """Command that answers options of Gazebo, with options that work with or without a value.
 
-    The latter are `--teleop` and `--bundle-on-failure`.
+    The latter are `--teleop`, `--bundle-on-failure`, `--foxglove` and `--rosbridge`.
 
     The next word is the topic of `--teleop` if the word begins with a slash and is not a file. The next word is the
     folder of `--bundle-on-failure` if the folder exists, if the word ends with a slash, or if the world is the first
@@ -42,7 +42,7 @@ class RunCommand(TyperCommand):
     """
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Insert the default value of both options if the command line has the option without a value."""
+        """Insert the default value of these options if the command line has the option without a value."""
         args = ros_options.join_ros_arguments(args) if "--ros" in args else args
         completed: list[str] = []
         for index, word in enumerate(args):
@@ -52,6 +52,8 @@ class RunCommand(TyperCommand):
             following = args[index + 1] if index + 1 < len(args) else ""
             if word == "--teleop" and (not _TOPIC.fullmatch(following) or Path(following).exists()):
                 word = "--teleop="
+            if word in web_options.NAMES and not web_options.ADDRESS.fullmatch(following):
+                word += "="
             if word == "--bundle-on-failure":
                 is_folder = following.endswith("/") or Path(following or "-").is_dir() or args[0][0:1] != "-"
                 if following.startswith("-") or not following or not is_folder:
@@ -155,6 +157,8 @@ def run(
     ros_namespace: ros_options.RosNamespace = None,
     ros_network: ros_options.RosNetwork = False,
     ros_args: ros_options.RosArguments = None,
+    foxglove: web_options.Foxglove = None,
+    rosbridge: web_options.Rosbridge = None,
 ) -> int:
     """Run a world without a window, as fast as possible."""
     policy, checks = _on_error(on_plugin_error), tuple(Check("final", expression=e, where="--assert") for e in assert_)
@@ -187,7 +191,10 @@ def run(
     )
     key_timeout = _timeout(key_timeout)
     bridge = ros_options.run_ros_options(ros, ros_python, ros_domain, ros_namespace, ros_network, ros_args)
-    display = RunDisplay(view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure, bridge)
+    servers = web_options.web_options(foxglove=foxglove, rosbridge=rosbridge)
+    display = RunDisplay(
+        view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure, bridge, servers
+    )
     return execute(spec, display)
 
 
@@ -245,7 +252,7 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
     """
     from simkit.bridges import viewer
     from simkit.build import load
-    from simkit.cli.run_ros import open_bridge
+    from simkit.cli.run_bridges import open_bridges
     from simkit.cli.run_session import Session, check_keyboard, check_renderer
     from simkit.cli.run_verdict import RunVerdict
     from simkit.recording import run_picture
@@ -261,7 +268,7 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
         viewer.check_possible()
     check_keyboard(display)
     with (
-        open_bridge(display) as bridge,
+        open_bridges(display) as bridges,
         RunVerdict(spec, display.junit) as verdict,
         BlockedPlugins(print_status) as blocked,
         FailureBundle(display.bundles, verdict, spec) as bundling,
@@ -274,7 +281,7 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
                 print_diagnostics(sim.diagnostics, verbose=display.verbose)
                 if not display.verbose:
                     _print_model_world(sim.diagnostics)
-                verdict.code = Session(spec, display, sim, blocked, verdict, bridge).execute()
+                verdict.code = Session(spec, display, sim, blocked, verdict, bridges).execute()
             finally:
                 add_diagnostics(sim.diagnostics)
     return verdict.code

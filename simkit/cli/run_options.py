@@ -14,6 +14,7 @@ from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 
 if TYPE_CHECKING:
     from simkit.bridges.ros.bridge_process import RosOptions
+    from simkit.bridges.web.web_process import WebOptions
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,7 @@ class RunDisplay:
         junit: file for a JUnit XML report.
         bundles: folder for the bundle of a failed run.
         ros: options of the bridge to ROS 2; None for a run without ROS.
+        web_servers: options of the servers for Foxglove and rosbridge.
     """
 
     view: bool = False
@@ -43,6 +45,7 @@ class RunDisplay:
     junit: Path | None = None
     bundles: Path | None = None
     ros: RosOptions | None = None
+    web_servers: tuple[WebOptions, ...] = ()
 
 
 def load_options(

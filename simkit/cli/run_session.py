@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from simkit.cli.run_bridges import start_bridges
 from simkit.cli.run_loop import Interrupts, RunLoop
 from simkit.cli.run_options import RunDisplay
-from simkit.cli.run_ros import start_bridge
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
@@ -22,7 +22,7 @@ from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
 
 if TYPE_CHECKING:
-    from simkit.bridges.ros.bridge_process import RosBridge
+    from simkit.bridges.bridge_process import BridgeProcess
     from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
     from simkit.cli.terminal.progress import Progress
     from simkit.cli.terminal.teleop import Teleop
@@ -165,7 +165,7 @@ class Session:
         sim: loaded simulation.
         blocked: reporter of plugins that block the run.
         verdict: result of the run.
-        bridge: bridge to ROS 2, which is not started yet; None for a run without ROS.
+        bridges: bridges to other programs, which are not started yet.
     """
 
     def __init__(
@@ -175,9 +175,9 @@ class Session:
         sim: Simulation,
         blocked: BlockedPlugins,
         verdict: RunVerdict,
-        bridge: RosBridge | None = None,
+        bridges: Sequence[BridgeProcess] = (),
     ) -> None:
-        self.spec, self.display, self._bridge = spec, display, bridge
+        self.spec, self.display, self._bridges = spec, display, bridges
         self.sim, self.blocked, self.verdict = sim, blocked, verdict
         self._teleop: Teleop | None = None
 
@@ -219,7 +219,7 @@ class Session:
                 stack.enter_context(keyboard)
                 self._connect_keys(keyboard, loop)
             self._serve(stack, loop)
-            start_bridge(self._bridge, loop, interrupts, watchers)
+            start_bridges(self._bridges, loop, interrupts, watchers)
             self._hold()
             stack.enter_context(conditions)
             loop.is_over = self.verdict.is_over

@@ -15,9 +15,9 @@ from simkit.bridges.ros.ros_names import parameter_node, ros_name
 from simkit.bridges.ros.ros_session import RosSession
 from simkit.bridges.ros.ros_types import RosType, TypeUnavailable
 from simkit.bridges.ros.service_bridge import ServiceBridge
-from simkit.bridges.ros.simulation_link import SimulationLink
 from simkit.bridges.ros.topic_bridge import IncomingTopic, OutgoingTopic, RobotDescription
 from simkit.bridges.ros.wait_thread import RosWaiter
+from simkit.bridges.simulation_link import SimulationLink
 
 _LOOK_PERIOD = 0.1  # [s] between two counts of ROS's subscriptions
 _GRAPH_PERIOD = 0.5  # [s] between two looks at the graphs of the simulation and of ROS

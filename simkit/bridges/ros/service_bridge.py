@@ -9,7 +9,7 @@ from simkit.bridges.live.protocol import LiveError
 from simkit.bridges.ros.ros_names import parameter_node
 from simkit.bridges.ros.ros_session import RosSession, ServiceEnd
 from simkit.bridges.ros.ros_types import RosType
-from simkit.bridges.ros.simulation_link import SimulationLink
+from simkit.bridges.simulation_link import SimulationLink
 
 
 class ServiceBridge:

@@ -10,7 +10,7 @@ from simkit.bridges.live.protocol import LiveError
 from simkit.bridges.ros.opaque_types import CDR_HEADER
 from simkit.bridges.ros.ros_session import Qos, RosSession, SubscriptionEnd, publisher_qos
 from simkit.bridges.ros.ros_types import RosType
-from simkit.bridges.ros.simulation_link import SimulationLink
+from simkit.bridges.simulation_link import SimulationLink
 
 Report = Callable[[str], None]
 """Callback for a note to the user."""

@@ -1,4 +1,4 @@
-"""Start of the bridge process: `python -P bridge_main.py OPTIONS`, with options as JSON.
+"""Start of the bridge process: `python -P bridge_main.py PROGRAM SETTINGS`, with a module and JSON.
 
 The Python of ROS need not have simkit installed; the package is imported from the folder of this file.
 """
@@ -10,7 +10,7 @@ import json
 import sys
 from pathlib import Path
 
-_PACKAGE = Path(__file__).resolve().parents[2]
+_PACKAGE = Path(__file__).resolve().parents[1]
 _OLDEST = (3, 11)
 
 
@@ -28,5 +28,4 @@ if __name__ == "__main__":
     if sys.version_info < _OLDEST:
         sys.exit(f"Python {sys.version.split()[0]} is too old for the bridge, which needs 3.11 or newer")
     _import_simkit()
-    program = importlib.import_module("simkit.bridges.ros.bridge_program")
-    sys.exit(program.main(json.loads(sys.argv[1])))
+    sys.exit(importlib.import_module(sys.argv[1]).main(json.loads(sys.argv[2])))

@@ -27,15 +27,16 @@ class SimulationLink(ServerLink):
     Args:
         path: path of the simulation's socket.
         report: callback for a note to the user.
+        name: name of the bridge in the simulation's node lists.
     """
 
-    def __init__(self, path: Path, report: Callable[[str], None]) -> None:
+    def __init__(self, path: Path, report: Callable[[str], None], name: str = "ros") -> None:
         self._report, self._pending = report, dict[int, tuple[Then, Failed]]()
         self._invalid: set[str] = set()
-        super().__init__(path, node="ros")
+        super().__init__(path, node=name)
         self.timeout = _ANSWER_TIMEOUT
         self._socket.settimeout(_ANSWER_TIMEOUT)
-        self.request("node", {"name": "ros", "is_bridge": True})
+        self.request("node", {"name": name, "is_bridge": True})
 
     @property
     def node(self) -> str:
@@ -61,11 +62,13 @@ class SimulationLink(ServerLink):
             else:
                 then(value, data)
 
-    def subscribe(self, topic: str, take: Callable[[int, str, bytes, int], None], failed: Failed) -> int:
+    def subscribe(
+        self, topic: str, take: Callable[[int, str, bytes, int], None], failed: Failed, depth: int = _DEPTH
+    ) -> int:
         """Subscribe to a topic; return the number of the subscription."""
         number = self.next_number()
         self.subscriptions[number] = take
-        self.ask("subscribe", {"number": number, "topic": topic, "depth": _DEPTH}, failed=failed)
+        self.ask("subscribe", {"number": number, "topic": topic, "depth": depth}, failed=failed)
         return number
 
     def unsubscribe(self, number: int) -> None:
@@ -88,7 +91,7 @@ class SimulationLink(ServerLink):
         self.send(message_frame(number, data))
 
     def invalid(self, words: JsonObject) -> None:
-        """Report an invalid message of ROS, once for each topic."""
+        """Report an invalid message, once for each topic."""
         topic = str(words["topic"])
         if topic not in self._invalid:
             self._invalid.add(topic)

@@ -1,0 +1,204 @@
+"""Process of a bridge or server that is a client of the simulation: its start, its notes and its end."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, Any, Final, Self
+
+from simkit.errors import InputError
+
+_START_TIMEOUT: Final = 60.0  # [s]; the first import of rclpy on a slow disk takes several seconds
+_END_TIMEOUT: Final = 5.0  # [s] for passing on the last messages
+_POLL: Final = 0.02  # [s] between two looks at a bridge that starts
+
+
+class BridgeProcess:
+    """Bridge process; a context manager that waits for the end of the process.
+
+    Args:
+        title: name of the bridge in messages, such as `bridge to ROS 2`.
+        area: part of the codes of its errors, such as `ROS`.
+        program: module with the function `main`, which receives the settings in the process.
+        settings: settings of the program, as JSON.
+        report: callback for a line to the user.
+        python: Python of the process; None for the Python of this process.
+        environment: environment variables of the process; None for those of this process.
+    """
+
+    def __init__(
+        self,
+        title: str,
+        area: str,
+        program: str,
+        settings: Mapping[str, Any],
+        report: Callable[[str], None],
+        python: Path | None = None,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        self._title, self._area, self._program, self._settings = title, area, program, settings
+        self._report, self._python, self._environment = report, python, environment
+        self._process: subprocess.Popen[bytes] | None = None
+        self._lines: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
+        self._errors: deque[str] = deque(maxlen=20)
+        self._last: dict[str, Any] = {}
+        self._is_over = False
+
+    def start(
+        self,
+        socket: Path,
+        serve: Callable[[float], object] = time.sleep,
+        is_interrupted: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """Start the process and wait until everything is open.
+
+        Args:
+            socket: path of the simulation's socket.
+            serve: function that serves the simulation's clients for some wall time [s].
+            is_interrupted: function that returns True to wait no longer.
+
+        Raises:
+            InputError: the bridge cannot start; the message has the reason.
+        """
+        python, settings = self._python or sys.executable, {"socket": str(socket), **self._settings}
+        try:
+            self._process = process = subprocess.Popen(
+                [str(python), "-P", str(Path(__file__).parent / "bridge_main.py"), self._program, json.dumps(settings)],
+                stdin=subprocess.PIPE,  # nothing is written; the pipe closes when this process ends
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                env=self._environment,
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise self.start_error(f"{python} cannot be started: {error.strerror}") from None
+        for pipe, take in ((process.stdout, self._take_line), (process.stderr, self._errors.append)):
+            threading.Thread(target=_read_lines, args=(pipe, take), daemon=True).start()
+        end = time.monotonic() + _START_TIMEOUT
+        while "ready" not in self._last:
+            serve(_POLL)
+            self._report_notes()
+            if is_interrupted():
+                return
+            if process.poll() is not None:
+                self._report_notes(0.5)
+                reason = self._last.get("error") or (
+                    self._errors[-1] if self._errors else f"exit code {process.poll()}"
+                )
+                raise self.start_error(str(reason))
+            if time.monotonic() > end:
+                raise self.start_error(f"the bridge is not ready after {_START_TIMEOUT:g} s")
+        self._report(self._ready_text(self._last["ready"]))
+
+    def _ready_text(self, found: Any) -> str:
+        """Return the line for the user about a bridge that is open."""
+        raise NotImplementedError
+
+    def _start_help(self, reason: str) -> str:
+        """Return the help for a bridge that cannot start; empty if there is none."""
+        return ""
+
+    def start_error(self, reason: str) -> InputError:
+        """Return the error for a bridge that cannot start."""
+        helps = self._start_help(reason)
+        code, suffix = f"SK-{self._area}-002", f"\n    help: {helps}" if helps else ""
+        python = f" with {self._python}" if self._python else ""
+        return InputError(f"{code} the {self._title} cannot start{python}: {reason}{suffix}", code)
+
+    def check(self) -> None:
+        """Report new notes of a bridge whose run continues, and once the end of the process."""
+        if not self._is_over and not self._is_alive():
+            self._is_over = True
+            text = f"the {self._title} has ended ({self._end_reason()}); the simulation continues without it"
+            self._report(f"warning SK-{self._area}-004: {text}")
+
+    def wait(self, is_interrupted: Callable[[], bool]) -> int:
+        """Wait until the process ends or a function returns True.
+
+        Returns:
+            Exit code: 0 if the simulation has ended, 1 if the bridge has failed.
+        """
+        while self._is_alive():
+            time.sleep(_POLL)
+            if is_interrupted():
+                self._end()
+                return 0
+        if "ended" in self._last:
+            self._report(f"note: {self._end_reason()}")
+            return 0
+        self._report(f"error: SK-{self._area}-004 the {self._title} has ended ({self._end_reason()})")
+        return 1
+
+    def _is_alive(self) -> bool:
+        """Report new notes, and check whether the process runs."""
+        self._report_notes()
+        if self._process is None or self._process.poll() is None:
+            return self._process is not None
+        self._report_notes(0.5)
+        return False
+
+    def _end_reason(self) -> str:
+        reason = self._last.get("ended") or self._last.get("error")
+        if reason or self._process is None:
+            return str(reason)
+        code = self._process.returncode
+        return f"signal {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
+
+    def _end(self) -> None:
+        """Ask the process to end."""
+        if self._process is not None and self._process.stdin is not None:
+            self._process.stdin.close()
+
+    def _take_line(self, line: str) -> None:
+        try:
+            found = json.loads(line)
+        except ValueError:
+            return
+        if isinstance(found, dict):
+            self._lines.put(found)
+
+    def _report_notes(self, wait: float = 0.0) -> None:
+        """Process the lines that have arrived; wait at most some time [s] for the first."""
+        while True:
+            try:
+                found = self._lines.get(timeout=wait) if wait else self._lines.get_nowait()
+            except queue.Empty:
+                return
+            if found is None:
+                return
+            self._last.update(found)
+            if "note" in found:
+                self._report(f"note SK-{self._area}-005: {found['note']}")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Wait until the process has passed on the last messages; kill a process that does not end."""
+        process, self._is_over = self._process, True
+        if process is None:
+            return
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(_END_TIMEOUT)
+        self._end()
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
+def _read_lines(pipe: IO[bytes] | None, take: Callable[[str], None]) -> None:
+    """Pass the lines of a pipe to a function until the pipe closes."""
+    if pipe is not None:
+        with pipe:
+            for line in pipe:
+                take(line.decode("utf-8", "replace").strip())
