@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,23 @@ Failed = Callable[[LiveError], None]
 """Callback for an error that a request was answered with."""
 _ANSWER_TIMEOUT = 1e6  # [s]; a simulation may make one very long step
 _DEPTH = 1000  # queued messages of a topic in the simulation
+
+
+CDR_HEADER = b"\0\1\0\0"
+"""Header of little-endian CDR."""
+
+
+def text_message(text: str) -> bytes:
+    """Return a `std_msgs/msg/String` as CDR."""
+    data = text.encode()
+    return CDR_HEADER + struct.pack("<I", len(data) + 1) + data + b"\0"
+
+
+def robot_descriptions(graph: JsonObject) -> dict[str, str]:
+    """Return the topics for the URDF of every robot, and the topic of the first one without a name, with the robots."""
+    robots: list[str] = graph["robots"]
+    found = {f"/{name}/robot_description": name for name in robots}
+    return {**found, "/robot_description": robots[0]} if robots else found
 
 
 def _ignore(*_: object) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
@@ -13,7 +14,10 @@ from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_types import full_name, type_of
 from simkit.msgs.type_hashes import rihs
+from simkit.scene.geometry import Mesh
 from simkit.scene.urdf_text import urdf_text
+
+_TEXTURES: Final = (".bmp", ".gif", ".jpeg", ".jpg", ".mtl", ".png", ".tga", ".tif", ".tiff", ".webp")
 
 
 def graph(request: Request) -> object:
@@ -82,6 +86,21 @@ def robot_description(request: Request) -> object:
     return urdf_text(root)
 
 
+def asset(request: Request) -> object:
+    """Return the path of a mesh of the scene, or of a file for a texture in the folder of a mesh, by its URI."""
+    uri = request.arg("uri", str)
+    folder, _, name = uri.rpartition("/")
+    links = (link for model in request.sim.models.values() for link in model.scene.all_links())
+    shapes = ([*(v.geometry for v in link.visuals), *(c.geometry for c in link.collisions)] for link in links)
+    for mesh in (shape for found in shapes for shape in found if isinstance(shape, Mesh)):
+        for known in (mesh.uri, mesh.file.as_uri()):
+            if uri == known:
+                return str(mesh.file)
+            if folder == known.rpartition("/")[0] and Path(name).suffix.lower() in _TEXTURES:
+                return str(mesh.file.parent / name)
+    raise RequestRefused(f"{uri!r:.200} is no mesh of the simulation")
+
+
 def default_message(request: Request) -> object:
     """Return a message of a type with all fields zero."""
     return Response(builder_of(full_name(request.arg("type", str))).default())
@@ -91,6 +110,7 @@ BRIDGE_REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
     {
         "graph": graph,
         "goal_result": goal_result,
+        "asset": asset,
         "default_message": default_message,
         "robot_description": robot_description,
     }

@@ -11,10 +11,9 @@ from collections.abc import Callable
 from typing import Any
 
 from simkit.bridges.live.protocol import JsonObject, LiveError
-from simkit.bridges.ros.opaque_types import CDR_HEADER
 from simkit.bridges.ros.ros_session import Qos, RosSession, ServiceEnd
 from simkit.bridges.ros.ros_types import RosType
-from simkit.bridges.simulation_link import SimulationLink
+from simkit.bridges.simulation_link import CDR_HEADER, SimulationLink
 from simkit.msgs.goal_status import GoalStatus
 
 _ID_END = 4 + 16  # bytes of the CDR header and of a goal's id

@@ -17,7 +17,7 @@ from simkit.bridges.ros.ros_types import RosType, TypeUnavailable
 from simkit.bridges.ros.service_bridge import ServiceBridge
 from simkit.bridges.ros.topic_bridge import IncomingTopic, OutgoingTopic, RobotDescription
 from simkit.bridges.ros.wait_thread import RosWaiter
-from simkit.bridges.simulation_link import SimulationLink
+from simkit.bridges.simulation_link import SimulationLink, robot_descriptions
 
 _LOOK_PERIOD = 0.1  # [s] between two counts of ROS's subscriptions
 _GRAPH_PERIOD = 0.5  # [s] between two looks at the graphs of the simulation and of ROS
@@ -136,10 +136,7 @@ class Bridge:
 
     def _apply_descriptions(self) -> None:
         """Publish the URDF of every robot, and that of the first robot without the robot's name."""
-        robots: list[str] = self._graph["robots"]
-        wanted = {f"/{name}/robot_description": name for name in robots}
-        if robots:
-            wanted["/robot_description"] = robots[0]
+        wanted = robot_descriptions(self._graph)
         for topic in [t for t, d in self._descriptions.items() if wanted.get(t) != d.robot]:
             self._descriptions.pop(topic).close()
         for topic, name in wanted.items():

@@ -27,9 +27,8 @@ from simkit.bridges.ros.type_support import (
     hash_of_text,
     library,
 )
+from simkit.bridges.simulation_link import CDR_HEADER
 
-CDR_HEADER = b"\x00\x01\x00\x00"
-"""First bytes of little-endian CDR."""
 _LARGEST = 1 << 31
 _CDR = "_ZN8eprosima7fastcdr3Cdr"  # eprosima::fastcdr::Cdr, in the names of the C++ ABI
 _ON_MESSAGE = ctypes.CFUNCTYPE(ctypes.c_bool, POINTER, POINTER)

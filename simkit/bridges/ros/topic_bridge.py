@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable
 from typing import Any
 
 from simkit.bridges.live.protocol import LiveError
-from simkit.bridges.ros.opaque_types import CDR_HEADER
 from simkit.bridges.ros.ros_session import Qos, RosSession, SubscriptionEnd, publisher_qos
 from simkit.bridges.ros.ros_types import RosType
-from simkit.bridges.simulation_link import SimulationLink
+from simkit.bridges.simulation_link import SimulationLink, text_message
 
 Report = Callable[[str], None]
 """Callback for a note to the user."""
@@ -158,8 +156,7 @@ class RobotDescription:
 
     def _publish(self, text: str, _: bytes) -> None:
         if not self._is_closed:
-            data = text.encode()
-            self._publisher.publish(CDR_HEADER + struct.pack("<I", len(data) + 1) + data + b"\0")
+            self._publisher.publish(text_message(text))
 
     def close(self) -> None:
         """Close the topic in ROS."""

@@ -127,6 +127,9 @@ class WebClient:
     def apply_graph(self) -> None:
         """Process a change of the simulation's graph, `server.graph`."""
 
+    def apply_time(self, time_ns: int) -> None:
+        """Process the simulated time [ns], which the server asks for regularly."""
+
     def send(self, data: str | bytes) -> None:
         """Queue a message for the client."""
         self._waiting.append(data)
@@ -248,10 +251,11 @@ class WebServer:
         self._is_answered = True
         if "topics" in found:
             self.graph = found
-            for client in list(self._clients):
+        self.graph["time_ns"] = found["time_ns"]
+        for client in self._clients:
+            if "topics" in found:
                 client.apply_graph()
-        else:
-            self.graph["time_ns"] = found["time_ns"]
+            client.apply_time(found["time_ns"])
 
     # ------------------------------------------------------------------ clients
 
