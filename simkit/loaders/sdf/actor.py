@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from simkit.loaders.resources.uris import is_small_integer
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Animation, PersonLook, SceneActor, Trajectory, Waypoint
+
+_LATEST: Final = 1e15  # [s]; the number of rows of later times overflows
 
 
 def read_actor(element: Params, name: str, pose_world: Pose) -> SceneActor:
@@ -52,7 +56,10 @@ def _trajectory(element: Params) -> Trajectory:
     if not is_small_integer(number.removeprefix("-")):
         element.error("SK-PARAM-002", f"found <trajectory id={number!r}>; expected a whole number")
         number = "0"
-    points = [Waypoint(p.number("time", required=True), p.pose("pose")) for p in element.all("waypoint")]
+    points = [
+        Waypoint(p.number("time", required=True, minimum=-_LATEST, maximum=_LATEST), p.pose("pose"))
+        for p in element.all("waypoint")
+    ]
     for before, after, waypoint in zip(points, points[1:], element.all("waypoint")[1:], strict=False):
         if after.time < before.time:
             waypoint.error("SK-PARAM-002", f"found a waypoint at {after.time:g} s after one at {before.time:g} s")

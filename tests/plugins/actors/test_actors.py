@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -245,6 +246,13 @@ def test_an_actor_with_the_name_of_a_model_is_ignored() -> None:
     with simkit.load(world(model, ANNA)) as sim:
         assert codes(sim) == ["SK-ACTOR-002"]
         sim.run(0.1)
+
+
+@pytest.mark.parametrize(("time", "is_allowed"), [("1e15", True), ("1e16", False), ("-1e308", False)])
+def test_the_time_of_a_waypoint_has_a_limit(time: str, is_allowed: bool) -> None:
+    ways = f'<trajectory id="0" type="walk"><waypoint><time>{time}</time></waypoint></trajectory>'
+    with nullcontext() if is_allowed else pytest.raises(simkit.LoadError, match="SK-PARAM-002: found <time>"):
+        simkit.load(world(f'<actor name="a"><script>{ways}</script></actor>')).close()
 
 
 def test_a_misspelt_animation_is_reported() -> None:
