@@ -42,7 +42,10 @@ def test_gazebos_services_can_be_called(start: Any, simkit_line: Any) -> None:
 
 
 def test_parameters_are_listed_read_and_described(yard: Any, simkit_line: Any) -> None:
-    assert simkit_line("param", "list").stdout == "/Tuner:\n  count\n  frame.offset\n  mode\n  on\n  p_gain\n"
+    assert (
+        simkit_line("param", "list").stdout
+        == "/Tuner:\n  count\n  frame.offset\n  mode\n  on\n  p_gain\n  use_sim_time\n"
+    )
     typed = simkit_line("param", "list", "/Tuner", "--param-type", "--filter", "^p_").stdout
     assert typed == "  p_gain (type: double)\n"
     for name, text in (
@@ -71,6 +74,7 @@ def test_parameters_are_set_dumped_and_loaded(start: Any, simkit_line: Any, tmp_
     assert refused.stderr.startswith("Setting parameter failed: ") and "from 0 to 100" in refused.stderr
     text = simkit_line("param", "dump", "/Tuner").stdout
     expected = {"count": 3, "frame": {"offset": [1.0, -2.0]}, "mode": "slow", "on": True, "p_gain": 12.5}
+    expected["use_sim_time"] = True
     assert yaml.safe_load(text) == {"/Tuner": {"ros__parameters": expected}}
     file = tmp_path / "tuner.yaml"
     file.write_text(text.replace("12.5", "7.0"), encoding="utf-8")

@@ -22,6 +22,7 @@ from simkit.plugins.world.service_entities import (
     command_handler,
     find_entity,
     pose_fields,
+    twist_fields,
 )
 from simkit.plugins.world.world_settings import physics_fields, set_physics
 
@@ -195,7 +196,7 @@ def state_services(sim: Simulation) -> Table:
 
 def _get_state(sim: Simulation, request: msgs.GetEntityState_Request) -> dict[str, object]:
     pose, linear, angular = states.state_of(sim, request.name, request.reference_frame)
-    frame, twist = request.reference_frame, states.twist_fields(linear, angular)
+    frame, twist = request.reference_frame, twist_fields(linear, angular)
     state = {"name": request.name, "pose": pose_fields(pose), "twist": twist, "reference_frame": frame}
     return {"header": msgs.header(sim.time_ns, frame), "state": state}
 
@@ -274,7 +275,7 @@ def _delete_model(sim: Simulation, request: msgs.DeleteModel_Request) -> str:
 def _get_model_state(sim: Simulation, request: msgs.GetModelState_Request) -> dict[str, object]:
     frame = request.relative_entity_name
     pose, linear, angular = states.state_of(sim, request.model_name, frame, ("model",))
-    found = {"pose": pose_fields(pose), "twist": states.twist_fields(linear, angular)}
+    found = {"pose": pose_fields(pose), "twist": twist_fields(linear, angular)}
     message = "GetModelState: got properties"
     return {"header": msgs.header(sim.time_ns, frame), **found, "status_message": message}
 
@@ -287,7 +288,7 @@ def _set_model_state(sim: Simulation, state: msgs.ModelState) -> str:
 def _get_link_state(sim: Simulation, request: msgs.GetLinkState_Request) -> dict[str, object]:
     name, frame = request.link_name, request.reference_frame
     pose, linear, angular = states.state_of(sim, name, frame, ("link",))
-    twist = states.twist_fields(linear, angular)
+    twist = twist_fields(linear, angular)
     state = {"link_name": name, "pose": pose_fields(pose), "twist": twist, "reference_frame": frame}
     return {"link_state": state, "status_message": "GetLinkState: got state"}
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-from html import escape
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -12,6 +10,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.plugins.world.service_entities import (
     RequestRefused,
+    add_namespace,
     find_entity,
     frame_of,
     handle_of,
@@ -19,21 +18,20 @@ from simkit.plugins.world.service_entities import (
     pose_of,
     require_finite,
     spawn_entities,
-    vector_fields,
+    twist_fields,
     vector_of,
+    velocity_of,
 )
 from simkit.pose import IDENTITY, Pose, Vector
 
 if TYPE_CHECKING:
-    from simkit.runtime import Link, Simulation
+    from simkit.runtime import Simulation
 
 MODEL_STATES: Final = "gazebo_msgs/msg/ModelStates"
 LINK_STATES: Final = "gazebo_msgs/msg/LinkStates"
 STATES_RATE: Final = 100.0
 """Default rate of the topics of states [Hz], as in gazebo_ros_state."""
 
-_PLUGIN: Final = re.compile(r"(<plugin\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*?)(/>|>(.*?)</plugin\s*>)", re.DOTALL)
-_NAMESPACE: Final = re.compile(r"<namespace\s*>.*?</namespace\s*>|<namespace\s*/>", re.DOTALL)
 _KINDS: Final = ("model", "link", "light", "visual")
 
 
@@ -64,30 +62,6 @@ def spawn_model(sim: Simulation, xml: str, name: str, namespace: str, pose_messa
     return str(spawn_entities(sim.spawn, source, name, pose).name)
 
 
-def add_namespace(xml: str, namespace: str) -> str:
-    """Add a namespace to each plugin of a description, as Classic does for `robot_namespace`; also for ROS 1."""
-    namespace = escape(namespace, quote=False)
-    element = f"<namespace>{namespace}</namespace>"
-
-    def named(match: re.Match[str]) -> str:
-        content = match[3] or ""
-        if re.search(r"<ros\s*>", content):
-            if _NAMESPACE.search(content):
-                content = _NAMESPACE.sub(lambda _: element, content, count=1)
-            else:
-                content = re.sub(r"<ros\s*>", lambda m: m[0] + element, content, count=1)
-        elif "<robotNamespace" in content:
-            own = f"<robotNamespace>{namespace}</robotNamespace>"
-            content = re.sub(
-                r"<robotNamespace\s*(/>|>.*?</robotNamespace\s*>)", lambda _: own, content, flags=re.DOTALL
-            )
-        else:
-            content = f"<ros>{element}</ros>{content}"
-        return f"{match[1]}>{content}</plugin>"
-
-    return _PLUGIN.sub(named, xml)
-
-
 def delete_model(sim: Simulation, name: str) -> None:
     """Remove a top-level model; raises `RequestRefused`."""
     if name not in sim.models:
@@ -99,33 +73,6 @@ def delete_model(sim: Simulation, name: str) -> None:
 
 
 # ---------------------------------------------------------------------- states
-
-
-def carrying_link(sim: Simulation, kind: str, scoped: str) -> Link | None:
-    """Return the link to which an entity is fixed; for a model this is its canonical link."""
-    if kind == "link":
-        return sim.link(scoped)
-    if kind == "visual":
-        return sim.visual(scoped).link
-    links = sim.contents.handles.tables["link"]
-    if kind == "model":
-        return links.get(sim.model(scoped).scene.canonical_link)
-    return links.get(sim.light(scoped).scene.link)
-
-
-def velocity_of(sim: Simulation, kind: str, scoped: str) -> tuple[Vector, Vector]:
-    """Return linear velocity of an entity's origin [m/s] and angular velocity [rad/s], world frame, shape (3,)."""
-    link = carrying_link(sim, kind, scoped)
-    if link is None:
-        return np.zeros(3), np.zeros(3)
-    angular = link.angular_velocity
-    arm = handle_of(sim, kind, scoped).pose.position - link.pose.position
-    return link.linear_velocity + np.cross(angular, arm), angular
-
-
-def twist_fields(linear: Vector, angular: Vector) -> dict[str, object]:
-    """Return the fields of a `Twist` message."""
-    return {"linear": vector_fields(linear.tolist()), "angular": vector_fields(angular.tolist())}
 
 
 def state_of(sim: Simulation, name: str, frame: str, kinds: tuple[str, ...] = _KINDS) -> tuple[Pose, Vector, Vector]:

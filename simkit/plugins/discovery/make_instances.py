@@ -21,6 +21,7 @@ from simkit.plugins.discovery.user_plugins import find_user_plugin
 from simkit.plugins.drives.robot_transforms import StaticTransforms
 from simkit.plugins.plugin_folders import split_python_name
 from simkit.plugins.world.clock_and_statistics import ClockPublisher, WorldStats
+from simkit.plugins.world.simulation_interfaces import SimulationInterfaces
 from simkit.scene import Scene, SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneVisual, SceneWorld
 from simkit.sensors import sensor_kinds
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
@@ -268,7 +269,6 @@ def report_unavailable_sensors(parts: Iterable[SensorsAndPlugins], diagnostics: 
 def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple[Plugin, ...]]:
     """Return the plugins that every world has: first those that run before the file's plugins, then those after."""
     from simkit.plugins.actors import ActorMover
-    from simkit.plugins.world.simulation_interfaces import SimulationInterfaces
     from simkit.plugins.world.world_services import WorldServices
 
     actors = (ActorMover(),) if world.actors else ()

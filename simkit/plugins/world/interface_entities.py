@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.plugins.classic.state_services import twist_fields, velocity_of
 from simkit.plugins.world.service_entities import (
     RequestRefused,
     find_entity,
@@ -19,8 +18,10 @@ from simkit.plugins.world.service_entities import (
     handle_of,
     pose_fields,
     pose_of,
+    twist_fields,
     vector_fields,
     vector_of,
+    velocity_of,
 )
 from simkit.pose import IDENTITY, Pose, Vector
 

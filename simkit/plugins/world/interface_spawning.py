@@ -7,10 +7,10 @@ import re
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import InputError, LoadError
-from simkit.plugins.classic.state_services import add_namespace
 from simkit.plugins.world.interface_entities import Refusal, ResultCode
 from simkit.plugins.world.service_entities import (
     RequestRefused,
+    add_namespace,
     find_entity,
     frame_of,
     pose_of,

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from collections.abc import Callable, Iterable, Sequence
+from html import escape
 from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, PluginError
@@ -13,7 +17,7 @@ from simkit.pose import IDENTITY, Pose, Vector
 
 if TYPE_CHECKING:
     from simkit import msgs
-    from simkit.runtime import Simulation
+    from simkit.runtime import Link, Simulation
 
 T = TypeVar("T")
 
@@ -21,6 +25,8 @@ KINDS: Final = ("none", "light", "model", "link", "visual", "collision", "sensor
 """Kinds of entities, indexed by their number in `ros_gz_interfaces/msg/Entity`."""
 
 _WORLD: Final = ("", "world", "map", "/map")
+_PLUGIN: Final = re.compile(r"(<plugin\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*?)(/>|>(.*?)</plugin\s*>)", re.DOTALL)
+_NAMESPACE: Final = re.compile(r"<namespace\s*>.*?</namespace\s*>|<namespace\s*/>", re.DOTALL)
 
 
 class RequestRefused(Exception):
@@ -79,6 +85,30 @@ def spawn_entities(spawn: Callable[..., T], *arguments: object) -> T:
         return spawn(*arguments)
     except PluginError as error:
         raise RequestRefused(str(error)) from error
+
+
+def add_namespace(xml: str, namespace: str) -> str:
+    """Add a namespace to each plugin of a description, as Classic does for `robot_namespace`; also for ROS 1."""
+    namespace = escape(namespace, quote=False)
+    element = f"<namespace>{namespace}</namespace>"
+
+    def named(match: re.Match[str]) -> str:
+        content = match[3] or ""
+        if re.search(r"<ros\s*>", content):
+            if _NAMESPACE.search(content):
+                content = _NAMESPACE.sub(lambda _: element, content, count=1)
+            else:
+                content = re.sub(r"<ros\s*>", lambda m: m[0] + element, content, count=1)
+        elif "<robotNamespace" in content:
+            own = f"<robotNamespace>{namespace}</robotNamespace>"
+            content = re.sub(
+                r"<robotNamespace\s*(/>|>.*?</robotNamespace\s*>)", lambda _: own, content, flags=re.DOTALL
+            )
+        else:
+            content = f"<ros>{element}</ros>{content}"
+        return f"{match[1]}>{content}</plugin>"
+
+    return _PLUGIN.sub(named, xml)
 
 
 # ---------------------------------------------------------------------- entities
@@ -161,6 +191,33 @@ def frame_of(sim: Simulation, name: str) -> Pose:
 def handle_of(sim: Simulation, kind: str, scoped: str) -> Any:
     """Return the handle of an entity."""
     return sim.visual(scoped) if kind == "visual" else sim.contents.handles.find(kind, scoped)
+
+
+def carrying_link(sim: Simulation, kind: str, scoped: str) -> Link | None:
+    """Return the link to which an entity is fixed; for a model this is its canonical link."""
+    if kind == "link":
+        return sim.link(scoped)
+    if kind == "visual":
+        return sim.visual(scoped).link
+    links = sim.contents.handles.tables["link"]
+    if kind == "model":
+        return links.get(sim.model(scoped).scene.canonical_link)
+    return links.get(sim.light(scoped).scene.link)
+
+
+def velocity_of(sim: Simulation, kind: str, scoped: str) -> tuple[Vector, Vector]:
+    """Return linear velocity of an entity's origin [m/s] and angular velocity [rad/s], world frame, shape (3,)."""
+    link = carrying_link(sim, kind, scoped)
+    if link is None:
+        return np.zeros(3), np.zeros(3)
+    angular = link.angular_velocity
+    arm = handle_of(sim, kind, scoped).pose.position - link.pose.position
+    return link.linear_velocity + np.cross(angular, arm), angular
+
+
+def twist_fields(linear: Vector, angular: Vector) -> dict[str, object]:
+    """Return the fields of a `Twist` message."""
+    return {"linear": vector_fields(linear.tolist()), "angular": vector_fields(angular.tolist())}
 
 
 # ---------------------------------------------------------------------- numbers
