@@ -35,7 +35,7 @@ from simkit.compiler.meshes.convex_pieces import (
 )
 from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.meshes.mesh_part import Floats, Ints
-from simkit.compiler.meshes.surface_patches import TRIANGLES_FROM, large_surface_pieces
+from simkit.compiler.meshes.surface_patches import is_large, large_surface_pieces
 
 THRESHOLD: Final = 0.05
 """Concavity of CoACD, relative to the size of the mesh, below which a piece counts as convex."""
@@ -127,7 +127,7 @@ LARGEST_ERROR: Final = 0.005
 """Largest error [m] of the contacts of a large static mesh that is not reported as a warning."""
 
 _REPORTS: Final = (
-    4  # version of the texts of the findings, which are cached with the bodies: raise it with every change of a text
+    5  # version of the texts of the findings, which are cached with the bodies: raise it with every change of a text
 )
 _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
 _KEPT: Final = 128
@@ -227,7 +227,7 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
 
 def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
     findings: list[CollisionFinding] = []
-    if len(faces) > TRIANGLES_FROM:
+    if is_large(vertices, faces):
         pieces, error = large_surface_pieces(vertices, faces)
         kind = f"{sum(not p.exact for p in pieces)} patches of"
         shapes = tuple((p.points, np.zeros((0, 3), np.int32)) for p in pieces)

@@ -108,6 +108,13 @@ def surface_prisms(vertices: Floats, faces: Ints) -> list[Floats]:
     return out
 
 
+def prism_count(vertices: Floats, faces: Ints) -> int:
+    """Return the number of prisms on the surface of a mesh."""
+    import trimesh
+
+    return len(_patches(trimesh.Trimesh(vertices, faces, process=False)))
+
+
 def layer_depths(vertices: Floats, faces: Ints, of: Ints) -> Floats:
     """Return the thickness [m] of the layer of contacts below some faces of a mesh, shape (n,), as for prisms.
 

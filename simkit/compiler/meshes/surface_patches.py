@@ -13,11 +13,14 @@ from typing import Final
 
 import numpy as np
 
-from simkit.compiler.meshes.convex_pieces import ConvexPiece, is_convex, layer_depths
+from simkit.compiler.meshes.convex_pieces import ConvexPiece, is_convex, layer_depths, prism_count
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 
 TRIANGLES_FROM: Final = 4000
-"""Number of triangles from which a static mesh is divided into patches instead of prisms."""
+"""Number of triangles up to which a static mesh is divided into prisms, which are exact, instead of patches."""
+
+_COUNTED_MOST: Final = 10_000
+"""Number of triangles up to which a mesh with fewer prisms than `TRIANGLES_FROM` is divided into prisms too."""
 
 _PIECES_MOST, _TRIANGLES_PER_PIECE = 2500, 8
 _CLOSED_MOST: Final = 8000
@@ -72,6 +75,13 @@ class _Patch:
     cut: tuple[Floats, float] | None = None
     deepest: Floats | None = None
     piece: Floats | None = None
+
+
+def is_large(vertices: Floats, faces: Ints) -> bool:
+    """Check whether a mesh is divided into patches. Coplanar triangles can share one prism and count once."""
+    if len(faces) <= TRIANGLES_FROM or len(faces) > _COUNTED_MOST:
+        return len(faces) > TRIANGLES_FROM
+    return prism_count(vertices, faces) > TRIANGLES_FROM
 
 
 def large_surface_pieces(vertices: Floats, faces: Ints) -> tuple[list[ConvexPiece], float]:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
 import trimesh
 
+import simkit
 from simkit.compiler.meshes.convex_decomposition import convex_bodies
-from simkit.compiler.meshes.surface_patches import large_surface_pieces
+from simkit.compiler.meshes.surface_patches import is_large, large_surface_pieces
 from simkit.pose import Pose
 from simkit.scene import Box, Mesh, Sphere
+
+ROBOT = Path(__file__).parents[3] / "assets/turtlebot3/turtlebot3_burger"
 
 
 def grid(heights, step, keep=None):
@@ -115,3 +120,38 @@ def test_a_box_slides_down_a_fine_ramp_without_catching(make, compiled, tmp_path
     along = (c.data.body("box::link").xpos[0] - 1.5) / np.cos(slope)
     # MuJoCo's elliptic cone lifts a sliding box a little; a box that catches stays behind by more than a tenth
     assert along == pytest.approx(0.5 * 9.8 * (np.sin(slope) - 0.2 * np.cos(slope)), rel=0.1)
+
+
+def test_a_large_mesh_with_few_flat_areas_stays_exact():
+    house = trimesh.creation.box((8.0, 6.0, 3.0))
+    for _ in range(5):
+        house = house.subdivide()  # 12,288 triangles
+    vertices, faces = np.asarray(house.vertices), np.asarray(house.faces, np.int32)
+    half = faces[:6000]
+    assert not is_large(vertices, half)
+    assert is_large(vertices, faces)  # too many to count
+    rng = np.random.default_rng(0)
+    assert is_large(vertices + rng.normal(0.0, 0.01, vertices.shape), half)
+
+
+def test_a_turtlebot_drives_over_patches_as_over_a_plane(tmp_path):
+    heights = np.zeros((49, 49))
+    heights[-1] = 1.0
+    vertices, faces = grid(heights, 8 / 48)
+    trimesh.Trimesh(vertices - (4, 4, 0), faces, process=False).export(tmp_path / "floor.stl")
+    travels = []
+    for shape in ("<plane><normal>0 0 1</normal></plane>", "<mesh><uri>floor.stl</uri></mesh>"):
+        world = tmp_path / "world.sdf"
+        world.write_text(
+            '<sdf version="1.9"><world name="w"><model name="floor"><static>true</static><link name="l"><collision name="c">'
+            f"<geometry>{shape}</geometry></collision></link></model></world></sdf>"
+        )
+        with simkit.load(world) as sim:
+            robot = sim.spawn(ROBOT, name="robot", pose=Pose((-2.0, 0.1, 0.03)))
+            sim.run(0.5)
+            start = robot.pose.position[0]
+            sim.publish("/cmd_vel", {"linear": {"x": 0.2}})
+            sim.run(5.0)
+            travels.append(robot.pose.position[0] - start)
+    assert travels[0] == pytest.approx(1.0, abs=0.03)
+    assert travels[1] == pytest.approx(travels[0], rel=0.01)
