@@ -143,7 +143,8 @@ def test_a_turtlebot_drives_over_patches_as_over_a_plane(tmp_path):
     for shape in ("<plane><normal>0 0 1</normal></plane>", "<mesh><uri>floor.stl</uri></mesh>"):
         world = tmp_path / "world.sdf"
         world.write_text(
-            '<sdf version="1.9"><world name="w"><model name="floor"><static>true</static><link name="l"><collision name="c">'
+            '<sdf version="1.9"><world name="w"><model name="floor"><static>true</static><link name="l">'
+            '<collision name="c">'
             f"<geometry>{shape}</geometry></collision></link></model></world></sdf>"
         )
         with simkit.load(world) as sim:
