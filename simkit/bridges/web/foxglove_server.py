@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 import struct
 import time
-from pathlib import Path
 from typing import Any, Final
 
 from simkit import msgs
-from simkit.bridges.live.protocol import JsonObject, LiveClosed, LiveError
+from simkit.bridges.live.protocol import LARGEST_OUT, JsonObject, LiveClosed, LiveError
 from simkit.bridges.simulation_link import robot_descriptions, text_message
 from simkit.bridges.web.json_messages import message_from_json, message_to_json
 from simkit.bridges.web.web_server import WebClient, WebServer, run_server
 from simkit.errors import MessageError, SimkitError
+from simkit.input_file import read_failure, read_input
 
 SUBPROTOCOLS: Final = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 _CAPABILITIES: Final = ("clientPublish", "time", "parameters", "parametersSubscribe", "services", "assets")
@@ -270,9 +270,9 @@ class FoxgloveClient(WebClient):
 
         def read(path: str, _: bytes) -> None:
             try:
-                send("", Path(path).read_bytes())
+                send("", read_input(path, LARGEST_OUT))
             except OSError as error:
-                send(error)
+                send(read_failure(error))
 
         self.link.ask("asset", {"uri": str(words["uri"])}, then=read, failed=send)
 
