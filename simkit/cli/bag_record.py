@@ -144,6 +144,7 @@ class _Recording:
                     begun_ns = started_ns if self._begun_ns is None else self._begun_ns
                     if self._now_ns() - begun_ns > self._duration * 1e9:
                         return
+            self._source.client.flush()  # receives the messages that were sent before Ctrl-C
         except LiveClosed as closed:
             if closed.code != "SK-LIVE-005":
                 raise

@@ -35,7 +35,7 @@ from simkit.bridges.live.type_exchange import SentTypes, detach
 from simkit.msgs import own_interfaces
 
 _ENDPOINT_TELLS = ("request", "goal_request", "goal_cancel", "parameter")
-_PIECE = 1 << 18  # [bytes] read from the socket at once
+_PIECE = 1 << 20  # [bytes] read from the socket at once
 _LONGEST_TIMEOUT = 1e6  # [s]; `select` rejects much longer waits on some systems
 CONNECT_PERIOD = 0.05
 """[s] of wall time between two attempts to connect to a simulation that does not accept connections yet."""

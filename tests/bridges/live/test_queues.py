@@ -261,7 +261,8 @@ def test_a_closed_subscription_leaves_nothing_for_one_of_the_same_number(court: 
     with Server(court) as server:
         caller = Caller(server)
         caller.ask("subscribe", number=5, topic="/picture", depth=10)
-        camera.publish(picture(MB))
+        for _ in range(5):
+            camera.publish(picture(MB))
         server.poll()  # the socket is full
         caller.ask("subscribe", number=0, topic="/old", depth=10)
         old.publish(number(1))
