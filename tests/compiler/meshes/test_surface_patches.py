@@ -144,8 +144,7 @@ def test_a_turtlebot_drives_over_patches_as_over_a_plane(tmp_path):
         world = tmp_path / "world.sdf"
         world.write_text(
             '<sdf version="1.9"><world name="w"><model name="floor"><static>true</static><link name="l">'
-            '<collision name="c">'
-            f"<geometry>{shape}</geometry></collision></link></model></world></sdf>"
+            f'<collision name="c"><geometry>{shape}</geometry></collision></link></model></world></sdf>'
         )
         with simkit.load(world) as sim:
             robot = sim.spawn(ROBOT, name="robot", pose=Pose((-2.0, 0.1, 0.03)))
