@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, Any, Final, Self
+from typing import IO, Any, Final, NamedTuple, Self
 
 from simkit.errors import InputError
 
@@ -23,12 +23,26 @@ _END_TIMEOUT: Final = 5.0  # [s] for passing on the last messages
 _POLL: Final = 0.02  # [s] between two looks at a bridge that starts
 
 
+class BridgeCodes(NamedTuple):
+    """Diagnostic codes of a kind of bridge.
+
+    Attributes:
+        cannot_start: error of a bridge that cannot start.
+        ended: warning about a bridge that has ended during a run.
+        note: note about something that the bridge leaves out.
+    """
+
+    cannot_start: str
+    ended: str
+    note: str
+
+
 class BridgeProcess:
     """Bridge process; a context manager that waits for the end of the process.
 
     Args:
         title: name of the bridge in messages, such as `bridge to ROS 2`.
-        area: part of the codes of its errors, such as `ROS`.
+        codes: diagnostic codes of the bridge.
         program: module with the function `main`, which receives the settings in the process.
         settings: settings of the program, as JSON.
         report: callback for a line to the user.
@@ -39,14 +53,14 @@ class BridgeProcess:
     def __init__(
         self,
         title: str,
-        area: str,
+        codes: BridgeCodes,
         program: str,
         settings: Mapping[str, Any],
         report: Callable[[str], None],
         python: Path | None = None,
         environment: Mapping[str, str] | None = None,
     ) -> None:
-        self._title, self._area, self._program, self._settings = title, area, program, settings
+        self._title, self._codes, self._program, self._settings = title, codes, program, settings
         self._report, self._python, self._environment = report, python, environment
         self._process: subprocess.Popen[bytes] | None = None
         self._lines: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
@@ -111,7 +125,7 @@ class BridgeProcess:
     def start_error(self, reason: str) -> InputError:
         """Return the error for a bridge that cannot start."""
         helps = self._start_help(reason)
-        code, suffix = f"SK-{self._area}-002", f"\n    help: {helps}" if helps else ""
+        code, suffix = self._codes.cannot_start, f"\n    help: {helps}" if helps else ""
         python = f" with {self._python}" if self._python else ""
         return InputError(f"{code} the {self._title} cannot start{python}: {reason}{suffix}", code)
 
@@ -120,7 +134,7 @@ class BridgeProcess:
         if not self._is_over and not self._is_alive():
             self._is_over = True
             text = f"the {self._title} has ended ({self._end_reason()}); the simulation continues without it"
-            self._report(f"warning SK-{self._area}-004: {text}")
+            self._report(f"warning {self._codes.ended}: {text}")
 
     def wait(self, is_interrupted: Callable[[], bool]) -> int:
         """Wait until the process ends or a function returns True.
@@ -136,7 +150,7 @@ class BridgeProcess:
         if "ended" in self._last:
             self._report(f"note: {self._end_reason()}")
             return 0
-        self._report(f"error: SK-{self._area}-004 the {self._title} has ended ({self._end_reason()})")
+        self._report(f"error: {self._codes.ended} the {self._title} has ended ({self._end_reason()})")
         return 1
 
     def _is_alive(self) -> bool:
@@ -178,7 +192,7 @@ class BridgeProcess:
                 return
             self._last.update(found)
             if "note" in found:
-                self._report(f"note SK-{self._area}-005: {found['note']}")
+                self._report(f"note {self._codes.note}: {found['note']}")
 
     def __enter__(self) -> Self:
         return self

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from simkit.bridges.bridge_process import BridgeProcess
+from simkit.bridges.bridge_process import BridgeCodes, BridgeProcess
 from simkit.bridges.ros.ros_names import is_namespace
 from simkit.bridges.ros.ros_python import INSTALL_HELP, find_python
 from simkit.errors import InputError
@@ -16,6 +16,7 @@ from simkit.errors import InputError
 _FOLDER: Final = Path(__file__).parent
 _MOST_DOMAIN: Final = 232
 _LEAVES_LOOPBACK: Final = ("ROS_STATIC_PEERS", "ROS_LOCALHOST_ONLY", "ROS_DISCOVERY_SERVER")
+_CODES = BridgeCodes("SK-ROS-002", "SK-ROS-004", "SK-ROS-005")
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ class RosBridge(BridgeProcess):
         inner = options.namespace.strip("/")
         settings = {"namespace": f"/{inner}" if inner else "", "arguments": options.arguments}
         program, python = "simkit.bridges.ros.bridge_program", find_python(options.python)
-        super().__init__("bridge to ROS 2", "ROS", program, settings, report, python, options.environment())
+        super().__init__("bridge to ROS 2", _CODES, program, settings, report, python, options.environment())
 
     def _ready_text(self, found: dict[str, int]) -> str:
         counts = ", ".join(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final
 
-from simkit.bridges.bridge_process import BridgeProcess
+from simkit.bridges.bridge_process import BridgeCodes, BridgeProcess
 from simkit.errors import InputError
 
 TOKEN_VARIABLE: Final = "SIMKIT_WEB_TOKEN"
@@ -65,6 +65,9 @@ def is_loopback(host: str) -> bool:
         return host == "localhost"
 
 
+_CODES = BridgeCodes("SK-WEB-002", "SK-WEB-004", "SK-WEB-005")
+
+
 class WebBridge(BridgeProcess):
     """Process of a server.
 
@@ -84,7 +87,7 @@ class WebBridge(BridgeProcess):
             raise InputError(f"{text}\n    help: pip install 'simkit-robotics[{kind}]'", "SK-WEB-001")
         self._options = options
         settings = {"host": options.host, "port": options.port, "token": options.token}
-        super().__init__(_TITLES[kind], "WEB", f"simkit.bridges.web.{kind}_server", settings, report)
+        super().__init__(_TITLES[kind], _CODES, f"simkit.bridges.web.{kind}_server", settings, report)
 
     def _ready_text(self, found: Any) -> str:
         host = f"[{self._options.host}]" if ":" in self._options.host else self._options.host

@@ -18,6 +18,7 @@ _folders: list[Path] = []
 def define_interfaces(ctx: Any, folders: Sequence[str]) -> None:
     """Define the types in some folders; end the command with exit code 2 if a definition has errors."""
     _folders[:] = [Path(folder).expanduser().absolute() for folder in folders]
+    ctx.call_on_close(_folders.clear)
     try:
         own_interfaces.add_folders(_folders)
     except InterfaceError as error:
