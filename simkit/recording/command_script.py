@@ -232,18 +232,18 @@ def _command(item: JsonMapping, where: str, topics: Mapping[str, str] | None) ->
     for key in item:
         if key not in _KEYS:
             raise _script_error(
-                where, f"unknown key {key!r}; {did_you_mean(str(key), _KEYS) or 'allowed: ' + ', '.join(_KEYS)}"
+                where, f"unknown key {key!r:.60}; {did_you_mean(str(key), _KEYS) or 'allowed: ' + ', '.join(_KEYS)}"
             )
     for key in ("at", "topic"):
         if key not in item:
             raise _script_error(where, f"key {key!r} is missing")
     topic = item["topic"]
     if not isinstance(topic, str):
-        raise _script_error(where, f"topic: found {topic!r}; expected a text")
+        raise _script_error(where, f"topic: found {topic!r:.60}; expected a text")
     topic = topic if topic.startswith("/") else "/" + topic
     if topics is not None and topic not in topics:
         raise _script_error(
-            where, f"no topic {topic!r}; {did_you_mean(topic, topics) or 'known: ' + ', '.join(topics)}"
+            where, f"no topic {topic!r:.60}; {did_you_mean(topic, topics) or 'known: ' + ', '.join(topics)}"
         )
     message = item.get("message") or {}
     if not isinstance(message, dict):

@@ -106,6 +106,14 @@ def test_an_invalid_script_is_reported_with_its_line(tmp_path: Path, text: str, 
     assert reason in str(error.value)
 
 
+@pytest.mark.parametrize("item", [f"{{at: 0, topic: {[0.0] * 5000}}}", f"{{at: 0, topic: {'x' * 5000}}}"])
+def test_a_long_value_is_shortened_in_the_message(tmp_path: Path, item: str) -> None:
+    (tmp_path / "s.yaml").write_text(f"- {item}\n")
+    with pytest.raises(InputError, match="topic") as found:
+        read_script(tmp_path / "s.yaml", {"/cmd_vel": "geometry_msgs/msg/Twist"})
+    assert len(str(found.value).removeprefix(str(tmp_path))) < 300
+
+
 def test_a_missing_script_is_reported(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="No such file"):
         read_script(tmp_path / "drive.yaml", TOPICS)
