@@ -6,12 +6,13 @@ import math
 import numbers
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import ArgumentTypeError, ArgumentValueError
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 _LONGEST_SHOWN: Final = 80  # characters of a value in a message
 
@@ -109,8 +110,8 @@ def checked_number(
 
 def _real(value: object, name: str, allowed: str) -> Any:
     """Return a number as an int, a float or a fraction."""
-    if isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.ndim == 0):
-        value = value.item()
+    if type(value).__module__ == "numpy" and getattr(value, "ndim", None) == 0:
+        value = value.item()  # type: ignore[attr-defined]
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise wrong_type(name, allowed, value)
     return value
@@ -118,6 +119,8 @@ def _real(value: object, name: str, allowed: str) -> Any:
 
 def checked_vector(value: object, name: str, count: int = 3) -> npt.NDArray[np.float64]:
     """Return finite numbers as an array of shape (count,)."""
+    import numpy as np
+
     allowed = f"{count} finite {'number' if count == 1 else 'numbers'}"
     try:
         found = np.asarray(value)

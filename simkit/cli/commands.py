@@ -43,10 +43,10 @@ COMMANDS = {
     "param": "List, read and set the parameters of a running simulation.",
     "action": "List the actions of a running simulation and send goals.",
     "node": "List the nodes of a running simulation.",
-    "log": "Print the log messages of a running simulation or of a bag.",
+    "log": "Print log messages of plugins and of simkit: the last 1000 and all new ones; of a bag, all recorded ones.",
     "interface": "List and show the types of messages, services and actions.",
     "model": "Show models, poses and joints of a running simulation.",
-    "ros": "Connect a running simulation to ROS 2.",
+    "ros": "Connect a running simulation to ROS 2 until the simulation ends, or until Ctrl-C.",
     "tf": "Show the frames of a running simulation or of a bag.",
 }
 """Commands and their help lines. The module of each command has the command's name and is imported on first use."""

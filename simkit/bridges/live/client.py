@@ -5,16 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.bridges.live.client_graph import DEFAULT_DEPTH, ClientGraph, absolute, check_callback
 from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription
-from simkit.bridges.live.client_transforms import TOPICS, LiveTransforms
 from simkit.bridges.live.discovery import find_socket
 from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
 from simkit.bridges.live.server_link import CONNECT_PERIOD
 from simkit.msgs.message_types import Message
+
+if TYPE_CHECKING:
+    from simkit.bridges.live.client_transforms import LiveTransforms
 
 NO_ANSWER: Final = "SK-SERVICE-010"
 
@@ -182,6 +184,8 @@ class Client(ClientGraph):
     @cached_property
     def tf(self) -> LiveTransforms:
         """Poses of frames in other frames, from `/tf` and `/tf_static`; received from the first use on."""
+        from simkit.bridges.live.client_transforms import TOPICS, LiveTransforms  # imports NumPy
+
         return LiveTransforms(self, self.subscribe_all(TOPICS), int(self.state()["time_ns"]))
 
     # ------------------------------------------------------------------ services and actions

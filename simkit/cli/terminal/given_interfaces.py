@@ -17,14 +17,15 @@ _folders: list[Path] = []
 
 def define_interfaces(ctx: Any, folders: Sequence[str]) -> None:
     """Define the types in some folders; end the command with exit code 2 if a definition has errors."""
-    _folders[:] = [Path(folder).expanduser().absolute() for folder in folders]
-    ctx.call_on_close(_folders.clear)
+    paths = [Path(folder).expanduser().absolute() for folder in folders]
     try:
-        own_interfaces.add_folders(_folders)
+        own_interfaces.add_folders(paths)
     except InterfaceError as error:
         if not ctx.resilient_parsing:
             print_error(error)
             raise Exit(error.exit_code) from None
+    _folders[:] = paths
+    ctx.call_on_close(_folders.clear)
 
 
 def interface_folders() -> tuple[Path, ...]:

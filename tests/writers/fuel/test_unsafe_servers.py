@@ -33,10 +33,10 @@ def stored(fuel: Fuel) -> list[Path]:
 
 
 UNSAFE: dict[str, tuple[Callable[[], bytes], str]] = {
-    "slip": (lambda: archive({"model.sdf": BOX, "../../out.txt": "x"}), "leads out of its folder"),
+    "slip": (lambda: archive({"model.sdf": BOX, "../../outside.txt": "x"}), "leads out of its folder"),
     "absolute": (lambda: archive({"/tmp/out.txt": "x"}), "is an absolute path"),
     "backslash": (lambda: archive({"a\\b.txt": "x"}), "characters that are not allowed"),
-    "folder": (lambda: archive({"../../out/": ""}), "leads out of its folder"),
+    "folder": (lambda: archive({"../../outside/": ""}), "leads out of its folder"),
     "link": (lambda: archive({"model.sdf": BOX, "out": link("out", b"/etc")}), "is a link"),
     "bomb": (lambda: archive({"zeros": bytes(80 << 20)}), "more than 200 times its size"),
     "hidden bomb": (lambda: with_wrong_size(archive({"zeros": bytes(80 << 20)}), 100), "it is damaged"),
@@ -58,7 +58,7 @@ def test_a_dangerous_archive_is_refused_and_nothing_is_stored(fuel: Fuel, name: 
     assert result.exit_code == 2
     assert "w.sdf:2: error SK-FETCH-004" in result.output and reason in result.output, result.output
     assert {p.relative_to("cache").parts[3] for p in stored(fuel)} == {"good"}
-    assert not list(Path("cache/.simkit-fetch").iterdir()) and not list(Path("..").rglob("out*"))
+    assert not list(Path("cache/.simkit-fetch").iterdir()) and not list(Path("..").glob("**/outside*"))
 
 
 def test_a_broken_download_continues_in_the_same_run(fuel: Fuel) -> None:
