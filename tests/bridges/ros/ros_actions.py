@@ -19,7 +19,8 @@ from unique_identifier_msgs.msg import UUID
 from simkit import msgs
 from simkit.bridges.ros import opaque_types
 from simkit.bridges.ros.type_support import GETTER, capsule
-from simkit.msgs.derived_types import derived_type, interface_hash
+from simkit.msgs.derived_types import derived_type
+from simkit.msgs.type_hashes import rihs
 
 HEADER = opaque_types.CDR_HEADER
 
@@ -34,9 +35,9 @@ def action_class(name: str) -> Any:
     """The class of an action, as `rosidl` would have generated it."""
     for part in ("Goal", "Result", "Feedback"):
         msgs.full_name(f"{name}_{part}")
-    send = opaque_types.service_class(f"{name}_SendGoal", interface_hash(f"{name}_SendGoal"))
-    result = opaque_types.service_class(f"{name}_GetResult", interface_hash(f"{name}_GetResult"))
-    feedback = opaque_types.message_class(f"{name}_FeedbackMessage", interface_hash(f"{name}_FeedbackMessage"))
+    send = opaque_types.service_class(f"{name}_SendGoal", rihs(f"{name}_SendGoal"))
+    result = opaque_types.service_class(f"{name}_GetResult", rihs(f"{name}_GetResult"))
+    feedback = opaque_types.message_class(f"{name}_FeedbackMessage", rihs(f"{name}_FeedbackMessage"))
     derived_type(f"{name}_GetResult_Response")
 
     def set_id(self: Any, value: UUID) -> None:
@@ -64,9 +65,7 @@ def action_class(name: str) -> Any:
     feedback.feedback = property(lambda self: msgs.deserialize(HEADER + self.cdr[20:], f"{name}_Feedback"))
 
     parts = [address(cls) for cls in (send, result, CancelGoal, feedback, GoalStatusArray)]
-    support = opaque_types._runtime().keep(
-        ActionSupport(*parts, *opaque_types._description(name, interface_hash(name)))
-    )
+    support = opaque_types._runtime().keep(ActionSupport(*parts, *opaque_types._description(name, rihs(name))))
     metaclass = type("Metaclass", (type,), {"_TYPE_SUPPORT": capsule(ctypes.addressof(support))})
     impl = SimpleNamespace(SendGoalService=send, GetResultService=result, FeedbackMessage=feedback)
     impl.CancelGoalService, impl.GoalStatusMessage = CancelGoal, GoalStatusArray
