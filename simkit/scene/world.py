@@ -186,7 +186,7 @@ class SceneWorld:
         quality: requested rendering quality: fast, gazebo or high.
         gazebo_quirks: true if sensors reproduce Gazebo's known errors (`<simkit:gazebo_quirks>`).
         entity_services: owner of service names that Gazebo Classic and `simulation_interfaces` share (`/spawn_entity`):
-            auto, classic or standard.
+            classic or standard; None for Classic in worlds with plugins of gazebo_ros, else the standard.
         wind: velocity of the air [m/s] in the world frame.
         mjcf: function that returns a new specification of a world in MuJoCo's own format; its engine settings are used.
     """
@@ -204,7 +204,7 @@ class SceneWorld:
     spherical_coordinates: SphericalCoordinates | None = None
     quality: str = "fast"
     gazebo_quirks: bool = False
-    entity_services: str = "auto"
+    entity_services: str | None = None
     where: Where = NOWHERE
     wind: Vec3 = (0.0, 0.0, 0.0)
     atmosphere: Atmosphere = Atmosphere()

@@ -83,6 +83,7 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         report_unapplied(draft)
     physics, gravity = read_physics(element)
     light_poses = saved_light_poses(states)
+    owner = element.choice("entity_services", ENTITY_SERVICES, "auto")
     return SceneWorld(
         name=name,
         gravity=gravity,
@@ -97,7 +98,7 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         spherical_coordinates=read_spherical_coordinates(element),
         quality=read_quality(element),
         gazebo_quirks=element.boolean("gazebo_quirks", False),
-        entity_services=element.choice("entity_services", ENTITY_SERVICES, "auto"),
+        entity_services=None if owner == "auto" else owner,
         where=element.where,
         wind=element.block("wind").vector3("linear_velocity", (0.0, 0.0, 0.0)),
         atmosphere=read_atmosphere(element),

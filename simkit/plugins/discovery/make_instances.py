@@ -273,7 +273,7 @@ def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple
 
     actors = (ActorMover(),) if world.actors else ()
     services: list[Plugin] = [SimulationInterfaces(), ClassicServices()]  # the first one owns the names of both
-    is_classic = has_classic_plugins(world) if world.entity_services == "auto" else world.entity_services == "classic"
+    is_classic = has_classic_plugins(world) if world.entity_services is None else world.entity_services == "classic"
     if is_classic:
         services.reverse()
     return (ClockPublisher(), StaticTransforms(), *actors), (WorldStats(), WorldServices(), *services)

@@ -142,7 +142,7 @@ def _files_of_scene(value: object) -> Iterator[Path]:
         yield from _files_of_mesh(value)
     elif is_dataclass(value) and not isinstance(value, type):
         for field in fields(value):
-            if field.name not in ("where", "mjcf", "moved_by"):
+            if field.name not in ("where", "mjcf", "moved_by", "urdf"):
                 yield from _files_of_scene(getattr(value, field.name))
     elif isinstance(value, (tuple, list)):
         for item in value:

@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 
-_IGNORED_FIELDS: Final = frozenset(("where", "name", "scoped", "uri", "script", "skin", "missing", "mjcf", "moved_by"))
+_IGNORED_FIELDS: Final = frozenset(
+    ("where", "name", "scoped", "uri", "script", "skin", "missing", "mjcf", "moved_by", "urdf")
+)
 """Fields with source positions or file names, fields that are part of the path, and fields without plain values."""
 _SENSOR_FIELDS: Final = frozenset(("pose", "update_rate", "topic", "plugin"))
 """Elements that are left out because the sensor object has a field with the same value."""
