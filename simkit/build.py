@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import gc
 import os
-from collections.abc import Callable, Container, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Container, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,6 +15,7 @@ from simkit.argument_checks import check_paths
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import LoadError, PluginError, RenderError
 from simkit.loaders import Resolver, load_scene
+from simkit.loaders.garbage_collection import no_collection
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.model_world import add_model_world
 from simkit.loaders.resources.world_interfaces import read_interfaces
@@ -56,23 +56,7 @@ if TYPE_CHECKING:
 Source = str | os.PathLike[str]
 
 
-@contextmanager
-def _no_collection() -> Iterator[None]:
-    """Disable the garbage collector during a load.
-
-    A load creates hundreds of thousands of objects and keeps nearly all of them. Scanning them repeatedly took one
-    seventh of the load time of 3000 models.
-    """
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
-
-
-@_no_collection()
+@no_collection()
 def load(
     source: Source,
     *,
@@ -156,13 +140,17 @@ def load(
     def find_file(uri: str, folder: Path | None) -> Path | None:
         return resolver.search(uri, folder)[0]
 
-    scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides, spawn, model_world)
-    world = scene.world if diagnostics.has_errors else stand_models(scene.world, scene.standing, diagnostics)
-    if not sleep:
-        world = replace(world, physics=replace(world.physics, sleep=False))
-    world = add_actor_models(world, find_file, diagnostics)
-    if change_world is not None and not diagnostics.has_errors:
-        world = change_world(world)
+    file_scene = _scene(source, resolver, diagnostics, xacro_args, base, spawn, model_world)
+
+    def resolve_world(overrides: Sequence[str], diagnostics: Diagnostics) -> SceneWorld:
+        scene = _overridden(file_scene, overrides, diagnostics)
+        world = scene.world if diagnostics.has_errors else stand_models(scene.world, scene.standing, diagnostics)
+        if not sleep:
+            world = replace(world, physics=replace(world.physics, sleep=False))
+        world = add_actor_models(world, find_file, diagnostics)
+        return world if change_world is None or diagnostics.has_errors else change_world(world)
+
+    world = resolve_world(overrides, diagnostics)
     allowed = [Path(p) for p in plugin_paths]
     parameter_files: tuple[RunParameterFile, ...] = ()
     if params_files:
@@ -196,6 +184,7 @@ def load(
     with progress.task("loading plugins"):
         simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.control.write_sdf = _sdf_of
+    simulation.control.resolve_world = lambda overrides: resolve_world(overrides, Diagnostics())
     simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     options: LoadOptions = {
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
@@ -289,7 +278,6 @@ def _scene(
     diagnostics: Diagnostics,
     xacro_args: NamedValues | None,
     base: str,
-    overrides: Sequence[str],
     spawn: Sequence[str | SpawnedModel] = (),
     model_world: str = EMPTY_SPACE,
 ) -> Scene:
@@ -303,6 +291,11 @@ def _scene(
         scene = add_model_world(read(source, diagnostics, base), model_world, read, diagnostics)
         if spawn:
             scene = add_spawned_models(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
+    return scene
+
+
+def _overridden(scene: Scene, overrides: Sequence[str], diagnostics: Diagnostics) -> Scene:
+    """Return the scene with all overrides applied."""
     if overrides:
         diagnostics.raise_if_errors()
     of_scene = [text for text in overrides if text.startswith("scene.")]
@@ -355,7 +348,7 @@ def read_scene(
     )
     diagnostics = Diagnostics()
     resolver = Resolver(resource_paths, missing_meshes=missing_meshes, package_paths=package_paths)
-    scene = _scene(source, resolver, diagnostics, xacro_args, base, ())
+    scene = _overridden(_scene(source, resolver, diagnostics, xacro_args, base), (), diagnostics)
     diagnostics.raise_if_errors()
     return scene, diagnostics
 

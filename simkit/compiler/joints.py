@@ -166,7 +166,7 @@ class JointWriter:
         for motion in reversed(motions) if is_reversed else motions:
             made = self._joint(body, motion.name, motion.kind, frame, motion.direction)
             if motion.axis is not None:
-                self._dynamics(made, motion.axis)
+                write_dynamics(made, motion.axis)
         if joint.type == "screw" and motions:
             followers = (self._thread(body, joint, frame, motions[0].direction),)
         return tuple(m.name for m in motions), followers
@@ -209,22 +209,6 @@ class JointWriter:
         joint.solref_friction = (constant, 1.0)
         joint.solimp_friction = SOFT_SOLIMP
         return joint
-
-    def _dynamics(self, made: mujoco.MjsJoint, axis: Axis) -> None:
-        made.damping[0] = max(0.0, axis.damping)
-        made.frictionloss = max(0.0, axis.friction)
-        if made.type == _BALL:
-            return
-        if axis.stiffness > 0.0:
-            made.stiffness[0] = axis.stiffness
-            made.springref = axis.spring_ref
-        lower, upper = max(axis.lower, -UNBOUNDED), min(axis.upper, UNBOUNDED)
-        if lower <= upper and (lower > -UNBOUNDED or upper < UNBOUNDED):
-            if upper - lower < 2 * _LOCKED:
-                middle = (lower + upper) / 2
-                lower, upper = middle - _LOCKED, middle + _LOCKED
-            made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
-            made.range = (lower, upper)
 
     def _thread(self, body: mujoco.MjsBody, joint: SceneJoint, frame: Pose, direction: Vector) -> Follower:
         """Add the sliding motion of a screw, coupled to its rotation."""
@@ -306,6 +290,23 @@ class JointWriter:
 
     def _bind(self, binding: JointBinding) -> None:
         self.record.joints[binding.scoped] = binding
+
+
+def write_dynamics(made: mujoco.MjsJoint, axis: Axis) -> None:
+    """Write damping, friction, spring and limits of an axis to a MuJoCo joint; every field is set."""
+    made.damping[0] = max(0.0, axis.damping)
+    made.frictionloss = max(0.0, axis.friction)
+    if made.type == _BALL:
+        return
+    has_spring = axis.stiffness > 0.0
+    made.stiffness[0], made.springref = (axis.stiffness, axis.spring_ref) if has_spring else (0.0, 0.0)
+    lower, upper = max(axis.lower, -UNBOUNDED), min(axis.upper, UNBOUNDED)
+    made.limited, made.range = mujoco.mjtLimited.mjLIMITED_FALSE, (0.0, 0.0)
+    if lower <= upper and (lower > -UNBOUNDED or upper < UNBOUNDED):
+        if upper - lower < 2 * _LOCKED:
+            middle = (lower + upper) / 2
+            lower, upper = middle - _LOCKED, middle + _LOCKED
+        made.limited, made.range = mujoco.mjtLimited.mjLIMITED_TRUE, (lower, upper)
 
 
 def _plane_axes(joint: SceneJoint, at: Pose) -> list[Vector]:

@@ -192,9 +192,12 @@ class WorldControl:
         origin: geographic position of the world's origin.
         write_sdf: function that writes a world as SDF text; set from outside, because this package knows no file
             format.
+        resolve_world: function that returns the world of the file with other overrides; set from outside.
+        loaded_world: world of the loaded state.
     """
 
     write_sdf: Callable[[SceneWorld], str] | None = None
+    resolve_world: Callable[[Sequence[str]], SceneWorld] | None = None
 
     def __init__(
         self, engine: Engine, bus: TopicBus, handles: EntityHandles, advance: Advance, loaded: Callable[[], Snapshot]
@@ -203,6 +206,7 @@ class WorldControl:
         self._advance, self._loaded = advance, loaded
         self.pausing = PauseControl(engine, advance, bus.inbox)
         self.origin = GeographicOrigin(engine)
+        self.loaded_world = engine.world
 
     # ------------------------------------------------------------------ running
 

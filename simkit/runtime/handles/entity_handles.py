@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from simkit.argument_checks import check_kind
@@ -104,6 +104,13 @@ class EntityHandles:
         if id(scene) not in self._by_scene:
             self._by_scene[id(scene)] = (scene, Model(self, scene), {})
         return self._by_scene[id(scene)][1:]
+
+    def replace_scenes(self, old: Mapping[str, SceneModel], new: Mapping[str, SceneModel]) -> None:
+        """Make the handles of top-level models refer to changed descriptions with the same entities."""
+        for name, scene in new.items():
+            _, model, lights = self._by_scene.pop(id(old[name]))
+            self._by_scene[id(scene)] = (scene, model, lights)
+            model.replace_scene(scene)
 
     def _lights(self, scene: SceneModel) -> dict[str, Light]:
         lights = self._model_handles(scene)[1]

@@ -45,6 +45,16 @@ class Model(Handle):
         below = [h for m in self.models.values() for h in m.everything()]
         return [self, *self.links.values(), *self.joints.values(), *below]
 
+    def replace_scene(self, scene: SceneModel) -> None:
+        """Make this handle and all handles below it refer to a changed description with the same entities."""
+        self.scene = scene
+        for link in scene.links:
+            self.links[link.name].scene = link
+        for joint in scene.joints:
+            self.joints[joint.name].scene = joint
+        for model in scene.models:
+            self.models[model.name].replace_scene(model)
+
     def link(self, name: str) -> Link:
         found: Link = look_up(self._below("links"), name, "link")
         return found

@@ -1,0 +1,227 @@
+"""Changes of a compiled world that need no compilation, because only numbers differ.
+
+Each change is written to the specification and to the compiled model. The model then has the same bits as a model that
+is compiled from the changed world.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, Final
+
+import mujoco
+
+from simkit.compiler.bodies import add_body, is_massless
+from simkit.compiler.contact_friction import STIFF_KP, contact_properties, has_directional_friction
+from simkit.compiler.engine_options import apply_options, set_extent
+from simkit.compiler.joints import is_valid_axis, write_dynamics
+from simkit.compiler.model_compilation import apply_velocity_decay
+from simkit.compiler.name_map import ModelRecord
+from simkit.compiler.refused_inertias import BodyInertia, repair_inertia
+from simkit.compiler.servo_gains import tune_servos
+from simkit.compiler.spec_builder import Compiled
+from simkit.diagnostics import Diagnostics
+from simkit.pose import IDENTITY
+from simkit.scene import SceneCollision, SceneJoint, SceneLink, SceneModel, SceneWorld, Surface
+from simkit.scene.differences import EntityChange
+
+Edit = Callable[[], None]
+"""Function that writes one change."""
+
+_EDITABLE_AXIS: Final = frozenset({"lower", "upper", "damping", "friction", "stiffness", "spring_ref"})
+_BODY_FIELDS: Final = ("body_mass", "body_inertia", "body_ipos", "body_iquat")
+_SURFACE_FIELDS: Final = ("friction", "condim", "priority", "solref", "solimp", "solmix", "contype", "conaffinity")
+
+
+def plan_number_edits(compiled: Compiled, world: SceneWorld, changes: Sequence[EntityChange]) -> list[Edit] | None:
+    """Return functions that write all changes; None if the world must be compiled anew.
+
+    Nothing is written before the functions are called. `refresh_derived_numbers` must follow them.
+
+    Args:
+        compiled: compiled model with its builder.
+        world: the changed world.
+        changes: the entities that differ.
+    """
+    edits: list[Edit] = []
+    for change in changes:
+        found = _plan(compiled, world, change)
+        if found is None:
+            return None
+        edits += found
+    return edits
+
+
+def refresh_derived_numbers(compiled: Compiled) -> None:
+    """Compute the numbers that the compiler derives from masses, inertias, joints and gains."""
+    model, records = compiled.model, list(compiled.builder.records.values())
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    _set_mean_values(compiled)
+    set_extent(model)
+    apply_velocity_decay(model, records)
+    tune_servos(compiled.builder.spec, model, [ref for record in records for ref in record.actuators])
+
+
+def _set_mean_values(compiled: Compiled) -> None:
+    """Set the mean mass and inertia, which scale the tolerance of the engine's solver, by the compiler's formula."""
+    model, given = compiled.model, compiled.builder.spec.stat
+    if math.isnan(given.meaninertia) and model.nv:
+        model.stat.meaninertia = max(mujoco.mjMINVAL, sum(model.dof_M0.tolist()) / model.nv)
+    if math.isnan(given.meanmass) and model.nbody > 1:
+        model.stat.meanmass = max(mujoco.mjMINVAL, sum(model.body_mass.tolist()[1:]) / (model.nbody - 1))
+
+
+def _plan(compiled: Compiled, world: SceneWorld, change: EntityChange) -> list[Edit] | None:
+    if change.owner is not None and change.owner.scoped not in compiled.builder.records:
+        return None
+    record = compiled.builder.records[change.owner.scoped if change.owner is not None else ""]
+    match change.new:
+        case SceneWorld() if change.fields <= {"gravity", "magnetic_field"}:
+            return [lambda: _write_options(compiled, world)]
+        case SceneLink() if change.fields == {"inertial"}:
+            return _plan_inertial(compiled, world, record, change.old, change.new)
+        case SceneCollision() if change.fields == {"surface"}:
+            return _plan_surface(compiled, record, change.old, change.new)
+        case SceneJoint() if change.fields == {"axes"}:
+            return _plan_axes(compiled, record, change.old, change.new)
+    return None
+
+
+def _write_options(compiled: Compiled, world: SceneWorld) -> None:
+    for option in (compiled.model.opt, compiled.builder.spec.option):
+        option.gravity, option.magnetic = world.gravity, world.magnetic_field
+
+
+# ---------------------------------------------------------------------- masses
+
+
+def _plan_inertial(
+    compiled: Compiled, world: SceneWorld, record: ModelRecord, old: SceneLink, new: SceneLink
+) -> list[Edit] | None:
+    binding = record.links.get(new.scoped)
+    if binding is None or binding.static:
+        return [] if binding is not None else None
+    if not _is_plain_body(compiled, record) or is_massless(old.inertial) or new.inertial.mass <= 0.0:
+        return None
+    if repair_inertia(new.inertial).inertial is not new.inertial:
+        return None
+    row = _compiled_body(world, new)
+    model, body = compiled.model, int(mujoco.mj_name2id(compiled.model, mujoco.mjtObj.mjOBJ_BODY, binding.body_name))
+    if int(row.body_sameframe[1]) != int(model.body_sameframe[body]):
+        return None  # the engine would choose another, faster or slower, algorithm for this body
+
+    def write() -> None:
+        for field in _BODY_FIELDS:
+            getattr(model, field)[body] = getattr(row, field)[1]
+        made = compiled.builder.spec.body(binding.body_name)
+        made.mass, made.ipos, made.fullinertia = new.inertial.mass, new.inertial.com, new.inertial.inertia
+
+    return [write]
+
+
+def _is_plain_body(compiled: Compiled, record: ModelRecord) -> bool:
+    """Check whether the numbers of a model's bodies depend on no link but their own.
+
+    This is false for loops, which share the mass of a link, for inertias that MuJoCo refuses, and for soft contacts,
+    whose damping depends on the mass.
+    """
+    if record.attached or record.massless or any(r.exact for r in compiled.builder.records.values()):
+        return False
+    if any(joint.is_loop for r in compiled.builder.records.values() for joint in r.joints.values()):
+        return False
+    links = [link.scene for link in record.links.values() if not link.static]
+    if any(
+        repair_inertia(link.inertial).inertial is not link.inertial for link in links if not is_massless(link.inertial)
+    ):
+        return False
+    return not any(_is_soft(collision.surface) for link in links for collision in link.collisions)
+
+
+def _is_soft(surface: Surface) -> bool:
+    return surface.kp is not None and 0.0 < surface.kp < STIFF_KP and surface.restitution <= 0.0
+
+
+def _compiled_body(world: SceneWorld, link: SceneLink) -> mujoco.MjModel:
+    """Return a compiled model whose only body has the mass and the inertia of a link."""
+    spec, inertial = mujoco.MjSpec(), link.inertial
+    apply_options(spec, world, Diagnostics())
+    add_body(spec.worldbody, link, IDENTITY, BodyInertia(inertial.mass, inertial.com, inertial.inertia))
+    return spec.compile()
+
+
+# ---------------------------------------------------------------------- contacts
+
+
+def _plan_surface(
+    compiled: Compiled, record: ModelRecord, old: SceneCollision, new: SceneCollision
+) -> list[Edit] | None:
+    if record.attached or record.own_bit or _is_soft(old.surface) or _is_soft(new.surface):
+        return None
+    if has_directional_friction(old.surface) or has_directional_friction(new.surface):
+        return None
+    step = float(compiled.model.opt.timestep)
+    contact = contact_properties(new.surface, step, 0.0, Diagnostics())._asdict()
+    geoms = [n for n, o in record.geoms.items() if o.scoped == new.scoped and not o.is_visual]
+    model, spec = compiled.model, compiled.builder.spec
+
+    def write() -> None:
+        for name in geoms:
+            number = int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name))
+            if not (model.geom_contype[number] or model.geom_conaffinity[number]):
+                continue  # the surface of a mesh for rays, which makes no contacts
+            made = spec.geom(name)
+            for field in _SURFACE_FIELDS:
+                setattr(made, field, contact[field])
+                getattr(model, f"geom_{field}")[number] = contact[field]
+
+    return [write]
+
+
+# ---------------------------------------------------------------------- joints
+
+
+def _plan_axes(compiled: Compiled, record: ModelRecord, old: SceneJoint, new: SceneJoint) -> list[Edit] | None:
+    binding = record.joints.get(new.scoped)
+    if binding is None or record.attached or len(old.axes) != len(new.axes):
+        return None
+    if any(not _only_differs(a, b) for a, b in zip(old.axes, new.axes, strict=True)):
+        return None
+    if not all(is_valid_axis(new, axis, Diagnostics()) for axis in new.axes):
+        return None
+    return [lambda: _write_axes(compiled, binding.joint_names, new)]
+
+
+def _only_differs(old: Any, new: Any) -> bool:
+    """Check whether two axes differ in editable fields only."""
+    return all(
+        name in _EDITABLE_AXIS or getattr(old, name) == getattr(new, name) for name in type(old).__dataclass_fields__
+    )
+
+
+def _write_axes(compiled: Compiled, names: Sequence[str], joint: SceneJoint) -> None:
+    model = compiled.model
+    axes = [*joint.axes, *joint.axes, *joint.axes] if joint.type == "planar" and len(joint.axes) == 1 else joint.axes
+    for name, axis in zip(names, axes, strict=False):
+        made = compiled.builder.spec.joint(name)
+        write_dynamics(made, axis)
+        number = int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name))
+        first = int(model.jnt_dofadr[number])
+        count = 3 if made.type == mujoco.mjtJoint.mjJNT_BALL else 1
+        model.dof_damping[first : first + count] = made.damping[0]
+        model.dof_frictionloss[first : first + count] = made.frictionloss
+        model.jnt_stiffness[number] = made.stiffness[0]
+        if count == 1:
+            model.qpos_spring[int(model.jnt_qposadr[number])] = made.springref
+        model.jnt_limited[number] = made.limited == mujoco.mjtLimited.mjLIMITED_TRUE
+        model.jnt_range[number] = made.range
+
+
+def replace_scenes(record: ModelRecord, model: SceneModel) -> None:
+    """Make the record of a model refer to the entities of the changed scene."""
+    record.scene = model
+    links = {link.scoped: link for link in model.all_links()}
+    joints = {joint.scoped: joint for joint in model.all_joints()}
+    record.links = {n: replace(b, scene=links.get(n, b.scene)) for n, b in record.links.items()}
+    record.joints = {n: replace(b, scene=joints.get(n, b.scene)) for n, b in record.joints.items()}

@@ -1,0 +1,93 @@
+"""Change of a loaded world to other overrides without loading it again, where only numbers differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+from simkit.compiler.name_map import NameMap
+from simkit.compiler.number_edits import plan_number_edits, refresh_derived_numbers, replace_scenes
+from simkit.compiler.spec_builder import Compiled
+from simkit.scene.differences import EntityChange, entity_changes
+
+if TYPE_CHECKING:
+    from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.simulation import Simulation
+    from simkit.scene import SceneWorld
+
+_OWN_PACKAGE: Final = "simkit."
+
+
+def apply_overrides(sim: Simulation, overrides: Sequence[str], seed: int | None = None) -> bool:
+    """Reset a simulation to the start of its world with exactly these overrides, if only numbers differ.
+
+    The result has the same bits as a simulation that is loaded with the overrides. Later resets return to this state.
+    Overrides of an earlier call do not add up. Snapshots from before the call must not be restored.
+
+    Args:
+        sim: simulation from `simkit.load`.
+        overrides: `PATH=VALUE` texts, in place of those of `simkit.load`.
+        seed: seed of all random streams; None keeps the present seed.
+
+    Returns:
+        False if the world must be loaded anew; the simulation is then unchanged.
+
+    Raises:
+        InputError: an override has no such path, or an invalid value.
+    """
+    if sim.control.resolve_world is None:
+        return False
+    world = sim.control.resolve_world(tuple(overrides))
+    changes = entity_changes(sim.control.loaded_world, world)
+    if changes is None or any(_is_read(sim.engine, change) for change in changes):
+        return False
+    loaded = sim._loaded_state()
+    edits = plan_number_edits(loaded.structure.compiled, world, changes)
+    if edits is None:
+        return False
+    if edits:
+        sim._restore(loaded)
+        for edit in edits:
+            edit()
+        refresh_derived_numbers(loaded.structure.compiled)
+        _switch_world(sim, world)
+        sim._loaded = sim.snapshot()
+    if sim.run_spec is not None:
+        sim.run_spec = replace(sim.run_spec, overrides=tuple(overrides))
+    sim.reset(seed)
+    return True
+
+
+def _is_read(engine: Engine, change: EntityChange) -> bool:
+    """Check whether a plugin or sensor has computed with a number while it was loaded.
+
+    Plugins of simkit name such fields in `reads_at_load`. Other plugins may read anything, unless they have the
+    attribute too.
+    """
+    for item in (*engine.structure.all_plugins(), *engine.structure.all_sensors()):
+        read: Iterable[str] | None = getattr(item, "reads_at_load", None)
+        if read is None and not type(item).__module__.startswith(_OWN_PACKAGE):
+            return True
+        if change.fields & set(read or ()):
+            return True
+    return False
+
+
+def _switch_world(sim: Simulation, world: SceneWorld) -> None:
+    """Make the simulation refer to the entities of the changed world."""
+    engine, structure = sim.engine, sim.engine.structure
+    compiled, builder = structure.compiled, structure.builder
+    models = {model.name: model for model in world.models if structure.models.get(model.name) is not model}
+    for model in models.values():
+        replace_scenes(builder.records[model.scoped], model)
+    builder.world = engine.world = sim.control.loaded_world = world
+    names = NameMap.of(builder.records.values(), compiled.model)
+    sim.contents.handles.replace_scenes(structure.models, models)
+    sim.contents.spawner.adopt(
+        replace(
+            structure,
+            compiled=Compiled(compiled.model, compiled.data, names, builder),
+            models={name: models.get(name, model) for name, model in structure.models.items()},
+        )
+    )

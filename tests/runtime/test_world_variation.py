@@ -1,0 +1,53 @@
+"""Overrides of a loaded world give the same bits as overrides before the load."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import simkit
+from simkit.runtime.engine.snapshot import state_hash
+from simkit.runtime.world_variation import apply_overrides
+
+_ROBOT = "turtlebot3"
+
+
+def model_numbers(sim: simkit.Simulation) -> dict[str, bytes]:
+    """Return every array of the compiled model, and its statistics and options."""
+    model = sim.mj_model
+    groups: dict[str, Any] = {"": model, "stat.": model.stat, "opt.": model.opt}
+    values = {f"{p}{n}": getattr(g, n) for p, g in groups.items() for n in dir(g) if not n.startswith("_")}
+    return {n: np.asarray(v).tobytes() for n, v in values.items() if isinstance(v, (np.ndarray, float, int))}
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        [f"{_ROBOT}::base_link.inertial.mass=2"],
+        [f"{_ROBOT}::wheel_left_link.inertial.mass=0.3", "world.gravity=0 0 -5"],
+        [f"{_ROBOT}::wheel_left_link::tread.surface.friction.ode.mu=0.4"],
+        [f"{_ROBOT}::wheel_left_joint.axis.dynamics.damping=0.2"],
+        ["ground_plane::link::collision.surface.friction.ode.mu=0.1"],
+    ],
+)
+def test_numbers_that_are_set_in_a_loaded_world_give_the_bits_of_a_load(overrides: list[str]) -> None:
+    with simkit.load("turtlebot3_world", overrides=overrides) as loaded, simkit.load("turtlebot3_world") as varied:
+        varied.run(0.1)
+        assert apply_overrides(varied, overrides)
+        assert model_numbers(varied) == model_numbers(loaded)
+        for sim in (loaded, varied):
+            sim.advertise("/cmd_vel", "geometry_msgs/msg/Twist").publish({"linear": {"x": 0.2}, "angular": {"z": 0.5}})
+            sim.run(2.0)
+        assert state_hash(varied) == state_hash(loaded)
+        assert apply_overrides(varied, [])
+        with simkit.load("turtlebot3_world") as base:
+            assert model_numbers(varied) == model_numbers(base)
+
+
+def test_a_change_of_the_structure_needs_a_new_load() -> None:
+    with simkit.load("turtlebot3_world") as sim:
+        sim.run(0.1)
+        assert not apply_overrides(sim, ["ground_plane.static=false"])
+        assert sim.time == 0.1
