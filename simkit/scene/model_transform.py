@@ -41,6 +41,11 @@ def move_model(model: SceneModel, shift: Pose) -> SceneModel:
     return _ModelCopier(model.name, model.name, shift, copies_params=False).of(model)
 
 
+def move_part(part: T, shift: Pose) -> T:
+    """Return a part of the scene that is moved by a transform of the world, with the parameters of the original."""
+    return _ModelCopier("", "", shift, copies_params=False).of(part)
+
+
 class _ModelCopier:
     def __init__(self, old: str, new: str, shift: Pose, *, copies_params: bool = True) -> None:
         self._old, self._new, self._shift, self._copies_params = old, new, shift, copies_params
@@ -71,6 +76,8 @@ class _ModelCopier:
         return self.of(value)
 
     def _name(self, value: Any) -> Any:
+        if self._old == self._new:
+            return value
         if value == self._old or (isinstance(value, str) and value.startswith(f"{self._old}::")):
             return self._new + value[len(self._old) :]
         return value

@@ -1,91 +1,62 @@
-"""`--set PATH=VALUE`: replacement of one value of a loaded scene, before anything is built from the scene.
+"""`--set PATH=VALUE`: replacement of values of a loaded scene, before anything is built from the scene.
 
 PATH is `physics`, `world`, `scene`, or a scoped entity, then element names with dots:
 `tb3::base_scan::lds.update_rate`, `tb3::base_scan::lds.ray.scan.horizontal.samples`, `physics.max_step_size`,
-`scene.quality`, `tb3::drive_plugin.max_wheel_torque`.
+`scene.quality`, `tb3::drive_plugin.max_wheel_torque`. `docs/experiments.md` describes the paths.
 """
 
 from __future__ import annotations
 
-import copy
-import math
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
-from simkit.diagnostics import Diagnostic, Where, did_you_mean
+from simkit.diagnostics import Diagnostic, did_you_mean
 from simkit.errors import InputError
-from simkit.params import Params
-from simkit.scene import (
-    Scene,
-    SceneCollision,
-    SceneJoint,
-    SceneLight,
-    SceneLink,
-    SceneModel,
-    ScenePlugin,
-    SceneSensor,
-    SceneVisual,
-    SceneWorld,
-)
-from simkit.scene.geometry import vec3
-from simkit.scene.world import CONTACT_LAWS, QUALITIES
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
-T = TypeVar("T", bound="DataclassInstance")
-_Entity = SceneModel | SceneLink | SceneJoint | SceneLight | SceneCollision | SceneSensor | SceneVisual | ScenePlugin
-_Tree = dict[str, "_Tree"]  # name of a field with entities -> fields of these entities that hold entities too
-
-_SENSOR_TREE: _Tree = {"plugins": {}}
-_LINK_TREE: _Tree = {
-    "sensors": _SENSOR_TREE, "lights": {}, "plugins": {}, "collisions": {}, "visuals": {"plugins": {}}
-}  # fmt: skip
-_MODEL_TREE: _Tree = {"links": _LINK_TREE, "joints": {"sensors": _SENSOR_TREE}, "models": {}, "plugins": {}}
-_MODEL_TREE["models"] = _MODEL_TREE
-_WORLD_TREE: _Tree = {"models": _MODEL_TREE, "lights": {}, "joints": {}, "plugins": {}}
+from simkit.pose import Pose
+from simkit.scene.entity_paths import AREAS, Entity, EntityPaths, replace_at
+from simkit.scene.model import SceneLink, SceneModel, ScenePlugin, SceneSensor
+from simkit.scene.override_fields import INERTIA, MASS, MU, MU2, Field, fields_of
+from simkit.scene.override_poses import copies, move_held_model, move_link, pose_of, set_pose
+from simkit.scene.override_values import POSE, ValueKind
+from simkit.scene.param_paths import set_parameter
+from simkit.scene.world import Scene, SceneWorld
 
 _CODE = "SK-CLI-014"
-_SOURCE_PREFIX = "--set "
-
-_PHYSICS = ("max_step_size", "real_time_factor", "sleep", "contact_law")
-_WORLD = {"gravity": 3, "magnetic_field": 3}
-_SCENE = ("quality", "shadows", "sky", "ambient", "background")
-_LINK = ("gravity", "self_collide", "kinematic", "inertial.mass")
-_MODEL = ("static", "self_collide", "allow_auto_disable")
-_LIGHT = ("intensity", "cast_shadows", "on", "direction")
-_AXIS = {
-    "limit.lower": "lower",
-    "limit.upper": "upper",
-    "limit.effort": "effort",
-    "limit.velocity": "velocity",
-    "dynamics.damping": "damping",
-    "dynamics.friction": "friction",
-    "dynamics.spring_stiffness": "stiffness",
-    "dynamics.spring_reference": "spring_ref",
-}
-_SURFACE = {
-    "surface.friction.ode.mu": "mu",
-    "surface.friction.ode.mu2": "mu2",
-    "surface.bounce.restitution_coefficient": "restitution",
-    "surface.contact.ode.kp": "kp",
-    "surface.contact.ode.kd": "kd",
-}
+SOURCE_PREFIX = "--set "
 
 
 def apply_overrides(scene: Scene, overrides: Sequence[str]) -> Scene:
-    """Return the scene with every `PATH=VALUE` applied, in the given order.
+    """Return the scene with every `PATH=VALUE` applied, in the given order; numbers of copies come first.
 
     Raises:
         InputError: SK-CLI-014 no such entity or element (the closest is named), or an invalid value.
     """
-    for text in overrides:
-        path, equals, value = text.partition("=")
-        if not equals or not path.strip():
-            raise _override_error(text, "write PATH=VALUE, such as physics.max_step_size=0.002")
-        scene = _Override(text, value.strip()).apply(scene, path.strip())
-    return scene
+    if not overrides:
+        return scene
+    parsed = [_Override(text) for text in overrides]
+    world = scene.world
+    for item in parsed:
+        if item.path.endswith(".count"):
+            world = item.copy_model(world)
+    rest = [item for item in parsed if not item.path.endswith(".count")]
+    paths = EntityPaths(world)
+    explicit = {(target.path, field) for item in rest for target, field in item.named(paths)}
+    for item in rest:
+        world = item.apply(world, paths, explicit)
+        paths.world = world
+    return _with_world(scene, world, parsed)
+
+
+def _with_world(scene: Scene, world: SceneWorld, parsed: Sequence[_Override]) -> Scene:
+    """Return the scene with a changed world in the form in which it was loaded."""
+    placed = {item.path.rpartition(".pose")[0] for item in parsed}
+    standing = tuple(name for name in scene.standing if name not in placed)
+    if scene.worlds:
+        return replace(scene, worlds=(world, *scene.worlds[1:]), standing=standing)
+    if scene.model is not None and len(world.models) == 1:
+        return replace(scene, model=world.models[0], around=replace(world, models=()), standing=standing)
+    return Scene(worlds=(world,), file=scene.file, standing=standing)
 
 
 def check_used(diagnostics: Iterable[Diagnostic]) -> None:
@@ -95,249 +66,194 @@ def check_used(diagnostics: Iterable[Diagnostic]) -> None:
         InputError: SK-CLI-014 with the closest name.
     """
     for found in diagnostics:
-        if found.code == "SK-PARAM-003" and (found.file or "").startswith(_SOURCE_PREFIX):
+        if found.code == "SK-PARAM-003" and (found.file or "").startswith(SOURCE_PREFIX):
             hint = f"; {found.hint}" if found.hint else ""
             raise InputError(f"{_CODE} {found.file}: {found.message}{hint}", _CODE)
 
 
-def _override_error(text: str, reason: str) -> InputError:
-    return InputError(f"{_CODE} {_SOURCE_PREFIX}{text}: {reason}", _CODE)
-
-
 class _Override:
-    """One override, which returns changed copies of the scene's elements."""
+    """One override, which returns changed copies of the world."""
 
-    def __init__(self, text: str, value: str) -> None:
-        self.text, self.value = text, value
+    def __init__(self, text: str) -> None:
+        path, equals, value = text.partition("=")
+        self.text, self.path, self.value = text, path.strip(), value.strip()
+        if not equals or not self.path:
+            raise self._error("write PATH=VALUE, such as physics.max_step_size=0.002")
 
-    # ------------------------------------------------------------------ finding the entity
+    def _error(self, reason: str) -> InputError:
+        return InputError(f"{_CODE} {SOURCE_PREFIX}{self.text}: {reason}", _CODE)
 
-    def apply(self, scene: Scene, path: str) -> Scene:
-        if path.startswith(("physics.", "world.", "scene.")):
-            if scene.model is not None and path.startswith("scene."):
-                return replace(scene, around=self._world(replace(scene.world, models=(), lights=()), path))
-            if not scene.worlds:
-                raise _override_error(self.text, "the file is a bare model without a world")
-            return replace(scene, worlds=(self._world(scene.worlds[0], path), *scene.worlds[1:]))
-        names = sorted(_entities(scene), key=len, reverse=True)
-        entity = next((n for n in names if path.startswith(n + ".")), None)
-        if entity is None:
-            outer, colons, last = path.rpartition("::")
-            unknown = outer + colons + last.split(".")[0]
-            if path in (*names, "physics", "world", "scene"):
-                raise _override_error(self.text, f"{path!r} needs an element, as in {path}.element=value")
-            hint = did_you_mean(unknown, [*names, "physics", "world", "scene"])
-            raise _override_error(self.text, f"no entity {unknown!r}; {hint or 'simkit inspect lists all entities'}")
-        element = path[len(entity) + 1 :]
-        worlds = tuple(self._inside(world, _WORLD_TREE, "", entity, element) for world in scene.worlds)
-        model = scene.model
-        if model is not None:
-            model = self._inside(model, _MODEL_TREE, model.scoped, entity, element)
-            model = self._model(model, element) if model.scoped == entity else model
-        return replace(scene, worlds=worlds, model=model)
+    # ------------------------------------------------------------------ copies
 
-    def _inside(self, holder: T, tree: _Tree, owner: str, entity: str, element: str) -> T:
-        """Return a copy of a world, model or link in which the entity has the new value, at any depth.
+    def copy_model(self, world: SceneWorld) -> SceneWorld:
+        """Return the world with several copies of a model."""
+        name = self.path.removesuffix(".count")
+        names = [model.name for model in world.models]
+        if name not in names:
+            raise self._error(f"only a top-level model has a count; {did_you_mean(name, names) or _listed(names)}")
+        if not self.value.isascii() or not self.value.isdigit():
+            raise self._error(f"found {self.value!r}; expected a whole number of at least 0")
+        model = world.models[names.index(name)]
+        if int(self.value) == 1:
+            return world
+        if any(nested.mjcf is not None for nested in model.all_models()):
+            raise self._error("a model in MuJoCo's own format cannot be copied; spawn its file several times")
+        new = copies(model, int(self.value))
+        taken = {m.name for m in new} & {n for n in names if n != name}
+        if taken:
+            raise self._error(f"the world has a model {min(taken)!r} already")
+        at = names.index(name)
+        return replace(world, models=(*world.models[:at], *new, *world.models[at + 1 :]))
+
+    # ------------------------------------------------------------------ finding the entities
+
+    def named(self, paths: EntityPaths) -> list[tuple[Entity, str]]:
+        """Return the entities that the path names, each with the element below it; raise InputError without any."""
+        found = paths.find(self.path)
+        if found:
+            return [(entity, _full_element(paths.item(entity), element)) for entity, element in found]
+        if paths.has(self.path) or self.path in AREAS:
+            raise self._error(f"{self.path!r} needs an element, as in {self.path}.element=value")
+        outer, colons, last = self.path.rpartition("::")
+        unknown = outer + colons + last.split(".")[0]
+        hint = did_you_mean(unknown, paths.names()) or "simkit inspect --paths lists all paths"
+        raise self._error(f"no entity {unknown!r}; {hint}")
+
+    # ------------------------------------------------------------------ changing them
+
+    def apply(self, world: SceneWorld, paths: EntityPaths, explicit: set[tuple[str, str]]) -> SceneWorld:
+        """Return the world in which every entity that the path names has the new value.
 
         Args:
-            holder: the world, model or link.
-            tree: the fields of the holder that are searched.
-            owner: scoped name of the holder; empty for a world.
-            entity: scoped name of the entity to change.
-            element: path of the element to set, with dots.
+            world: the world.
+            paths: its entities by path.
+            explicit: all entities and elements that the overrides name.
         """
-        changes: dict[str, object] = {}
-        for field, below in tree.items():
-            items = []
-            for item in getattr(holder, field):
-                changed = self._inside(item, below, item.scoped, entity, element) if below else item
-                items.append(self._change(changed, element) if _path_of(item, owner) == entity else changed)
-            changes[field] = tuple(items)
-        return replace(holder, **changes)
+        targets = self.named(paths)
+        refusals: list[InputError] = []
+        for entity, element in targets:
+            paths.world = world
+            try:
+                world = self._changed(world, paths, entity, element, explicit)
+            except _NoElementError as refusal:
+                refusals.append(refusal)
+        if len(refusals) == len(targets):
+            raise refusals[0]
+        return world
 
-    def _change(self, item: object, element: str) -> object:
-        match item:
-            case SceneModel():
-                return self._model(item, element)
-            case SceneLink():
-                return self._link(item, element)
-            case SceneJoint():
-                return self._joint(item, element)
-            case SceneLight():
-                return self._light(item, element)
-            case SceneCollision():
-                return self._collision(item, element)
-            case SceneSensor():
-                return self._sensor(item, element)
-            case ScenePlugin():
-                return replace(item, params=self._params(item.params, element))
-        return item
+    def _changed(
+        self, world: SceneWorld, paths: EntityPaths, entity: Entity, element: str, explicit: set[tuple[str, str]]
+    ) -> SceneWorld:
+        item, holders = paths.item(entity), paths.holders(entity)
+        if element == "pose" or element.startswith("pose."):
+            return self._moved(world, entity, item, holders, element)
+        whole, part, field = _field_of(entity, item, element)
+        if field is not None:
+            new = self._written(item, field, part)
+            if field.element == MU and (entity.path, MU2) in explicit:
+                new = replace(new, surface=replace(new.surface, mu2=item.surface.mu2))
+            if field.element == MASS and any((entity.path, e) in explicit for e in (INERTIA, *_inertia_parts())):
+                new = replace(new, inertial=replace(new.inertial, inertia=item.inertial.inertia))
+            if (isinstance(item, SceneSensor) and whole == "update_rate") or (
+                isinstance(item, SceneSensor) and whole == "topic"
+            ):
+                new = self._with_parameter(new, whole)
+        elif isinstance(item, (SceneSensor, ScenePlugin)):
+            if element in ("name", "type"):
+                raise self._error(f"<{element}> cannot be set")
+            new = self._with_parameter(item, element)
+        else:
+            raise self._no_element(entity, item, element)
+        return replace_at(world, entity.location, new) if new is not item else world
 
-    # ------------------------------------------------------------------ changing it
-
-    def _world(self, world: SceneWorld, path: str) -> SceneWorld:
-        area, _, element = path.partition(".")
-        if area == "physics":
-            self._known(element, _PHYSICS)
-            if element == "sleep":
-                return replace(world, physics=replace(world.physics, sleep=self._boolean()))
-            if element == "contact_law":
-                return replace(world, physics=replace(world.physics, contact_law=self._one_of(CONTACT_LAWS)))
-            positive = element == "max_step_size"
-            number = self._number(lambda v: math.isfinite(v) and (v > 0 if positive else v >= 0), "a positive number")
-            return replace(world, physics=replace(world.physics, **_change_value(element, number)))
-        if area == "scene":
-            return self._scene(world, element)
-        self._known(element, _WORLD)
-        return replace(world, **_change_value(element, self._vector(_WORLD[element])))
-
-    def _scene(self, world: SceneWorld, element: str) -> SceneWorld:
-        """Return a copy of the world with a changed `<scene>` setting."""
-        self._known(element, _SCENE)
-        if element == "quality":
-            return replace(world, quality=self._one_of(QUALITIES))
-        if element in ("shadows", "sky"):
-            return replace(world, surroundings=replace(world.surroundings, **_change_value(element, self._boolean())))
-        red, green, blue = self._vector(3)
-        if not all(0.0 <= part <= 1.0 for part in (red, green, blue)):
-            raise _override_error(self.text, f"found {self.value!r}; expected red, green and blue from 0 to 1")
-        colour = (red, green, blue, 1.0)
-        return replace(world, surroundings=replace(world.surroundings, **_change_value(element, colour)))
-
-    def _model(self, model: SceneModel, element: str) -> SceneModel:
-        self._known(element, _MODEL)
-        return replace(model, **_change_value(element, self._boolean()))
-
-    def _link(self, link: SceneLink, element: str) -> SceneLink:
-        self._known(element, _LINK)
-        if element == "inertial.mass":
-            mass = self._number(lambda v: math.isfinite(v) and v > 0, "a positive number")
-            return replace(link, inertial=replace(link.inertial, mass=mass, given=True))
-        return replace(link, **_change_value(element, self._boolean()))
-
-    def _joint(self, joint: SceneJoint, element: str) -> SceneJoint:
-        head, _, rest = element.partition(".")
-        if head not in ("axis", "axis2") or rest not in _AXIS:
-            self._known(element, [f"{a}.{k}" for a in ("axis", "axis2") for k in _AXIS])
-        number = 1 if head == "axis2" else 0
-        if number >= len(joint.axes):
-            raise _override_error(self.text, f"joint {joint.scoped!r} has {len(joint.axes)} axes")
-        value = self._number(lambda v: not math.isnan(v), "a number")
-        axes = tuple(
-            replace(a, **_change_value(_AXIS[rest], value)) if i == number else a for i, a in enumerate(joint.axes)
-        )
-        return replace(joint, axes=axes)
-
-    def _light(self, light: SceneLight, element: str) -> SceneLight:
-        self._known(element, _LIGHT)
-        if element == "intensity":
-            return replace(light, intensity=self._non_negative())
-        if element == "direction":
-            x, y, z = self._vector(3)
-            length = math.hypot(x, y, z)
-            if length == 0:
-                raise _override_error(self.text, "a direction must not be zero")
-            unit = (x / length, y / length, z / length)
-            return replace(light, direction=unit, direction_world=vec3(light.pose_world.rotate(unit)))
-        return replace(light, **_change_value(element, self._boolean()))
-
-    def _collision(self, collision: SceneCollision, element: str) -> SceneCollision:
-        self._known(element, list(_SURFACE))
-        surface = replace(collision.surface, **_change_value(_SURFACE[element], self._non_negative()))
-        return replace(collision, surface=surface)
-
-    def _sensor(self, sensor: SceneSensor, element: str) -> SceneSensor:
-        if element == "update_rate":
-            sensor = replace(sensor, rate=self._non_negative())
-        elif element == "topic":
-            sensor = replace(sensor, topic=self.value)
-        elif element in ("name", "type", "pose"):
-            raise _override_error(self.text, f"<{element}> cannot be set")
-        return replace(sensor, params=self._params(sensor.params, element))
-
-    def _params(self, params: Params, element: str) -> Params:
-        """Return a copy of the block in which the element has the new value; a missing element is added."""
-        head, _, rest = element.partition(".")
-        block = copy.copy(params)
-        block.children = list(params.children)
-        at = next((i for i, c in enumerate(block.children) if c.name == head), None)
-        if at is None:
-            old = Params(head, where=Where(_SOURCE_PREFIX + self.text), diagnostics=params.diagnostics)
-            at = len(block.children)
-            block.children.append(old)
-        old = block.children[at]
-        if rest:
-            block.children[at] = self._params(old, rest)
-            return block
-        if old.children:
-            inner = ", ".join(dict.fromkeys(c.name for c in old.children))
-            raise _override_error(self.text, f"<{head}> holds elements; name one of them: {inner}")
-        new = copy.copy(old)
-        new.value, new.where = self.value, Where(_SOURCE_PREFIX + self.text)
-        block.children[at] = new
-        return block
-
-    # ------------------------------------------------------------------ values
-
-    def _known(self, element: str, allowed: Collection[str]) -> None:
-        if element not in allowed:
-            hint = did_you_mean(element, allowed) or "expected " + ", ".join(allowed)
-            raise _override_error(self.text, f"the element {element!r} cannot be set here; {hint}")
-
-    def _number(self, fits: Callable[[float], bool], allowed: str) -> float:
+    def _with_parameter(self, item: Any, element: str) -> Any:
         try:
-            value = float(self.value)
-        except ValueError:
-            value = math.nan
-        if math.isnan(value) or not fits(value):
-            raise _override_error(self.text, f"found {self.value!r}; expected {allowed}")
-        return value
+            return replace(item, params=set_parameter(item.params, element, self.value, SOURCE_PREFIX + self.text))
+        except ValueError as problem:
+            raise self._error(str(problem)) from None
 
-    def _non_negative(self) -> float:
-        return self._number(lambda v: math.isfinite(v) and v >= 0, "a number of at least 0")
+    def _written(self, item: Any, field: Field, part: str) -> Any:
+        old = field.read(item)
+        if old is None and part:
+            raise self._error(f"{field.element!r} has no value yet; set all components together")
+        value = self._parsed(field.kind, old, part)
+        return item if value is old else field.write(item, value)
 
-    def _one_of(self, allowed: Sequence[str]) -> str:
-        if self.value not in allowed:
-            raise _override_error(self.text, f"found {self.value!r}; expected one of {', '.join(allowed)}")
-        return self.value
-
-    def _boolean(self) -> bool:
-        folded = self.value.lower()
-        if folded not in ("true", "false", "1", "0"):
-            raise _override_error(self.text, f"found {self.value!r}; expected true, false, 1 or 0")
-        return folded in ("true", "1")
-
-    def _vector(self, size: int) -> tuple[float, ...]:
+    def _parsed(self, kind: ValueKind, old: Any, part: str) -> Any:
+        """Return the new value; the old object if the text is that of the old value."""
+        text = kind.replace_part(old, part, self.value) if part else self.value
+        if old is not None and text == kind.format(old):
+            return old
         try:
-            values = tuple(float(v) for v in self.value.replace(",", " ").split())
-        except ValueError:
-            values = ()
-        if len(values) != size or not all(math.isfinite(v) for v in values):
-            raise _override_error(self.text, f"found {self.value!r}; expected {size} numbers")
-        return values
+            return kind.parse(text)
+        except (ValueError, OverflowError):
+            allowed = "a number" if part else kind.allowed
+            raise self._error(f"found {self.value!r}; expected {allowed}") from None
+
+    def _moved(self, world: SceneWorld, entity: Entity, item: Any, holders: list[Any], element: str) -> SceneWorld:
+        old = pose_of(item, holders)
+        part = element.removeprefix("pose").removeprefix(".")
+        if old is None or (part and part not in POSE.parts):
+            raise self._no_element(entity, item, element)
+        pose: Pose = self._parsed(POSE, old, part)
+        if part in ("x", "y", "z") and pose is not old:  # the rotation keeps its exact bits
+            pose = Pose(pose.position, old.quaternion)
+        if pose is old:
+            return world
+        owner = entity.location[:-1]
+        if isinstance(item, SceneModel):
+            return replace_at(world, owner, move_held_model(holders[-1], item, pose))
+        if isinstance(item, SceneLink):
+            return replace_at(world, owner, move_link(holders[-1], item, pose))
+        return replace_at(world, entity.location, set_pose(item, pose, holders))
+
+    def _no_element(self, entity: Entity, item: Any, element: str) -> InputError:
+        known = [field.element for field in _all_fields(entity, item)]
+        known += ["pose"] if not entity.path or entity.path not in AREAS else []
+        if element.startswith("axis2.") and not any(name.startswith("axis2.") for name in known):
+            return _NoElementError(self._error(f"joint {entity.path!r} has {len(item.axes)} axes"))
+        hint = did_you_mean(element, known) or _listed(known)
+        return _NoElementError(self._error(f"the element {element!r} cannot be set here; {hint}"))
 
 
-def _change_value(name: str, value: object) -> dict[str, Any]:
-    return {name: value}
+class _NoElementError(InputError):
+    """Refusal of an entity that has no such element; another entity of the same name may have it."""
+
+    def __init__(self, error: InputError) -> None:
+        super().__init__(str(error), _CODE)
 
 
-def _path_of(item: _Entity, owner: str) -> str:
-    """Return the name of an entity in `--set`; empty for a visual, because only the plugins of a visual can be set."""
-    if isinstance(item, ScenePlugin):
-        return f"{owner}::{item.name}" if owner else item.name
-    return "" if isinstance(item, SceneVisual) else item.scoped
+def _listed(names: Sequence[str]) -> str:
+    return "expected " + ", ".join(names) if names else "there is none"
 
 
-def _entities(scene: Scene) -> set[str]:
-    """Return every name that `--set` can begin with."""
-    found = {path for world in scene.worlds for path in _paths(world, _WORLD_TREE, "")}
-    if scene.model is not None:
-        found |= {scene.model.scoped, *_paths(scene.model, _MODEL_TREE, scene.model.scoped)}
-    return found - {""}
+def _inertia_parts() -> list[str]:
+    return [f"{INERTIA}.{part}" for part in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")]
 
 
-def _paths(holder: object, tree: _Tree, owner: str) -> Iterator[str]:
-    for field, below in tree.items():
-        for item in getattr(holder, field):
-            yield _path_of(item, owner)
-            yield from _paths(item, below, item.scoped)
+def _all_fields(entity: Entity, item: Any) -> Sequence[Field]:
+    return AREAS.get(entity.area) or fields_of(item)
+
+
+def _full_element(item: Any, element: str) -> str:
+    """Return the full name of an element that is written without its first names, such as `mu`."""
+    known = [field.element for field in fields_of(item)]
+    head = next((name for name in known if element == name or element.startswith(name + ".")), None)
+    if head is not None or isinstance(item, (SceneSensor, ScenePlugin)):
+        return element
+    ends = [name for name in known if name.endswith("." + element)]
+    if not ends:
+        last = element.rpartition(".")[0]
+        ends = [f"{name}.{element.rpartition('.')[2]}" for name in known if last and name.endswith("." + last)]
+    return ends[0] if len(ends) == 1 else element
+
+
+def _field_of(entity: Entity, item: Any, element: str) -> tuple[str, str, Field | None]:
+    """Return the field's element, the component or an empty text, and the field; None for the field if unknown."""
+    for field in _all_fields(entity, item):
+        if element == field.element:
+            return element, "", field
+        head, _, part = element.rpartition(".")
+        if head == field.element and part in field.kind.parts:
+            return head, part, field
+    return element, "", None

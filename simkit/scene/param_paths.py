@@ -1,0 +1,93 @@
+"""Paths of the values in a block of parameters: element names with dots, then perhaps the name of an attribute.
+
+Of several elements with one name, `name` is the first and `name[1]` the second.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Iterator
+from typing import Final
+
+from simkit.diagnostics import Where
+from simkit.params import Params
+
+_NUMBERED: Final = re.compile(r"(.+)\[(\d+)\]")
+_SPELLINGS: Final = (frozenset({"ray", "lidar", "gpu_ray", "gpu_lidar"}),)
+"""Names of one element in different versions of the format."""
+
+
+def _index(block: Params, name: str) -> int | None:
+    """Return the position of a child by its name, in any of its spellings; None if it is absent."""
+    match = _NUMBERED.fullmatch(name)
+    plain, number = (match[1], int(match[2])) if match else (name, 0)
+    found = [i for i, child in enumerate(block.children) if child.name == plain]
+    if not found:
+        same = next((names for names in _SPELLINGS if plain in names), frozenset())
+        found = [i for i, child in enumerate(block.children) if child.name in same]
+    return found[number] if number < len(found) else None
+
+
+def set_parameter(params: Params, element: str, value: str, source: str) -> Params:
+    """Return a copy of a block in which an element or attribute has another value; a missing element is added.
+
+    Args:
+        params: the block.
+        element: path of the element, with dots.
+        value: the new text.
+        source: text that messages name as the file of the value.
+
+    Raises:
+        ValueError: the path names an element that holds elements, or an element of a list that is too short.
+    """
+    head, _, rest = element.partition(".")
+    block = copy.copy(params)
+    block.children = list(params.children)
+    at = _index(block, head)
+    if at is None and head in params.attributes and not rest and head not in ("name", "filename"):
+        block.attributes = {**params.attributes, head: value}
+        return block
+    if at is None:
+        if _NUMBERED.fullmatch(head):
+            raise ValueError(f"there is no element <{head}>")
+        at = len(block.children)
+        block.children.append(Params(head, where=Where(source), diagnostics=params.diagnostics))
+    old = block.children[at]
+    if rest:
+        block.children[at] = set_parameter(old, rest, value, source)
+        return block
+    if old.children:
+        inner = ", ".join(dict.fromkeys(c.name for c in old.children))
+        raise ValueError(f"<{head}> holds elements; name one of them: {inner}")
+    new = copy.copy(old)
+    new.value, new.where = value, Where(source)
+    block.children[at] = new
+    return block
+
+
+def parameter_values(params: Params) -> Iterator[tuple[str, str]]:
+    """Yield path and text of each value in a block; a path that `set_parameter` would not understand is left out."""
+    seen: dict[str, int] = {}
+    for child in params.children:
+        if "." in child.name or ":" in child.name:
+            continue
+        number = seen.get(child.name, 0)
+        seen[child.name] = number + 1
+        name = child.name if number == 0 else f"{child.name}[{number}]"
+        inner = {c.name for c in child.children}
+        for attribute, text in child.attributes.items():
+            if (
+                attribute not in inner
+                and "." not in attribute
+                and ":" not in attribute
+                and attribute not in _NOT_VALUES
+            ):
+                yield f"{name}.{attribute}", text
+        if child.children:
+            yield from ((f"{name}.{path}", text) for path, text in parameter_values(child))
+        else:
+            yield name, child.value
+
+
+_NOT_VALUES: Final = frozenset({"name", "filename", "xmlns"})
