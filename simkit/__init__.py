@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from simkit.recording.export.data_frames import to_dataframe
     from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
+    from simkit.testing.sweeps.sweep import sweep
 
 
 __all__ = [
@@ -60,6 +61,7 @@ __all__ = [
     "check",
     "describe",
     "load",
+    "sweep",
     "to_dataframe",
 ]
 
@@ -82,6 +84,7 @@ _MODULES = {
     "simkit.pose": ("Pose",),
     "simkit.recording.export.data_frames": ("to_dataframe",),
     "simkit.run_spec": ("RunSpec",),
+    "simkit.testing.sweeps.sweep": ("sweep",),
     "simkit.plugins.base": ("Plugin", "WorldPlugin", "ModelPlugin", "SensorPlugin", "VisualPlugin"),
 }
 _LAZY = {name: module for module, names in _MODULES.items() for name in names}

@@ -47,7 +47,9 @@ class OnDemandTasks:
         self._tasks: list[tuple[Callable[[], bool], float | None, Task, Phase]] = []
         self._wanted: list[bool] = []
 
-    def add(self, is_wanted: Callable[[], bool], rate: float | None, task: Task, phase: Phase = "after") -> None:
+    def add(
+        self, is_wanted: Callable[[], bool], rate: float | None, task: Task, phase: Phase = "after"
+    ) -> Callable[[], None]:
         """Call `task(tick)` at a rate while `is_wanted()` is true.
 
         Args:
@@ -55,9 +57,20 @@ class OnDemandTasks:
             rate: rate [Hz]; None for every step.
             task: function to call.
             phase: before or after the step.
+
+        Returns:
+            Function that removes the task.
         """
-        self._tasks.append((is_wanted, rate, task, phase))
+        entry = (is_wanted, rate, task, phase)
+        self._tasks.append(entry)
         self.look()
+
+        def remove() -> None:
+            if entry in self._tasks:
+                self._tasks.remove(entry)
+                self.look()
+
+        return remove
 
     def broadcast(
         self, topics: dict[str, str], rate: float, make: MessageMaker, *, is_aside: bool = True, is_listed: bool = False

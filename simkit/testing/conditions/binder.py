@@ -20,6 +20,7 @@ from simkit.testing.conditions.bound_expression import (
     is_scalar,
     listed_attributes,
 )
+from simkit.testing.conditions.history_functions import HISTORY_FUNCTIONS
 from simkit.testing.conditions.math_functions import (
     LIST_FUNCTIONS,
     NUMBER_FUNCTIONS,
@@ -33,7 +34,12 @@ if TYPE_CHECKING:
     from simkit.testing.conditions.world_view import WorldView
 
 
-FUNCTIONS: Final[dict[str, Function]] = {**WORLD_FUNCTIONS, **LIST_FUNCTIONS, **NUMBER_FUNCTIONS}
+FUNCTIONS: Final[dict[str, Function]] = {
+    **WORLD_FUNCTIONS,
+    **LIST_FUNCTIONS,
+    **NUMBER_FUNCTIONS,
+    **HISTORY_FUNCTIONS,
+}
 
 
 _COMPARISON_OPERATORS: Final[dict[str, Callable[[Any, Any], bool]]] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -61,6 +61,7 @@ class Watch:
         self._until = self._entries[0] if until else None
         self._running: list[RunningCheck] = []
         self._is_active = False
+        self._end: Callable[[], None] = lambda: None
 
     def _bind_checks(self, checks: Sequence[Check]) -> list[RunningCheck]:
         entries: list[RunningCheck] = []
@@ -94,14 +95,15 @@ class Watch:
         self.look()
         if self._running and not self.ended:
             self._is_active = True
-            self._sim.communication.on_demand.add(lambda: self._is_active, None, lambda _: self.look(), "after")
+            on_demand = self._sim.communication.on_demand
+            self._end = on_demand.add(lambda: self._is_active, None, lambda _: self.look(), "after")
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._is_active = False
-        self._sim.communication.on_demand.look()
+        self._end()
         self._sim.control.pausing.is_over = False
         self._view.close()
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
-from typing import Any, Literal
+from collections.abc import Callable, Iterable
+from typing import Any, Literal, Protocol, TypeVar
 
 import numpy as np
 
@@ -161,6 +161,24 @@ class Entity:
         return found
 
 
+class History(Protocol):
+    """Value of the whole run so far.
+
+    Attributes:
+        topic: topic whose messages are observed; empty for observations at `rate`.
+        rate: rate of the observations [Hz]; None for every step.
+    """
+
+    topic: str
+    rate: float | None
+
+    def observe(self) -> None:
+        """Add the present state."""
+
+
+HistoryT = TypeVar("HistoryT", bound=History)
+
+
 class WorldView:
     """View of a simulation for expressions.
 
@@ -173,6 +191,8 @@ class WorldView:
         self.sim, self.absent = sim, absent
         self._latest_messages: dict[str, LatestMessage] = {}
         self._counters: dict[str, MessageCounter] = {}
+        self._histories: list[History] = []
+        self._history_ends: list[Callable[[], None]] = []
         self._is_open = False
 
     # ------------------------------------------------------------------ names
@@ -249,16 +269,41 @@ class WorldView:
             counter.open()
         return counter
 
+    def add_history(self, history: HistoryT) -> HistoryT:
+        """Observe a value of the whole run between `open` and `close`; return it."""
+        self._histories.append(history)
+        if self._is_open:
+            self._open_history(history)
+        return history
+
+    def _open_history(self, history: History) -> None:
+        """Observe the present state, and later states with the messages of a topic or at a rate."""
+        history.observe()
+        communication = self.sim.communication
+        if history.topic:
+            # the callback does not read the message, but the expression reads the newest one, which is already there
+            self._history_ends.append(communication.bus.tap(history.topic, lambda _: history.observe()).close)
+        else:
+            self._history_ends.append(
+                communication.on_demand.add(lambda: self._is_open, history.rate, lambda _: history.observe())
+            )
+
     def open(self) -> None:
-        """Subscribe to all topics of the expressions."""
+        """Subscribe to all topics of the expressions, and observe the values of the whole run."""
         self._is_open = True
         for listener in self._listeners():
             listener.open()
+        for history in self._histories:
+            self._open_history(history)
 
     def close(self) -> None:
-        """End all subscriptions."""
+        """End all subscriptions and observations."""
         for listener in self._listeners():
             listener.close()
+        self._is_open = False
+        for end in self._history_ends:
+            end()
+        self._history_ends.clear()
 
     def _listeners(self) -> list[_TopicListener]:
         return [*self._latest_messages.values(), *self._counters.values()]

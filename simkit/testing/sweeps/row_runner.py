@@ -1,0 +1,274 @@
+"""Runs of a sweep in one process, in a world that stays loaded between them."""
+
+from __future__ import annotations
+
+import copy
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final
+
+from simkit.errors import InputError, LoadError, SimkitError
+from simkit.run_spec import RunSpec
+from simkit.runtime import Simulation
+from simkit.runtime.engine.snapshot import state_hash
+from simkit.testing.scenarios.scenario_run import ScenarioResult, open_scenario, run_scenario
+from simkit.testing.sweeps.design import SweepRow
+from simkit.testing.sweeps.metrics import RunMetrics
+from simkit.testing.sweeps.sweep_spec import SweepSpec
+
+_STATUS: Final = {0: "ok", 1: "error", 2: "invalid", 3: "diverged", 4: "plugin", 5: "failed"}
+CHECKS_FAILED: Final = "SK-SWEEP-006"
+CRASHED: Final = "SK-SWEEP-007"
+_LONGEST_MESSAGE: Final = 500
+
+
+@dataclass
+class RowResult:
+    """Result of one run.
+
+    Attributes:
+        row: run with its values.
+        metrics: values of the metrics by name; empty if the run did not reach its end.
+        exit_code: exit code that `simkit run` has for this end.
+        status: the same as a word: "ok", "failed" (a check), "diverged", "plugin", "invalid" or "error".
+        end: end of the run: "duration", "until", "timeout", "wall_timeout", or empty after an error.
+        code, message: diagnostic code and first line of the failure; empty without one.
+        time: simulated time at the end [s].
+        steps: number of steps.
+        state_hash: hash of the physics state at the end.
+        wall_time: wall time of the run with its loading or reset [s].
+    """
+
+    row: SweepRow
+    metrics: dict[str, Any] = field(default_factory=dict)
+    exit_code: int = 0
+    end: str = ""
+    code: str = ""
+    message: str = ""
+    time: float = 0.0
+    steps: int = 0
+    state_hash: str = ""
+    wall_time: float = 0.0
+
+    @property
+    def status(self) -> str:
+        """End of the run as a word."""
+        return _STATUS.get(self.exit_code, "error")
+
+    def fail(self, error: Exception) -> None:
+        """Store an error."""
+        self.exit_code = error.exit_code if isinstance(error, SimkitError) else 1
+        self.code = str(getattr(error, "code", "") or "SK-CORE-001") if isinstance(error, SimkitError) else "SK-CORE-001"
+        text = str(error) if isinstance(error, SimkitError) else f"{type(error).__name__}: {error}"
+        self.message = (text.strip() or type(error).__name__).splitlines()[0][:_LONGEST_MESSAGE]
+
+    def plain(self) -> dict[str, Any]:
+        """Return the columns of the table by name, and the wall time."""
+        return {
+            "run": self.row.run, "seed": self.row.seed, "values": dict(self.row.values), "metrics": self.metrics,
+            "exit_code": self.exit_code, "status": self.status, "end": self.end, "code": self.code,
+            "message": self.message, "time": self.time, "steps": self.steps, "state_hash": self.state_hash,
+            "wall_time": round(self.wall_time, 6),
+        }  # fmt: skip
+
+
+class RowRunner:
+    """Runner of a sweep's rows; one worker has one.
+
+    A world whose load arguments are the same as those of the last run is reset, not loaded. The bits are the same.
+
+    Args:
+        spec: sweep.
+    """
+
+    def __init__(self, spec: SweepSpec) -> None:
+        self._spec = spec
+        self._sim: Simulation | None = None
+        self._key: object = None
+
+    def run(self, row: SweepRow) -> RowResult:
+        """Run a row; a failure is a result too."""
+        begun = time.perf_counter()
+        result = RowResult(row)
+        try:
+            spec = self._spec.row_spec(row)
+            sim = self._world(spec)
+            self._measure(spec, sim, result)
+        except Exception as error:  # noqa: BLE001 - any failure of a run is a row of the table
+            result.fail(error)
+            self._note_end(result)
+            self.close()
+        result.wall_time = time.perf_counter() - begun
+        return result
+
+    def keep(self, row: SweepRow, folder: Path) -> RowResult:
+        """Repeat a run and write its bundle and, if topics are chosen, its bag.
+
+        Args:
+            row: run.
+            folder: folder for `RUN.zip` and `RUN.mcap`.
+        """
+        self.close()
+        result = RowResult(row)
+        spec = self._spec.row_spec(row)
+        target = folder / f"{row.run:06d}.zip"
+        from simkit.testing.bundles.bundle_writer import pack_load_failure, write_bundle
+        from simkit.testing.bundles.manifest import Failure, failure_from_error
+
+        from simkit.testing.bundles import BundleRecorder
+
+        try:
+            sim = self._world(spec)
+        except Exception as error:  # noqa: BLE001 - the bundle repeats the failure
+            result.fail(error)
+            with suppress(SimkitError, OSError):
+                pack_load_failure(spec, folder, failure_from_error(error)).replace(target)
+            return result
+        failure: Failure | None = None
+        recorder = BundleRecorder(sim)
+        bag = self._open_bag(sim, folder / f"{row.run:06d}.mcap")
+        try:
+            self._measure(spec, sim, result)
+            if result.exit_code:
+                failure = Failure("check", "", result.message)
+        except Exception as error:  # noqa: BLE001 - the bundle repeats the failure
+            result.fail(error)
+            self._note_end(result)
+            failure = failure_from_error(error)
+        finally:
+            if bag is not None:
+                bag.close()
+        write_bundle(recorder, target, failure, overwrite=True)
+        self.close()
+        return result
+
+    def close(self) -> None:
+        """Close the world; the next run loads it again."""
+        sim, self._sim, self._key = self._sim, None, None
+        if sim is not None:
+            with suppress(Exception):  # a plugin may raise while it is closed
+                sim.close()
+
+    def _open_bag(self, sim: Simulation, path: Path) -> Any:
+        if not self._spec.bag_topics:
+            return None
+        from simkit.recording.bags.recorder import Recorder
+
+        return Recorder(sim, path, overwrite=True, topics=self._spec.bag_topics)
+
+    def _world(self, spec: RunSpec) -> Simulation:
+        """Return the world of a run at t = 0."""
+        key = (spec.overrides, spec.spawn, repr(spec.options.get("xacro_args")))
+        sim = self._sim
+        if sim is not None and self._spec.is_warm and key == self._key:
+            sim.reset(seed=spec.seed)
+            return sim
+        self.close()
+        self._sim = sim = open_scenario(replace(spec, plugins=copy.deepcopy(spec.plugins)))
+        self._key = key
+        _check_overrides(sim)
+        return sim
+
+    def _measure(self, spec: RunSpec, sim: Simulation, result: RowResult) -> None:
+        with RunMetrics(sim, self._spec.row_metrics(result.row)) as metrics:
+            outcome = run_scenario(spec, sim)
+            result.metrics = metrics.values()
+        result.end = outcome.reason
+        self._note_end(result)
+        if not outcome.passed:
+            result.exit_code, result.code = 5, CHECKS_FAILED
+            result.message = _failed_checks(outcome)
+
+    def _note_end(self, result: RowResult) -> None:
+        sim = self._sim
+        if sim is not None:
+            with suppress(Exception):  # the state after a failure may be unreadable
+                result.time, result.steps, result.state_hash = sim.time, sim.tick, state_hash(sim)
+
+
+def _failed_checks(outcome: ScenarioResult) -> str:
+    lines = [f"{one.check.title}: {one.message}" for one in outcome.results if not one.passed]
+    return "; ".join(lines or ["the run was stopped at its wall-clock limit"])[:_LONGEST_MESSAGE]
+
+
+def _check_overrides(sim: Simulation) -> None:
+    from simkit.scene.overrides import check_used
+
+    check_used(sim.diagnostics)
+
+
+def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> None:
+    """Check the parameters and metrics of a sweep on its world before the first run.
+
+    A parameter whose path exists but whose value is out of range in some rows is no error here: these rows fail.
+
+    Args:
+        spec: sweep.
+        rows: some of its rows, with different values.
+
+    Raises:
+        InputError: SK-SWEEP-002 a parameter cannot be set with any of the values; an expression has an error; the world
+            cannot be loaded. The message lists all problems.
+    """
+    from simkit.testing.conditions import Watch
+
+    problems: list[InputError] = []
+    usable = None
+    runner = RowRunner(spec)
+    try:
+        failures: dict[int, InputError] = {}
+        for row in rows:
+            run = spec.row_spec(row)
+            try:
+                sim = runner._world(run)
+            except InputError as error:
+                failures[row.run] = error
+                continue
+            usable = row
+            for check in (
+                lambda: RunMetrics(sim, spec.row_metrics(row)),
+                lambda: Watch(sim, run.checks, until=run.until, timeout=run.longest),
+            ):
+                try:
+                    check()
+                except InputError as error:
+                    problems.append(error)
+            break
+        if usable is None and failures:
+            problems.append(next(iter(failures.values())))
+    finally:
+        runner.close()
+    if len(problems) == 1 and isinstance(problems[0], LoadError):
+        raise problems[0]
+    if problems:
+        raise InputError("\n".join(map(str, problems)), problems[0].code)
+
+
+def parameter_problems(spec: SweepSpec, rows: list[SweepRow]) -> Mapping[str, InputError]:
+    """Return the error of each parameter that no row can set, by the parameter's name."""
+    from simkit.build import read_scene
+    from simkit.scene.overrides import apply_overrides
+
+    scene, _ = read_scene(spec.run.source, **spec.run.source_options())
+    found: dict[str, InputError] = {}
+    for name in spec.design.names:
+        if name.isidentifier():
+            continue
+        for row in rows:
+            try:
+                apply_overrides(scene, [f"{name}={_text(row.values[name])}"] if name in row.values else [])
+            except InputError as error:
+                found.setdefault(name, error)
+            else:
+                found.pop(name, None)
+                break
+    return found
+
+
+def _text(value: Any) -> str:
+    from simkit.testing.sweeps.sweep_spec import value_text
+
+    return value_text(value)

@@ -1,0 +1,353 @@
+"""Sweeps: many runs of a world with different parameters and seeds, and one table of their results."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, cast
+
+from simkit import progress
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError
+from simkit.run_spec import FilePath, RunSpec
+from simkit.testing.sweeps.design import SAMPLINGS, Design, Sampling, SweepRow
+from simkit.testing.sweeps.executor import Executor, SerialExecutor, SweepTask
+from simkit.testing.sweeps.parameter_space import InvalidSpace, ParameterSpace, parameter_space, plain_value
+from simkit.testing.sweeps.result_store import ResultStore
+from simkit.testing.sweeps.result_table import read_parameters, read_table, write_tables
+from simkit.testing.sweeps.row_runner import RowResult, check_runs, parameter_problems
+from simkit.testing.sweeps.sweep_spec import (
+    INVALID,
+    UNKNOWN_PARAMETER,
+    Keep,
+    Metric,
+    SweepSpec,
+    check_names,
+    sequence_of_seeds,
+    spec_of_world,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Parameters = Mapping[Any, Any] | Sequence[Mapping[str, Any]] | FilePath
+"""Spaces by parameter, a list of values by parameter for each run, or a CSV file with such a list."""
+
+_CHECKED_ROWS: Final = 16  # rows that are tried before a parameter counts as wrong
+
+
+def sweep(
+    world: FilePath | RunSpec,
+    parameters: Parameters = {},  # noqa: B006 (never changed)
+    *,
+    seeds: int | Sequence[int] | None = None,
+    metrics: Mapping[str, Metric] | None = None,
+    duration: float | None = None,
+    until: str = "",
+    samples: int | None = None,
+    sampling: Sampling = "random",
+    design_seed: int = 0,
+    jobs: int | None = None,
+    folder: FilePath | None = None,
+    keep: Keep = 10,
+    bag_topics: Sequence[str] = (),
+    warm: bool = True,
+    cluster: str | None = None,
+) -> pd.DataFrame:
+    """Run a world with every combination of parameters and seeds, and return a table with a row for each run.
+
+    A run that fails or diverges is a row too. The same call gives the same table with any number of processes.
+
+    Args:
+        world: world as for `simkit.load`, or a run specification with commands, conditions and options.
+        parameters: values by parameter: a list for a grid, or a distribution such as `{"uniform": [0.1, 0.2]}`. A
+            parameter is a path of `--set`, or a variable `{name}` in the texts of the run specification. A list of
+            mappings, or a CSV file, gives the values of each run.
+        seeds: seeds of the noise, or their number; None for the seed of the specification.
+        metrics: measurements at the end of each run: expressions, or functions of the simulation.
+        duration: simulated time of each run [s]; None for that of the specification.
+        until: condition that ends a run early.
+        samples: number of samples of the distributions; None for one sample a seed.
+        sampling: "random", "sobol", "latin_hypercube" or "saltelli".
+        design_seed: seed of the samples.
+        jobs: number of processes; None for one per processor core, 1 for the present process.
+        folder: folder for the results. A sweep that was interrupted continues there. None for a temporary one.
+        keep: runs whose bundles are kept in the folder: "failed", "all", or the largest number of failed runs.
+        bag_topics: patterns of the topics in the bags of kept runs; empty for no bags.
+        warm: keep the world loaded between runs with equal load arguments; the results are the same.
+        cluster: address of a Ray cluster, "auto" for a running one; None for processes of this machine.
+
+    Returns:
+        Table with the columns run, seed, the parameters, the metrics, exit_code, status, end, code, message, time [s],
+        steps and state_hash.
+
+    Raises:
+        InputError: SK-SWEEP-001 an argument is invalid; SK-SWEEP-002 a parameter is unknown; SK-SWEEP-003 the folder
+            has another sweep; SK-INPUT-004 pandas is not installed.
+        LoadError: the world has errors.
+    """
+    import importlib.util
+
+    if importlib.util.find_spec("pandas") is None:
+        text = "SK-INPUT-004 simkit.sweep needs pandas, which is missing\n    help: pip install 'simkit-robotics[experiments]'"
+        raise InputError(text, "SK-INPUT-004")
+    run = spec_of_world(world, duration, until)
+    design = make_design(
+        parameters, sequence_of_seeds(seeds, run.seed), samples=samples, sampling=sampling, design_seed=design_seed
+    )
+    spec = SweepSpec(run, design, dict(metrics or {}), keep, tuple(bag_topics), warm)
+    temporary = tempfile.TemporaryDirectory() if folder is None else nullcontext(os.fspath(folder))
+    with cast(AbstractContextManager[str], temporary) as name:
+        run_sweep(spec, Path(name), jobs=jobs, cluster=cluster, writes_tables=folder is not None)
+        return read_table(name)
+
+
+def make_design(
+    parameters: Parameters,
+    seeds: tuple[int, ...] | range,
+    *,
+    samples: int | None = None,
+    sampling: str = "random",
+    design_seed: int = 0,
+) -> Design:
+    """Return the design of a sweep.
+
+    Raises:
+        InputError: SK-SWEEP-001 with all problems of the arguments.
+    """
+    problems: list[str] = []
+    spaces: list[ParameterSpace] = []
+    listed: tuple[Mapping[str, Any], ...] | None = None
+    if hasattr(parameters, "to_dict") and hasattr(parameters, "columns"):  # a DataFrame
+        parameters = cast(Any, parameters).to_dict("records")
+    if isinstance(parameters, (str, os.PathLike)):
+        listed = read_parameters(Path(parameters))
+    elif isinstance(parameters, Mapping):
+        for names, description in parameters.items():
+            try:
+                spaces.append(parameter_space(names, description))
+            except InvalidSpace as error:
+                problems.append(f"parameter {names!r}: {error}")
+    else:
+        listed = _listed_rows(parameters, problems)
+    if sampling not in SAMPLINGS:
+        hint = did_you_mean(sampling, SAMPLINGS) or f"expected {', '.join(SAMPLINGS)}"
+        problems.append(f"sampling: found {sampling!r}; {hint}")
+    if samples is not None and (not isinstance(samples, int) or isinstance(samples, bool) or samples < 1):
+        problems.append(f"samples: found {samples!r}; expected a whole number of at least 1")
+    distributions = [space for space in spaces if space.levels is None]
+    if distributions and samples is None and len(seeds) == 1 and not problems:
+        problems.append("samples: missing; the parameters have distributions, so say how many samples to draw")
+    if samples is not None and not distributions and not problems:
+        problems.append(f"samples: found {samples}, but no parameter has a distribution to draw from")
+    if sampling == "saltelli" and not problems and (not distributions or samples is None):
+        problems.append("sampling: 'saltelli' needs parameters with distributions, and samples")
+    if problems:
+        raise InputError("\n".join(f"{INVALID} {one}" for one in problems), INVALID)
+    return Design(tuple(spaces), seeds, samples, cast(Sampling, sampling), design_seed, listed)
+
+
+def _listed_rows(parameters: Any, problems: list[str]) -> tuple[dict[str, Any], ...]:
+    rows = []
+    for number, row in enumerate(parameters):
+        if not isinstance(row, Mapping):
+            problems.append(f"parameters: item {number} is {row!r:.60}; expected a mapping of names to values")
+            continue
+        try:
+            rows.append({str(name): plain_value(value) for name, value in row.items()})
+        except InvalidSpace as error:
+            problems.append(f"parameters: item {number}: {error}")
+    if not rows and not problems:
+        problems.append("parameters: the list is empty")
+    return tuple(rows)
+
+
+# ---------------------------------------------------------------------- run
+
+
+@dataclass(frozen=True)
+class SweepOutcome:
+    """Numbers of a sweep after its run.
+
+    Attributes:
+        count: number of runs.
+        failed: number of runs that did not end with exit code 0.
+        skipped: number of runs that were finished before.
+        wall_time: wall time of this call [s].
+        simulated: simulated time of the runs of this call [s].
+        tables: written tables.
+    """
+
+    count: int
+    failed: int
+    skipped: int
+    wall_time: float
+    simulated: float
+    tables: tuple[Path, ...] = ()
+
+
+def run_sweep(
+    spec: SweepSpec,
+    folder: Path,
+    *,
+    jobs: int | None = None,
+    cluster: str | None = None,
+    writes_tables: bool = True,
+    always_processes: bool = False,
+    shard: tuple[int, int] = (0, 1),
+) -> SweepOutcome:
+    """Make the runs of a sweep that are not finished in a folder.
+
+    Args:
+        spec: sweep.
+        folder: folder of the results.
+        jobs: number of processes; None for one per processor core.
+        cluster: address of a Ray cluster; None for this machine.
+        writes_tables: write `results.csv` and `results.parquet` at the end.
+        always_processes: use a process also for one job, so that a crash of a plugin costs one run only.
+        shard: number and count of the parts of the sweep, each of which is run by another call, from 0.
+    """
+    check_names(spec)
+    store = ResultStore(folder)
+    begun = time.perf_counter()
+    with _locked(folder, shard):
+        store.begin(spec.fingerprint(), spec.design.count, description_of(spec))
+        blocks = [block for block in store.blocks if block % shard[1] == shard[0]]
+        total = sum(len(store.runs_of(block)) for block in blocks)
+        missing = sum(len(store.missing(block)) for block in blocks)
+        simulated = 0.0
+        if missing:
+            check_sweep(spec)
+            runs = (run for block in blocks for run in store.missing(block))
+            tasks = (SweepTask(spec.design.row(run)) for run in runs)
+            with make_executor(spec, jobs, cluster, min_tasks=missing, always_processes=always_processes) as executor:
+                try:
+                    with progress.task("running the sweep", total) as task:
+                        task.done = total - missing
+                        for result in executor.stream(tasks):
+                            store.add(result.plain())
+                            simulated += result.time
+                            show_progress(task, total - missing, time.perf_counter() - begun, simulated)
+                finally:
+                    store.close()
+                keep_runs(spec, store, executor)
+        tables = write_tables(store) if writes_tables and store.finished_count() == store.count else ()
+        failed = sum(row["exit_code"] != 0 for row in store.rows())
+    wall = time.perf_counter() - begun
+    return SweepOutcome(store.count, failed, total - missing, wall, simulated, tuple(tables))
+
+
+def show_progress(task: progress.Task, before: int, elapsed: float, simulated: float) -> None:
+    """Count a finished run, and show the rate of runs and of simulated time."""
+    made = task.done + 1 - before
+    task.advance(f"{made / elapsed:.3g} runs/s, {simulated / elapsed:.3g} × real time")
+
+
+def description_of(spec: SweepSpec) -> dict[str, Any]:
+    """Return what a report needs to know about a sweep."""
+    design = spec.design
+    return {
+        "title": spec.run.title,
+        "parameters": list(design.names),
+        "metrics": list(spec.metrics),
+        "expressions": {name: one for name, one in spec.metrics.items() if isinstance(one, str)},
+        "sampling": design.sampling,
+        "dimensions": design.dimensions,
+        "points": design.points,
+        "combinations": design.combinations,
+        "seeds": 1 if design.is_paired else len(design.seeds),
+        "sampled": [name for space in design.distributions for name in space.names],
+        "file": str(spec.run.file.absolute()) if spec.run.file is not None else "",
+    }
+
+
+def check_sweep(spec: SweepSpec) -> None:
+    """Check parameters, conditions and metrics on the world, so that a mistake does not fail every run.
+
+    Raises:
+        InputError: all problems; see `check_runs`.
+    """
+    rows = checked_rows(spec.design)
+    with progress.task("checking the sweep"):
+        if not spec.run.overrides and not spec.run.spawn:
+            problems = parameter_problems(spec, rows)
+            if problems:
+                text = "\n".join(
+                    f"{UNKNOWN_PARAMETER} the parameter {name!r} cannot be set: {str(error).partition(' ')[2]}"
+                    for name, error in problems.items()
+                )
+                raise InputError(text, UNKNOWN_PARAMETER)
+        check_runs(spec, rows)
+
+
+def checked_rows(design: Design) -> list[SweepRow]:
+    """Return some rows of a design, spread over all runs."""
+    count = design.count
+    runs = dict.fromkeys(round(part * (count - 1) / (_CHECKED_ROWS - 1)) for part in range(_CHECKED_ROWS))
+    return list(design.rows(list(runs)))
+
+
+def make_executor(
+    spec: SweepSpec, jobs: int | None, cluster: str | None, *, min_tasks: int, always_processes: bool
+) -> Executor:
+    """Return the executor for a number of processes or a cluster."""
+    if cluster is not None:
+        from simkit.testing.sweeps.ray_executor import RayExecutor
+
+        return RayExecutor(spec, cluster)
+    if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
+        raise InputError(f"{INVALID} jobs: found {jobs!r}; expected a whole number of at least 1", INVALID)
+    if jobs is None:
+        from simkit.sensors.cameras.rendering.render_thread import usable_cores
+
+        jobs = usable_cores()
+    jobs = min(jobs, min_tasks)
+    if jobs == 1 and not always_processes:
+        return SerialExecutor(spec)
+    from simkit.testing.sweeps.process_executor import ProcessExecutor
+
+    return ProcessExecutor(spec, jobs)
+
+
+def keep_runs(spec: SweepSpec, store: ResultStore, executor: Executor) -> None:
+    """Repeat the runs whose bundles are kept, and write their bundles and bags into the folder `runs`."""
+    folder = store.folder.absolute() / "runs"
+    chosen = [row["run"] for row in store.rows() if spec.keep == "all" or row["exit_code"]]
+    if isinstance(spec.keep, int):
+        chosen = chosen[: spec.keep]
+    chosen = [run for run in chosen if not (folder / f"{run:06d}.zip").exists()]
+    if not chosen:
+        return
+    folder.mkdir(exist_ok=True)
+    with progress.task("keeping runs", len(chosen)) as task:
+        for result in executor.stream(SweepTask(spec.design.row(run), folder) for run in chosen):
+            task.advance(f"run {result.row.run}")
+
+
+@contextmanager
+def _locked(folder: Path, shard: tuple[int, int]) -> Iterator[None]:
+    """Allow one process at a time to write a part of a sweep; the system releases the lock of a killed process."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        file = (folder / f".lock-{shard[0]}-{shard[1]}").open("w")
+    except OSError as error:
+        raise InputError(f"SK-CLI-016 cannot write to {folder}: {error.strerror or error}", "SK-CLI-016") from None
+    with file:
+        try:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except ImportError:
+            pass
+        except OSError:
+            text = f"SK-SWEEP-010 another process runs the sweep in {folder}"
+            raise InputError(f"{text}\n    help: wait for its end, or name another folder", "SK-SWEEP-010") from None
+        yield
+
+
+Progress = Callable[[RowResult], None]

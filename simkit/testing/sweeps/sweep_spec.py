@@ -1,0 +1,236 @@
+"""Specification of a sweep: a run, the design of its parameters, metrics and rules for what is kept."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import string
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from simkit.errors import InputError
+from simkit.input_file import read_input
+from simkit.run_spec import RunSpec
+from simkit.testing.sweeps.design import Design, SweepRow
+
+Metric = str | Callable[[Any], Any]
+"""Expression of the condition language, or a Python function of the simulation."""
+Keep = Literal["failed", "all"] | int
+"""Runs whose bundle and bag are kept: all failed ones, all, or at most this number of failed ones."""
+
+INVALID: Final = "SK-SWEEP-001"
+UNKNOWN_PARAMETER: Final = "SK-SWEEP-002"
+
+ROW_COLUMNS: Final = ("run", "seed")
+"""Columns of a result table before the parameters."""
+RESULT_COLUMNS: Final = ("exit_code", "status", "end", "code", "message", "time", "steps", "state_hash")
+"""Columns of a result table after the metrics."""
+
+
+@dataclass(frozen=True)
+class SweepSpec:
+    """Specification of a sweep.
+
+    Parameters whose names contain a dot are paths of `--set`. Other names are variables: `{name}` in the texts of the
+    run specification (overrides, commands, conditions, spawned models) and of the metrics is replaced by their values.
+
+    Attributes:
+        run: specification that all runs share.
+        design: values and seeds of the runs.
+        metrics: measurements at the end of each run by name.
+        keep: runs whose bundle and bag are kept.
+        bag_topics: patterns of the topics in the bags of kept runs; empty for no bags.
+        is_warm: True if a worker resets its world between runs instead of loading it again; the results are the same.
+    """
+
+    run: RunSpec
+    design: Design
+    metrics: Mapping[str, Metric] = field(default_factory=dict)
+    keep: Keep = 10
+    bag_topics: tuple[str, ...] = ()
+    is_warm: bool = True
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of the result table."""
+        return (*ROW_COLUMNS, *self.design.names, *self.metrics, *RESULT_COLUMNS)
+
+    def fingerprint(self) -> str:
+        """Return a hash of everything that decides the results, to recognise a stored sweep."""
+        design = self.design
+        content = {
+            "run": plain_description(self.run),
+            "world": _world_hash(self.run),
+            "spaces": [[space.names, plain_description(space.description)] for space in design.spaces],
+            "design": plain_description((design.seeds, design.samples, design.sampling, design.design_seed)),
+            "listed": plain_description(design.listed),
+            "metrics": {name: plain_description(metric) for name, metric in self.metrics.items()},
+        }
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+    def row_spec(self, row: SweepRow) -> RunSpec:
+        """Return the specification of one run."""
+        paths, variables = split_values(row.values)
+        spec = replace(self.run, seed=row.seed)
+        if variables:
+            spec = _substitute(spec, variables)
+        added = tuple(f"{path}={value_text(value)}" for path, value in paths.items())
+        return replace(spec, overrides=(*spec.overrides, *added))
+
+    def row_metrics(self, row: SweepRow) -> Mapping[str, Metric]:
+        """Return the metrics of one run, with the values of variables."""
+        _, variables = split_values(row.values)
+        if not variables:
+            return self.metrics
+        return {name: fill_template(one, variables) if isinstance(one, str) else one for name, one in self.metrics.items()}
+
+
+def split_values(values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the values of paths, and the values of variables, whose names are identifiers."""
+    paths = {name: value for name, value in values.items() if not name.isidentifier()}
+    return paths, {name: value for name, value in values.items() if name.isidentifier()}
+
+
+def value_text(value: Any) -> str:
+    """Return a value as the text of an override; numbers keep all their bits."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return " ".join(map(value_text, value)) if isinstance(value, (list, tuple)) else str(value)
+
+
+# ---------------------------------------------------------------------- variables
+
+
+class _Template(string.Formatter):
+    """Formatter of `{name}` for known names; other braces stay, because messages and expressions may contain them."""
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        self._values = values
+
+    def fill(self, text: str) -> str:
+        for name, value in self._values.items():
+            text = text.replace("{" + name + "}", value_text(value))
+        return text
+
+
+def fill_template(value: Any, variables: Mapping[str, Any]) -> Any:
+    """Return plain data in which each `{name}` is replaced; a text that is only `{name}` becomes the value itself."""
+    if isinstance(value, str):
+        if value.startswith("{") and value.endswith("}") and value[1:-1] in variables:
+            return variables[value[1:-1]]
+        return _Template(variables).fill(value)
+    if isinstance(value, Mapping):
+        return {key: fill_template(item, variables) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return type(value)(fill_template(item, variables) for item in value)
+    return value
+
+
+_TEMPLATE_FIELDS: Final = ("overrides", "spawn", "until", "velocity")
+
+
+def _substitute(spec: RunSpec, variables: Mapping[str, Any]) -> RunSpec:
+    changes = {name: _as_text(fill_template(getattr(spec, name), variables)) for name in _TEMPLATE_FIELDS}
+    commands = tuple(fill_template(dict(command), variables) for command in spec.commands)
+    checks = tuple(replace(one, expression=_as_text(fill_template(one.expression, variables))) for one in spec.checks)
+    options = dict(spec.options)
+    if isinstance(options.get("xacro_args"), Mapping):
+        arguments: Any = options["xacro_args"]
+        options["xacro_args"] = {name: _as_text(fill_template(one, variables)) for name, one in arguments.items()}
+    return replace(spec, **changes, commands=commands, checks=checks, options=options)  # type: ignore[arg-type]
+
+
+def _as_text(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(map(_as_text, value))
+    return value_text(value) if isinstance(value, (bool, int, float, list)) else value
+
+
+def used_variables(spec: SweepSpec) -> set[str]:
+    """Return the names of the parameters that occur as `{name}` in the run specification or the metrics."""
+    texts = json.dumps(plain_description((spec.run, dict(spec.metrics))))
+    return {name for name in spec.design.names if "{" + name + "}" in texts}
+
+
+# ---------------------------------------------------------------------- description
+
+
+def plain_description(value: Any) -> Any:
+    """Return any value as plain data that is equal in all processes; functions are described by their names."""
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    if isinstance(value, Mapping):
+        return {str(key): plain_description(item) for key, item in value.items()}
+    if isinstance(value, range) and len(value) > 1000:
+        return repr(value)
+    if isinstance(value, (list, tuple, set, frozenset, range)):
+        return [plain_description(item) for item in value]
+    if is_dataclass(value) and not isinstance(value, type):
+        own = {f.name: plain_description(getattr(value, f.name)) for f in fields(value)}
+        return {"type": type(value).__name__, **own}
+    if isinstance(value, Path):
+        return str(value)
+    name = getattr(value, "__qualname__", None)
+    return f"{value.__module__}.{name}" if name else f"a {type(value).__qualname__}"
+
+
+def _world_hash(run: RunSpec) -> str:
+    """Return a hash of the world's file; empty for a bundled world or XML text, which have no file of their own."""
+    file = run.beside
+    if file is None or not file.is_file():
+        return ""
+    return hashlib.sha256(read_input(file)).hexdigest()
+
+
+def check_names(spec: SweepSpec) -> None:
+    """Check that the columns of the table have different names, and that every variable is used.
+
+    Raises:
+        InputError: SK-SWEEP-001 two columns have the same name; SK-SWEEP-002 a variable is not used.
+    """
+    problems: list[str] = []
+    seen: set[str] = set()
+    for name in spec.columns:
+        if name in seen:
+            problems.append(f"{INVALID} two columns of the table are named {name!r}: rename the parameter or metric")
+        seen.add(name)
+    used = used_variables(spec)
+    _, variables = split_values(dict.fromkeys(spec.design.names))
+    for name in variables:
+        if name not in used:
+            problems.append(
+                f"{UNKNOWN_PARAMETER} the parameter {name!r} is not used\n    help: write a path with a dot, such as "
+                f"tb3::wheel.inertial.mass, or use {{{name}}} in set, commands, until or a metric"
+            )
+    if problems:
+        raise InputError("\n".join(problems), problems[0].partition(" ")[0])
+
+
+def spec_of_world(world: Any, duration: float | None, until: str) -> RunSpec:
+    """Return the run specification of a world, or of a specification with another duration and end condition."""
+    import os
+
+    if isinstance(world, RunSpec):
+        changes: dict[str, Any] = {} if duration is None else {"duration": duration, "timeout": None}
+        return replace(world, **changes, **({"until": until} if until else {}))
+    run = RunSpec(os.fspath(world), until=until, folder=Path.cwd())
+    return run if duration is None else replace(run, duration=duration)
+
+
+def sequence_of_seeds(seeds: int | Sequence[int] | range | None, default: int) -> tuple[int, ...] | range:
+    """Return the seeds of a sweep: a number of seeds counts from 0.
+
+    Raises:
+        InputError: SK-SWEEP-001 a seed is negative, or there is none.
+    """
+    if seeds is None:
+        return (default,)
+    if isinstance(seeds, bool) or not isinstance(seeds, (int, Sequence)) or isinstance(seeds, str):
+        seeds = list(seeds) if hasattr(seeds, "__iter__") and not isinstance(seeds, str) else ["?"]  # type: ignore[list-item]
+    found = range(seeds) if isinstance(seeds, int) else seeds
+    listed = found if isinstance(found, range) else tuple(getattr(one, "__index__", lambda: -1)() for one in found)
+    if not listed or min(listed[0], listed[-1]) < 0 or (not isinstance(listed, range) and min(listed) < 0):
+        raise InputError(f"{INVALID} seeds: found {seeds!r}; expected a count, or whole numbers of at least 0", INVALID)
+    return listed

@@ -1,0 +1,81 @@
+"""Worker process of a sweep: receives rows on standard input and returns their results on standard output.
+
+Each message is a pickled object after its length in 8 bytes. The first message has the import path, the working folder
+and the sweep. What plugins print goes to standard error, which the parent process reads.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import pickle
+import signal
+import struct
+import sys
+import threading
+from queue import SimpleQueue
+from typing import IO, Any, Final
+
+from simkit.child_process import exit_immediately
+
+_LENGTH: Final = struct.Struct("<Q")
+
+
+def send_message(pipe: IO[bytes], content: bytes) -> None:
+    """Write a message and its length."""
+    pipe.write(_LENGTH.pack(len(content)) + content)
+    pipe.flush()
+
+
+def receive_message(pipe: IO[bytes]) -> bytes | None:
+    """Read a message; None at the end of the pipe."""
+    head = pipe.read(_LENGTH.size)
+    if len(head) < _LENGTH.size:
+        return None
+    (length,) = _LENGTH.unpack(head)
+    content = pipe.read(length)
+    return content if len(content) == length else None
+
+
+def _receive_all(pipe: IO[bytes], tasks: SimpleQueue[bytes]) -> None:
+    """Receive tasks, and end this process when the parent process has ended."""
+    while (content := receive_message(pipe)) is not None:
+        tasks.put(content)
+    exit_immediately(1)
+
+
+def main() -> None:
+    """Run the tasks of the parent process until its pipe closes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C and ends this process
+    faulthandler.enable()
+    results = os.fdopen(os.dup(1), "wb")
+    tasks_pipe = os.fdopen(os.dup(0), "rb")
+    null = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(null, 0)
+    os.dup2(2, 1)
+    tasks: SimpleQueue[bytes] = SimpleQueue()
+    threading.Thread(target=_receive_all, args=(tasks_pipe, tasks), daemon=True).start()
+    run: Any = None
+    while True:
+        content = pickle.loads(tasks.get())
+        if run is None:
+            sys.path[:] = content["path"]
+            os.chdir(content["folder"])
+            run = _runner(content["spec"])
+            send_message(results, b"")  # tells the parent process that the sweep could be read here
+            continue
+        for task in content:
+            send_message(results, pickle.dumps(run(task)))
+
+
+def _runner(spec: bytes) -> Any:
+    """Return the function that runs a task; the imports come after the import path is set."""
+    from simkit.testing.sweeps.executor import run_task
+    from simkit.testing.sweeps.row_runner import RowRunner
+
+    runner = RowRunner(pickle.loads(spec))
+    return lambda task: run_task(runner, task)
+
+
+if __name__ == "__main__":
+    main()
