@@ -42,7 +42,7 @@ from simkit.run_spec import (
     named_values,
 )
 from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
-from simkit.scene.overrides import apply_overrides
+from simkit.scene.overrides import apply_overrides, check_used, xacro_overrides
 from simkit.sensors import sensor_kinds
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
@@ -140,7 +140,8 @@ def load(
     def find_file(uri: str, folder: Path | None) -> Path | None:
         return resolver.search(uri, folder)[0]
 
-    file_scene = _scene(source, resolver, diagnostics, xacro_args, base, spawn, model_world)
+    arguments = named_values(xacro_args, "xacro_args") | xacro_overrides(overrides)
+    file_scene = _scene(source, resolver, diagnostics, arguments, base, spawn, model_world)
 
     def resolve_world(overrides: Sequence[str], diagnostics: Diagnostics) -> SceneWorld:
         scene = _overridden(file_scene, overrides, diagnostics)
@@ -185,6 +186,7 @@ def load(
         simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.control.write_sdf = _sdf_of
     simulation.control.resolve_world = lambda overrides: resolve_world(overrides, Diagnostics())
+    simulation.control.file_arguments = file_scene.arguments
     simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     options: LoadOptions = {
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
@@ -198,6 +200,7 @@ def load(
     )  # fmt: skip
     try:
         report_unread(parts.values())
+        check_used(diagnostics)
         if strict:
             report_unavailable_sensors(parts.values(), diagnostics)
         diagnostics.raise_if_errors(strict)
@@ -288,7 +291,8 @@ def _scene(
         )  # fmt: skip
 
     with progress.task("reading the world"):
-        scene = add_model_world(read(source, diagnostics, base), model_world, read, diagnostics)
+        found = read(source, diagnostics, base)
+        scene = replace(add_model_world(found, model_world, read, diagnostics), arguments=found.arguments)
         if spawn:
             scene = add_spawned_models(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
     return scene

@@ -44,7 +44,6 @@ def record_golden(spec: RunSpec, folder: Path, *, force: bool = False) -> RunRec
     Raises:
         SimkitError: the run failed; nothing is written.
     """
-    from simkit.scene.overrides import check_used
     from simkit.testing.golden.store import MAIN_FILE, write_golden
     from simkit.testing.run_record.run_recorder import run_record
     from simkit.testing.scenarios.scenario_run import open_scenario, resolve_commands
@@ -58,7 +57,6 @@ def record_golden(spec: RunSpec, folder: Path, *, force: bool = False) -> RunRec
     with chdir("."):  # a plugin may change the working directory while it is loaded
         sim = open_scenario(spec)
     try:
-        check_used(sim.diagnostics)
         record = run_record(resolve_commands(spec, sim.communication.bus.topics()), sim=sim)
         if record.error is not None:
             raise record.error

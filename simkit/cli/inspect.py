@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import fnmatch
 import json
 from collections.abc import Iterator
+from dataclasses import asdict
+from typing import Annotated
+
+from typer import Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import JsonObject, print_diagnostics, report_errors, stdout_console
-from simkit.diagnostics import Diagnostic
+from simkit.cli.terminal.output import JsonObject, print_diagnostics, printable, report_errors, stdout_console
+from simkit.diagnostics import Diagnostic, did_you_mean
+from simkit.errors import InputError
+from simkit.run_spec import SourceOptions
 
 
 @report_errors
@@ -19,11 +26,17 @@ def inspect(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    paths: Annotated[bool, Option("--paths", help="List all values that --set can change, with their units.")] = False,
+    pattern: Annotated[str, options.argument("Part of a path, or a shell pattern; only with --paths.")] = "",
 ) -> int:
     """Show the resolved content of a file."""
     from simkit.build import describe
 
     source = options.source_arguments(resource_path, package_path, xacro_arg, base)
+    if paths:
+        return _print_paths(file, source, pattern, json_)
+    if pattern:
+        raise InputError(f"SK-CLI-018 found the argument {pattern!r}; it needs the option --paths", "SK-CLI-018")
     found = describe(file, plugin_paths=plugin_path, **source)
     if json_:
         stdout_console().file.write(json.dumps(found, indent=2) + "\n")
@@ -33,6 +46,30 @@ def inspect(
         shown = (Diagnostic(**d) for d in found["diagnostics"] if d["severity"] != "note")
         print_diagnostics(shown, verbose=True)
     return 2 if any(d["severity"] == "error" for d in found["diagnostics"]) else 0
+
+
+def _print_paths(file: str, source: SourceOptions, pattern: str, json_: bool) -> int:
+    """Print the paths that overrides can set; return 2 if the pattern matches none."""
+    from simkit.build import read_scene
+    from simkit.scene.override_list import settable_paths
+    from simkit.sensors.default_parameters import read_parameters
+
+    scene, _ = read_scene(file, missing_meshes=True, **source)
+    everything = settable_paths(scene.world, scene.arguments, read_parameters)
+    is_part = not set("*?[") & set(pattern)
+    found = [p for p in everything if (pattern in p.path if is_part else fnmatch.fnmatchcase(p.path, pattern))]
+    if pattern and not found:
+        names = {name for p in everything for name in (p.path, *p.path.split("."), *p.path.split("::"))}
+        hint = did_you_mean(pattern, sorted(names)) or "without a pattern all paths are listed"
+        raise InputError(f"SK-CLI-014 no path matches {pattern!r}; {hint}", "SK-CLI-014")
+    if json_:
+        stdout_console().file.write(json.dumps([asdict(p) for p in found], indent=2) + "\n")
+        return 0
+    width = min(100, max((len(p.path) for p in found), default=0))
+    for path in found:
+        unit = f"  [{path.unit}]" if path.unit else ""
+        stdout_console().print(printable(f"{path.path:{width}}  {path.value}{unit}"), markup=False, soft_wrap=True)
+    return 0
 
 
 def _tree(found: JsonObject) -> Iterator[str]:

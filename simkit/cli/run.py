@@ -257,7 +257,6 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
     from simkit.cli.run_verdict import RunVerdict
     from simkit.recording import run_picture
     from simkit.recording.bags import writer
-    from simkit.scene.overrides import check_used
 
     if spec.recording is not None:
         writer.check_target(spec.recording.path, overwrite=spec.recording.overwrite)
@@ -277,7 +276,6 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
         with sim:
             bundling.keep(sim)
             try:
-                check_used(sim.diagnostics)
                 print_diagnostics(sim.diagnostics, verbose=display.verbose)
                 if not display.verbose:
                     _print_model_world(sim.diagnostics)

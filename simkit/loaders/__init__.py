@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -94,7 +95,7 @@ def load_scene(
     )
     scene = kinds[root.name]().load(document, request)
     resolver.report_choices(Where(root.where.file), diagnostics)
-    return scene
+    return replace(scene, arguments=document.arguments) if document.arguments else scene
 
 
 def find_document(

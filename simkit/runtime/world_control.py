@@ -193,6 +193,7 @@ class WorldControl:
         write_sdf: function that writes a world as SDF text; set from outside, because this package knows no file
             format.
         resolve_world: function that returns the world of the file with other overrides; set from outside.
+        file_arguments: arguments of the xacro file of the world, with their values.
         loaded_world: world of the loaded state.
     """
 
@@ -206,7 +207,7 @@ class WorldControl:
         self._advance, self._loaded = advance, loaded
         self.pausing = PauseControl(engine, advance, bus.inbox)
         self.origin = GeographicOrigin(engine)
-        self.loaded_world = engine.world
+        self.loaded_world, self.file_arguments = engine.world, dict[str, str]()
 
     # ------------------------------------------------------------------ running
 

@@ -10,6 +10,7 @@ from simkit.compiler.name_map import NameMap
 from simkit.compiler.number_edits import plan_number_edits, refresh_derived_numbers, replace_scenes
 from simkit.compiler.spec_builder import Compiled
 from simkit.scene.differences import EntityChange, entity_changes
+from simkit.scene.overrides import xacro_overrides
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
@@ -36,7 +37,7 @@ def apply_overrides(sim: Simulation, overrides: Sequence[str], seed: int | None 
     Raises:
         InputError: an override has no such path, or an invalid value.
     """
-    if sim.control.resolve_world is None:
+    if sim.control.resolve_world is None or xacro_overrides(overrides).items() - sim.control.file_arguments.items():
         return False
     world = sim.control.resolve_world(tuple(overrides))
     changes = entity_changes(sim.control.loaded_world, world)

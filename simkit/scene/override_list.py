@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from simkit.params import Params
 from simkit.scene.entity_paths import AREAS, Entity, EntityPaths
 from simkit.scene.model import ScenePlugin, SceneSensor
 from simkit.scene.override_fields import fields_of
 from simkit.scene.override_poses import pose_of
 from simkit.scene.override_values import POSE
+from simkit.scene.overrides import XACRO
 from simkit.scene.param_paths import parameter_values
 from simkit.scene.world import SceneWorld
 
@@ -48,15 +50,27 @@ class SettablePath:
     parts: tuple[str, ...] = ()
 
 
-def settable_paths(world: SceneWorld) -> list[SettablePath]:
-    """Return every path that overrides can set in a world, in the order of the file."""
+ParameterReader = Callable[[SceneSensor], Params]
+"""Function that returns the parameters of a sensor with the defaults of all that it reads."""
+
+
+def settable_paths(
+    world: SceneWorld, arguments: Mapping[str, str] | None = None, read: ParameterReader | None = None
+) -> list[SettablePath]:
+    """Return every path that overrides can set in a world, in the order of the file.
+
+    Args:
+        world: the world.
+        arguments: arguments of its xacro file, with their values.
+        read: function that returns the parameters of a sensor; None for those in the file only.
+    """
     paths = EntityPaths(world)
-    found = [(entity, value) for entity in paths.all() for value in _values(paths, entity)]
+    found = [(entity, value) for entity in paths.all() for value in _values(paths, entity, read)]
     counts: dict[str, int] = {}
     for entity, value in found:
         path = f"{entity.path}.{value.path}"
         counts[path] = counts.get(path, 0) + 1
-    return [
+    return [SettablePath(f"{XACRO}{name}", text) for name, text in (arguments or {}).items()] + [
         SettablePath(
             f"{entity.qualified if counts[f'{entity.path}.{value.path}'] > 1 else entity.path}.{value.path}",
             *(value.value, value.unit, value.parts),
@@ -65,7 +79,7 @@ def settable_paths(world: SceneWorld) -> list[SettablePath]:
     ]
 
 
-def _values(paths: EntityPaths, entity: Entity) -> Iterator[SettablePath]:
+def _values(paths: EntityPaths, entity: Entity, read: ParameterReader | None) -> Iterator[SettablePath]:
     """Yield the values of one entity; their paths begin below the entity."""
     item: Any = paths.item(entity)
     if not entity.area:
@@ -80,7 +94,7 @@ def _values(paths: EntityPaths, entity: Entity) -> Iterator[SettablePath]:
             yield SettablePath(field.element, field.kind.format(value), field.kind.unit, field.kind.parts)
     if isinstance(item, (SceneSensor, ScenePlugin)):
         own = _FIELDS_OF_SENSORS if isinstance(item, SceneSensor) else frozenset()
-        for path, text in parameter_values(item.params):
+        for path, text in parameter_values(read(item) if read and isinstance(item, SceneSensor) else item.params):
             if path not in own and not path.startswith("pose."):
                 yield SettablePath(path, text, _unit(path))
 

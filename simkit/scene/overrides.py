@@ -24,6 +24,7 @@ from simkit.scene.world import Scene, SceneWorld
 
 _CODE = "SK-CLI-014"
 SOURCE_PREFIX = "--set "
+XACRO = "xacro."
 
 
 def apply_overrides(scene: Scene, overrides: Sequence[str]) -> Scene:
@@ -34,7 +35,7 @@ def apply_overrides(scene: Scene, overrides: Sequence[str]) -> Scene:
     """
     if not overrides:
         return scene
-    parsed = [_Override(text) for text in overrides]
+    parsed = [item for item in map(_Override, overrides) if not item.is_argument(scene)]
     world = scene.world
     for item in parsed:
         if item.path.endswith(".count"):
@@ -48,6 +49,12 @@ def apply_overrides(scene: Scene, overrides: Sequence[str]) -> Scene:
     return _with_world(scene, world, parsed)
 
 
+def xacro_overrides(overrides: Sequence[str]) -> dict[str, str]:
+    """Return the arguments for a xacro file among the overrides, which have the form `xacro.NAME=VALUE`."""
+    parsed = (_Override(text) for text in overrides if text.strip().startswith(XACRO))
+    return {item.path.removeprefix(XACRO): item.value for item in parsed}
+
+
 def _with_world(scene: Scene, world: SceneWorld, parsed: Sequence[_Override]) -> Scene:
     """Return the scene with a changed world in the form in which it was loaded."""
     placed = {item.path.rpartition(".pose")[0] for item in parsed}
@@ -56,7 +63,7 @@ def _with_world(scene: Scene, world: SceneWorld, parsed: Sequence[_Override]) ->
         return replace(scene, worlds=(world, *scene.worlds[1:]), standing=standing)
     if scene.model is not None and len(world.models) == 1:
         return replace(scene, model=world.models[0], around=replace(world, models=()), standing=standing)
-    return Scene(worlds=(world,), file=scene.file, standing=standing)
+    return replace(scene, worlds=(world,), model=None, light=None, around=None, standing=standing)
 
 
 def check_used(diagnostics: Iterable[Diagnostic]) -> None:
@@ -82,6 +89,16 @@ class _Override:
 
     def _error(self, reason: str) -> InputError:
         return InputError(f"{_CODE} {SOURCE_PREFIX}{self.text}: {reason}", _CODE)
+
+    def is_argument(self, scene: Scene) -> bool:
+        """Check whether the override is an argument of a xacro file, which was used when the file was read."""
+        name = self.path.removeprefix(XACRO)
+        if name == self.path:
+            return False
+        if name not in scene.arguments:
+            hint = did_you_mean(name, scene.arguments) or _listed(list(scene.arguments))
+            raise self._error(f"the file has no xacro argument {name!r}; {hint}")
+        return True
 
     # ------------------------------------------------------------------ copies
 
@@ -196,8 +213,8 @@ class _Override:
         if old is None or (part and part not in POSE.parts):
             raise self._no_element(entity, item, element)
         pose: Pose = self._parsed(POSE, old, part)
-        if part in ("x", "y", "z") and pose is not old:  # the rotation keeps its exact bits
-            pose = Pose(pose.position, old.quaternion)
+        if part in ("x", "y", "z") or self.value.split()[3:] == POSE.format(old).split()[3:]:
+            pose = old if pose is old else Pose(pose.position, old.quaternion)  # the rotation keeps its exact bits
         if pose is old:
             return world
         owner = entity.location[:-1]

@@ -12,9 +12,10 @@ from typing import Final
 
 from simkit.diagnostics import Where
 from simkit.params import Params
+from simkit.scene.override_values import number_text
 
 _NUMBERED: Final = re.compile(r"(.+)\[(\d+)\]")
-_SPELLINGS: Final = (frozenset({"ray", "lidar", "gpu_ray", "gpu_lidar"}),)
+_SPELLINGS: Final = (frozenset({"ray", "lidar", "gpu_ray", "gpu_lidar"}), frozenset({"navsat", "gps"}))
 """Names of one element in different versions of the format."""
 
 
@@ -48,6 +49,8 @@ def set_parameter(params: Params, element: str, value: str, source: str) -> Para
     if at is None and head in params.attributes and not rest and head not in ("name", "filename"):
         block.attributes = {**params.attributes, head: value}
         return block
+    if at is None and not value:
+        return params  # an absent element is empty
     if at is None:
         if _NUMBERED.fullmatch(head):
             raise ValueError(f"there is no element <{head}>")
@@ -67,7 +70,10 @@ def set_parameter(params: Params, element: str, value: str, source: str) -> Para
 
 
 def parameter_values(params: Params) -> Iterator[tuple[str, str]]:
-    """Yield path and text of each value in a block; a path that `set_parameter` would not understand is left out."""
+    """Yield path and text of each value in a block; a path that `set_parameter` would not understand is left out.
+
+    If the block has an attribute `defaults`, the defaults of absent elements follow.
+    """
     seen: dict[str, int] = {}
     for child in params.children:
         if "." in child.name or ":" in child.name:
@@ -88,6 +94,21 @@ def parameter_values(params: Params) -> Iterator[tuple[str, str]]:
             yield from ((f"{name}.{path}", text) for path, text in parameter_values(child))
         else:
             yield name, child.value
+    for name, default in getattr(params, "defaults", {}).items():
+        if _index(params, name) is not None or set(".:") & set(name):
+            continue
+        if isinstance(default, Params):
+            yield from ((f"{name}.{path}", text) for path, text in parameter_values(default))
+        elif isinstance(default, (bool, int, float, str)):
+            yield name, _text(default)
+        elif isinstance(default, tuple) and all(isinstance(value, (int, float)) for value in default):
+            yield name, " ".join(map(_text, default))
+
+
+def _text(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return number_text(value) if isinstance(value, (int, float)) else str(value)
 
 
 _NOT_VALUES: Final = frozenset({"name", "filename", "xmlns"})

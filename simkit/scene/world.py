@@ -223,6 +223,7 @@ class Scene:
     Attributes:
         around: world that a bare model's file describes around the model; None if the file describes none.
         standing: names of the models whose height is computed, so that they stand on what is below them.
+        arguments: arguments of a xacro file with their values.
     """
 
     worlds: tuple[SceneWorld, ...] = ()
@@ -231,6 +232,7 @@ class Scene:
     light: SceneLight | None = None
     around: SceneWorld | None = None
     standing: tuple[str, ...] = ()
+    arguments: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def world(self) -> SceneWorld:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from simkit.build import load
 from simkit.errors import InputError
-from simkit.scene.overrides import check_used
 
 WORLD = """
 <sdf version="1.9"><world name="w">
@@ -95,11 +95,8 @@ def test_an_invalid_override_is_an_error(override: str, reason: str) -> None:
 
 
 def test_an_override_of_an_unknown_sensor_element_is_an_error() -> None:
-    with (
-        load(WORLD, overrides=["arm::tip::imu.visualise_it=1"]) as sim,
-        pytest.raises(InputError, match="visualise_it"),
-    ):
-        check_used(sim.diagnostics)
+    with pytest.raises(InputError, match="visualise_it"):
+        load(WORLD, overrides=["arm::tip::imu.visualise_it=1"]).close()
 
 
 @pytest.mark.parametrize("text", [WORLD, '<sdf version="1.9"><model name="m"><link name="l"/></model></sdf>'])
@@ -116,3 +113,75 @@ def test_rendering_settings_can_be_set_for_worlds_and_bare_models(text: str) -> 
 def test_an_invalid_rendering_setting_is_an_error(text: str) -> None:
     with pytest.raises(InputError, match="SK-CLI-014"):
         load(WORLD, overrides=[text])
+
+
+def test_poses_and_sizes_and_lights_are_set() -> None:
+    overrides = ["arm.pose.x=2", "arm::tip.pose=1 0 0.5 0 0 0", "arm::tip::c.radius=0.2", "sun.intensity=0.5"]
+    with load(WORLD, overrides=overrides) as sim:
+        assert sim.model("arm").pose.position.tolist() == [2.0, 0.0, 0.0]
+        assert sim.link("arm::tip").pose.position.tolist() == [3.0, 0.0, 0.5]
+        assert sim.mj_model.geom_size.max() == 0.2
+        assert sim.world.lights[0].intensity == 0.5
+
+
+def test_a_mass_scales_the_inertia_unless_the_inertia_is_given_too() -> None:
+    with load(WORLD, overrides=["arm::tip.mass=3"]) as sim:
+        assert sim.link("arm::tip").scene.inertial.inertia == (3.0, 3.0, 3.0, 0.0, 0.0, 0.0)
+    with load(WORLD, overrides=["arm::tip.mass=3", "arm::tip.inertial.inertia=2 2 2 0 0 0"]) as sim:
+        assert sim.link("arm::tip").scene.inertial.inertia == (2.0, 2.0, 2.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "friction"),
+    [
+        (["arm::tip::c.mu=0.3"], (0.3, 0.3)),
+        (["arm::tip::c.mu=0.3", "arm::tip::c.mu2=0.6"], (0.3, 0.6)),
+        (["arm::tip::c.surface.friction.ode.mu2=0.6", "arm::tip::c.mu=0.3"], (0.3, 0.6)),
+    ],
+)
+def test_mu_sets_mu2_unless_an_override_sets_mu2(overrides: list[str], friction: tuple[float, float]) -> None:
+    with load(WORLD, overrides=overrides) as sim:
+        surface = sim.link("arm::tip").scene.collisions[0].surface
+        assert (surface.mu, surface.mu2) == friction
+
+
+BOXES = """
+<sdf version="1.9"><world name="w"><model name="box"><pose>0 0 1 0 0 0</pose><link name="l">
+  <collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision></link></model></world></sdf>
+"""
+
+
+def test_a_count_makes_copies_in_a_grid_which_patterns_select() -> None:
+    with load(BOXES, overrides=["box.count=5", "box_*::l.mass=2", "**::c.mu=0.5", "box_4.pose.z=3"]) as sim:
+        assert list(sim.models) == [f"box_{i}" for i in range(5)]
+        places = np.array([model.pose.position for model in sim.models.values()])
+        step = places[1, 0]
+        assert step > 0.2
+        assert places[:, 0] == pytest.approx([0, step, 2 * step, 0, step])
+        assert places[:, 1] == pytest.approx([0, 0, 0, step, step])
+        assert places[:, 2].tolist() == [1.0, 1.0, 1.0, 1.0, 3.0]
+        assert [sim.link(f"box_{i}::l").mass for i in range(5)] == [2.0] * 5
+        assert {link.collisions[0].surface.mu for m in sim.world.models for link in m.links} == {0.5}
+
+
+@pytest.mark.parametrize("written", ["ray", "lidar"])
+@pytest.mark.parametrize("named", ["ray", "lidar", "gpu_ray"])
+def test_an_element_is_found_in_any_of_its_spellings(written: str, named: str) -> None:
+    sensor = f'<sensor name="s" type="{written}"><{written}><range><max>5</max></range></{written}></sensor>'
+    text = f'<sdf version="1.9"><model name="m"><static>1</static><link name="l">{sensor}</link></model></sdf>'
+    with load(text, overrides=[f"m::l::s.{named}.range.max=7"]) as sim:
+        assert sim.sensor("m::l::s").options.range_max == 7.0
+
+
+XACRO = """
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="size" default="0.5"/>
+  <link name="base"><inertial><mass value="$(arg size)"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
+  </inertial></link></robot>
+"""
+
+
+def test_an_override_sets_an_argument_of_a_xacro_file() -> None:
+    with load(XACRO, overrides=["xacro.size=2"]) as sim:
+        assert sim.link("r::base").mass == 2.0
+    with pytest.raises(InputError, match="no xacro argument 'sise'; did you mean 'size'"):
+        load(XACRO, overrides=["xacro.sise=2"]).close()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 from xml.parsers import expat
@@ -109,11 +110,13 @@ class Document:
         root: the outermost element.
         path: the file, or None for XML given as text.
         text: bytes of the file.
+        arguments: arguments that a xacro file declares, with their values.
     """
 
     root: Params
     path: Path | None
     text: bytes
+    arguments: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def folder(self) -> Path | None:

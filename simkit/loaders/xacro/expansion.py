@@ -94,7 +94,9 @@ class _Expansion:
                 self._fail("SK-XACRO-001", " ".join(str(error).split()) or type(error).__name__, self._hint(error))
             return None
         self._report_unknown_arguments()
-        return Document(to_params(top.documentElement, self.diagnostics), self.document.path, self.document.text)
+        arguments = {name: self.arguments.get(name, "") for name in sorted(self.declared)}
+        root = to_params(top.documentElement, self.diagnostics)
+        return Document(root, self.document.path, self.document.text, arguments)
 
     def _fail(self, code: str, message: str, hint: str = "") -> None:
         """Record one error at the element that is being expanded, with the macro calls that led there."""
