@@ -14,6 +14,7 @@ from typing import Final
 import mujoco
 
 from simkit.compiler import mjcf_adaptation as adaptation
+from simkit.compiler import mjcf_changes as changes
 from simkit.compiler.engine_options import CONTACT_LAW
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, DRAWN_COLLISION, VISUAL
 from simkit.compiler.kinematic_tree import WORLD
@@ -59,16 +60,21 @@ def models_of_own_file(world: SceneWorld) -> list[SceneModel]:
     return [m for m in world.models if m.mjcf is not None and not m.mjcf.prefix]
 
 
-def attach_world(spec: mujoco.MjSpec, records: Iterable[ModelRecord]) -> None:
+def attach_world(
+    spec: mujoco.MjSpec, records: Iterable[ModelRecord], world: SceneWorld, diagnostics: Diagnostics
+) -> None:
     """Attach the file of the world itself, once for all its models, without a prefix for its names."""
     records = list(records)
     child = _mjcf_source(records[0].scene).document()
-    has_total_mass = child.compiler.settotalmass > 0.0  # before the loop, because write_masses clears it
+    changes.write_lights(child, world.lights)
+    # before the loop, because write_masses clears the total mass
+    writes_masses = child.compiler.settotalmass > 0.0 or any(changes.changed_source(r.scene) for r in records)
     for record in records:
         source = _mjcf_source(record.scene)
+        changes.write_changes(child, record.scene, diagnostics)
         adaptation.rename_lights(child, source)
-        if has_total_mass:
-            adaptation.write_masses(child, source)
+        if writes_masses:
+            adaptation.write_masses(child, changes.changed_source(record.scene) or source)
         record.root_bodies += source.roots
         _bind_elements(record, record.scene, "", "")
     child.compiler.settotalmass = -1.0
@@ -94,6 +100,7 @@ def attach_model(
     """
     source = _mjcf_source(model)
     child = source.document()
+    changes.write_changes(child, model, diagnostics)
     prefix = source.prefix or f"{model.scoped}::"
     if not source.prefix:  # a part of the world's own file that was removed and is added again
         adaptation.keep_only_model(child, source)
@@ -103,7 +110,7 @@ def attach_model(
         adaptation.rank_friction(child, model, diagnostics)
     holder = None if model.static or record.movable else _holding_joint(record, model, source, joints)
     adaptation.rename_lights(child, source, prefix)
-    adaptation.write_masses(child, source)
+    adaptation.write_masses(child, changes.changed_source(model) or source)
     if model.static:
         adaptation.make_static(child, model, diagnostics)
     adaptation.set_base(child, source, fixed=holder is not None)

@@ -81,7 +81,7 @@ class SpecBuilder:
             self.records[""].lights[light.scoped] = LightBinding(light.scoped, light, "")
         if own:
             self.records.update({model.scoped: ModelRecord(model) for model in own})
-            mjcf_attachment.attach_world(spec, [self.records[model.scoped] for model in own])
+            mjcf_attachment.attach_world(spec, [self.records[model.scoped] for model in own], world, diagnostics)
         with progress.task("building models", len(world.models)) as task:
             for model in world.models:
                 if model not in own:

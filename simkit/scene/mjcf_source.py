@@ -60,6 +60,8 @@ class MjcfSource(MjcfElements):
         roots: names, as in the file, of the top-level bodies that belong to this model.
         base: "auto" keeps the free joints of the file, "fixed" removes them, "floating" adds missing ones.
         settings: engine settings of the file by element (`option`, `visual`, ...), with their lines.
+        as_read: the model as the file describes it, under an empty name. The compiler writes the differences of a
+            changed model to the specification.
     """
 
     document: Callable[[], Any]
@@ -68,3 +70,4 @@ class MjcfSource(MjcfElements):
     roots: tuple[str, ...] = ()
     base: str = "auto"
     settings: Mapping[str, Any] = field(default_factory=dict)
+    as_read: dict[str, Any] = field(default_factory=dict, repr=False)

@@ -51,7 +51,7 @@ class ModelReader:
         joints = [j for b in bodies for j in read_joints(file, b, placed, self._place, self._source)]
         frames = [f for b in own for f in self._frames(b)]
         canonical = file.scoped_link(placed.roots[0], placed) if placed.roots else links[0].scoped if links else ""
-        return SceneModel(
+        model = SceneModel(
             name=placed.name,
             scoped=placed.scoped,
             pose_world=placed.pose_world,
@@ -67,6 +67,8 @@ class ModelReader:
             where=placed.where or (links[0].where if links else file.source.root.where),
             mjcf=self._source,
         )
+        self._source.as_read[""] = model
+        return model
 
     def _link(self, body: int) -> SceneLink:
         file, model, found = self._file, self._model, self._source
