@@ -240,6 +240,10 @@ class NameMap:
         value: T = self._shared[key]
         return value
 
+    def forget_shared(self, key: str) -> None:
+        """Let the next call of `shared` compute the value of a key again."""
+        self._shared.pop(key, None)
+
     def link(self, scoped: str) -> LinkBinding:
         """Return a link; a KeyError suggests the closest name."""
         return lookup(self.links, scoped, "link")

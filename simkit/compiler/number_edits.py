@@ -24,7 +24,7 @@ from simkit.compiler.servo_gains import tune_servos
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY
-from simkit.scene import SceneCollision, SceneJoint, SceneLink, SceneModel, SceneWorld, Surface
+from simkit.scene import Inertial, SceneCollision, SceneJoint, SceneLink, SceneModel, SceneWorld, Surface
 from simkit.scene.differences import EntityChange
 
 Edit = Callable[[], None]
@@ -32,6 +32,12 @@ Edit = Callable[[], None]
 
 _EDITABLE_AXIS: Final = frozenset({"lower", "upper", "damping", "friction", "stiffness", "spring_ref"})
 _BODY_FIELDS: Final = ("body_mass", "body_inertia", "body_ipos", "body_iquat")
+DERIVED_FIELDS: Final = (
+    *("body_subtreemass", "body_invweight0", "dof_M0", "dof_invweight0", "tendon_invweight0", "actuator_acc0"),
+    *("cam_poscom0", "light_poscom0"),
+)
+"""Fields that the engine derives from masses, inertias and armatures."""
+
 _SURFACE_FIELDS: Final = ("friction", "condim", "priority", "solref", "solimp", "solmix", "contype", "conaffinity")
 
 
@@ -58,13 +64,13 @@ def refresh_derived_numbers(compiled: Compiled) -> None:
     """Compute the numbers that the compiler derives from masses, inertias, joints and gains."""
     model, records = compiled.model, list(compiled.builder.records.values())
     mujoco.mj_setConst(model, mujoco.MjData(model))
-    _set_mean_values(compiled)
+    set_mean_values(compiled)
     set_extent(model)
     apply_velocity_decay(model, records)
     tune_servos(compiled.builder.spec, model, [ref for record in records for ref in record.actuators])
 
 
-def _set_mean_values(compiled: Compiled) -> None:
+def set_mean_values(compiled: Compiled) -> None:
     """Set the mean mass and inertia, which scale the tolerance of the engine's solver, by the compiler's formula."""
     model, given = compiled.model, compiled.builder.spec.stat
     if math.isnan(given.meaninertia) and model.nv:
@@ -101,24 +107,40 @@ def _plan_inertial(
     compiled: Compiled, world: SceneWorld, record: ModelRecord, old: SceneLink, new: SceneLink
 ) -> list[Edit] | None:
     binding = record.links.get(new.scoped)
-    if binding is None or binding.static:
-        return [] if binding is not None else None
-    if not _is_plain_body(compiled, record) or is_massless(old.inertial) or new.inertial.mass <= 0.0:
+    if binding is not None and binding.static:
+        return []
+    found = body_numbers(compiled, world, old, new.inertial)
+    if binding is None or found is None:
         return None
-    if repair_inertia(new.inertial).inertial is not new.inertial:
-        return None
-    row = _compiled_body(world, new)
-    model, body = compiled.model, int(mujoco.mj_name2id(compiled.model, mujoco.mjtObj.mjOBJ_BODY, binding.body_name))
-    if int(row.body_sameframe[1]) != int(model.body_sameframe[body]):
-        return None  # the engine would choose another, faster or slower, algorithm for this body
+    body, numbers = found
 
     def write() -> None:
-        for field in _BODY_FIELDS:
-            getattr(model, field)[body] = getattr(row, field)[1]
+        for field, values in numbers.items():
+            getattr(compiled.model, field)[body] = values
         made = compiled.builder.spec.body(binding.body_name)
         made.mass, made.ipos, made.fullinertia = new.inertial.mass, new.inertial.com, new.inertial.inertia
 
     return [write]
+
+
+def body_numbers(
+    compiled: Compiled, world: SceneWorld, link: SceneLink, inertial: Inertial
+) -> tuple[int, dict[str, Any]] | None:
+    """Return the body of a link, and the rows of model fields that the compiler writes for another mass and inertia.
+
+    Returns:
+        None if the world must be compiled anew.
+    """
+    binding = compiled.names.links.get(link.scoped)
+    record = compiled.builder.records.get(binding.model) if binding is not None else None
+    if binding is None or record is None or binding.static or is_massless(link.inertial) or inertial.mass <= 0.0:
+        return None
+    if not _is_plain_body(compiled, record) or repair_inertia(inertial).inertial is not inertial:
+        return None
+    row = _compiled_body(world, replace(link, inertial=inertial))
+    if int(row.body_sameframe[1]) != int(compiled.model.body_sameframe[binding.body]):
+        return None  # the engine would choose another algorithm for this body
+    return int(binding.body), {field: getattr(row, field)[1].copy() for field in _BODY_FIELDS}
 
 
 def _is_plain_body(compiled: Compiled, record: ModelRecord) -> bool:
@@ -161,8 +183,7 @@ def _plan_surface(
         return None
     if has_directional_friction(old.surface) or has_directional_friction(new.surface):
         return None
-    step = float(compiled.model.opt.timestep)
-    contact = contact_properties(new.surface, step, 0.0, Diagnostics())._asdict()
+    contact = surface_numbers(compiled, new.surface)
     geoms = [n for n, o in record.geoms.items() if o.scoped == new.scoped and not o.is_visual]
     model, spec = compiled.model, compiled.builder.spec
 
@@ -177,6 +198,11 @@ def _plan_surface(
                 getattr(model, f"geom_{field}")[number] = contact[field]
 
     return [write]
+
+
+def surface_numbers(compiled: Compiled, surface: Surface) -> dict[str, Any]:
+    """Return the contact properties of a rigid surface as the compiler writes them."""
+    return contact_properties(surface, float(compiled.model.opt.timestep), 0.0, Diagnostics())._asdict()
 
 
 # ---------------------------------------------------------------------- joints

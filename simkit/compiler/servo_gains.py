@@ -181,20 +181,25 @@ def add_armature(joint: mujoco.MjsJoint, scoped: str, diagnostics: Diagnostics, 
 
 def tune_servos(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[ActuatorRef]) -> None:
     """Set the gains of all servos in the model and in the spec."""
-    refs = [r for r in refs if r.kind in ("position", "velocity")]
-    if not refs:
-        return
-    inertias = _servo_inertias(model, refs)
-    step = float(model.opt.timestep)
-    for ref, inertia in zip(refs, inertias, strict=True):
-        kp, kv = servo_gains(ref, inertia, step)
-        i = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name)
-        actuator = spec.actuator(ref.name)
-        gain, bias = (kv, (0.0, 0.0, -kv)) if ref.kind == "velocity" else (kp, (0.0, -kp, -kv))
+    for i, gain, bias in tuned_gains(model, refs):
+        actuator = spec.actuator(mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, i))
         model.actuator_gainprm[i, 0] = actuator.gainprm[0] = gain
         model.actuator_biasprm[i, :3] = bias
         for k, value in enumerate(bias):
             actuator.biasprm[k] = value
+
+
+def tuned_gains(
+    model: mujoco.MjModel, refs: Iterable[ActuatorRef]
+) -> list[tuple[int, float, tuple[float, float, float]]]:
+    """Return id, gain and bias (constant, position, velocity) of each servo among the actuators."""
+    refs = [r for r in refs if r.kind in ("position", "velocity")]
+    found = []
+    for ref, inertia in zip(refs, _servo_inertias(model, refs) if refs else (), strict=True):
+        kp, kv = servo_gains(ref, inertia, float(model.opt.timestep))
+        i = int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name))
+        found.append((i, kv, (0.0, 0.0, -kv)) if ref.kind == "velocity" else (i, kp, (0.0, -kp, -kv)))
+    return found
 
 
 def servo_gains(ref: ActuatorRef, inertia: float, timestep: float) -> tuple[float, float]:

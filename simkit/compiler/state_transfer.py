@@ -18,6 +18,8 @@ _KINDS: Final = {
     "light": mujoco.mjtObj.mjOBJ_LIGHT,
     "eq": mujoco.mjtObj.mjOBJ_EQUALITY,
     "actuator": mujoco.mjtObj.mjOBJ_ACTUATOR,
+    "tendon": mujoco.mjtObj.mjOBJ_TENDON,
+    "cam": mujoco.mjtObj.mjOBJ_CAMERA,
 }
 """Kinds of elements by the prefixes of MuJoCo's model fields."""
 
@@ -65,15 +67,25 @@ def copy_state(
 def copy_fields_by_name(old: mujoco.MjModel, new: mujoco.MjModel, fields: Iterable[str]) -> None:
     """Copy changed model fields to a recompiled model, element by element by name."""
     for field in fields:
-        source, target = getattr(old, field), getattr(new, field)
-        if field.startswith("dof_"):  # degrees of freedom are matched by the names of their joints
-            for i, j in _pair_by_name("jnt", old.njnt, old, new):
-                _, width = JOINT_WIDTHS.get(int(old.jnt_type[i]), (1, 1))
-                a, b = int(old.jnt_dofadr[i]), int(new.jnt_dofadr[j])
-                target[b : b + width] = source[a : a + width]
-            continue
-        for i, j in _pair_by_name(field.split("_")[0], len(source), old, new):
-            target[j] = source[i]
+        copy_rows_by_name(field, getattr(old, field), getattr(new, field), old, new)
+
+
+def copy_rows_by_name(
+    field: str,
+    source: npt.NDArray[np.float64],
+    target: npt.NDArray[np.float64],
+    old: mujoco.MjModel,
+    new: mujoco.MjModel,
+) -> None:
+    """Copy the rows of one model field from one model to another by the names of their elements."""
+    if field.startswith("dof_"):  # degrees of freedom are matched by the names of their joints
+        for i, j in _pair_by_name("jnt", old.njnt, old, new):
+            _, width = JOINT_WIDTHS.get(int(old.jnt_type[i]), (1, 1))
+            a, b = int(old.jnt_dofadr[i]), int(new.jnt_dofadr[j])
+            target[b : b + width] = source[a : a + width]
+        return
+    for i, j in _pair_by_name(field.split("_")[0], len(source), old, new):
+        target[j] = source[i]
 
 
 def restore_compiled_fields(model: mujoco.MjModel, originals: Mapping[str, npt.NDArray[np.float64]]) -> None:

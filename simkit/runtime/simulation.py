@@ -136,9 +136,21 @@ class Simulation(ScriptGraph, InProcess):
             if journal is not None:
                 journal.after_steps()
 
+    def reset(self, seed: int | None = None, *, keep_changes: bool = False) -> None:
+        """Reset physics, plugins, sensors and random streams to the loaded state at t = 0.
+
+        Args:
+            seed: new seed of all random streams; None keeps the present one.
+            keep_changes: True to keep masses, friction, joint dynamics, gains, noise, lights and gravity that were set.
+        """
+        changes, gravity = self.engine.numbers.values, self.gravity
+        self._reset(seed)
+        if keep_changes:
+            self.gravity = gravity
+            self.contents.handles.set_values(changes)
+
     @journaled
-    def reset(self, seed: int | None = None) -> None:
-        """Reset physics, plugins, sensors and random streams to the loaded state at t = 0; `seed` replaces the seed."""
+    def _reset(self, seed: int | None = None) -> None:
         loaded, engine = self._loaded_state(), self.engine
         seed = engine.streams.seed if seed is None else checked_integer(seed, "seed")
         engine.loop.drop_deferred()
@@ -192,7 +204,7 @@ class Simulation(ScriptGraph, InProcess):
         engine, interfaces, control, handles = self.engine, self.communication, self.control, self.contents.handles
         calls = (interfaces.live_parameters, interfaces.services, interfaces.actions, interfaces.transforms)
         own = (engine.faults, *calls, control.pausing, control.origin)
-        return [*handles.stateful(), *own, engine.velocity_servos, *handles.tables["model"].values()]
+        return [*handles.stateful(), *own, engine.numbers, engine.velocity_servos, *handles.tables["model"].values()]
 
     def _loaded_state(self) -> Snapshot:
         self.engine.check_open()

@@ -245,11 +245,14 @@ class Spawner:
         for field in fields:
             engine.originals[field] = getattr(new, field).copy()
         copy_fields_by_name(old_model, new, fields)
+        engine.numbers.carry(old_model, new)
         new.opt.gravity[:] = old_model.opt.gravity
         for sensor in engine.structure.all_sensors():
             sensor.take_held()
         self.adopt(structure)
         restore_compiled_fields(old_model, fields)
+        if engine.numbers.inertials:
+            engine.numbers.derive()
 
     def adopt(self, structure: WorldStructure) -> None:
         """Bind handles, sensors and topics to a structure."""

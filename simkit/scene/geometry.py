@@ -18,6 +18,12 @@ def vec3(values: Iterable[float]) -> Vec3:
     return x, y, z
 
 
+def six(values: Iterable[float]) -> tuple[float, float, float, float, float, float]:
+    """Return six numbers, such as the elements of an inertia tensor, as a tuple of Python's floats."""
+    xx, yy, zz, xy, xz, yz = (float(v) for v in values)
+    return xx, yy, zz, xy, xz, yz
+
+
 @dataclass(frozen=True, slots=True)
 class Box:
     """Box; `size` holds the full edge lengths along x, y, z [m]."""

@@ -17,6 +17,7 @@ from simkit.scene.geometry import (
     Plane,
     Polyline,
     Sphere,
+    six,
     vec3,
 )
 from simkit.scene.model import (
@@ -136,10 +137,13 @@ ACTOR: Final = (
 
 def _set_mass(link: SceneLink, mass: float) -> SceneLink:
     """Return a link with another mass; its inertia changes in proportion."""
-    old = link.inertial
+    return replace(link, inertial=with_mass(link.inertial, mass))
+
+
+def with_mass(old: Inertial, mass: float) -> Inertial:
+    """Return another mass [kg] with an inertia that changes in proportion."""
     scale = mass / old.mass if old.mass > 0.0 else 1.0
-    ixx, iyy, izz, ixy, ixz, iyz = (scale * moment for moment in old.inertia)
-    return replace(link, inertial=Inertial(mass, old.com, (ixx, iyy, izz, ixy, ixz, iyz)))
+    return Inertial(mass, old.com, six(scale * moment for moment in old.inertia))
 
 
 MASS: Final = "inertial.mass"

@@ -10,6 +10,7 @@ from simkit.runtime.contact.anisotropic_friction import AnisotropicFriction
 from simkit.runtime.contact.speculative_contacts import FastBodyWarnings
 from simkit.runtime.engine.engine_state import EngineState
 from simkit.runtime.engine.external_forces import PersistentWrenches, Wind
+from simkit.runtime.engine.number_changes import NumberChanges
 from simkit.runtime.engine.physics_state import CONTROL
 from simkit.runtime.engine.plugin_faults import PluginFaults
 from simkit.runtime.engine.random_streams import RandomStreams
@@ -46,6 +47,7 @@ class Engine(EngineState):
         streams: random numbers by name.
         faults: handling of plugins that raise, and the set of disabled plugins.
         velocity_servos: velocity servos that plugins requested.
+        numbers: numbers of the model that a program changed.
         wrenches: wrenches that persist until they are replaced.
         wind: velocity of the air.
         friction: contacts with directional friction or slip.
@@ -75,6 +77,7 @@ class Engine(EngineState):
         self.loop = StepLoop(self.physics, commands, fill)
         self.faults = PluginFaults(self, self.loop.reschedule, on_error)
         self.velocity_servos = VelocityServos(self)
+        self.numbers = self.velocity_servos.numbers = NumberChanges(self, self.velocity_servos.renew)
         self.wrenches = PersistentWrenches(self, self.faults)
         self.wind = Wind(world)
         self.friction = AnisotropicFriction(self.physics, reports)

@@ -164,7 +164,7 @@ class PhysicsState:
         self.shaper: ContactShaper | None = None
         self._analyse()
         self._window = window_length(float(model.opt.timestep))
-        self._push = _accelerations_by_control(model)
+        self.renew_pushes()
         self.window = StepWindow()
         self.stage = STALE
         self.edition += 1
@@ -191,6 +191,10 @@ class PhysicsState:
         is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         self.free_motion = FreeMotionIntegrator.of(model) if is_implicit and not has_engine_contacts(model) else None
         self._analysed, self._is_analysed = _step_fields(model), True
+
+    def renew_pushes(self) -> None:
+        """Compute again which accelerations the controls cause, because masses or gains have changed."""
+        self._push = _accelerations_by_control(self.model)
 
     def _analyse_if_changed(self) -> None:
         """Repeat the analysis if one of its model fields was written to.
@@ -321,8 +325,8 @@ class PhysicsState:
 
 def _step_fields(model: mujoco.MjModel) -> list[bytes]:
     """Return the fields of a model that a run may write to and that decide the step method."""
-    fields = model.geom_contype, model.geom_conaffinity, model.jnt_range, model.jnt_limited
-    return [field.tobytes() for field in (*fields, model.dof_damping, model.dof_frictionloss)]
+    joints = model.jnt_range, model.jnt_limited, model.dof_damping, model.dof_frictionloss, model.dof_armature
+    return [field.tobytes() for field in (model.geom_contype, model.geom_conaffinity, *joints)]
 
 
 def set_speculative(model: mujoco.MjModel, is_on: bool) -> None:

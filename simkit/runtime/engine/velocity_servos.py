@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from simkit.compiler import ActuatorRef
     from simkit.runtime.engine.engine_state import EngineState
+    from simkit.runtime.engine.number_changes import NumberChanges
 
 RATE: Final = 50.0
 """Rate at which corrections are updated [Hz]."""
@@ -55,6 +56,7 @@ UNREST_DECAY: Final = 0.6
 _MIN_ERROR: Final = 1e-6
 """Largest error that is not corrected [rad/s or m/s]."""
 
+_SHARED_KEY: Final = "velocity servos"
 _NEVER: Final = -(1 << 40)
 
 
@@ -108,10 +110,12 @@ class VelocityServos:
 
     Attributes:
         servos: states by name of the actuator.
+        numbers: numbers of the model that a program changed.
     """
 
     def __init__(self, engine: EngineState) -> None:
         self._engine = engine
+        self.numbers: NumberChanges | None = None
         self.servos: dict[str, _ServoState] = {}
         self._period = max(1.0 / RATE, engine.clock.timestep)
         # longest pause between two updates [ticks]; after a longer one the correction starts again
@@ -119,6 +123,11 @@ class VelocityServos:
         self._model: mujoco.MjModel | None = None
         self._rows: list[_BoundServo] = []
         self._dofs = self._places = np.zeros(0, np.intp)
+
+    def renew(self) -> None:
+        """Derive the constants of the servos again, because numbers of the model have changed."""
+        self._engine.names.forget_shared(_SHARED_KEY)
+        self._model = None
 
     @property
     def are_there(self) -> bool:
@@ -183,7 +192,8 @@ class VelocityServos:
             self.servos = {ref.name: self.servos.get(ref.name) or _ServoState() for ref in refs}
             indices = [engine.names.actuator(ref) for ref in refs]
             # computed once from the compiled values, so that a restore gives the same traits
-            traits = engine.names.shared("velocity servos", lambda: servo_traits(model, refs, engine.originals))
+            given = self.numbers.compiled_values() if self.numbers is not None else engine.originals
+            traits = engine.names.shared(_SHARED_KEY, lambda: servo_traits(model, refs, given))
             joints = model.actuator_trnid[indices, 0]
             self._dofs, self._places = (a[joints].astype(np.intp) for a in (model.jnt_dofadr, model.jnt_qposadr))
             rows = zip(refs, indices, traits, strict=True)

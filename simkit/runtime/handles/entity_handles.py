@@ -118,6 +118,16 @@ class EntityHandles:
             lights.update({li.scoped: Light(self, li) for link in scene.all_links() for li in link.lights})
         return lights
 
+    def set_values(self, values: Mapping[tuple[str, str, str], Any]) -> None:
+        """Set attributes of present handles by kind, scoped name and attribute; entities that are gone are left out."""
+        for (kind, scoped, attribute), value in values.items():
+            link = self.tables["link"].get(scoped.rpartition("::")[0]) if kind == "collision" else None
+            handle = (
+                self.tables.get(kind, {}).get(scoped) if link is None else link.collisions.get(scoped.split("::")[-1])
+            )
+            if handle is not None:
+                setattr(handle, attribute, value)
+
     def find(self, kind: str, name: str) -> Any:
         """Return a handle by kind and scoped name; a KeyError suggests the closest name."""
         return look_up(self.tables[kind], name, kind)

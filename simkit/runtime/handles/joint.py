@@ -15,7 +15,7 @@ from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
 from simkit.runtime.handles import joined_models
 from simkit.runtime.handles import joint_mechanics as mechanics
-from simkit.runtime.handles.handle import Handle
+from simkit.runtime.handles.joint_numbers import TunableJoint
 
 if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
@@ -33,7 +33,7 @@ def _checked_limits(value: JointValue, name: str, count: int) -> list[float]:
     return [checked_number(limit, name, 0.0, finite=False) for limit in limits]
 
 
-class Joint(Handle):
+class Joint(TunableJoint):
     """Joint. One degree of freedom is a float, more are an array; angles in rad, lengths in m.
 
     Attributes:

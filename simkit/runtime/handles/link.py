@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
 
-from simkit.argument_checks import check_kind, checked_vector
+from simkit.argument_checks import check_kind, checked_number, checked_vector
 from simkit.errors import InputError
 from simkit.pose import IDENTITY, Pose, Vector, VectorLike, checked_pose, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
+from simkit.runtime.handles.collision import Collision
 from simkit.runtime.handles.handle import Handle
 from simkit.runtime.handles.joint_mechanics import update_loop_joints
 from simkit.runtime.handles.visual import Visual
+from simkit.scene.geometry import six
+from simkit.scene.override_fields import with_mass
 
 if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
@@ -30,6 +35,7 @@ class Link(Handle):
         super().__init__(handles, scene.name, scene.scoped)
         self.scene = scene
         self._visuals: dict[str, Visual] | None = None
+        self._collisions: dict[str, Collision] | None = None
 
     def _bind(self, names: NameMap) -> None:
         binding = names.link(self.scoped)
@@ -86,9 +92,31 @@ class Link(Handle):
 
     @property
     def mass(self) -> float:
-        """Mass [kg]."""
+        """Mass [kg]; settable. The inertia changes in proportion."""
         self._check()
-        return float(self.scene.inertial.mass)
+        return float(self._engine.numbers.inertial(self.scene).mass)
+
+    @mass.setter
+    def mass(self, mass: float) -> None:
+        self._check()
+        mass = checked_number(mass, "mass", 0.0)
+        old = self._engine.numbers.inertial(self.scene)
+        self._engine.numbers.set_inertial(self.scene, with_mass(old, mass))
+        self._engine.numbers.keep("link", self.scoped, "mass", mass)
+
+    @property
+    def inertia(self) -> tuple[float, ...]:
+        """Inertia ixx, iyy, izz, ixy, ixz, iyz [kg·m²] about the centre of mass, in link axes; settable."""
+        self._check()
+        return self._engine.numbers.inertial(self.scene).inertia
+
+    @inertia.setter
+    def inertia(self, inertia: Sequence[float]) -> None:
+        self._check()
+        moments = six(checked_vector(inertia, "inertia", 6).tolist())
+        old = self._engine.numbers.inertial(self.scene)
+        self._engine.numbers.set_inertial(self.scene, replace(old, inertia=moments))
+        self._engine.numbers.keep("link", self.scoped, "inertia", moments)
 
     # ------------------------------------------------------------------ commands
 
@@ -169,7 +197,14 @@ class Link(Handle):
                 values[g] = original[g] if enabled else 0
         self._physics.changed(STALE)
 
-    # ------------------------------------------------------------------ sensors and visuals
+    # ------------------------------------------------------------------ sensors, collisions and visuals
+
+    @property
+    def collisions(self) -> dict[str, Collision]:
+        """Collisions of the link by name."""
+        if self._collisions is None:  # made on first use, as the visuals
+            self._collisions = {c.name: Collision(self._handles, c.name, c.scoped, self) for c in self.scene.collisions}
+        return dict(self._collisions)
 
     @property
     def sensors(self) -> dict[str, Any]:

@@ -149,7 +149,9 @@ def _apply_fields(sim: Simulation, changes: object) -> None:
             raise MessageError(f"the model has no field {name!r:.60}")
         indices, numbers = _indices_and_values(change, there.size)
         sim.engine.physics.changed_model()
-        sim.engine.touch(name).reshape(-1)[indices] = numbers
+        values = sim.engine.touch(name).copy()
+        values.reshape(-1)[indices] = numbers
+        sim.engine.numbers.write(name, slice(None), values)
 
 
 def _indices_and_values(changes: object, size: int) -> tuple[npt.NDArray[np.int64], Numbers]:
