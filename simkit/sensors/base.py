@@ -6,7 +6,7 @@ import abc
 import math
 from collections.abc import Mapping, Sequence
 from itertools import chain
-from typing import ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import mujoco
 import numpy as np
@@ -25,6 +25,7 @@ from simkit.runtime import Simulation
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.scene import SceneSensor
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
+from simkit.sensors.noise_keeper import SettableNoise
 from simkit.sensors.sample import NoiseProcess, Product, Reading, Sample
 from simkit.sensors.sample_times import DelayedReadings, SampleTimes, read_timing
 from simkit.sensors.sampler import Sampler
@@ -61,7 +62,7 @@ class Sensor(Sampler):
         frame_id: frame of the messages.
         options: parameters of the kind.
         noise: noise of the channels, if the kind sets it in `prepare`. The base class advances, restarts and saves
-            this noise.
+            this noise. During a run, a `NoiseModel`, one for each channel, or a standard deviation may be set.
     """
 
     kinds: ClassVar[tuple[str, ...]] = ()
@@ -71,7 +72,7 @@ class Sensor(Sampler):
     has_dynamic_bias: ClassVar[bool] = False
 
     options: object = None
-    noise: Noise | UniformNoise | None = None
+    noise: Any = SettableNoise()
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__()
@@ -238,9 +239,7 @@ class Sensor(Sampler):
 
     def bind(self, compiled: Compiled) -> None:
         """Find the sensor in a compiled model; called again after every change of structure."""
-        self._process_pending()
-        for sample in self._kept_samples():
-            self._finish_sample(sample)  # the physics state of the sample belongs to the previous model
+        self._finish_kept_samples()  # the physics states of the samples belong to the previous model
         for _, publisher, _ in self._publishers:
             # messages that wait for a reader belong to the previous model too
             self.sim.communication.bus.settle_topic(publisher.topic)
@@ -292,6 +291,21 @@ class Sensor(Sampler):
             self._evolves = True
         self.is_deferred = True
         return noise
+
+    def _finish_kept_samples(self) -> None:
+        self._process_pending()
+        for sample in self._kept_samples():
+            self._finish_sample(sample)
+
+    def _noise_changed(self) -> None:
+        super()._noise_changed()
+        self._evolves = self._evolves or bool(self._evolving)
+        self._revision = -1
+        self.sim.engine.reschedule()
+
+    def change_noise(self, value: float | NoiseModel | Sequence[NoiseModel]) -> None:
+        super().change_noise(value)
+        self.sim.engine.numbers.keep("sensor", self.scoped, "noise", self.noise_models())
 
     def _on_rate(self, message: msgs.Float64) -> None:
         """Apply a rate received on a topic; with `<gazebo_quirks>`, the rate of the file is the upper limit."""

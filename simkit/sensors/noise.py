@@ -183,6 +183,13 @@ class Noise:
         interval: float = 0.001,
         random_sign: bool = False,
     ) -> None:
+        self._origin, self._nominal, self._has_random_sign = (streams, scoped, group), interval, random_sign
+        self.change(models)
+
+    def change(self, models: Sequence[NoiseModel]) -> None:
+        """Use other noise models, as many as before; constant biases are drawn as at t = 0."""
+        streams, scoped, group = self._origin
+
         def column(name: str) -> Vector:
             return np.array([getattr(m, name) for m in models], dtype=np.float64)
 
@@ -193,7 +200,8 @@ class Noise:
         self._white = self._open_white_noise(streams, scoped, group)
         self._drawn_bias = streams.stream(scoped, group + "/bias", self.width) if self._bias_stddev.any() else None
         has_bias = self._bias_mean.any() or self._bias_stddev.any()
-        self._sign = streams.stream(scoped, group + "/sign", self.width) if random_sign and has_bias else None
+        has_sign = self._has_random_sign and has_bias
+        self._sign = streams.stream(scoped, group + "/sign", self.width) if has_sign else None
         times = column("dynamic_bias_correlation_time")
         dynamic = np.where(times > 0, column("dynamic_bias_stddev"), 0.0)
         self._is_dynamic = dynamic > 0
@@ -209,7 +217,6 @@ class Noise:
         self._has_density = any(m.noise_density > 0 for m in models)
         self.evolves = bool(self._bias_drift.drifts) or self._has_density
         self._intervals: dict[float, NoiseInterval] = {}
-        self._nominal = interval
         self.restart()
         # noise without any effect is skipped
         self.is_silent = not (
@@ -342,7 +349,12 @@ class UniformNoise(Noise):
         self.model, self._rays = model, width
         self._rays_group = group
         super().__init__([model], streams, scoped, group + "/shared", interval=interval, random_sign=random_sign)
-        self.width = width
+
+    def change(self, models: Sequence[NoiseModel]) -> None:
+        """Use another noise model on all channels; a constant bias is drawn as at t = 0."""
+        (self.model,) = models
+        super().change(models)
+        self.width = self._rays
 
     def _open_white_noise(self, streams: RandomStreams, scoped: str, group: str) -> RandomStream | None:
         is_white = self.model.stddev > 0 or self.model.noise_density > 0

@@ -137,6 +137,21 @@ def test_an_armature_slows_a_swing() -> None:
         assert ratio == pytest.approx(inertia / (inertia + 1.0), rel=0.05)
 
 
+def test_a_light_is_set_and_outlives_a_spawn() -> None:
+    lit = WORLD.replace("<model", '<light name="sun" type="directional"/><model', 1)
+    with simkit.load(lit) as sim:
+        light = sim.light("sun")
+        light.intensity, light.diffuse, light.on = 0.5, (0.4, 0.6, 0.8), False
+        sim.spawn(BOX)
+        assert sim.mj_model.light_diffuse[0] == pytest.approx([0.2, 0.3, 0.4])
+        assert not sim.mj_model.light_active[0]
+        sim.reset(keep_changes=True)
+        assert (light.intensity, light.diffuse, light.on) == (0.5, (0.4, 0.6, 0.8, 1.0), False)
+        sim.reset()
+        assert (light.intensity, light.on) == (1.0, True)
+        assert sim.mj_model.light_diffuse[0] == pytest.approx([1.0, 1.0, 1.0])
+
+
 def test_the_gain_of_a_wheel_servo_is_set_and_outlives_a_spawn() -> None:
     with simkit.load("turtlebot3_world") as sim:
         joint = sim.joint("turtlebot3::wheel_left_joint")

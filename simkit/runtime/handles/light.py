@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 
-from simkit.argument_checks import check_kind
+from simkit.argument_checks import check_kind, checked_number, checked_vector, wrong_value
 from simkit.compiler.lights import drawn_fields, drawn_position
 from simkit.pose import IDENTITY, Pose, Vector, checked_pose
 from simkit.runtime.handles.handle import Handle
@@ -16,6 +16,7 @@ from simkit.runtime.handles.handle import Handle
 if TYPE_CHECKING:
     from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneLight
+    from simkit.scene.model import Colour
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,15 @@ class LightMotion:
     def at(self, time_ns: int) -> LightState:
         """Return the state of the light at a time [ns]."""
         return self.state if self.course is None else self.course(time_ns)
+
+
+def _checked_colour(colour: object, name: str) -> Colour:
+    """Return red, green, blue and alpha from 0 to 1; alpha is 1 if three numbers are given."""
+    count = 3 if isinstance(colour, Sequence) and len(colour) == 3 else 4
+    r, g, b, a = (*checked_vector(colour, name, count).tolist(), 1.0)[:4]
+    if not all(0.0 <= part <= 1.0 for part in (r, g, b, a)):
+        raise wrong_value(name, "numbers from 0 to 1", colour)
+    return r, g, b, a
 
 
 class Light(Handle):
@@ -93,8 +103,59 @@ class Light(Handle):
 
     @property
     def on(self) -> bool:
-        """True while the light shines."""
+        """True while the light shines; settable."""
         return self.state.on
+
+    @on.setter
+    def on(self, on: bool) -> None:
+        self.switch(on)
+        self._engine.numbers.keep("light", self.scoped, "on", bool(on))
+
+    @property
+    def intensity(self) -> float:
+        """Factor of the light's colours; settable."""
+        self._check()
+        return self.scene.intensity
+
+    @intensity.setter
+    def intensity(self, intensity: float) -> None:
+        self._set("intensity", checked_number(intensity, "intensity", 0.0))
+
+    @property
+    def diffuse(self) -> Colour:
+        """Diffuse colour, RGBA from 0 to 1; settable, also by red, green and blue."""
+        self._check()
+        return self.scene.diffuse
+
+    @diffuse.setter
+    def diffuse(self, colour: Sequence[float]) -> None:
+        self._set("diffuse", _checked_colour(colour, "diffuse"))
+
+    @property
+    def specular(self) -> Colour:
+        """Specular colour, RGBA from 0 to 1; settable, also by red, green and blue."""
+        self._check()
+        return self.scene.specular
+
+    @specular.setter
+    def specular(self, colour: Sequence[float]) -> None:
+        self._set("specular", _checked_colour(colour, "specular"))
+
+    @property
+    def cast_shadows(self) -> bool:
+        """True if the light casts shadows; settable."""
+        self._check()
+        return self.scene.cast_shadows
+
+    @cast_shadows.setter
+    def cast_shadows(self, casts: bool) -> None:
+        check_kind(casts, (bool, int), "cast_shadows", "True or False")
+        self._set("cast_shadows", bool(casts))
+
+    def _set(self, name: str, value: Any) -> None:
+        changes: dict[str, Any] = {name: value}
+        self.change(replace(self.scene, **changes))
+        self._engine.numbers.keep("light", self.scoped, name, value)
 
     @property
     def irradiance(self) -> float | None:
