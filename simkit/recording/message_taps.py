@@ -83,7 +83,7 @@ class MessageQueue(Generic[_Label]):
     """Queue that delivers messages in the order of their publication while some images are still being rendered.
 
     Args:
-        deliver: callback with the label of a message, and the message.
+        deliver: callback with messages and their labels.
         freeze: `serialised`, or a function like it. The publisher may change a message while it is queued, so every
             message is delivered in this form. A message with `can_wait` is queued until `deliver_ready`, because many
             at a time are serialised faster. Without `freeze` only images are queued: a message after an image
@@ -91,9 +91,11 @@ class MessageQueue(Generic[_Label]):
     """
 
     def __init__(
-        self, deliver: Callable[[_Label, Message], None], freeze: Callable[[Message], Message] | None = None
+        self,
+        deliver: Callable[[list[tuple[_Label, Message]]], None],
+        freeze: Callable[[Message | LazyMessage], Message] | None = None,
     ) -> None:
-        self._deliver, self._freeze = deliver, freeze
+        self._deliver, self._freeze, self._resolve = deliver, freeze, freeze or _made
         self._waiting: deque[tuple[_Label, Message | LazyMessage]] = deque()
 
     def add(self, label: _Label, message: Message | LazyMessage) -> None:
@@ -107,7 +109,9 @@ class MessageQueue(Generic[_Label]):
             return
         is_pending = is_lazy and not message.is_ready
         if not (waiting or is_pending):
-            self._resolve(label, message)
+            message = self._resolve(message)
+            if message is not NO_MESSAGE:
+                self._deliver([(label, message)])
             return
         if freeze is not None and not is_pending:
             message = freeze(message)
@@ -115,7 +119,7 @@ class MessageQueue(Generic[_Label]):
                 return
         elif not is_lazy:
             self.deliver_all()
-            self._resolve(label, message)
+            self._deliver([(label, message)])
             return
         waiting.append((label, message))
         first = waiting[0][1]
@@ -131,17 +135,24 @@ class MessageQueue(Generic[_Label]):
         self._deliver_queued(waits=True)
 
     def _deliver_queued(self, waits: bool) -> None:
-        waiting = self._waiting
-        while waiting:
-            label, message = waiting[0]
-            if not isinstance(message, LazyMessage):  # already frozen
-                waiting.popleft()
-                self._deliver(label, message)
-            elif waits or message.can_wait or message.is_ready:
-                waiting.popleft()
-                self._resolve(label, message)
-            else:
-                return
+        waiting, resolve = self._waiting, self._resolve
+        ready: list[tuple[_Label, Message]] = []
+        try:
+            while waiting:
+                label, message = waiting[0]
+                if isinstance(message, LazyMessage):  # else it is already frozen
+                    if not (waits or message.can_wait or message.is_ready):
+                        break
+                    waiting.popleft()
+                    message = resolve(message)
+                    if message is NO_MESSAGE:
+                        continue
+                else:
+                    waiting.popleft()
+                ready.append((label, message))
+        finally:
+            if ready:
+                self._deliver(ready)
 
     def __len__(self) -> int:
         return len(self._waiting)
@@ -154,10 +165,6 @@ class MessageQueue(Generic[_Label]):
         """Drop all queued messages."""
         self._waiting.clear()
 
-    def _resolve(self, label: _Label, message: Message | LazyMessage) -> None:
-        if self._freeze is not None:
-            resolved = self._freeze(message)
-        else:
-            resolved = message.get() if isinstance(message, LazyMessage) else message
-        if resolved is not NO_MESSAGE:
-            self._deliver(label, resolved)
+
+def _made(message: Message | LazyMessage) -> Message:
+    return message.get() if isinstance(message, LazyMessage) else message

@@ -34,9 +34,9 @@ class TopicFeed:
         self, sim: Simulation, topic: str, memory: LogMemory, common: MessageQueue[tuple[TopicFeed, int]]
     ) -> None:
         self._sim, self.topic, self._memory, self._common = sim, topic, memory, common
-        self._log = MessageLog(memory)
+        self.log = MessageLog(memory)
         # a message is serialised at once, even if it waits for an image, because its publisher may change it later
-        self._queue = MessageQueue(self.deliver, _serialise_valid)
+        self._queue = MessageQueue(self._deliver, _serialise_valid)
         self._tap: Subscription | None = None
         self._is_rendered = False  # True for images, whose rendering costs much more than anything else here
 
@@ -45,12 +45,12 @@ class TopicFeed:
         bus = self._sim.communication.bus
         if not self.has_readers:
             bus.check_available(self.topic)
-            self._log.add(reader)
+            self.log.add(reader)
             self._open_tap()
             return
         if self.topic in bus.latched():
             self._add_latched(reader)
-        self._log.add(reader)
+        self.log.add(reader)
 
     def _open_tap(self) -> None:
         settle = self._common.deliver_ready
@@ -60,7 +60,7 @@ class TopicFeed:
         """Render no images while all clients of the topic are stuck. Messages that are not made are not counted."""
         if not self._is_rendered or not self.has_readers:
             return
-        is_read = self._log.is_read
+        is_read = self.log.is_read
         if is_read and self._tap is None:
             self._open_tap()
         elif not is_read and self._tap is not None:
@@ -93,7 +93,7 @@ class TopicFeed:
 
     @property
     def has_readers(self) -> bool:
-        return self._log.has_readers
+        return self.log.has_readers
 
     def deliver_ready(self) -> None:
         """Deliver the messages that are ready, in order."""
@@ -114,11 +114,12 @@ class TopicFeed:
             self._queue.deliver_ready()
         if len(self._queue) > _MOST_WAITING:
             self._queue.drop_oldest()
-            self._log.count_lost()
+            self.log.count_lost()
 
-    def deliver(self, time_ns: int, content: tuple[str, bytes]) -> None:
-        """Queue a serialised message for every client."""
-        self._log.append(time_ns, *content)
+    def _deliver(self, messages: list[tuple[int, tuple[str, bytes]]]) -> None:
+        """Queue serialised messages for every client."""
+        for time_ns, content in messages:
+            self.log.append(time_ns, *content)
 
 
 def _serialise_valid(message: Message | LazyMessage) -> Any:
@@ -129,9 +130,9 @@ def _serialise_valid(message: Message | LazyMessage) -> Any:
         return NO_MESSAGE
 
 
-def _deliver(label: tuple[TopicFeed, int], content: tuple[str, bytes]) -> None:
-    feed, time_ns = label
-    feed.deliver(time_ns, content)
+def _deliver(messages: list[tuple[tuple[TopicFeed, int], tuple[str, bytes]]]) -> None:
+    for (feed, time_ns), content in messages:
+        feed.log.append(time_ns, *content)
 
 
 class TopicFeeds:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from simkit.errors import SimkitError
 from simkit.recording.bags.bag_contents import matches_topic
-from simkit.recording.bags.writer import McapBag, open_bag
+from simkit.recording.bags.writer import Channel, McapBag, open_bag
 from simkit.recording.message_taps import MessageQueue, TopicTaps, serialised
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ class Recorder:
         self._queue.deliver_ready()
         if self._bag is not None and not self._queue:
             try:
-                self._bag.flush()
+                self._bag.end_chunk()
             except OSError as error:
                 self._stop(error)
 
@@ -153,15 +153,22 @@ class Recorder:
         """Check whether the options select the topic."""
         return topic in self._taps
 
-    def _write(self, label: tuple[str, int], message: tuple[str, bytes]) -> None:
-        bag, (topic, tick), (type_name, data) = self._bag, label, message
+    def _write(self, messages: list[tuple[tuple[str, int], tuple[str, bytes]]]) -> None:
+        """Write serialised messages with their topics and ticks."""
+        bag, time_of = self._bag, self._sim.engine.clock.time_ns
         if bag is None:
             return
         try:
-            channel = bag.channels.get((topic, type_name))
-            if channel is None:
-                channel = bag.channel(topic, type_name, topic in self._sim.communication.bus.latched())
-            bag.write_raw(channel, data, self._sim.engine.clock.time_ns(tick))
+            found: list[tuple[Channel, bytes, int]] = []
+            channels = bag.channels
+            for (topic, tick), (type_name, data) in messages:
+                channel = channels.get((topic, type_name))
+                if channel is None:
+                    bag.write_all(found)
+                    found = []
+                    channel = bag.channel(topic, type_name, topic in self._sim.communication.bus.latched())
+                found.append((channel, data, time_of(tick)))
+            bag.write_all(found)
         except OSError as error:
             self._stop(error)
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from simkit import msgs
 from simkit.errors import InputError
-from simkit.recording.bags.mcap_writer import McapWriter
+from simkit.recording.bags.mcap_writer import McapWriter, Row
 from simkit.writers.atomic_output import write_obstacle
 
 if TYPE_CHECKING:
@@ -67,8 +68,10 @@ class Span:
     count: int = field(default=0)
 
     def add(self, time_ns: int) -> None:
-        self.start = time_ns if self.count == 0 else min(self.start, time_ns)
-        self.end = max(self.end, time_ns)
+        if not self.count or time_ns < self.start:
+            self.start = time_ns
+        if time_ns > self.end:
+            self.end = time_ns
         self.count += 1
 
 
@@ -135,21 +138,41 @@ class McapBag:
 
     def write_raw(self, channel: Channel, data: bytes, time_ns: int, publish_ns: int | None = None) -> None:
         """Append one serialised message. The time of publication is the recording time, unless it is given."""
-        second = time_ns // _SECOND
-        if second != self._second:
-            if self._second >= 0:
-                self.flush()
-            self._second = second
+        self._begin_second(time_ns // _SECOND)
         publish_ns = time_ns if publish_ns is None else publish_ns
         self._writer.add_message(channel.id, time_ns, data, publish_ns, channel.count)
         channel.count += 1
-        span = self.span
-        if span.count and span.start <= time_ns:
-            span.count += 1
-            if time_ns > span.end:
-                span.end = time_ns
-        else:
-            span.add(time_ns)
+        self.span.add(time_ns)
+
+    def write_all(self, messages: Sequence[tuple[Channel, bytes, int]]) -> None:
+        """Append serialised messages with their recording times; many of one second take half the time."""
+        if not messages:
+            return
+        times = [time_ns for _, _, time_ns in messages]
+        first, last = min(times), max(times)
+        if first // _SECOND != last // _SECOND:
+            for message in messages:
+                self.write_raw(*message)
+            return
+        self._begin_second(first // _SECOND)
+        rows: list[Row] = []
+        for channel, data, time_ns in messages:
+            rows.append((channel.id, time_ns, data, time_ns, channel.count))
+            channel.count += 1
+        self._writer.add_messages(rows)
+        self.span.add(first)
+        self.span.add(last)
+        self.span.count += len(rows) - 2
+
+    def _begin_second(self, second: int) -> None:
+        if second != self._second:
+            if self._second >= 0:
+                self.end_chunk()
+            self._second = second
+
+    def end_chunk(self) -> None:
+        """Complete the chunk; a thread passes it to the operating system."""
+        self._writer.end_chunk()
 
     def flush(self) -> None:
         """Complete the chunk and pass all data to the operating system."""

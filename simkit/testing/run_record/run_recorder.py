@@ -258,7 +258,11 @@ class StreamRecorder:
             self._message_recorder.fill(stream)
         return stream
 
-    def _keep(self, now: int, message: object) -> None:
+    def _keep(self, messages: list[tuple[int, object]]) -> None:
+        for now, message in messages:
+            self._keep_one(now, message)
+
+    def _keep_one(self, now: int, message: object) -> None:
         type_name = msgs.type_name(message)
         if self._message_recorder is None:
             self._type_name = type_name
