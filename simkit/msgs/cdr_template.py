@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -16,13 +17,33 @@ from simkit.msgs.message_types import Message, type_store
 
 _HEAD = 4  # [bytes] before the first field
 
+Packer = Callable[..., tuple[str, bytes]]
+"""Function that returns the type and the CDR of the message that another function makes of the same arguments."""
+
+PACKERS: Final[dict[object, Packer]] = {}
+"""Packers by the function that makes the message."""
+
+
+def packs(make: Callable[..., Message]) -> Callable[[Packer], Packer]:
+    """Register the decorated function as the packer of the messages that `make` returns.
+
+    Recorders and sockets need only bytes. A packer fills numbers into a template and creates no message.
+    """
+
+    def register(packer: Packer) -> Packer:
+        PACKERS[make] = packer
+        return packer
+
+    return register
+
 
 class CdrTemplate:
     """Message whose number fields are replaced.
 
     Args:
         message: message with the constant fields; its type and its texts and arrays decide the places of all fields.
-        fields: paths of the variable number fields, such as `header.stamp.sec`.
+        fields: paths of the variable fields in the order of the definition: numbers such as `header.stamp.sec` or
+            `position[0]`, and for a packer also arrays of fixed length.
     """
 
     def __init__(self, message: Message, fields: tuple[str, ...]) -> None:
@@ -30,10 +51,32 @@ class CdrTemplate:
         self._places: dict[str, tuple[int, str]] = {}
         self._at = 0
         self._walk(msgs.type_name(message), message, "")
-        formats = [self._places[field][1] for field in fields]
-        offsets = [self._places[field][0] for field in fields]
-        layout = {"names": list(fields), "formats": formats, "offsets": offsets, "itemsize": len(self._data)}
-        self._dtype = np.dtype(layout)  # type: ignore[call-overload]
+        self._fields = {field: self._places[field] for field in fields}
+
+    @cached_property
+    def _dtype(self) -> np.dtype[Any]:
+        offsets, formats = zip(*self._fields.values(), strict=True)
+        layout = {"names": list(self._fields), "formats": formats, "offsets": offsets, "itemsize": len(self._data)}
+        return np.dtype(layout)  # type: ignore[call-overload,no-any-return]
+
+    def packer(self) -> Callable[..., bytes]:
+        """Return a function of the variable fields, with arrays as bytes, that returns the serialised message."""
+        layout, at = "<", 0
+        arguments: list[str] = []
+        constants: list[bytes] = []
+        for number, (offset, code) in enumerate((*self._fields.values(), (len(self._data), ""))):
+            if offset > at:
+                layout += f"{offset - at}s"
+                arguments.append(f"c{len(constants)}")
+                constants.append(self._data[at:offset])
+            if code:
+                layout += code[1:]
+                arguments.append(f"v{number}")
+                at = offset + struct.calcsize(code)
+        names = ", ".join(f"v{number}" for number in range(len(self._fields)))
+        known = {"pack": struct.Struct(layout).pack, **{f"c{number}": part for number, part in enumerate(constants)}}
+        found: Callable[..., bytes] = eval(f"lambda {names}: pack({', '.join(arguments)})", known)
+        return found
 
     def fill(self, count: int, values: Mapping[str, npt.NDArray[Any]]) -> list[bytes]:
         """Return `count` serialised messages with these values of the variable fields, each an array (count,)."""
@@ -64,5 +107,8 @@ class CdrTemplate:
         else:
             if kind != ARRAY:
                 self._at += -self._at % 4 + 4
+            elif isinstance(value, np.ndarray):
+                self._at += -self._at % value.itemsize
+                self._places[path] = self._at + _HEAD, f"<{value.nbytes}s"
             for index, item in enumerate(value):
                 self._step(content[0], item, f"{path}[{index}]")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit import msgs
+from simkit.msgs.cdr_template import CdrTemplate, packs
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 JOINT_STATE = "sensor_msgs/msg/JointState"
 JointReading = tuple[str, "float | Vector", "float | Vector", "float | Vector"]
 """Name, position, velocity and applied effort of a joint."""
+_NS = 1_000_000_000
+_MOST_GROUPS = 256  # templates that are kept, one for each group of joints
 
 
 def joint_readings(joints: Sequence[Joint]) -> list[JointReading]:
@@ -56,6 +60,22 @@ def joint_state_message(time_ns: int, joints: list[JointReading]) -> msgs.JointS
     arrays = (np.array(column) for column in columns)
     message: msgs.JointState = msgs.type_of(JOINT_STATE)(msgs.header(time_ns, ""), names, *arrays)
     return message
+
+
+@packs(joint_state_message)
+def _pack_joint_states(time_ns: int, joints: list[JointReading]) -> tuple[str, bytes]:
+    if not joints or any(type(position) is not float for _, position, _, _ in joints):
+        return JOINT_STATE, msgs.serialize(joint_state_message(time_ns, joints))
+    names, positions, velocities, efforts = zip(*joints, strict=True)
+    return JOINT_STATE, _joint_states_packer(names)(*divmod(time_ns, _NS), *positions, *velocities, *efforts)
+
+
+@lru_cache(_MOST_GROUPS)
+def _joint_states_packer(names: tuple[str, ...]) -> Callable[..., bytes]:
+    count = range(len(names))
+    fields = (f"{field}[{i}]" for field in ("position", "velocity", "effort") for i in count)
+    message = joint_state_message(0, [(name, 0.0, 0.0, 0.0) for name in names])
+    return CdrTemplate(message, ("header.stamp.sec", "header.stamp.nanosec", *fields)).packer()
 
 
 class _JointStates(ModelPlugin):

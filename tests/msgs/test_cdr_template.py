@@ -33,3 +33,16 @@ def test_a_template_finds_numbers_behind_texts_lists_and_nested_messages() -> No
     transforms[1]["transform"] = {"translation": {"x": 1.0}, "rotation": {"w": 0.5}}
     expected = msgs.serialize(msgs.make("tf2_msgs/msg/TFMessage", transforms=transforms))
     assert template.fill(1, {field: np.array([0.5])}) == [expected]
+
+
+def test_a_packer_places_numbers_and_whole_arrays() -> None:
+    fields = ("header.stamp.nanosec", "orientation.z", "angular_velocity_covariance", "linear_acceleration.x")
+    pack = CdrTemplate(msgs.make("sensor_msgs/msg/Imu", header={"frame_id": "imu"}), fields).packer()
+    expected = msgs.make(
+        "sensor_msgs/msg/Imu",
+        header={"frame_id": "imu", "stamp": {"nanosec": 7}},
+        orientation={"z": 0.25},
+        angular_velocity_covariance=np.arange(9.0),
+        linear_acceleration={"x": -3.5},
+    )
+    assert pack(7, 0.25, np.arange(9.0).tobytes(), -3.5) == msgs.serialize(expected)

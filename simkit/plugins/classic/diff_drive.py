@@ -19,15 +19,13 @@ from simkit.plugins.classic.commanded_drive import CommandedDrive
 from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
-    ODOMETRY,
-    TRANSFORMS,
     BodyTwist,
     DeadReckoning,
-    odometry_message,
     planar_pose,
     rolling_twist,
     wheel_angles,
 )
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message
 from simkit.plugins.drives.odometry_noise import (
     EquivalentWheelAngles,
     NoisyOdometry,

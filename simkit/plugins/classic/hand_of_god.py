@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.drives.odometry import TRANSFORMS, transforms
+from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
 from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.ros_names import is_ros_1

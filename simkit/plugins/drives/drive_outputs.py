@@ -6,15 +6,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
-from simkit import msgs
-from simkit.plugins.drives.odometry import (
-    ODOMETRY,
-    TRANSFORMS,
-    BodyTwist,
-    odometry_message,
-    planar_covariance,
-    transforms,
-)
+from simkit.plugins.drives.odometry import BodyTwist, planar_covariance
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, LatePose, odometry_message, transforms
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options
@@ -75,7 +68,7 @@ class DriveOutputs(SharedByCopies):
         plugin: Plugin,
         options: DriveOutputOptions,
         joints: Sequence[SceneJoint],
-        present_pose: Callable[[], Pose | Callable[[], Pose]],
+        present_pose: Callable[[], LatePose],
     ) -> None:
         self._sim, self._options = plugin.sim, options
         self._links = [(joint.parent_link, joint.child_link) for joint in joints]
@@ -85,7 +78,7 @@ class DriveOutputs(SharedByCopies):
         has_tf = options.publishes_odom_tf or options.publish_wheel_tf
         self._tf = plugin.advertise("/tf", TRANSFORMS) if has_tf else None
         if self._tf is not None:
-            self._tf.present = lambda: self._transforms(self._sim.time_ns, present_pose(), self._wheel_poses())
+            self._tf.present = lambda: transforms(self._sim.time_ns, *self._links_with(present_pose()))
         self._states = plugin.advertise("joint_states", JOINT_STATE) if options.publish_wheel_joint_state else None
 
     @property
@@ -94,7 +87,7 @@ class DriveOutputs(SharedByCopies):
         odom, tf = self._odom, self._tf
         return (odom is not None and odom.wanted) or (tf is not None and tf.wanted)
 
-    def tell(self, pose: Pose | Callable[[], Pose], twist: BodyTwist, *covariances: Vector) -> None:
+    def tell(self, pose: LatePose, twist: BodyTwist, *covariances: Vector) -> None:
         """Publish odometry and transforms.
 
         Args:
@@ -104,34 +97,29 @@ class DriveOutputs(SharedByCopies):
         """
         now = self._sim.time_ns
         if self._odom is not None and self._odom.wanted:
-            self._odom.publish_later(partial(self._odometry, now, pose, twist, covariances or (self._covariance,)))
+            options, level = self._options, partial(_level, pose) if self._options.is_level else pose
+            frames = options.odometry_frame, options.robot_base_frame
+            spread = covariances or (self._covariance,)
+            self._odom.publish_later(partial(odometry_message, now, *frames, level, twist, *spread))
         if self._tf is not None and self._tf.wanted:
-            self._tf.publish_later(partial(self._transforms, now, pose, self._wheel_poses()))
+            self._tf.publish_later(partial(transforms, now, *self._links_with(pose)))
 
-    def _wheel_poses(self) -> list[tuple[str, str, Pose]]:
-        """Return the parent frame, the child frame and the present pose of each published joint."""
-        found = []
-        for above, below in self._links if self._options.publish_wheel_tf else ():
+    def _links_with(self, pose: LatePose) -> list[tuple[str, str, LatePose]]:
+        """Return the parent frame, the child frame and the pose of the base and of each published joint."""
+        options = self._options
+        found = [(options.odometry_frame, options.robot_base_frame, pose)] if options.publishes_odom_tf else []
+        for above, below in self._links if options.publish_wheel_tf else ():
             parent, child = self._sim.link(above), self._sim.link(below)
             found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
         return found
-
-    def _odometry(
-        self, now: int, pose: Pose | Callable[[], Pose], twist: BodyTwist, covariances: Sequence[Vector]
-    ) -> msgs.Odometry:
-        options, pose = self._options, pose() if callable(pose) else pose
-        if options.is_level:
-            pose = Pose((*pose.position[:2], 0.0), pose.quaternion)
-        return odometry_message(now, options.odometry_frame, options.robot_base_frame, pose, twist, *covariances)
-
-    def _transforms(
-        self, now: int, pose: Pose | Callable[[], Pose], wheels: list[tuple[str, str, Pose]]
-    ) -> msgs.TFMessage:
-        options, pose = self._options, pose() if callable(pose) else pose
-        base = [(options.odometry_frame, options.robot_base_frame, pose)] if options.publishes_odom_tf else []
-        return transforms(now, *base, *wheels)
 
     def tell_joints(self) -> None:
         """Publish joint states."""
         if self._states is not None and self._states.wanted:
             self._states.publish_later(partial(joint_state_message, self._sim.time_ns, joint_readings(self._joints)))
+
+
+def _level(pose: LatePose) -> Pose:
+    """Return a pose with the height 0."""
+    pose = pose() if callable(pose) else pose
+    return Pose((*pose.position[:2], 0.0), pose.quaternion)

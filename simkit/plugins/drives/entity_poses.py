@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from simkit import msgs
-from simkit.plugins.drives.odometry import message_types
+from simkit.plugins.drives.odometry_messages import message_types
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Pose, Vector
 

@@ -1,27 +1,23 @@
-"""Odometry of wheeled bases: dead reckoning from wheel travel, and the messages that carry it."""
+"""Odometry of wheeled bases: dead reckoning from wheel travel."""
 
 from __future__ import annotations
 
 import abc
 import copy
-import functools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit import msgs
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.runtime import Joint, Link, Model
 
-ODOMETRY = "nav_msgs/msg/Odometry"
-TRANSFORMS = "tf2_msgs/msg/TFMessage"
 COMMAND_TYPES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 UNKNOWN = 1e12  # variance of quantities that a planar base does not measure; Gazebo uses the same number
 MEAN_STEPS = 10  # window of the mean twist [steps], the same as Gazebo's
@@ -297,69 +293,3 @@ def planar_covariance(x: float, y: float, yaw: float) -> Vector:
         yaw: Variance of yaw [rad²]. The other diagonal entries are `UNKNOWN`.
     """
     return np.diag((x, y, UNKNOWN, UNKNOWN, UNKNOWN, yaw)).reshape(36)
-
-
-def odometry_message(
-    time_ns: int,
-    frame: str,
-    child: str,
-    pose: Pose,
-    twist: BodyTwist,
-    covariance: Vector | None = None,
-    twist_covariance: Vector | None = None,
-) -> msgs.Odometry:
-    """Return a `nav_msgs/msg/Odometry`.
-
-    Args:
-        time_ns: Time of the message [ns].
-        frame: Frame of the pose.
-        child: Child frame; the twist is in its axes.
-        pose: Pose of `child` in `frame`.
-        twist: Twist of `child`.
-        covariance: Row-major covariance of the pose, shape (36,); zeros if omitted.
-        twist_covariance: Covariance of the twist, shape (36,); equal to the pose's if omitted.
-    """
-    types = message_types()
-    point, vector, quaternion = types["Point"], types["Vector3"], types["Quaternion"]
-    w, x, y, z = pose.quaternion.tolist()
-    # copies: a subscriber may keep or change the arrays of a message
-    first = np.zeros(36) if covariance is None else covariance.copy()
-    second = first.copy() if twist_covariance is None else twist_covariance.copy()
-    pose_message = types["Pose"](point(*pose.position.tolist()), quaternion(x, y, z, w))
-    motion = types["Twist"](vector(*map(float, twist.linear)), vector(*map(float, twist.angular)))
-    message: msgs.Odometry = types["Odometry"](
-        msgs.header(time_ns, frame),
-        child,
-        types["PoseWithCovariance"](pose_message, first),
-        types["TwistWithCovariance"](motion, second),
-    )
-    return message
-
-
-def transform(time_ns: int, frame: str, child: str, pose: Pose) -> msgs.TransformStamped:
-    """Return a `geometry_msgs/msg/TransformStamped` with the pose of `child` in `frame`."""
-    types = message_types()
-    w, x, y, z = pose.quaternion.tolist()
-    transform_message = types["Transform"](types["Vector3"](*pose.position.tolist()), types["Quaternion"](x, y, z, w))
-    message: msgs.TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, transform_message)
-    return message
-
-
-def transforms(time_ns: int, *items: tuple[str, str, Pose]) -> msgs.TFMessage:
-    """Return a `tf2_msgs/msg/TFMessage`.
-
-    Args:
-        time_ns: Time of the message [ns].
-        *items: Frame, child frame and pose of the child in the frame, for each transform.
-    """
-    message: msgs.TFMessage = msgs.type_of(TRANSFORMS)([transform(time_ns, *item) for item in items])
-    return message
-
-
-@functools.cache
-def message_types() -> Mapping[str, Any]:
-    """Return message classes by name; calling a class is several times faster than `msgs.make`."""
-    geometry = "Point Vector3 Quaternion Pose Twist PoseWithCovariance TwistWithCovariance Transform TransformStamped"
-    others = (ODOMETRY, TRANSFORMS, "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
-    names = (*(f"geometry_msgs/msg/{name}" for name in geometry.split()), *others)
-    return {name.rsplit("/", 1)[1]: msgs.type_of(name) for name in names}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, WorldPlugin
 from simkit.plugins.drives.entity_poses import EntityPoses, PosedEntity, transforms_message
-from simkit.plugins.drives.odometry import TRANSFORMS, transforms
+from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
 from simkit.plugins.options import Options, OptionsOf, number
 from simkit.plugins.publish_on_demand import publish_while_subscribed
 from simkit.pose import Pose

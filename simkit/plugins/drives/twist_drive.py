@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, cast
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
+from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
 from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimitOptions, limit_each
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.find_entities import read_topic

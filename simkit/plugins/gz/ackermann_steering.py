@@ -7,15 +7,8 @@ from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER
-from simkit.plugins.drives.odometry import (
-    COMMAND_TYPES,
-    ODOMETRY,
-    TRANSFORMS,
-    Angles,
-    Motion,
-    TravelOdometry,
-    joint_angles,
-)
+from simkit.plugins.drives.odometry import COMMAND_TYPES, Angles, Motion, TravelOdometry, joint_angles
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS
 from simkit.plugins.drives.speed_limits import speed_limits
 from simkit.plugins.drives.twist_drive import TwistDrive, WheeledDriveOptions
 from simkit.plugins.drives.wheel_joints import find_drive_joint, steering_angles

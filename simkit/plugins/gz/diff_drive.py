@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
@@ -11,27 +10,17 @@ import numpy as np
 
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
-from simkit.plugins.drives.odometry import (
-    LONGEST,
-    MEAN_STEPS,
-    ODOMETRY,
-    TrueMotion,
-    WheelOdometry,
-    message_types,
-    odometry_message,
-    wheel_angles,
-)
+from simkit.plugins.drives.odometry import LONGEST, MEAN_STEPS, TrueMotion, WheelOdometry, wheel_angles
+from simkit.plugins.drives.odometry_messages import ODOMETRY, odometry_message, planar_odometry, planar_transform
 from simkit.plugins.drives.odometry_noise import NoisyOdometry, OdometryNoiseOptions, odometry_noise
 from simkit.plugins.drives.speed_limits import speed_limits
 from simkit.plugins.drives.twist_drive import Speeds, TwistDrive, WheeledDriveOptions
 from simkit.plugins.options import OptionsOf, block, boolean, texts
 from simkit.pose import Pose, Vector
 
-_NS = 1_000_000_000
-
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import Bool, Odometry, TFMessage
+    from simkit.msgs import Bool
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -280,41 +269,3 @@ class SeparateReadings(DriveFleet):
             drive.after_step()
             if drive.sim.tick != tick:
                 return
-
-
-def _attitude(yaw: float) -> tuple[float, float, float, float]:
-    """Return the quaternion (w, x, y, z) of a yaw angle [rad]; every bit is as from `quat_from_rpy`."""
-    cos, sin = math.cos(yaw / 2), math.sin(yaw / 2)
-    return cos + 0.0 * sin, 0.0 * cos - 0.0 * sin, 0.0 * cos + 0.0 * sin, sin - 0.0 * cos
-
-
-def planar_odometry(
-    time_ns: int, frame: str, child: str, x: float, y: float, yaw: float, ahead: float, turn: float
-) -> Odometry:
-    """Return a planar `nav_msgs/msg/Odometry` without covariance.
-
-    Units: time [ns], position [m], yaw [rad], forward speed [m/s] and turning rate [rad/s].
-    """
-    types = message_types()
-    w, qx, qy, qz = _attitude(yaw)
-    place = types["Pose"](types["Point"](x, y, 0.0), types["Quaternion"](qx, qy, qz, w))
-    vector = types["Vector3"]
-    motion = types["Twist"](vector(ahead, 0.0, 0.0), vector(0.0, 0.0, turn))
-    message: Odometry = types["Odometry"](
-        types["Header"](types["Time"](*divmod(time_ns, _NS)), frame),
-        child,
-        types["PoseWithCovariance"](place, np.zeros(36)),
-        types["TwistWithCovariance"](motion, np.zeros(36)),
-    )
-    return message
-
-
-def planar_transform(time_ns: int, frame: str, child: str, x: float, y: float, yaw: float) -> TFMessage:
-    """Return a `tf2_msgs/msg/TFMessage` with one planar transform [m, rad]."""
-    types = message_types()
-    w, qx, qy, qz = _attitude(yaw)
-    place = types["Transform"](types["Vector3"](x, y, 0.0), types["Quaternion"](qx, qy, qz, w))
-    stamped = types["TransformStamped"]
-    header = types["Header"](types["Time"](*divmod(time_ns, _NS)), frame)
-    message: TFMessage = types["TFMessage"]([stamped(header, child, place)])
-    return message

@@ -12,7 +12,7 @@ from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.drives.entity_poses import PoseNumbers, pose_numbers
-from simkit.plugins.drives.odometry import TRANSFORMS, transforms
+from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts

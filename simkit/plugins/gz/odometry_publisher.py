@@ -11,15 +11,8 @@ import numpy as np
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.odometry import (
-    MEAN_STEPS,
-    ODOMETRY,
-    TRANSFORMS,
-    BodyTwist,
-    TrueMotion,
-    odometry_message,
-    transforms,
-)
+from simkit.plugins.drives.odometry import MEAN_STEPS, BodyTwist, TrueMotion
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
 from simkit.plugins.find_entities import read_topic
 from simkit.plugins.options import Options, OptionsOf, integer, number, text, vector3
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate

@@ -18,7 +18,7 @@ from simkit.plugins.drives.entity_poses import (
     stamped_transform,
     transforms_message,
 )
-from simkit.plugins.drives.odometry import TRANSFORMS
+from simkit.plugins.drives.odometry_messages import TRANSFORMS
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, text
 

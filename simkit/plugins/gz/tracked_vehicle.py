@@ -14,14 +14,8 @@ from typing import TYPE_CHECKING
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.drives.odometry import (
-    COMMAND_TYPES,
-    ODOMETRY,
-    TRANSFORMS,
-    BodyTwist,
-    odometry_message,
-    transforms,
-)
+from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
 from simkit.plugins.drives.speed_limits import LimiterOptions, speed_limiter
 from simkit.plugins.drives.tracks import TrackOdometry, belt_of, needs_direction, report_missing_collisions
 from simkit.plugins.drives.twist_drive import OdometryOptions, Speeds, TwistDrive

@@ -13,16 +13,8 @@ import numpy as np
 
 from simkit import msgs
 from simkit.params import Params
-from simkit.plugins.drives.odometry import (
-    COMMAND_TYPES,
-    ODOMETRY,
-    TRANSFORMS,
-    BodyTwist,
-    DeadReckoning,
-    Motion,
-    odometry_message,
-    transforms,
-)
+from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, DeadReckoning, Motion
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros_parameter_block import read_names, read_numbers
 from simkit.pose import Pose

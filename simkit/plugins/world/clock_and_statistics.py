@@ -13,7 +13,7 @@ from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.drives.entity_poses import EntityPoses, PosedEntity, PoseSample, pose_numbers, transforms_message
-from simkit.plugins.drives.odometry import TRANSFORMS
+from simkit.plugins.drives.odometry_messages import TRANSFORMS
 from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any, Final, Literal, Protocol
 
 from simkit import msgs
+from simkit.msgs.cdr_template import PACKERS
 from simkit.msgs.data_frames import DataFrame, to_dataframe
 from simkit.runtime.communication.journal import JournalKeeper
 
@@ -73,6 +74,10 @@ class LazyMessage:
 
     def serialised(self) -> Any:
         """Return the message's type and CDR; NO_MESSAGE if it cannot be made."""
+        make = self._make
+        pack = PACKERS.get(getattr(make, "func", None))
+        if pack is not None:
+            return pack(*make.args, **make.keywords)  # type: ignore[union-attr]  # a `functools.partial`
         message = self.get()
         return message if message is NO_MESSAGE else (msgs.type_name(message), msgs.serialize(message))
 

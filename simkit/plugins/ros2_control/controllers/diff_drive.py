@@ -11,16 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit import msgs
-from simkit.plugins.drives.odometry import (
-    COMMAND_TYPES,
-    ODOMETRY,
-    TRANSFORMS,
-    BodyTwist,
-    DeadReckoning,
-    command_of,
-    odometry_message,
-    transforms,
-)
+from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, DeadReckoning, command_of
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.diff_drive_options import DriveOptions
