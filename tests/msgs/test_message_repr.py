@@ -24,6 +24,11 @@ def test_long_arrays_lists_and_texts_are_shortened() -> None:
     assert repr(msgs.make("std_msgs/msg/Empty")) == "Empty()"
 
 
+def test_constants_of_a_type_are_no_part_of_the_text() -> None:
+    status = msgs.make("action_msgs/msg/GoalStatus", status=4)
+    assert repr(status).endswith(", status=4)")
+
+
 def test_types_of_the_user_have_the_same_text() -> None:
     msgs.add("repr_msgs/msg/Pair", "int32 left\nstring from")
     assert repr(msgs.make("repr_msgs/msg/Pair", left=2)) == "Pair(left=2, from_='')"

@@ -12,6 +12,7 @@ import numpy as np
 from simkit import msgs
 from simkit.errors import MessageError
 from simkit.msgs import Message
+from simkit.msgs.message_repr import attribute_names
 from simkit.run_spec import JsonObject
 
 _MAX_LISTED: Final = 64  # arrays up to this length are stored as readable lists of numbers
@@ -46,8 +47,7 @@ def encode_value(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(key): encode_value(one) for key, one in value.items()}
     if hasattr(value, "__msgtype__"):
-        names = (name for name in value.__dataclass_fields__ if name != "__msgtype__")
-        return {name: encode_value(getattr(value, name)) for name in names}
+        return {name: encode_value(getattr(value, name)) for name in attribute_names(value)}
     raise NotEncodable(type(value).__name__)
 
 
