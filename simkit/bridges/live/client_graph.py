@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 
+from simkit import msgs
 from simkit.bridges.live.client_handles import LivePublisher
+from simkit.bridges.live.client_log import LiveLogger
 from simkit.bridges.live.client_servers import (
     LiveAction,
     LiveEndpoint,
@@ -16,7 +19,7 @@ from simkit.bridges.live.client_servers import (
 )
 from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
 from simkit.bridges.live.server_link import ServerLink
-from simkit.errors import ArgumentTypeError
+from simkit.errors import ArgumentTypeError, MessageError
 from simkit.msgs.message_types import Message
 
 DEFAULT_DEPTH = 1000
@@ -48,6 +51,11 @@ class ClientGraph(ServerLink):
     def __init__(self, path: Path, timeout: float = 10.0, node: str | None = None) -> None:
         super().__init__(path, timeout, node)
         self._publishers: dict[str, LivePublisher] = {}
+
+    @cached_property
+    def log(self) -> LiveLogger:
+        """Logger of this node: prints messages of the level INFO and above, and publishes them on `/rosout`."""
+        return LiveLogger(self, self.next_number(), str(self.info["node"]))
 
     def advertise(self, topic: str, type_name: str | None = None, latched: bool = False) -> LivePublisher:
         """Open a topic for publishing.
@@ -132,6 +140,7 @@ class ClientGraph(ServerLink):
             LiveError: a service of that name exists, or the type is unknown.
         """
         check_callback(handler, "handler")
+        self._load_type(f"{type_name}_Request")  # now, because a caller waits for the first request
         opened = LiveService(self, self.next_number(), absolute(name), type_name, handler)
         self._open_endpoint(opened, "offer", {"name": name, "type": type_name})
         return opened
@@ -160,9 +169,22 @@ class ClientGraph(ServerLink):
         check_callback(callback, "callback")
         if on_cancel is not None:
             check_callback(on_cancel, "on_cancel")
+        self._load_type(f"{type_name}_Goal")
         opened = LiveAction(self, self.next_number(), absolute(name), type_name, callback, on_cancel)
         self._open_endpoint(opened, "act", {"name": name, "type": type_name, "cancels": on_cancel is not None})
         return opened
+
+    def _load_type(self, type_name: str) -> None:
+        """Load a type, which may be one that only the simulation knows.
+
+        Raises:
+            MessageError: the type is unknown here and in the simulation.
+        """
+        try:
+            msgs.type_of(type_name)
+        except MessageError:
+            self.request("interfaces", {})  # the answer contains the definitions
+            msgs.type_of(type_name)
 
     def _open_endpoint(self, endpoint: LiveEndpoint, question: str, args: Mapping[str, object]) -> JsonValue:
         """Open an endpoint in the simulation; its first requests may arrive together with the answer."""

@@ -51,7 +51,6 @@ class LiveService(LiveEndpoint):
     def __init__(self, link: ServerLink, number: int, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
         super().__init__(link, number, name, type_name)
         self._handler = handler
-        msgs.type_of(f"{type_name}_Request")  # loaded now, because a caller waits for the first request
 
     def take(self, words: JsonObject, data: bytes) -> None:
         """Queue a request."""

@@ -17,7 +17,9 @@ from simkit.bridges.live.client_endpoints import (
 from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response, count_new_topic
 from simkit.errors import SimkitError
 from simkit.msgs.topic_names import absolute_name
+from simkit.runtime.communication.log_topic import LOG, log_message
 from simkit.runtime.communication.parameter import checked_parameter
+from simkit.runtime.communication.publisher import ROSOUT
 
 E = TypeVar("E", bound=ClientEndpoint)
 _NAME = re.compile(r"(/[A-Za-z0-9_.-]+)+")
@@ -131,6 +133,20 @@ def subscribers(request: Request) -> object:
     return publisher.subscribers
 
 
+def log(request: Request) -> object:
+    """Publish a log message of the client on `/rosout`, with the simulated time and the name of the client."""
+    number, publishers = request.arg("number", int), request.peer.publishers
+    if number not in publishers:
+        number = request.new_number(publishers)
+        publishers[number] = request.sim.communication.bus.advertise(ROSOUT, LOG, latched=True)
+    place = request.arg("file", str), request.arg("function", str), request.arg("line", int)
+    message = log_message(
+        request.peer.node, request.sim.time_ns, request.arg("level", int), request.arg("text", str), *place
+    )
+    publishers[number].publish(message)
+    return None
+
+
 ENDPOINT_REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
     {
         "call": call,
@@ -142,6 +158,7 @@ ENDPOINT_REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
         "declare": declare,
         "close_endpoint": close_endpoint,
         "subscribers": subscribers,
+        "log": log,
     }
 )
 """Handler of each of these requests, by the name that a client sends."""

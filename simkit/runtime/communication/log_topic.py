@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from simkit import msgs
 from simkit.runtime.communication.node_names import node_of
+from simkit.runtime.communication.publisher import KEPT_LOG_MESSAGES, ROSOUT
 from simkit.runtime.communication.subscription import LazyMessage, Message
 
 if TYPE_CHECKING:
@@ -23,10 +24,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
 
-ROSOUT: Final = "/rosout"
 LOG: Final = "rcl_interfaces/msg/Log"
-KEPT_MESSAGES: Final = 1000
-"""Number of messages for later subscribers, as with ROS 2's QoS of the topic."""
 
 _LEVELS: Final = {"error": logging.ERROR, "warning": logging.WARNING, "note": logging.INFO}
 
@@ -64,8 +62,8 @@ class LogTopic:
     def __init__(self, bus: TopicBus, engine: Engine, parameter_node: Callable[[object], str]) -> None:
         self._engine, self._parameter_node = engine, parameter_node
         self._publisher = open_own_topic(bus, ROSOUT, LOG, latched=True)
-        self._publisher.history = self._history = deque[Message](maxlen=KEPT_MESSAGES)
-        self._waiting: deque[_Entry] = deque(maxlen=KEPT_MESSAGES)
+        self._publisher.history = self._history = deque[Message](maxlen=KEPT_LOG_MESSAGES)
+        self._waiting: deque[_Entry] = deque(maxlen=KEPT_LOG_MESSAGES)
         self._thread = threading.get_ident()
         self._is_publishing = False
 
@@ -91,9 +89,8 @@ class LogTopic:
         text = record.getMessage()
         if record.exc_info:
             text = f"{text}\n{logging.Formatter().formatException(record.exc_info)}"
-        level = max(logging.DEBUG, min(logging.CRITICAL, record.levelno // 10 * 10))
         now, function = self._engine.time_ns, record.funcName or ""
-        self._add(_Entry(now, level, owner, text, record.pathname, function, record.lineno))
+        self._add(_Entry(now, record.levelno, owner, text, record.pathname, function, record.lineno))
 
     def _add_diagnostic(self, item: Diagnostic) -> None:
         text = f"{item.code} {item.message}" + (f"; help: {item.hint}" if item.hint else "")
@@ -117,21 +114,35 @@ class LogTopic:
                 self._is_publishing = False
 
     def _message(self, entry: _Entry) -> Message:
-        return msgs.make(
-            LOG,
-            stamp=msgs.time(entry.time_ns),
-            level=entry.level,
-            name=self._logger_name(entry.owner),
-            msg=_valid(entry.text),
-            file=_valid(entry.file),
-            function=_valid(entry.function),
-            line=max(0, entry.line),
-        )
-
-    def _logger_name(self, owner: object) -> str:
-        """Return the name of a node's logger in ROS: `tb3.diff_drive` for the node `/tb3/diff_drive`."""
+        time_ns, level, owner, text, file, function, line = entry
         node = owner if isinstance(owner, str) else self._parameter_node(owner) or node_of(owner)
-        return node.strip("/").replace("/", ".")
+        return log_message(node, time_ns, level, text, file, function, line)
+
+
+def log_message(
+    node: str, time_ns: int, level: int, text: str, file: str = "", function: str = "", line: int = 0
+) -> Message:
+    """Return a message of `/rosout`.
+
+    Args:
+        node: name of the node; the message has the name of its logger in ROS, `tb3.diff_drive` for `/tb3/diff_drive`.
+        time_ns: simulated time [ns].
+        level: level of Python's `logging`.
+        text: text of the message.
+        file: path of the source file that logged the message.
+        function: name of the function that logged the message.
+        line: line in the file.
+    """
+    return msgs.make(
+        LOG,
+        stamp=msgs.time(time_ns),
+        level=max(logging.DEBUG, min(logging.CRITICAL, level // 10 * 10)),
+        name=node.strip("/").replace("/", "."),
+        msg=_valid(text),
+        file=_valid(file),
+        function=_valid(function),
+        line=max(0, line),
+    )
 
 
 def _valid(text: str) -> str:

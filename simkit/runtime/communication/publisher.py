@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 
 from simkit import msgs
 from simkit.msgs.message_arguments import checked_message
@@ -14,6 +14,10 @@ from simkit.runtime.communication.subscription import Callback, LazyMessage, Mes
 if TYPE_CHECKING:
     from simkit.runtime.communication.command_queue import CommandQueue
     from simkit.runtime.communication.subscription import TopicReaders
+
+ROSOUT: Final = "/rosout"
+KEPT_LOG_MESSAGES: Final = 1000
+"""Number of messages of each publisher of `/rosout` for later subscribers, as with ROS 2's QoS of the topic."""
 
 Check = Callable[[], None]
 """Function that raises a SimkitError if an owner cannot make its messages on this machine."""
@@ -190,6 +194,13 @@ class ExternalPublisher(Publisher):
 
     __slots__ = ()
 
+    def __init__(
+        self, bus: PublishingBus, sides: TopicSides, topic: str, type_name: str, latched: bool, owner: object
+    ) -> None:
+        super().__init__(bus, sides, topic, type_name, latched, owner)
+        if latched and topic == ROSOUT:
+            self.history = deque(maxlen=KEPT_LOG_MESSAGES)
+
     def publish(self, message: Message) -> None:
         """Publish a message, or a dict of its fields, and record it in the journal.
 
@@ -197,6 +208,8 @@ class ExternalPublisher(Publisher):
             MessageError: the message does not fit the topic's type.
         """
         message = checked_message(message, (self.type_name,), repr(self.topic))
+        if self.history is not None:
+            self.history.append(message)
         journal = self._bus.journal
         if journal is None:
             super().publish(message)
