@@ -20,6 +20,8 @@ _LIGHT_FIELDS: Final = ("light_pos", "light_dir", "light_active")  # fields that
 
 Lights = Sequence[Vector]
 """Poses and states of the lights of a model at one time."""
+Sphere = tuple[Vector, float]
+"""Centre [m], shape (3,), and radius [m]."""
 
 
 def read_lights(model: mujoco.MjModel) -> Lights:
@@ -94,6 +96,7 @@ def place_directional_lights(
     position: Vector,
     forward: Vector,
     far: float,
+    lit: Sphere | None = None,
 ) -> None:
     """Move directional lights so that their shadow maps cover the visible part of the scene.
 
@@ -108,6 +111,7 @@ def place_directional_lights(
         position: position of the camera in the world [m], shape (3,).
         forward: direction of the view, shape (3,).
         far: far clip plane [m].
+        lit: sphere that the maps cover; None for the scene or the part ahead of the camera.
     """
     suns = [li for li in scene.lights[: scene.nlight] if li.type == _DIRECTIONAL and not li.headlight and li.castshadow]
     if not suns:
@@ -115,6 +119,8 @@ def place_directional_lights(
     extent, middle = float(model.stat.extent), np.asarray(model.stat.center)
     reach = min(extent, _REACH, far / 2)
     is_whole = reach >= extent
+    if lit is not None:
+        middle, reach, is_whole = lit[0], min(lit[1], far / 2), True
     context.shadowClip = reach
     if not is_whole:
         middle = position + 0.8 * reach * forward

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from typing import Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.compiler.geom_groups import VISUAL
 from simkit.compiler.name_map import LinkBinding
 from simkit.pose import Vector
 from simkit.runtime import Simulation
 from simkit.sensors.cameras.rendering import render_thread
-from simkit.sensors.cameras.rendering.renderer import renderer_of
+from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere
+from simkit.sensors.cameras.rendering.renderer import Composition, renderer_of
 from simkit.sensors.cameras.rendering.view import Colours, Shot, View, look_at
 from simkit.sensors.values_with_expiry import temporary_values
 
+Distances = npt.NDArray[np.float32]
+_DIRECTIONAL: Final = int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
+_R2: Final = np.array((0.7548776662466927, 0.5698402909980532))  # steps of a sequence that fills a square evenly
+_GOLDEN_ANGLE: Final = 2.399963229728653  # [rad] steps of a spiral that fills a disc evenly
+_SUN_RADIUS: Final = 0.035  # [rad] of the disc of lights: half a shade of 7 cm behind an edge 1 m away
 _DARKEST: Final = 0.12
 """Least brightest channel of a drawn colour. Images are not encoded in sRGB, like those of Gazebo Classic. Images of gz
 Sim are encoded: Create 3 has the colour 3/255 and is dark grey there. Without this limit, a black model would be a
@@ -33,8 +42,15 @@ def render_view(
     target: Vector | None = None,
     vertical_fov: float = 0.8,
     decorate: Callable[[mujoco.MjvScene], None] | None = None,
+    quality: str = "",
+    passes: int = 1,
+    lit: Sphere | None = None,
+    distances: Distances | None = None,
 ) -> Colours:
     """Draw an image of the simulation in its current state.
+
+    Several passes give soft shadows and smooth edges: each pass moves the image by a part of a pixel, and the
+    directional lights within a small disc. The result is the mean of all passes.
 
     Args:
         sim: simulation to draw.
@@ -44,6 +60,11 @@ def render_view(
         target: point in the middle of the image [m]; by default the middle of the scene.
         vertical_fov: opening angle [rad].
         decorate: function that is called with the `MjvScene`, to add geoms.
+        quality: fast, gazebo or high; empty for the quality of the world, with the renderer of the cameras.
+        passes: number of passes.
+        lit: sphere that shadows of directional lights cover; by default as for a camera.
+        distances: array that receives the distances along the line of sight [m], shape (height, width); infinite where
+            nothing is drawn.
 
     Returns:
         Colours, rows from the top, shape (height, width, 3).
@@ -67,15 +88,44 @@ def render_view(
         if decorate is not None:
             decorate(scene)
 
-    renderer = renderer_of(sim)
+    renderer = renderer_of(sim, quality)
     data = sim.engine.physics.fresh()
     with temporary_values(model.geom_group, _collisions_to_draw(sim), VISUAL), _visible_colours(model):
-        composition = renderer.composer.compose(model, data, position, look_at(position, middle), prepare)
+        composition = renderer.composer.compose(
+            model, data, position, look_at(position, middle), prepare, smooth=passes == 1
+        )
+    composition.lit = lit
     render_thread.drain()  # the render thread uses the same buffers
-    colours = renderer.draw(composition, Shot(view)).colours
+    total = np.zeros((height, width, 3), np.float32)
+    nearest = np.zeros((height, width), np.float32)  # raw: 0 is nothing, 1 the near plane
+    for shifted in _passes(composition, view, passes):
+        drawn = renderer.draw(composition, Shot(shifted, depth=distances is not None))
+        assert drawn.colours is not None
+        total += drawn.colours
+        if drawn.depths is not None:
+            np.maximum(nearest, drawn.depths, out=nearest)
     renderer.composer.give_back(composition)
-    assert colours is not None
-    return colours.copy()
+    if distances is not None:
+        near, far = view.near, view.far
+        distances[:] = np.where(nearest > 0.0, near * far / (near + nearest * (far - near)), np.inf)
+    return np.rint(total / passes).astype(np.uint8)
+
+
+def _passes(composition: Composition, view: View, count: int) -> Iterator[View]:
+    """Yield the view of each pass, with the directional lights moved within a disc; restore them at the end."""
+    scene = composition.scene
+    suns = [light for light in scene.lights[: scene.nlight] if light.type == _DIRECTIONAL and not light.headlight]
+    directions = [np.array(light.dir, dtype=np.float64) for light in suns]
+    for number in range(count):
+        across, up = (_R2 * number + 0.5) % 1.0 - 0.5 if count > 1 else (0.0, 0.0)
+        turn, radius = _GOLDEN_ANGLE * number, _SUN_RADIUS * math.sqrt(number / count)
+        for light, direction in zip(suns, directions, strict=True):
+            axes = look_at(np.zeros(3), direction)
+            light.dir = direction + radius * (math.cos(turn) * axes[:, 1] + math.sin(turn) * axes[:, 2])
+        x, y = across * (view.right - view.left) / view.width, up * (view.top - view.bottom) / view.height
+        yield replace(view, left=view.left + x, right=view.right + x, bottom=view.bottom + y, top=view.top + y)
+    for light, direction in zip(suns, directions, strict=True):
+        light.dir = direction
 
 
 def _collisions_to_draw(sim: Simulation) -> list[int]:

@@ -241,7 +241,9 @@ class Renderer:
                         mujoco.mjr_readPixels(None, depths, rectangle, context)
                     return DrawnView(view, None, depths[::-1])
                 if self._appearance.quality.shadow_map:
-                    place_directional_lights(scene, context, composition.model, position, rotation[:, 0], view.far)
+                    place_directional_lights(
+                        scene, context, composition.model, position, rotation[:, 0], view.far, composition.lit
+                    )
                     fit_shadow_maps(context)
                 self._render(scene, context, rectangle, hidden, glassy)
                 is_masked = not glassy and self._can_paint_background(composition.model)
@@ -332,27 +334,32 @@ class Renderer:
 # ---------------------------------------------------------------------- one renderer per simulation
 
 
-_renderers: weakref.WeakKeyDictionary[Simulation, Renderer] = weakref.WeakKeyDictionary()
+_renderers: weakref.WeakKeyDictionary[Simulation, dict[str, Renderer]] = weakref.WeakKeyDictionary()
 _abandoned: list[Renderer] = []
 """Renderers of simulations that were not closed. A finalizer does not free them: it would wait, and lose interrupts."""
 
 
-def renderer_of(sim: Simulation) -> Renderer:
-    """Return the renderer of a simulation, which all its cameras share."""
-    found = _renderers.get(sim)
-    if found is None:
+def renderer_of(sim: Simulation, quality: str = "") -> Renderer:
+    """Return the renderer of a simulation at a quality; all its cameras share the one of the world's quality.
+
+    Args:
+        sim: simulation to draw.
+        quality: fast, gazebo or high; empty for the quality of the world.
+    """
+    by_quality = _renderers.setdefault(sim, {})
+    name = quality or sim.world.quality
+    if name not in by_quality:
         while _abandoned:
             _free_quietly(_abandoned.pop())
-        found = _renderers[sim] = Renderer(Appearance.of(sim.world))
+        found = by_quality[name] = Renderer(Appearance(sim.world.surroundings, QUALITIES[name]))
         weakref.finalize(sim, _abandoned.append, found).atexit = False
-    return found
+    return by_quality[name]
 
 
 def free_renderer(sim: Simulation) -> None:
     """Free the graphics memory of a simulation that closes."""
-    found = _renderers.pop(sim, None)
-    if found is not None:
-        _free_quietly(found)
+    for renderer in _renderers.pop(sim, {}).values():
+        _free_quietly(renderer)
 
 
 def _free_quietly(renderer: Renderer) -> None:

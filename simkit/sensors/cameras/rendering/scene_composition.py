@@ -13,7 +13,7 @@ import numpy as np
 
 from simkit.compiler.geom_groups import DRAWN_COLLISION, VISUAL
 from simkit.pose import Vector
-from simkit.sensors.cameras.rendering.lights_and_shadows import convert_point_lights, keep_strongest_lights
+from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere, convert_point_lights, keep_strongest_lights
 from simkit.sensors.cameras.rendering.transparency import DRAWN_HERE
 from simkit.sensors.cameras.rendering.view import Shot, View
 from simkit.sensors.cameras.rendering.view_culling import Bounds, bounds_of
@@ -40,17 +40,19 @@ class Composition:
         rotation: rotation matrix of the sensor's frame (x forward, y left, z up), shape (3, 3).
         smooth: True draws smooth edges if the quality has several samples per pixel.
         glassy: indices of transparent shapes in the list.
+        lit: sphere that shadows of directional lights cover; None for the scene or the part ahead of the camera.
         planes: indices of planes in the list, which are invisible from behind.
         bounds: bounds of the shapes; None if they are unknown, or if invisible shapes cast shadows.
     """
 
-    __slots__ = ("bounds", "glassy", "is_spare", "model", "planes", "position", "rotation", "scene", "smooth")
+    __slots__ = ("bounds", "glassy", "is_spare", "lit", "model", "planes", "position", "rotation", "scene", "smooth")
 
     def __init__(self, model: mujoco.MjModel, scene: mujoco.MjvScene, position: Vector, rotation: Vector) -> None:
         self.model, self.scene, self.position, self.rotation = model, scene, position, rotation
         self.smooth = self.is_spare = True
         self.bounds: Bounds | None = None
         self.glassy: list[int] = []
+        self.lit: Sphere | None = None
         self.planes: list[int] = []
 
     def pose_of(self, shot: Shot) -> tuple[Vector, Vector]:

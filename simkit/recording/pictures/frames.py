@@ -1,0 +1,142 @@
+"""Drawing of one picture or video frame: the scene, its backdrop and the marks over it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simkit.recording.pictures.camera import VERTICAL_FOV, Camera, frame_points, line_of_sight
+from simkit.recording.pictures.overlay import Colours, Distances, Marks, Points, draw_overlay
+from simkit.recording.pictures.subject import Subject
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+Render = Callable[..., Colours]
+"""Function that draws a view of a simulation: `render_view` of the cameras' `overview_image`."""
+
+SOFT_PASSES: Final = 16
+"""Passes of a picture with soft shadows and smooth edges: 1.2 s at 1280 × 800 without a graphics card."""
+_TRIAL: Final = (192, 120)  # [px] size of the images that compare viewpoints
+_ENOUGH: Final = 0.1  # a viewpoint is taken if it shows at most this share less than the best one
+_FLAT, _TALL = 0.12, 0.7  # height of a subject, relative to its width, that is seen steeply or from the side
+_STEEP, _LEVEL = math.radians(50), math.radians(20)
+_AZIMUTHS: Final = tuple(math.radians(turn) for turn in (0, 90, -90, 180))
+_TOP: Final = (math.radians(65), math.radians(82))
+
+
+@dataclass(frozen=True)
+class Look:
+    """Size and quality of pictures.
+
+    Attributes:
+        width, height: size of the image [px].
+        quality: fast, gazebo or high.
+        passes: passes of a picture; 1 gives hard shadows.
+        backdrop: True shades an empty background.
+    """
+
+    width: int = 1280
+    height: int = 800
+    quality: str = "gazebo"
+    passes: int = SOFT_PASSES
+    backdrop: bool = True
+
+
+def draw_frame(sim: Simulation, render: Render, camera: Camera, look: Look, marks: Marks, subject: Subject) -> Colours:
+    """Draw the present state of a simulation with all marks.
+
+    Raises:
+        RenderError: SK-RENDER-001 there is no renderer.
+    """
+    distances = np.full((look.height, look.width), np.inf, dtype=np.float32)
+    colours = render(
+        sim,
+        look.width,
+        look.height,
+        eye=camera.eye,
+        target=camera.target,
+        vertical_fov=VERTICAL_FOV,
+        quality=look.quality,
+        passes=look.passes if look.quality != "fast" else 4 if look.passes > 1 else 1,
+        lit=_lit_sphere(subject),
+        distances=distances,
+    )
+    surroundings = sim.world.surroundings
+    if look.backdrop and not surroundings.sky and surroundings.fog is None:
+        colours = _shade_backdrop(colours, distances)
+    return draw_overlay(colours, distances, camera.resized(look.width, look.height), marks)
+
+
+def choose_camera(sim: Simulation, render: Render, subject: Subject, look: Look) -> Camera:
+    """Return the camera that shows most of a subject, among several viewpoints.
+
+    A tall subject is seen from the side, a flat one from above. Small images of all viewpoints tell how much of the
+    robots, scans and paths is hidden behind walls.
+    """
+    best: tuple[float, Camera] | None = None
+    cameras = [frame_points(subject.points, view, look.width, look.height) for view in _views(subject)]
+    if not len(subject.centres) and not len(subject.traces):
+        return cameras[0]
+    shares = [_visible_share(sim, render, camera, subject) for camera in cameras]
+    for share, camera in zip(shares, cameras, strict=True):
+        if best is None or share > best[0] + _ENOUGH:
+            best = share, camera
+    assert best is not None
+    return best[1]
+
+
+def _views(subject: Subject) -> Iterator[Points]:
+    """Yield lines of sight, the preferred one first."""
+    span = np.ptp(subject.points, axis=0)
+    ratio = float(span[2] / max(math.hypot(span[0], span[1]), 1e-9))
+    share = min(max((ratio - _FLAT) / (_TALL - _FLAT), 0.0), 1.0)
+    elevation = _STEEP + share * (_LEVEL - _STEEP)
+    # a robot alone is seen from its front, a scene from the side that maps have below
+    front = subject.heading + math.radians(-40) if not len(subject.traces) and not len(subject.room) else None
+    azimuth = math.radians(-127) if front is None else front
+    for rise in (elevation, *(top for top in _TOP if top > elevation + 0.1)):
+        for turn in _AZIMUTHS:
+            yield line_of_sight(azimuth + turn, rise)
+
+
+def _visible_share(sim: Simulation, render: Render, camera: Camera, subject: Subject) -> float:
+    """Return the share of robots (half of the weight) and of traces that a camera sees."""
+    width, height = _TRIAL
+    small = camera.resized(width, height)
+    distances = np.full((height, width), np.inf, dtype=np.float32)
+    render(
+        sim, width, height, eye=camera.eye, target=camera.target, vertical_fov=VERTICAL_FOV, quality="fast",
+        distances=distances,
+    )  # fmt: skip
+    radius = float(np.linalg.norm(np.ptp(subject.robots, axis=0))) / 2 if len(subject.robots) else 0.0
+    shares = []
+    for points, slack in ((subject.centres, min(radius, 1.0)), (subject.traces, 0.02 * camera.distance)):
+        if len(points):
+            pixels, depth = small.project(points[:: max(1, len(points) // 200)])
+            column = np.clip(np.rint(pixels[:, 0]), 0, width - 1).astype(int)
+            row = np.clip(np.rint(pixels[:, 1]), 0, height - 1).astype(int)
+            shares.append(float((depth <= distances[row, column] + slack).mean()))
+    return sum(shares) / len(shares)
+
+
+def _lit_sphere(subject: Subject) -> tuple[Points, float]:
+    """Return the sphere that shadow maps cover: the subject and the ground beside it."""
+    points = subject.points
+    low, high = points.min(axis=0), points.max(axis=0)
+    return (low + high) / 2, max(0.9 * float(np.linalg.norm(high - low)), 0.05)
+
+
+def _shade_backdrop(colours: Colours, distances: Distances) -> Colours:
+    """Shade the empty pixels from light at the top to dark at the bottom."""
+    is_empty = ~np.isfinite(distances)
+    if not is_empty.any():
+        return colours
+    shade: NDArray[np.float64] = np.linspace(1.12, 0.86, colours.shape[0])[:, None, None]
+    shaded = np.clip(colours * shade, 0, 255).astype(np.uint8)
+    return np.where(is_empty[:, :, None], shaded, colours)
