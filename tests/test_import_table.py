@@ -61,6 +61,7 @@ FRONT = {"__init__", "__main__"}
 
 HEAVY = {
     "action_msgs": "only the Python of ROS has it",
+    "av": "optional: the extra `video`",
     "cbor2": "optional: the extra `rosbridge`",
     "coacd": "optional: the extra `decompose`",
     "cv2": "0.1 s",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer import Argument, Option
 
-from simkit.cli.run_session import check_renderer
+from simkit.cli.run_pictures import check_renderer
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console

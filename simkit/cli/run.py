@@ -16,7 +16,7 @@ from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
 from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.gazebo_options import remove_gazebo_options
 from simkit.cli.run_options import RunDisplay, load_options
-from simkit.cli.terminal import options, ros_options, web_options
+from simkit.cli.terminal import film_options, options, ros_options, web_options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, report_errors_and_json
 from simkit.cli.terminal.options import option
@@ -131,6 +131,11 @@ def run(
     strict: options.Strict = False,
     view: Annotated[bool, Option("--view", help="Show the run in a viewer window.")] = False,
     picture: Annotated[Path | None, option("Picture of the end to write, with path and scan.", "OUT.png")] = None,
+    gif: film_options.Gif = None,
+    video: film_options.Video = None,
+    resolution: film_options.Resolution = None,
+    fps: film_options.Fps = None,
+    camera: film_options.FilmCamera = "auto",
     cmd_vel: options.CmdVel = None,
     script: options.Script = None,
     play: Annotated[Path | None, option("Bag with commands, which are played at their ticks.", "BAG")] = None,
@@ -161,6 +166,8 @@ def run(
     rosbridge: web_options.Rosbridge = None,
 ) -> int:
     """Run a world without a window, as fast as possible."""
+    from simkit.recording.film import film_options as read_film_options
+
     policy, checks = _on_error(on_plugin_error), tuple(Check("final", expression=e, where="--assert") for e in assert_)
     loading = load_options(
         resource_path, package_path, xacro_arg, base, plugin_path, params_file, on_error=policy, strict=strict
@@ -192,8 +199,9 @@ def run(
     key_timeout = _timeout(key_timeout)
     bridge = ros_options.run_ros_options(ros, ros_python, ros_domain, ros_namespace, ros_network, ros_args)
     servers = web_options.web_options(foxglove=foxglove, rosbridge=rosbridge)
+    film = read_film_options(gif, video, resolution, fps, camera)
     display = RunDisplay(
-        view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure, bridge, servers
+        view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure, bridge, servers, film
     )
     return execute(spec, display)
 
@@ -253,7 +261,8 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
     from simkit.bridges import viewer
     from simkit.build import load
     from simkit.cli.run_bridges import open_bridges
-    from simkit.cli.run_session import Session, check_keyboard, check_renderer
+    from simkit.cli.run_pictures import check_renderer
+    from simkit.cli.run_session import Session, check_keyboard
     from simkit.cli.run_verdict import RunVerdict
     from simkit.recording import run_picture
     from simkit.recording.bags import writer
@@ -262,6 +271,7 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
         writer.check_target(spec.recording.path, overwrite=spec.recording.overwrite)
     if display.picture is not None:
         run_picture.check_target(display.picture)
+    if display.picture is not None or display.film is not None:
         check_renderer()
     if display.view:
         viewer.check_possible()

@@ -15,6 +15,7 @@ from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 if TYPE_CHECKING:
     from simkit.bridges.ros.bridge_process import RosOptions
     from simkit.bridges.web.web_process import WebOptions
+    from simkit.recording.film import FilmOptions
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,7 @@ class RunDisplay:
     Attributes:
         view: True to open a viewer window.
         picture: file for a picture of the scene at the end.
+        film: options of a GIF or video of the run; None for none.
         teleop: topic for the keyboard's velocities; empty for the world's only velocity topic, None for no keyboard.
         key_timeout: simulated time without a key after which driving stops [s].
         verbose: True to print every note.
@@ -46,6 +48,7 @@ class RunDisplay:
     bundles: Path | None = None
     ros: RosOptions | None = None
     web_servers: tuple[WebOptions, ...] = ()
+    film: FilmOptions | None = None
 
 
 def load_options(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from simkit.cli.run_bridges import start_bridges
 from simkit.cli.run_loop import Interrupts, RunLoop
 from simkit.cli.run_options import RunDisplay
+from simkit.cli.run_pictures import draw_picture, film_run
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from simkit.recording.bags.playback import Playback
     from simkit.recording.bags.recorder import Recorder
     from simkit.recording.command_script import Command
-    from simkit.recording.run_picture import DrivenPath
     from simkit.recording.topic_counts import TopicCount, TopicCounter
     from simkit.runtime import Simulation
 
@@ -81,27 +81,6 @@ def _topic_dict(row: TopicCount) -> JsonObject:
         "messages": row.count if row.counted else None,
         "rate": row.rate() if row.counted else None,
     }
-
-
-def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
-    """Draw the scene at the end, with the driven path."""
-    from simkit.recording.run_picture import save_picture
-    from simkit.sensors.cameras.rendering.overview_image import render_view
-
-    save_picture(sim, path, render_view, driven)
-    stdout_console().print(f"picture {path}")
-    add_to_report(picture=str(path))
-
-
-def check_renderer() -> None:
-    """Check before a run whether its picture can be drawn.
-
-    Raises:
-        RenderError: SK-RENDER-001 there is no renderer.
-    """
-    from simkit.sensors.cameras.rendering.gl_context import ensure_open
-
-    ensure_open()
 
 
 def note_missing_renderer(sim: Simulation) -> None:
@@ -194,7 +173,7 @@ class Session:
         if duration is None:
             print_status(_endless_text(spec))
         conditions = self.verdict.watch(sim, duration)
-        driven = DrivenPath(sim) if display.picture is not None else None
+        driven = DrivenPath(sim) if display.picture is not None or display.film is not None else None
         with ExitStack() as stack:
             if played is not None:
                 stack.enter_context(played)
@@ -213,6 +192,7 @@ class Session:
             loop = RunLoop(sim, commands, interrupts, watchers, rtf=spec.pace, follow=driven is not None)
             if played is not None:
                 loop.senders.append(played)
+            film = stack.enter_context(film_run(sim, display.film, driven, loop.senders))
             if display.view:
                 self._open_viewer(stack, loop, watchers)
             if keyboard is not None:
@@ -226,6 +206,7 @@ class Session:
             advance = self._watched(loop, interrupts, watchers) if display.watch else loop.run
             try:
                 advance(duration)
+                film()
             except BaseException as error:
                 self.verdict.end(error, "")
                 raise

@@ -64,7 +64,7 @@ def draw_frame(sim: Simulation, render: Render, camera: Camera, look: Look, mark
         vertical_fov=VERTICAL_FOV,
         quality=look.quality,
         passes=look.passes if look.quality != "fast" else 4 if look.passes > 1 else 1,
-        lit=_lit_sphere(subject),
+        lit=_lit_sphere(subject, camera),
         distances=distances,
     )
     surroundings = sim.world.surroundings
@@ -125,11 +125,12 @@ def _visible_share(sim: Simulation, render: Render, camera: Camera, subject: Sub
     return sum(shares) / len(shares)
 
 
-def _lit_sphere(subject: Subject) -> tuple[Points, float]:
-    """Return the sphere that shadow maps cover: the subject and the ground beside it."""
+def _lit_sphere(subject: Subject, camera: Camera) -> tuple[Points, float]:
+    """Return the sphere that shadow maps cover: the subject and the ground beside it, or the part near the camera."""
     points = subject.points
     low, high = points.min(axis=0), points.max(axis=0)
-    return (low + high) / 2, max(0.9 * float(np.linalg.norm(high - low)), 0.05)
+    whole, near = max(0.9 * float(np.linalg.norm(high - low)), 0.05), 1.2 * camera.distance
+    return ((low + high) / 2, whole) if whole <= near else (camera.target, near)
 
 
 def _shade_backdrop(colours: Colours, distances: Distances) -> Colours:

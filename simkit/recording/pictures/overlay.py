@@ -31,6 +31,8 @@ _SCAN: Final[Colour] = (235, 45, 40)
 _GOAL: Final[Colour] = (20, 160, 60)
 _INK: Final[Colour] = (32, 36, 40)
 _PAPER: Final[Colour] = (255, 255, 255)
+MARK_COLOURS: Final = (*_PATHS, _SCAN, _GOAL, _INK, _PAPER)
+"""All colours of marks and words."""
 _FAINT: Final = 0.3  # opacity of parts behind an object
 _SHIFT: Final = 4  # fractional bits of OpenCV's coordinates
 _REFERENCE: Final = 800.0  # [px] height of an image whose lines have the widths below

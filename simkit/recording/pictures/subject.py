@@ -21,7 +21,8 @@ Points = NDArray[np.float64]
 SCANNERS: Final = frozenset({"ray", "gpu_ray", "lidar", "gpu_lidar"})
 _CORNERS: Final = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
 _FLAT: Final = 0.02  # height of a floor, relative to its width
-_ROOM: Final = 1.8  # size of a room that is shown whole, relative to the robots with their scans and paths
+ROOM: Final = 1.8
+"""Size of a room that is shown whole, relative to the robots with their scans and paths."""
 _LEAST: Final = 1e-3  # [m] size of a subject that is a point
 
 
@@ -49,12 +50,13 @@ class Subject:
         return np.concatenate((self.robots, self.traces, self.room))
 
 
-def find_subject(sim: Simulation, traces: list[Points]) -> Subject:
+def find_subject(sim: Simulation, traces: list[Points], room_size: float = ROOM) -> Subject:
     """Return what a picture of a simulation shows.
 
     Args:
         sim: simulation to show.
         traces: points of scans, paths and goals [m].
+        room_size: largest size of a room that is shown whole, relative to the other points.
     """
     moving, fixed = _drawn_geoms(sim)
     boxes = _box_corners(sim, moving)
@@ -62,7 +64,7 @@ def find_subject(sim: Simulation, traces: list[Points]) -> Subject:
     walls = _without_floors(_box_corners(sim, fixed))
     found = np.concatenate((boxes.reshape(-1, 3), seen))
     room = walls.reshape(-1, 3)
-    if len(found) and (not len(room) or _size(np.concatenate((found, room))) > _ROOM * _size(found)):
+    if len(found) and (not len(room) or _size(np.concatenate((found, room))) > room_size * _size(found)):
         room = np.zeros((0, 3))
     if not len(found) and not len(room):
         middle, radius = np.array(sim.mj_model.stat.center), max(float(sim.mj_model.stat.extent) / 4, _LEAST)

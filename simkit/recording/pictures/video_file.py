@@ -1,0 +1,158 @@
+"""Files of moving pictures: GIF with Pillow, MP4 and WebM with PyAV.
+
+PyAV encodes inside the process. A separate encoder program would receive Ctrl-C too, and leave a file without an index.
+"""
+
+from __future__ import annotations
+
+import itertools
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simkit.errors import InputError
+from simkit.recording.pictures.overlay import MARK_COLOURS
+
+Colours = NDArray[np.uint8]
+
+VIDEO_SUFFIXES: Final = (".mp4", ".webm")
+_CODECS: Final = {
+    # H.264 and VP9 play in every browser; presets are fast, because the pictures take most of the time
+    ".mp4": ("libx264", {"crf": "21", "preset": "veryfast"}, {"movflags": "+faststart"}),
+    ".webm": ("libvpx-vp9", {"crf": "31", "b": "0", "deadline": "realtime", "cpu-used": "6", "row-mt": "1"}, {}),
+}
+_GIF_COLOURS: Final = 120  # of the first frame
+_CUBE: Final = tuple(itertools.product((0, 64, 128, 191, 255), repeat=3))  # colours that may appear later
+_GIF_UNIT: Final = 10  # [ms] unit of the durations in a GIF file
+
+
+class FrameFile(Protocol):
+    """File that takes frames."""
+
+    def take(self, frame: Colours) -> None:
+        """Add a frame, shape (height, width, 3)."""
+        ...
+
+    def close(self) -> None:
+        """Complete the file; a second call does nothing."""
+        ...
+
+
+def check_video_target(path: Path, option: str, suffixes: tuple[str, ...]) -> None:
+    """Check before a run whether its video can be written.
+
+    Raises:
+        InputError: SK-CLI-053 the suffix is not supported, the folder does not exist, or PyAV is not installed.
+    """
+    expected = " or ".join(suffixes)
+    if path.suffix.lower() not in suffixes:
+        found = path.suffix or "no suffix"
+        raise InputError(f"SK-CLI-053 {option} {path}: found {found}; expected {expected}", "SK-CLI-053")
+    if not path.absolute().parent.is_dir():
+        raise InputError(f"SK-CLI-053 {option} {path}: folder {path.absolute().parent} does not exist", "SK-CLI-053")
+    if path.suffix.lower() != ".gif":
+        _import_av()
+
+
+def open_video(path: Path, rate: Fraction) -> FrameFile:
+    """Open a file for frames: `.gif`, `.mp4` or `.webm`.
+
+    Args:
+        path: file to write.
+        rate: frames per second of simulated time [Hz].
+    """
+    return GifFile(path, rate) if path.suffix.lower() == ".gif" else VideoFile(path, rate)
+
+
+def _import_av() -> Any:
+    try:
+        import av
+    except ImportError as error:
+        text = (
+            f"SK-CLI-053 videos need the package av ({error})\n"
+            "    help: pip install 'simkit-robotics[video]', or write a GIF with --gif OUT.gif"
+        )
+        raise InputError(text, "SK-CLI-053") from None
+    return av
+
+
+class VideoFile:
+    """Writer of an MP4 or WebM file.
+
+    Args:
+        path: file to write.
+        rate: frames per second [Hz].
+    """
+
+    def __init__(self, path: Path, rate: Fraction) -> None:
+        self._av = _import_av()
+        self._path, self._rate = path, rate
+        self._container: Any = None
+        self._stream: Any = None
+
+    def take(self, frame: Colours) -> None:
+        """Add a frame; all frames have the size of the first one, without an odd last row or column."""
+        height, width = (size - size % 2 for size in frame.shape[:2])
+        if self._container is None:
+            self._open(width, height)
+        picture = self._av.VideoFrame.from_ndarray(np.ascontiguousarray(frame[:height, :width]), format="rgb24")
+        for packet in self._stream.encode(picture):
+            self._container.mux(packet)
+
+    def close(self) -> None:
+        """Write the last frames and the index."""
+        container, self._container = self._container, None
+        if container is None:
+            return
+        for packet in self._stream.encode():
+            container.mux(packet)
+        container.close()
+
+    def _open(self, width: int, height: int) -> None:
+        codec, options, settings = _CODECS[self._path.suffix.lower()]
+        try:
+            self._container = self._av.open(str(self._path), "w", options=settings)
+        except OSError as error:
+            raise InputError(f"SK-CLI-053 cannot write {self._path}: {error.strerror}", "SK-CLI-053") from None
+        self._stream = self._container.add_stream(codec, rate=self._rate, options=options)
+        self._stream.width, self._stream.height, self._stream.pix_fmt = width, height, "yuv420p"
+
+
+class GifFile:
+    """Writer of a GIF file, which repeats for ever. All frames have the colours of the first one and those of marks.
+
+    Args:
+        path: file to write.
+        rate: frames per second [Hz]; the file has durations in units of 10 ms.
+    """
+
+    def __init__(self, path: Path, rate: Fraction) -> None:
+        self._path, self._rate = path, rate
+        self._frames: list[Any] = []
+        self._palette: Any = None
+
+    def take(self, frame: Colours) -> None:
+        """Add a frame."""
+        from PIL import Image
+
+        picture = Image.fromarray(frame)
+        if self._palette is None:
+            own = picture.quantize(_GIF_COLOURS).getpalette() or []
+            self._palette = Image.new("P", (1, 1))
+            self._palette.putpalette([*own[: 3 * _GIF_COLOURS], *itertools.chain(*MARK_COLOURS, *_CUBE)])
+        self._frames.append(picture.quantize(palette=self._palette, dither=Image.Dither.NONE))
+
+    def close(self) -> None:
+        """Write the file."""
+        frames, self._frames = self._frames, []
+        if not frames:
+            return
+        ends = [round(n * 1000 / _GIF_UNIT / self._rate) * _GIF_UNIT for n in range(len(frames) + 1)]
+        durations = [max(end - start, _GIF_UNIT) for start, end in itertools.pairwise(ends)]
+        try:
+            frames[0].save(self._path, save_all=True, append_images=frames[1:], duration=durations, loop=0)
+        except OSError as error:
+            raise InputError(f"SK-CLI-053 cannot write {self._path}: {error.strerror}", "SK-CLI-053") from None
