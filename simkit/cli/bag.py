@@ -1,4 +1,4 @@
-"""Command `simkit bag`: describe, recover, plot, export, play and record bags."""
+"""Command `simkit bag`: describe, recover, plot, film, export, play and record bags."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import typer
 from typer import Option
 
 from simkit.cli.bag_record import record
+from simkit.cli.bag_video import video
 from simkit.cli.plot_sources import PlotRequest, draw_chart, is_bag, split_sources_and_fields
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument, option
@@ -173,7 +174,7 @@ def _play_once(
     return count
 
 
-bag = typer.Typer(help="Record, describe, play, export and recover bags.", no_args_is_help=True)
+bag = typer.Typer(help="Record, describe, play, film, export and recover bags.", no_args_is_help=True)
 
 
 @bag.command()
@@ -203,6 +204,7 @@ bag.command()(record)
 bag.command()(play)
 bag.command()(plot)
 bag.command()(export)
+bag.command()(video)
 
 
 @bag.command()

@@ -34,7 +34,7 @@ COMMANDS = {
     "golden": "Record and compare golden runs (reference sensor outputs).",
     "bundle": "Run a world or scenario and pack it into a repeatable bundle.",
     "replay": "Repeat the run in a bundle and compare the results bit by bit.",
-    "bag": "Record, describe, play, export and recover bags.",
+    "bag": "Record, describe, play, film, export and recover bags.",
     "plot": "Plot fields of bags, worlds and scenarios over time.",
     "motion": "List and play the named motions of a robot.",
     "plugin": "List, describe and create plugins.",

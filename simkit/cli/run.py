@@ -166,7 +166,7 @@ def run(
     rosbridge: web_options.Rosbridge = None,
 ) -> int:
     """Run a world without a window, as fast as possible."""
-    from simkit.recording.film import film_options as read_film_options
+    from simkit.recording.films.film import film_options as read_film_options
 
     policy, checks = _on_error(on_plugin_error), tuple(Check("final", expression=e, where="--assert") for e in assert_)
     loading = load_options(

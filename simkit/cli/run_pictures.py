@@ -12,7 +12,7 @@ from simkit.cli.terminal.json_report import add_to_report
 from simkit.cli.terminal.output import stdout_console
 
 if TYPE_CHECKING:
-    from simkit.recording.film import FilmOptions
+    from simkit.recording.films.film import FilmOptions
     from simkit.recording.run_picture import DrivenPath
     from simkit.runtime import Simulation
 
@@ -56,7 +56,7 @@ def film_run(
     if options is None or driven is None:
         yield lambda: None
         return
-    from simkit.recording.film import Film
+    from simkit.recording.films.film import Film
     from simkit.sensors.cameras.rendering.overview_image import render_view
 
     film = Film(sim, options, render_view, driven)

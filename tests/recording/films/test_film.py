@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import subprocess
@@ -15,9 +14,13 @@ import pytest
 
 import simkit
 from simkit.errors import InputError, RenderError
-from simkit.recording.film import Film, FilmOptions, film_options
+from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording.bags.recorder import Recorder
+from simkit.recording.films.film import Film, FilmOptions, film_bag, film_options
 from simkit.recording.run_picture import DrivenPath
+from simkit.runtime.engine.snapshot import state_hash
 from simkit.sensors.cameras.rendering.gl_context import ensure_open
+from simkit.sensors.cameras.rendering.overview_image import render_view
 
 WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="rover"><link name="body">
   <visual name="v"><geometry><box><size>0.4 0.2 0.1</size></box></geometry></visual></link></model></world></sdf>"""
@@ -89,20 +92,22 @@ def test_a_video_has_all_frames_at_the_asked_rate(tmp_path: Path, name: str, cod
 
 
 def test_a_film_changes_no_bit_of_the_run(tmp_path: Path, renderer: None) -> None:
-    hashes = []
+    lidar = """<sensor name="eye" type="gpu_lidar"><update_rate>10</update_rate><topic>scan</topic><lidar><scan><horizontal>
+      <samples>9</samples><min_angle>-3</min_angle><max_angle>3</max_angle></horizontal></scan><range><min>0.05</min>
+      <max>10</max></range><noise><type>gaussian</type><stddev>0.1</stddev></noise></lidar></sensor></link>"""
+    ends = []
     for is_filmed in (False, True):
-        arguments = ["--gif", str(tmp_path / "out.gif"), "--fps", "20", "--resolution", "64x48"] if is_filmed else []
-        found = run("turtlebot3_world", "--duration", "0.3", "--cmd-vel", "0.2,0.1", "--json", *arguments)
-        report = json.loads(found.stdout)
-        hashes.append(report["state"])
-        assert report.get("film") == ({"files": [str(tmp_path / "out.gif")], "frames": 7} if is_filmed else None)
-    assert hashes[0] == hashes[1]
-
-
-def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "simkit", "run", *arguments], capture_output=True, text=True, check=True
-    )
+        with simkit.load(WORLD.replace("</link>", lidar)) as sim:
+            scans = sim.subscribe("/scan", keep=1)
+            sim.model("rover").set_velocity((0.3, 0.0, 0.0), (0.0, 0.0, 0.5))
+            if is_filmed:
+                film = Film(sim, FilmOptions((tmp_path / "out.gif",), SIZE, 20.0), render_view, DrivenPath(sim))
+                assert len(drive(film, sim, 0.3)) == 7
+                film.close()
+            else:
+                sim.run(0.3)
+            ends.append((state_hash(sim), scans.latest.ranges.tobytes()))
+    assert ends[0] == ends[1]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
@@ -134,3 +139,19 @@ def test_invalid_options_of_a_film_are_reported_before_the_run(tmp_path: Path) -
         with pytest.raises(InputError, match=text):
             film_options(*arguments)  # type: ignore[arg-type]
     assert film_options(None, None, None, None, "auto") is None
+
+
+def test_a_bag_moves_the_models_of_its_world_as_the_run_did(tmp_path: Path) -> None:
+    bag, gif = tmp_path / "run.mcap", tmp_path / "out.gif"
+    with simkit.load("turtlebot3_empty") as sim, Recorder(sim, bag, topics=("/odom", "/joint_states")):
+        name = next(name for name, model in sim.models.items() if not model.static)
+        sim.publish("/cmd_vel", {"linear": {"x": 0.2}, "angular": {"z": 0.5}})
+        sim.run(1.0)
+        true, wheel = sim.model(name).pose, sim.model(name).joint("wheel_left_joint").position
+    with simkit.load("turtlebot3_empty") as sim, open_bag_to_read(bag) as opened:
+        options = FilmOptions((gif,), SIZE, 10.0)
+        count, moved = film_bag(sim, opened, options, plain([]), (None, None), lambda: False)  # type: ignore[arg-type]
+        assert (count, moved) == (11, {name})
+        np.testing.assert_allclose(sim.model(name).pose.position[:2], true.position[:2], atol=0.02)
+        assert sim.model(name).pose.rpy[2] == pytest.approx(true.rpy[2], abs=0.05)
+        assert sim.model(name).joint("wheel_left_joint").position == pytest.approx(wheel, abs=0.3)

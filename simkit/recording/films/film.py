@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -12,14 +12,16 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit.errors import InputError
+from simkit.recording.films.bag_motion import BagMotion
 from simkit.recording.pictures.camera import Camera
 from simkit.recording.pictures.frames import Look, Render, choose_camera, draw_frame
-from simkit.recording.pictures.overlay import Points
+from simkit.recording.pictures.overlay import Marks, Points
 from simkit.recording.pictures.subject import Subject, find_subject
 from simkit.recording.pictures.video_file import VIDEO_SUFFIXES, FrameFile, check_video_target, open_video
 from simkit.recording.run_picture import DrivenPath, marks_of
 
 if TYPE_CHECKING:
+    from simkit.recording.bags.reader import BagReader
     from simkit.runtime import Simulation
 
 CAMERAS: Final = ("auto", "fixed", "follow")
@@ -127,12 +129,16 @@ class Film:
             self.draw()
             self._drawn_since_start += 1
 
-    def draw(self) -> None:
-        """Draw a frame of the present state, except of a diverged state."""
+    def draw(self, marks: Marks | None = None) -> None:
+        """Draw a frame of the present state, except of a diverged state.
+
+        Args:
+            marks: content to draw over the frame; None for paths, scans and goals of the simulation.
+        """
         if not np.isfinite(self._sim.mj_data.qpos).all():
             return
         self._driven.sample()
-        marks = marks_of(self._sim, self._driven)
+        marks = marks_of(self._sim, self._driven) if marks is None else marks
         subject = find_subject(self._sim, list(marks.scans.values()))
         frame = draw_frame(self._sim, self._render, self._aim(subject), self._look, marks, subject)
         for file in self._files:
@@ -159,3 +165,49 @@ class Film:
         if self._anchor is None or middle is None:
             return self._camera
         return self._camera.moved(middle - self._anchor)
+
+
+def film_bag(
+    sim: Simulation,
+    bag: BagReader,
+    options: FilmOptions,
+    render: Render,
+    between: tuple[float | None, float | None],
+    is_over: Callable[[], bool],
+) -> tuple[int, set[str]]:
+    """Film a bag in its world.
+
+    Args:
+        sim: loaded world, which does not run.
+        bag: bag with odometry or poses, joint states and scans.
+        options: options of the film.
+        render: function that draws a view of a simulation.
+        between: first and last time of the film, from the start of the bag [s]; None for its ends.
+        is_over: function that returns True to end the film early.
+
+    Returns:
+        Number of frames, and the names of the models that moved.
+    """
+    motion = BagMotion(sim, {topic.name: topic.type_name for topic in bag.topics})
+    driven = DrivenPath(sim)
+    film = Film(sim, options, render, driven)
+    rate, begin = options.frame_rate, 0.0 if between[0] is None else between[0]
+    end = (bag.end - bag.time_origin) * 1e-9
+    end = end if between[1] is None else min(end, between[1])
+
+    def draw_until(time: float) -> None:
+        while (due := begin + film.count / float(rate)) < time and due <= end + 1e-9 and not is_over():
+            title = f"{bag.path.name} · t = {due:.2f} s"
+            film.draw(Marks(title, driven.paths(), motion.scans, motion.goals))
+
+    try:
+        for message in bag.messages(motion.topics) if motion.topics else ():
+            draw_until((message.time_ns - bag.time_origin) * 1e-9)
+            if is_over():
+                break
+            motion.take(message.topic, bag.decode(message))
+            driven.sample()
+        draw_until(math.inf)
+    finally:
+        film.close()
+    return film.count, motion.moved
