@@ -36,6 +36,7 @@ COMMANDS = {
     "replay": "Repeat the run in a bundle and compare the results bit by bit.",
     "bag": "Record, describe, play, film, export and recover bags.",
     "plot": "Plot fields of bags, worlds and scenarios over time.",
+    "graph": "Draw the nodes and topics, or the frames, of a world or a running simulation.",
     "motion": "List and play the named motions of a robot.",
     "plugin": "List, describe and create plugins.",
     "topic": "Inspect and publish topics of a simulation or a bag.",

@@ -92,8 +92,8 @@ def test_a_video_has_all_frames_at_the_asked_rate(tmp_path: Path, name: str, cod
 
 
 def test_a_film_changes_no_bit_of_the_run(tmp_path: Path, renderer: None) -> None:
-    lidar = """<sensor name="eye" type="gpu_lidar"><update_rate>10</update_rate><topic>scan</topic><lidar><scan><horizontal>
-      <samples>9</samples><min_angle>-3</min_angle><max_angle>3</max_angle></horizontal></scan><range><min>0.05</min>
+    lidar = """<sensor name="eye" type="gpu_lidar"><update_rate>10</update_rate><topic>scan</topic><lidar><scan>
+      <horizontal><samples>9</samples><min_angle>-3</min_angle><max_angle>3</max_angle></horizontal></scan><range><min>0.05</min>
       <max>10</max></range><noise><type>gaussian</type><stddev>0.1</stddev></noise></lidar></sensor></link>"""
     ends = []
     for is_filmed in (False, True):

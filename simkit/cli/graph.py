@@ -1,0 +1,168 @@
+"""Command `simkit graph`: draw the nodes and topics, or the frames, of a world or of a running simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from typer import Option
+
+from simkit.cli.run_options import load_options
+from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
+from simkit.cli.terminal.options import argument, option
+from simkit.cli.terminal.output import (
+    JsonObject,
+    is_hidden,
+    print_diagnostics,
+    print_json,
+    print_line,
+    print_note,
+    report_errors_quietly,
+)
+from simkit.cli.terminal.topic_sources import open_source
+from simkit.errors import InputError
+from simkit.writers.atomic_output import check_writable, write_atomically
+
+if TYPE_CHECKING:
+    from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
+
+_OWN_NODES = frozenset(
+    {"/ClassicServices", "/ClockPublisher", "/SimulationInterfaces", "/WorldServices", "/WorldStats"}
+)
+_OWN_TOPICS = frozenset({"/clock", "/parameter_events", "/rosout"})
+_LISTED = 4  # services and actions in the box of a node
+_FRAMES_AFTER = 0.2  # [s] of simulated time in which a world sends its transforms
+_COLLECTION_TIME = 1.0  # [s] of wall time for the transforms of a running simulation
+
+
+@report_errors_quietly
+def graph(
+    source: Annotated[str, argument("World, model, or name of a running simulation.", "WORLD|SIM", completion.worlds)],
+    output: Annotated[Path, option("Chart to write: OUT.svg.", "OUT.svg", "--output", "-o")] = Path("graph.svg"),
+    tf: Annotated[bool, Option("--tf", help="Draw the tree of frames instead of nodes and topics.")] = False,
+    hidden: Annotated[
+        bool, Option("--all", "-a", help="Include hidden names, simkit's own nodes, and topics such as /clock.")
+    ] = False,
+    set_: options.Overrides = [],
+    spawn: options.Spawns = [],
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
+    json_: options.Json = False,
+) -> None:
+    """Draw the nodes and topics, or the frames, of a world or a running simulation."""
+    from simkit.live import simulations
+    from simkit.recording.graphs.graph_svg import graph_svg
+
+    if output.suffix.lower() != ".svg":
+        found = output.suffix or "no suffix"
+        raise InputError(f"SK-CLI-016 cannot write {output}: found {found}; expected .svg", "SK-CLI-016")
+    check_writable(output)
+    is_running = any(sim.name == source for sim in simulations())
+    if is_running:
+        nodes, frames = _of_simulation(source, tf=tf)
+    else:
+        loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
+        arguments = {"overrides": tuple(set_), "spawn": tuple(spawn), **loading}
+        nodes, frames = _of_world(source, arguments, tf=tf)
+    boxes, edges = frame_graph(frames) if tf else node_graph(nodes, hidden=hidden)
+    if not boxes:
+        print_note(f"note: {source} has no {'frames' if tf else 'nodes with topics, services or actions'}")
+    title = f"{'Frames' if tf else 'Nodes and topics'} of {Path(source).name if '<' not in source else 'a world'}"
+    write_atomically(output, graph_svg(title, boxes, edges).encode())
+    kinds = {kind: sum(box.kind == kind for box in boxes) for kind in (("frame",) if tf else ("node", "topic"))}
+    if json_:
+        print_json({"output": str(output), **{f"{kind}s": count for kind, count in kinds.items()}, "edges": len(edges)})
+    else:
+        print_line(
+            f"{output}: " + ", ".join(f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in kinds.items())
+        )
+
+
+def _of_simulation(name: str, *, tf: bool) -> tuple[Mapping[str, JsonObject], FrameTree]:
+    """Return the nodes and the frames of a running simulation."""
+    from simkit.cli.terminal.topic_sources import connect_to_simulation
+
+    frames = FrameTree()
+    if tf:
+        with open_source(name, None) as source:
+            for _ in receive_transforms(source, frames, duration=_COLLECTION_TIME):
+                pass
+        return {}, frames
+    with connect_to_simulation(name) as client:
+        return client.ask("nodes"), frames
+
+
+def _of_world(source: str, arguments: Mapping[str, object], *, tf: bool) -> tuple[Mapping[str, JsonObject], FrameTree]:
+    """Return the nodes of a world, and with `tf` the frames that it sends at the beginning of a run."""
+    from simkit.bridges.live.introspection import node_list
+    from simkit.build import load
+
+    frames = FrameTree()
+    with load(source, **arguments) as sim:  # type: ignore[arg-type]
+        print_diagnostics(sim.diagnostics, verbose=False)
+        if tf:
+            for topic, type_name in sim.topics().items():
+                if type_name == "tf2_msgs/msg/TFMessage" and topic.rpartition("/")[2] in ("tf", "tf_static"):
+                    static = topic.endswith("tf_static")
+                    sim.subscribe(topic, lambda message, static=static: frames.take(message, static=static))
+            sim.run(_FRAMES_AFTER)
+            return {}, frames
+        return node_list(sim, ()), frames
+
+
+def node_graph(nodes: Mapping[str, JsonObject], *, hidden: bool) -> tuple[list[GraphBox], list[GraphEdge]]:
+    """Return the graph of nodes and topics.
+
+    Args:
+        nodes: nodes with their publishers, subscribers, services and actions, as a simulation describes them.
+        hidden: True includes hidden names and the nodes of simkit itself.
+    """
+    from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
+
+    def shown(names: Mapping[str, list[str]]) -> dict[str, list[str]]:
+        return {n: t for n, t in names.items() if hidden or not (is_hidden(n) or n in _OWN_TOPICS)}
+
+    boxes: dict[str, GraphBox] = {}
+    edges: dict[tuple[str, str], GraphEdge] = {}
+    types: dict[str, str] = {}
+    for name, node in nodes.items():
+        if not hidden and (name in _OWN_NODES or is_hidden(name)):
+            continue
+        publishes, subscribes = shown(node["publishers"]), shown(node["subscribers"])
+        actions, services = shown(node["actions"]), shown(node["services"])
+        if not (publishes or subscribes or actions or services):
+            continue
+        space, _, last = name.rpartition("/")
+        lines = [*_listed("action", actions), *_listed("service", services)]
+        boxes[f"node {name}"] = GraphBox(f"node {name}", "node", last, lines, space)
+        for topic, found in (*publishes.items(), *subscribes.items()):
+            types.setdefault(topic, found[0].replace("/msg/", "/") if found else "")
+        for topic in publishes:
+            edges[name, topic] = GraphEdge(f"node {name}", f"topic {topic}")
+        for topic in subscribes:
+            edges[topic, name] = GraphEdge(f"topic {topic}", f"node {name}")
+    for topic, type_name in sorted(types.items()):
+        boxes[f"topic {topic}"] = GraphBox(f"topic {topic}", "topic", topic, [type_name] if type_name else [])
+    return list(boxes.values()), list(edges.values())
+
+
+def _listed(kind: str, names: Iterable[str]) -> list[str]:
+    """Return a line for each of the first names, and one for the number of the others."""
+    found = sorted(names)
+    lines = [f"{kind} {name}" for name in found[:_LISTED]]
+    more = len(found) - _LISTED
+    return lines + ([f"and {more} more {kind}{'s' if more > 1 else ''}"] if more > 0 else [])
+
+
+def frame_graph(frames: FrameTree) -> tuple[list[GraphBox], list[GraphEdge]]:
+    """Return the tree of frames; dashed edges are static transforms."""
+    from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
+
+    boxes = [GraphBox(name, "frame", name) for name in frames.names()]
+    edges = [GraphEdge(edge.parent, child, edge.static) for child, edge in sorted(frames.edges.items())]
+    return boxes, edges
