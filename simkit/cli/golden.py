@@ -264,6 +264,6 @@ def check(
 
     check_writable(html)
     check_writable(junit)
-    check_options = CheckOptions(bless, bless_other_renderer, causes, budget)
+    check_options = CheckOptions(bless, bless_other_renderer, causes, budget, pictures=html is not None)
     results = check_goldens(folders, check_options, jobs)
     return report_results(results, blessed=bless is not None, html=html, junit=junit, quiet=quiet)

@@ -17,6 +17,7 @@ from simkit.testing.golden.cause import explain, world_changes
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.golden.store import golden_folder, read_golden, read_history, write_golden
+from simkit.testing.golden.world_pictures import draw_worlds
 from simkit.testing.run_record.fingerprint import RENDERER
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES, run_record
@@ -36,6 +37,7 @@ def check_golden(
     other_renderer: bool = False,
     causes: bool = True,
     budget_s: float = CAUSE_BUDGET_SECONDS,
+    pictures: bool = False,
 ) -> Verdict:
     """Run the scenario of a golden run again and compare the results.
 
@@ -48,6 +50,7 @@ def check_golden(
         other_renderer: Allow a blessing of pictures that come from another renderer.
         causes: Search for the causes of differences.
         budget_s: Wall-clock limit of the search for causes [s].
+        pictures: Draw the worlds of both runs if their results differ.
 
     Returns:
         Verdict. After a blessing, the verdict lists the differences from the previous golden run.
@@ -72,6 +75,8 @@ def check_golden(
             make_golden(place, verdict, bless.strip(), other_renderer=other_renderer)
         elif not comparison.passed and causes:
             verdict.explanation = explain(golden, run, comparison, budget_s=budget_s)
+        if pictures and not comparison.passed:
+            verdict.world_pictures, verdict.world_note = draw_worlds(golden, run)
         return verdict
 
 

@@ -27,6 +27,7 @@ class CheckOptions:
     other_renderer: bool = False
     causes: bool = True
     budget_s: float = 60.0
+    pictures: bool = False
 
 
 @dataclass

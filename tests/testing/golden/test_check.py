@@ -51,6 +51,23 @@ def test_a_difference_exits_with_code_5_and_shows_the_cause(golden: Path, tmp_pa
     assert said.startswith("FAILED") and "radius 0.1 → 0.101" in said
 
 
+def test_the_page_shows_what_was_compared_and_both_worlds(golden: Path, tmp_path: Path) -> None:
+    page = tmp_path / "report.html"
+    assert simkit("golden", "check", golden, "--html", page)[0] == 0
+    text = page.read_text(encoding="utf-8")
+    assert "physics states" in text and "the same bits" in text
+    assert len(re.findall(r"<tr><td>/", text)) == 4  # topics
+    assert "data:image" not in text
+    ball(tmp_path, HEAVY)
+    assert simkit("golden", "check", golden, "--html", page, "--no-causes")[0] == 5
+    text = page.read_text(encoding="utf-8")
+    if "no pictures of the worlds" in text:
+        pytest.skip("there is no renderer; apt install libegl1 libgl1-mesa-dri")
+    pictures = re.findall(r'alt="world of the (\w+)" src="data:image/jpeg;base64,([^"]+)"', text)
+    assert [name for name, _ in pictures] == ["golden", "run"]
+    assert pictures[0][1] != pictures[1][1]
+
+
 def test_a_scenario_file_is_read_again(tmp_path: Path) -> None:
     ball(tmp_path)
     scenario = tmp_path / "fall.yaml"

@@ -123,6 +123,8 @@ class Verdict:
         explanation: Causes of the differences; None for a pass.
         checks: Results of the scenario's own checks.
         elapsed: Wall time of the run [s].
+        world_pictures: Name and JPEG file of a picture of each world; empty if none were drawn.
+        world_note: Reason why there are no pictures of the worlds.
     """
 
     name: str
@@ -132,6 +134,8 @@ class Verdict:
     explanation: Explanation | None = None
     checks: tuple[CheckResult, ...] = ()
     elapsed: float = 0.0
+    world_pictures: tuple[tuple[str, bytes], ...] = ()
+    world_note: str = ""
 
     @property
     def passed(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import math
 import os
 from collections import Counter
@@ -13,7 +14,16 @@ from typing import TYPE_CHECKING, Final
 from simkit.diagnostics import shorten
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.testing.golden.compare.difference import Cause, Comparison, Verdict
-from simkit.testing.golden.report.difference_plot import ImageFigure, PlotFigure, image_figure, plot_figure
+from simkit.testing.golden.compare.tolerances import allowed_text as tolerance_text
+from simkit.testing.golden.compare.tolerances import tolerance_of
+from simkit.testing.golden.compare.units import unit_of
+from simkit.testing.golden.report.difference_plot import (
+    ImageFigure,
+    ImageRow,
+    PlotFigure,
+    image_figure,
+    plot_figure,
+)
 from simkit.testing.golden.report.text_report import (
     PROOF_PREFIX,
     REGULAR_ENDINGS,
@@ -25,6 +35,7 @@ from simkit.testing.golden.report.text_report import (
     passed_text,
     proof_text,
 )
+from simkit.testing.run_record.record import Stream
 from simkit.writers.atomic_output import write_atomically
 
 if TYPE_CHECKING:
@@ -34,6 +45,7 @@ _TEMPLATE: Final = Path(__file__).with_name("report.html.j2")
 _LONGEST: Final = 2_000  # maximum length of a text in characters
 _PLOTS: Final = 8  # maximum number of figures of one golden run
 _ALL_PLOTS: Final = 80  # maximum number of figures on a page
+_FIELDS: Final = 4  # fields that are named for one tolerance
 _ROWS: Final = 200  # maximum number of rows in a table
 _BLESS: Final = 'simkit golden check GOLDEN --bless "reason for the change"'
 
@@ -47,6 +59,17 @@ class _MachineRow:
 
 
 @dataclass(frozen=True)
+class _ComparedRow:
+    """One compared topic, or the physics states."""
+
+    name: str
+    type_name: str
+    count: str
+    compared: str
+    allowed: str
+
+
+@dataclass(frozen=True)
 class _VerdictView:
     """Data about one golden run that the page shows in addition to the verdict.
 
@@ -56,6 +79,8 @@ class _VerdictView:
         ending: End of the run; empty if the run ended regularly.
         codes: Diagnostic codes whose counts differ between the runs.
         tier: Description of the comparison between the machines.
+        compared: Compared topics and states, with their tolerances.
+        pictures: Pictures of both worlds, with a note about missing ones.
     """
 
     number: int
@@ -67,6 +92,8 @@ class _VerdictView:
     diagnostics: Sequence[object]
     tier: str
     machine: Sequence[_MachineRow]
+    compared: Sequence[_ComparedRow]
+    pictures: ImageRow
 
 
 def write_html(path: str | os.PathLike[str], verdicts: Iterable[Verdict], *, bless: str = _BLESS) -> None:
@@ -129,7 +156,54 @@ def _verdict_view(verdict: Verdict, number: int, most_plots: int) -> _VerdictVie
         list(getattr(verdict.run.simulation, "diagnostics", ()) or ()),
         _tier(verdict.comparison),
         _machine_rows(verdict),
+        list(_compared_rows(verdict)),
+        _world_row(verdict),
     )
+
+
+def _compared_rows(verdict: Verdict) -> Iterator[_ComparedRow]:
+    """Describe the physics states, and the messages and tolerances of each topic."""
+    golden, run = verdict.golden, verdict.run
+    is_exact = verdict.comparison.tier == "exact"
+    states = golden.states
+    count = f"{len(states.ticks)} stored"
+    quantities = f"{len(states.names)} quantities" + (", and the hash of the last state" if states.digest else "")
+    tolerance = "the same bits" if is_exact else "tolerances by unit"
+    allowed_states = tolerance if run.scenario.state else "not compared (state: false)"
+    yield _ComparedRow("physics states", "", count, quantities, allowed_states)
+    for topic in sorted(golden.streams.keys() & run.streams.keys()):
+        stream = golden.streams[topic]
+        fields = [*stream.columns, *stream.words, *stream.statistics]
+        what = f"{len(fields)} field{'' if len(fields) == 1 else 's'}" + (" and images" if stream.pictures else "")
+        allowed = "the same bits" if is_exact else _tolerances(verdict, stream)
+        yield _ComparedRow(topic, stream.type_name, str(len(stream.times_ns)), what, allowed)
+
+
+def _tolerances(verdict: Verdict, stream: Stream) -> str:
+    """Return the tolerances of the fields of a topic in words, with the fields that share each one."""
+    groups: dict[str, list[str]] = {}
+    for field in stream.columns:
+        tolerance = tolerance_of(verdict.run.scenario, stream.topic, stream.type_name, field)
+        is_exact = bool(tolerance.exact)
+        words = "the same bits" if is_exact else tolerance_text(tolerance, unit_of(stream.type_name, field))
+        groups.setdefault(words, []).append(field)
+    if stream.pictures is not None:
+        found = tolerance_of(verdict.run.scenario, stream.topic, stream.type_name, "data")
+        groups[f"mean difference {found.image:g} of 255, similarity {found.ssim:g}"] = ["images"]
+    if len(groups) == 1:
+        return next(iter(groups))
+    return "; ".join(
+        f"{words}: {', '.join(fields[:_FIELDS])}"
+        + (f" and {len(fields) - _FIELDS} more" if len(fields) > _FIELDS else "")
+        for words, fields in groups.items()
+    )
+
+
+def _world_row(verdict: Verdict) -> ImageRow:
+    images = [
+        (name, "data:image/jpeg;base64," + base64.b64encode(data).decode()) for name, data in verdict.world_pictures
+    ]
+    return ImageRow(images, verdict.world_note or ("both worlds at the beginning of the run" if images else ""))
 
 
 def _proof(cause: Cause) -> str:
