@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _BAGS: Final = (".mcap", ".db3")
 _SCENARIOS: Final = (".yaml", ".yml")
 _WORLDS: Final = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".model", ".mjcf", ".erb", ".config")
+_FIELDS_NAMED: Final = 3  # fields in the title of a chart
 _TOPICS_LISTED: Final = 20  # topics in the error message for a plot without fields
 
 
@@ -40,7 +41,7 @@ class PlotRequest:
         output: file to write.
         against: field for the horizontal axis instead of time.
         start, end: limits of the plotted times [s].
-        title: title of the chart.
+        title: title of the chart; empty for the fields and the sources.
         run: function that returns the run specification of a world.
     """
 
@@ -94,8 +95,16 @@ def draw_chart(sources: Sequence[str], fields: Sequence[str], request: PlotReque
         raise InputError("SK-BAG-011 nothing to plot: the fields have no samples", "SK-BAG-011")
     if len(sources) > 1:
         found.sort(key=lambda pair: pair[1].colour)
+    if not request.title:
+        request = replace(request, title=_title(labels, fields, request.against))
     write_atomically(request.output, render_chart(_chart(found, request), request.output.suffix))
     _summary(request.output, [series for series, _ in found], json_=json_)
+
+
+def _title(labels: Sequence[str], fields: Sequence[str], against: str | None) -> str:
+    """Return the title of a chart without `--title`: its sources and its fields."""
+    names = [*fields[:_FIELDS_NAMED], *(["…"] if len(fields) > _FIELDS_NAMED else [])]
+    return f"{', '.join(labels)}: {', '.join(names)}{f' over {against}' if against else ''}"
 
 
 def _source_labels(sources: Sequence[str]) -> list[str]:

@@ -1,4 +1,7 @@
-"""Canvases for lines and text on a white background, as SVG or PNG. Equal calls give equal bytes."""
+"""Canvases for lines and text, as SVG or PNG. Equal calls give equal bytes.
+
+The background is white. Viewers that prefer dark pages show an SVG file with the colours of `_DARK`.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +21,12 @@ _REPLACEMENTS = {"²": "^2", "³": "^3", "µ": "u"}  # characters that the font 
 _PNG_SCALE = 2  # pixels of a PNG file per pixel of the canvas
 _OVERSAMPLING = 2  # factor of the drawing resolution, for smooth thin lines
 _INK: Final = "#222222"
+_DARK: Final = {
+    "#ffffff": "#15181c", _INK: "#e4e6ea", "#e4e4e4": "#2c323a", "#888888": "#7d8794", "#1f77b4": "#6fb3ff",
+    "#d62728": "#ff7b84", "#2ca02c": "#6fd08c", "#ff7f0e": "#ffa24d", "#9467bd": "#c9a0e8", "#17becf": "#5fdbe8",
+    "#8c564b": "#c99a8f", "#e377c2": "#f2a3db", "#7f7f7f": "#b0b7c0",
+}  # fmt: skip
+"""Colours on dark pages."""
 _UNPRINTABLE = dict.fromkeys((*range(32), 0xFFFE, 0xFFFF), " ")  # characters that XML does not allow
 
 
@@ -36,6 +45,11 @@ def text_width(text: str, size: float) -> float:
     return len(text) * _LETTER * size
 
 
+def _dark_rules() -> str:
+    """Return the style rules that replace the colours of lines, discs and texts."""
+    return "".join(f'[fill="{a}"]{{fill:{b}}}[stroke="{a}"]{{stroke:{b}}}' for a, b in _DARK.items())
+
+
 class SvgCanvas:
     """Canvas that becomes an SVG file."""
 
@@ -43,6 +57,7 @@ class SvgCanvas:
         self._parts = [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
             f'viewBox="0 0 {width} {height}" font-family="{_FONT}">',
+            f"<style>@media(prefers-color-scheme:dark){{{_dark_rules()}}}</style>",
             f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
         ]
 

@@ -15,13 +15,24 @@ from simkit.recording.charts.canvas import Canvas, PngCanvas, SvgCanvas, text_wi
 from simkit.recording.charts.series import Series
 
 SUFFIXES: Final = (".svg", ".png")
-_WIDTH, _SINGLE_PANEL, _PANEL = 960, 420, 210  # [px] width, height of a single panel, height if several
+_WIDTH, _SINGLE_PANEL, _PANEL = (
+    960,
+    540,
+    240,
+)  # [px] width, height of a single panel (3:2 with labels), height if several
+_PLANE = 420, 860  # [px] least and largest height of a panel with equal scales
 _LEFT, _RIGHT, _TOP, _BOTTOM = 78, 24, 10, 46
 _LEGEND, _SIZE, _GAP = 19, 12.0, 12  # [px]
 _COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#17becf", "#8c564b", "#e377c2", "#7f7f7f")
 _DASHES: tuple[tuple[float, ...], ...] = ((), (7, 4), (2, 3), (9, 3, 2, 3))
 _DOTTED = 40  # up to this number of values, each value is also drawn as a dot
 _MOST_PANELS = 12
+_QUANTITIES: Final = {
+    "m": "length", "rad": "angle", "m/s": "velocity", "rad/s": "angular velocity", "m/s²": "acceleration",
+    "rad/s²": "angular acceleration", "N": "force", "N·m": "torque", "s": "time", "V": "voltage", "A": "current",
+    "kg": "mass", "Pa": "pressure", "T": "magnetic field", "K": "temperature", "°C": "temperature", "deg": "angle",
+    "Hz": "frequency", "W": "power", "J": "energy",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -90,13 +101,23 @@ class _Layout:
         self._chart, self._panels = chart, panels
         self._x = axis_over([series.times for series in chart.series], _LEFT, _WIDTH - _RIGHT, margin=0.0)
         self._legends = [_legend([series.label for series, _ in panel]) for panel in panels]
-        self._inner = _SINGLE_PANEL if len(panels) == 1 else _PANEL
+        self._inner = self._panel_height()
         heading = 26 if chart.title else 0
         self._tops, y = [], float(_TOP + heading)
         for rows in self._legends:
             self._tops.append(y + (rows[-1][1] + 1) * _LEGEND)
             y = self._tops[-1] + self._inner + _GAP
         self._height = int(y - _GAP + _BOTTOM)
+
+    def _panel_height(self) -> float:
+        """Return the height of each panel [px]; a path gets the proportions of its extent."""
+        if len(self._panels) > 1:
+            return _PANEL
+        if not self._chart.is_plane:
+            return _SINGLE_PANEL
+        y = axis_over([series.values for series in self._chart.series], 1.0, 0.0, margin=0.06)
+        wanted = (y.high - y.low) / (self._x.high - self._x.low) * (_WIDTH - _LEFT - _RIGHT)
+        return float(round(min(max(wanted, _PLANE[0]), _PLANE[1])))
 
     def draw(self, kind: type[SvgCanvas] | type[PngCanvas]) -> bytes:
         canvas = kind(_WIDTH, self._height)
@@ -117,7 +138,8 @@ class _Layout:
         if self._chart.is_plane:
             self._x, y = _equal_scale(self._x, y)
         x = self._x
-        for position, label in y.ticks(_tick_count(y)):
+        ticks = y.ticks(_tick_count(y))
+        for position, label in ticks:
             canvas.line(np.array([[_LEFT, position], [_WIDTH - _RIGHT, position]]), "#e4e4e4")
             canvas.text(_LEFT - 6, position + 4, label, _SIZE, "end")
         for position, _ in x.ticks(_tick_count(x)):
@@ -125,8 +147,13 @@ class _Layout:
         frame = [[_LEFT, top], [_LEFT, bottom], [_WIDTH - _RIGHT, bottom]]
         canvas.line(np.array(frame, dtype=np.float64), "#888888")
         unit = panel[0][0].unit
-        y_label = (f"[{unit}]" if unit else "") + y.base_text
-        canvas.text(16, (top + bottom) / 2, y_label.strip(", "), _SIZE, "middle", upright=True)
+        quantity = (
+            ".".join(panel[0][0].label.rsplit(".", 2)[-2:]) if len(panel) == 1 else _QUANTITIES.get(unit, "value")
+        )
+        y_label = _shorten(quantity + (f" [{unit}]" if unit else "") + y.base_text, self._inner, _SIZE + 1)
+        wide = max((text_width(label, _SIZE) for _, label in ticks), default=0.0)
+        beside = max(14.0, _LEFT - 6 - wide - 10)
+        canvas.text(beside, (top + bottom) / 2, y_label, _SIZE + 1, "middle", upright=True)
         for series, style in panel:
             self._line(canvas, series, x, y, *style.pen)
         for (series, style), (left, row) in zip(panel, self._legends[number], strict=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -71,7 +72,7 @@ def test_names_are_escaped() -> None:
 
 def test_each_unit_has_a_panel_and_all_panels_share_the_time_axis() -> None:
     svg = render_chart(Chart([series("a", [0, 1]), series("b", [0, 9], "rad"), series("c", [0, 2])]), ".svg").decode()
-    assert svg.count(">[m]<") == 1 and svg.count(">[rad]<") == 1 and svg.count("time [s]") == 1
+    assert svg.count(">length [m]<") == 1 and svg.count(">b [rad]<") == 1 and svg.count("time [s]") == 1
 
 
 def test_the_same_numbers_make_the_same_bytes() -> None:
@@ -95,3 +96,21 @@ def test_other_file_suffixes_are_refused() -> None:
     for name in ("a.pdf", "a", ""):
         with pytest.raises(InputError, match="SK-BAG-012"):
             check_suffix(name)
+
+
+def test_a_chart_has_colours_for_dark_pages_and_labels_beside_its_ticks() -> None:
+    svg = render_chart(Chart([series("a", [0, 1000]), series("b", [0, 9])]), ".svg").decode()
+    assert "prefers-color-scheme:dark" in svg
+    assert svg.count('[fill="#ffffff"]{fill:#15181c}') == 1
+    found = re.search(r'<text x="([\d.]+)"[^>]*rotate[^>]*>length \[m\]', svg)
+    assert found is not None
+    assert 20.0 < float(found[1]) < 45.0  # [px]; the ticks end at 72 and "1000" is 27 wide
+
+
+def test_the_panel_of_a_path_has_the_proportions_of_the_path() -> None:
+    heights = []
+    for high in (0.1, 1.0, 10.0):
+        path = replace(series("y", [0.0, high]), base_unit="m")
+        svg = render_chart(Chart([path], x_label="x [m]", is_plane=True), ".svg").decode()
+        heights.append(int(re.search(r'height="(\d+)"', svg)[1]))  # type: ignore[index]
+    assert heights[0] < heights[1] <= heights[2] < 1000
