@@ -16,7 +16,7 @@ from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
 from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.gazebo_options import remove_gazebo_options
 from simkit.cli.run_options import RunDisplay, load_options
-from simkit.cli.terminal import film_options, options, ros_options, web_options
+from simkit.cli.terminal import film_options, options, page_options, ros_options, web_options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, report_errors_and_json
 from simkit.cli.terminal.options import option
@@ -34,7 +34,7 @@ _TOPIC = re.compile(r"/[A-Za-z0-9_/]*")
 class RunCommand(TyperCommand):
     """Command that answers options of Gazebo, with options that work with or without a value.
 
-    The latter are `--teleop`, `--bundle-on-failure`, `--foxglove` and `--rosbridge`.
+    The latter are `--teleop`, `--bundle-on-failure`, `--foxglove`, `--rosbridge` and `--web`.
 
     The next word is the topic of `--teleop` if the word begins with a slash and is not a file. The next word is the
     folder of `--bundle-on-failure` if the folder exists, if the word ends with a slash, or if the world is the first
@@ -52,6 +52,8 @@ class RunCommand(TyperCommand):
             following = args[index + 1] if index + 1 < len(args) else ""
             if word == "--teleop" and (not _TOPIC.fullmatch(following) or Path(following).exists()):
                 word = "--teleop="
+            if word == "--web" and not page_options.PORT.fullmatch(following):
+                word = "--web=0"
             if word in web_options.NAMES and not web_options.ADDRESS.fullmatch(following):
                 word += "="
             if word == "--bundle-on-failure":
@@ -88,7 +90,7 @@ def _seconds(text: str) -> float:
     return float(match[1]) * _UNITS[match[2]]
 
 
-_RTF_HELP = "Highest real-time factor; default: no limit, 1 with --teleop or --view."
+_RTF_HELP = "Highest real-time factor; default: no limit, 1 with --teleop, --view or --web."
 _KEY_TIMEOUT_HELP = "Simulated seconds without a key after which --teleop stops; inf: never."
 _NAME_HELP = "Name of the run for other terminals; default: the world's or file's name."
 _PLAY_TOPIC_HELP = "Topic to play, optionally under a new name; repeatable."
@@ -164,6 +166,9 @@ def run(
     ros_args: ros_options.RosArguments = None,
     foxglove: web_options.Foxglove = None,
     rosbridge: web_options.Rosbridge = None,
+    web: page_options.Web = None,
+    host: page_options.Host = None,
+    no_open: page_options.NoOpen = False,
 ) -> int:
     """Run a world without a window, as fast as possible."""
     from simkit.recording.films.film import film_options as read_film_options
@@ -192,7 +197,7 @@ def run(
         velocity=cmd_vel,
         script=script,
         recording=None if record is None else Recording(record, overwrite=force),
-        pace=highest_pace(rtf, is_watched=view or teleop is not None),
+        pace=highest_pace(rtf, is_watched=view or teleop is not None or web is not None),
         paused=paused,
         steps=step,
     )
@@ -200,8 +205,9 @@ def run(
     bridge = ros_options.run_ros_options(ros, ros_python, ros_domain, ros_namespace, ros_network, ros_args)
     servers = web_options.web_options(foxglove=foxglove, rosbridge=rosbridge)
     film = read_film_options(gif, video, resolution, fps, camera)
+    page = page_options.page_options(web, host, no_open=no_open)
     display = RunDisplay(
-        view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure, bridge, servers, film
+        view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure, bridge, servers, film, page
     )
     return execute(spec, display)
 

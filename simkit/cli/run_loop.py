@@ -42,6 +42,18 @@ class CommandSender(Protocol):
         ...
 
 
+class RunView(Protocol):
+    """Protocol of a live view, which the loop updates between slices."""
+
+    def update(self) -> None:
+        """Execute the requests of the pages, and send the pages what has changed."""
+        ...
+
+    def slices(self, *lengths: float) -> tuple[float, ...]:
+        """Return the lengths of slices [s, wall time], adapted to the open pages."""
+        ...
+
+
 class RunLoop:
     """Loop that runs a simulation to its end.
 
@@ -60,6 +72,7 @@ class RunLoop:
         senders: all senders of commands.
         poll_keys: callback between slices and during waits, for the keyboard.
         server: server for other processes.
+        view: live view in a browser.
         on_pause: callback when the world becomes paused.
     """
 
@@ -85,6 +98,7 @@ class RunLoop:
         self.before_slice: Callable[[], None] | None = None
         self.poll_keys: Callable[[], None] | None = None
         self.server: Server | None = None
+        self.view: RunView | None = None
         self.on_pause: Callable[[], None] = self._say_paused
 
     def run(self, duration: float | None) -> bool:
@@ -125,6 +139,8 @@ class RunLoop:
             self.before_slice()
         if self.server is not None:
             self.server.poll()
+        if self.view is not None:
+            self.view.update()
 
     def _say_paused(self) -> None:
         print_status(f"paused at t={self._sim.time:g} s until a service resumes it (Ctrl-C ends)")
@@ -163,6 +179,8 @@ class RunLoop:
                 self.server.poll(min(left, _PAUSE_POLL_SECONDS))
             if self.poll_keys is not None:
                 self.poll_keys()
+            if self.view is not None:
+                self.view.update()
             if (sim.paused, sim.control.pausing.pace, sim.control.pausing.until) != (was_paused, pace, until):
                 return
 
@@ -183,6 +201,8 @@ class RunLoop:
         sim.control.pausing.advance(stop - sim.tick)
         elapsed = time.perf_counter() - begun
         long, short = (_LONG, _SHORT) if self.server is None else self.server.slices(_LONG, _SHORT)
+        if self.view is not None:
+            long, short = self.view.slices(long, short)
         if elapsed > long:
             self._slice = max(1, self._slice // 2)
         elif whole and elapsed < short:

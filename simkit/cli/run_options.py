@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from simkit.bridges.ros.bridge_process import RosOptions
     from simkit.bridges.web.web_process import WebOptions
     from simkit.recording.films.film import FilmOptions
+    from simkit.cli.terminal.page_options import PageOptions
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class RunDisplay:
         bundles: folder for the bundle of a failed run.
         ros: options of the bridge to ROS 2; None for a run without ROS.
         web_servers: options of the servers for Foxglove and rosbridge.
+        page: options of the live view in a browser; None for no view.
     """
 
     view: bool = False
@@ -49,6 +51,7 @@ class RunDisplay:
     ros: RosOptions | None = None
     web_servers: tuple[WebOptions, ...] = ()
     film: FilmOptions | None = None
+    page: PageOptions | None = None
 
 
 def load_options(

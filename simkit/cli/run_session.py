@@ -18,6 +18,7 @@ from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stderr_console, stdout_console
+from simkit.cli.terminal.page_options import open_page
 from simkit.errors import InputError, RenderError
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
@@ -182,6 +183,7 @@ class Session:
             note_missing_renderer(sim)
             counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
             keyboard = self._keyboard()
+            view = None if display.page is None else open_page(sim, display.page, stack)
             begun = time.perf_counter()
             progress = stack.enter_context(self._progress(counter, duration))
             watchers: list[Callable[[], object]] = [progress.update]
@@ -193,6 +195,7 @@ class Session:
             if played is not None:
                 loop.senders.append(played)
             film = stack.enter_context(film_run(sim, display.film, driven, loop.senders))
+            loop.view = view
             if display.view:
                 self._open_viewer(stack, loop, watchers)
             if keyboard is not None:

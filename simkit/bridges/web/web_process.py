@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import ipaddress
 import os
 import re
 import secrets
@@ -13,6 +12,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from simkit.bridges.bridge_process import BridgeCodes, BridgeProcess
+from simkit.bridges.web.access import is_loopback
 from simkit.errors import InputError
 
 TOKEN_VARIABLE: Final = "SIMKIT_WEB_TOKEN"
@@ -55,14 +55,6 @@ class WebOptions:
         host = (found["host"] or "127.0.0.1").strip("[]")
         token = os.environ.get(TOKEN_VARIABLE, "")
         return cls(kind, host, int(found["port"]), token or ("" if is_loopback(host) else secrets.token_urlsafe(12)))
-
-
-def is_loopback(host: str) -> bool:
-    """Check whether only this machine reaches an address."""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
 
 
 _CODES = BridgeCodes("SK-WEB-002", "SK-WEB-004", "SK-WEB-005")

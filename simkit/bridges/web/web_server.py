@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import hmac
 import os
 import sys
 from collections import deque
@@ -12,19 +11,18 @@ from contextlib import suppress
 from http import HTTPStatus
 from pathlib import Path
 from typing import Any, Final
-from urllib.parse import parse_qs, urlsplit
 
 from simkit.bridges.bridge_program import begin, run_until_end, tell
 from simkit.bridges.live.protocol import LARGEST_IN, JsonObject, LiveClosed, LiveError
 from simkit.bridges.simulation_link import SimulationLink
-from simkit.bridges.web.web_process import TOKEN_VARIABLE, is_loopback
+from simkit.bridges.web.access import has_token, is_known_origin, is_token
+from simkit.bridges.web.web_process import TOKEN_VARIABLE
 
 _GRAPH_PERIOD: Final = 0.25  # [s] between two looks at the simulation's graph
 _CLOGGED_WAIT: Final = 0.01  # [s] between two looks at a connection that takes nothing
 _MOST_BYTES: Final = 1 << 20  # [bytes] for the simulation above which nothing is read from the client
 _MOST_ANSWERS: Final = 1000  # unsent data for the client above which nothing is read from it
 _LAST_WAIT: Final = 1.0  # [s] for sending the last messages
-_FOXGLOVE_PAGE: Final = "app.foxglove.dev"
 _LONGEST_REASON: Final = 100  # characters; a WebSocket has room for 123 bytes
 
 
@@ -261,22 +259,20 @@ class WebServer:
 
     def _has_token(self, path: str) -> bool | None:
         """Check the token in an address; None if the address has none."""
-        found = parse_qs(urlsplit(path).query).get("token")
-        token = self._settings["token"]
-        return hmac.compare_digest(found[0].encode(), token.encode()) if found else None
+        return has_token(path, self._settings["token"])
 
     def is_token(self, text: str) -> bool:
         """Check a token that a client has sent in a message."""
-        return hmac.compare_digest(text.encode(), self._settings["token"].encode())
+        return is_token(text, self._settings["token"])
 
     def _check(self, connection: Any, request: Any) -> Any:
         """Return the refusal of a client without a right to connect; None for other clients."""
         if self._settings["token"]:
-            has_token = self._has_token(request.path)
-            if has_token or (has_token is None and self._class.can_authenticate_later):
+            found = self._has_token(request.path)
+            if found or (found is None and self._class.can_authenticate_later):
                 return None
             return connection.respond(HTTPStatus.UNAUTHORIZED, "the address needs ?token=TOKEN\n")
-        if _is_known_origin(request.headers.get("Origin")):
+        if is_known_origin(request.headers.get("Origin")):
             return None
         text = f"pages of other servers need a token: set {TOKEN_VARIABLE} and add ?token=TOKEN to the address\n"
         return connection.respond(HTTPStatus.FORBIDDEN, text)
@@ -298,16 +294,6 @@ class WebServer:
         finally:
             del self._clients[client]
             link.close()
-
-
-def _is_known_origin(origin: str | None) -> bool:
-    """Check whether a page may connect without a token: a page of this machine or Foxglove's own, or no page at all."""
-    if origin is None:
-        return True
-    parts = urlsplit(origin)
-    if parts.scheme in ("http", "https"):
-        return is_loopback(parts.hostname or "") or parts.hostname == _FOXGLOVE_PAGE
-    return bool(parts.scheme)  # "null" may be any page; pages cannot choose another scheme, such as that of an app
 
 
 def run_server(make: Callable[[], WebServer]) -> int:

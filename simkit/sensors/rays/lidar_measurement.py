@@ -206,6 +206,19 @@ class LidarMeasurement(Sensor):
         names: npt.NDArray[np.object_] = reading.names[geoms]
         return names
 
+    def ray_ends(self) -> Vector | None:
+        """Return the ends of the rays of the newest sample in the sensor's frame [m], shape (layers · samples, 3).
+
+        They have the sensor's noise. A ray without a range is NaN. None before the first sample.
+        """
+        sample = self._finished_sample()
+        if sample is None:
+            return None
+        reading: LidarReading = sample.noisy
+        ranges = np.where(np.isfinite(reading.ranges), reading.ranges, np.nan)
+        ends: Vector = self._directions * ranges[:, None]
+        return ends
+
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> LidarReading:
         origin, rotation = self.ray_frame(data)
         self._fan.cast(model, data, origin, rotation, self._start)

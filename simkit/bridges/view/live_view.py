@@ -1,0 +1,213 @@
+"""Live view of a simulation: copies states for the pages, and executes the requests of the pages."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import queue
+import secrets
+import time
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from simkit.bridges.view import scene_packet
+from simkit.bridges.view.packet import make_packet
+from simkit.bridges.view.page_requests import RequestFailed, execute_request
+from simkit.bridges.view.page_server import PageRequest, PageServer
+from simkit.bridges.view.streams import Stream, make_stream
+from simkit.bridges.view.travel import Travel
+from simkit.bridges.web.access import is_loopback
+from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged, SubscriberError
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+PERIOD: Final = 1 / 30
+"""Least wall time between two states [s]."""
+_APPEARANCE_PERIOD: Final = 0.25  # [s] of wall time between two looks at colours and lights
+_PACE_WINDOW: Final = 0.5  # [s] of wall time over which the real-time factor is measured
+_REQUESTS_PER_TURN: Final = 64
+_PACKING: Final = 5  # level of gzip
+
+
+class LiveView:
+    """Live view of a simulation; a context manager. The run calls `update` between two slices.
+
+    Args:
+        sim: simulation to show.
+        host: address to bind to.
+        port: port; 0 for a free one.
+        token: token of the address; a random one by default.
+
+    Attributes:
+        travel: paths that the models have driven.
+
+    Raises:
+        InputError: SK-WEB-006 the address cannot be used.
+    """
+
+    def __init__(self, sim: Simulation, host: str = "127.0.0.1", port: int = 0, token: str = "") -> None:
+        self.sim, self._host, self._token = sim, host, token or secrets.token_urlsafe(16)
+        self.revision = 0
+        self.travel = Travel(sim)
+        try:
+            self.server = PageServer(host, port, self._token)
+        except OSError as error:
+            text = f"SK-WEB-006 {host}:{port} cannot be used for the page: {error.strerror or error}"
+            raise InputError(f"{text}\n    help: choose another port, or 0 for a free one", "SK-WEB-006") from None
+        self._streams: dict[str, Stream | None] = {}
+        self._last = self._looked = 0.0
+        self._sent: tuple[object, ...] = ()
+        self._pace = (time.perf_counter(), sim.time)
+        self._rtf = 0.0
+        self._set_scene()
+
+    @property
+    def address(self) -> str:
+        """Address of the page, with its token."""
+        host = "127.0.0.1" if self._host in ("", "0.0.0.0", "::") else self._host
+        return f"http://{f'[{host}]' if ':' in host else host}:{self.server.port}/?token={self._token}"
+
+    @property
+    def is_local(self) -> bool:
+        """True if only this machine reaches the page."""
+        return is_loopback(self._host)
+
+    def slices(self, *lengths: float) -> tuple[float, ...]:
+        """Return the lengths of the run's slices [s, wall time]: shorter ones while a page is open."""
+        return tuple(min(length, 0.6 * PERIOD) for length in lengths) if self.server.client_count else lengths
+
+    # ------------------------------------------------------------------ between two slices
+
+    def update(self) -> None:
+        """Execute waiting requests, and send the pages what has changed.
+
+        Raises:
+            PluginError, SubscriberError, SimulationDiverged: error of a plugin, callback or step that a request caused.
+        """
+        if not self.server.requests.empty():
+            self._execute_requests()
+        now = time.perf_counter()
+        if now - self._last < PERIOD:
+            return
+        self._last = now
+        self.travel.sample()
+        if not self.server.client_count:
+            return
+        if self.sim.mj_model is not self._model:
+            self._set_scene()
+        elif now - self._looked > _APPEARANCE_PERIOD:
+            self._looked = now
+            self._send_appearance()
+        self._send_state(now)
+        self._send_streams()
+
+    def _send_state(self, now: float) -> None:
+        sim, pausing = self.sim, self.sim.control.pausing
+        wall, simulated = self._pace
+        if now - wall > _PACE_WINDOW:
+            self._rtf, self._pace = max(0.0, (sim.time - simulated) / (now - wall)), (now, sim.time)
+        poses = scene_packet.poses(sim, self._moving)
+        content = (self.revision, sim.tick, sim.paused, pausing.pace, poses.tobytes())
+        if content == self._sent:
+            return
+        self._sent = content
+        head = {
+            "kind": "state",
+            "revision": self.revision,
+            "time": sim.time,
+            "tick": sim.tick,
+            "paused": sim.paused,
+            "pace": pausing.pace,
+            "rtf": round(self._rtf, 3),
+            "contacts": int(sim.mj_data.ncon),
+        }
+        self.server.send("state", make_packet(head, {"poses": poses}))
+
+    def _send_streams(self) -> None:
+        wants = self.server.wants
+        for name in [name for name in self._streams if name not in wants]:
+            stream = self._streams.pop(name)
+            if stream is not None:
+                stream.close()
+        for name, options in wants.items():
+            if name not in self._streams:
+                self._streams[name] = make_stream(self.sim, name)
+            stream = self._streams[name]
+            packet = None if stream is None else stream.packet(options)
+            if packet is not None:
+                self.server.send(name, packet)
+
+    # ------------------------------------------------------------------ scene
+
+    def _set_scene(self) -> None:
+        self.revision += 1
+        self._model = self.sim.mj_model
+        self._moving = scene_packet.moving_bodies(self._model)
+        for stream in self._streams.values():
+            if stream is not None:
+                stream.close()
+        self._streams.clear()
+        extra = {"seed": self.sim.seed}
+        packet = scene_packet.make_scene_packet(self.sim, self.revision, extra)
+        self._looks = self._appearance_digest()
+        self.server.set_scene(gzip.compress(packet, _PACKING, mtime=0))
+        self.server.send("scene_changed", make_packet({"kind": "scene_changed", "revision": self.revision}, {}))
+        self._sent = ()
+
+    def _appearance_digest(self) -> bytes:
+        digest = hashlib.blake2b(digest_size=16)
+        for values in scene_packet.appearance(self.sim).values():
+            digest.update(np.ascontiguousarray(values))
+        return digest.digest()
+
+    def _send_appearance(self) -> None:
+        found = self._appearance_digest()
+        if found != self._looks:
+            self._looks = found
+            head = {"kind": "appearance", "revision": self.revision}
+            self.server.send("appearance", make_packet(head, scene_packet.appearance(self.sim)))
+
+    # ------------------------------------------------------------------ requests
+
+    def _execute_requests(self) -> None:
+        for _ in range(_REQUESTS_PER_TURN):
+            try:
+                request = self.server.requests.get_nowait()
+            except queue.Empty:
+                return
+            self._execute(request)
+
+    def _execute(self, request: PageRequest) -> None:
+        number = request.content.pop("id", None)
+        try:
+            value = execute_request(self, request)
+        except (PluginError, SimulationDiverged, SubscriberError) as error:
+            self.server.answer(request.client, {"id": number, "error": str(error), "code": error.code})
+            raise  # the error ends the run, as it would for a caller in the process
+        except (RequestFailed, SimkitError, KeyError, ValueError, TypeError) as error:
+            text = str(error.args[0] if error.args else error)
+            self.server.answer(request.client, {"id": number, "error": text, "code": getattr(error, "code", "")})
+        else:
+            if number is not None:
+                self.server.answer(request.client, {"id": number, "ok": value})
+
+    # ------------------------------------------------------------------ the end
+
+    def close(self) -> None:
+        """Disconnect the pages."""
+        for stream in self._streams.values():
+            if stream is not None:
+                stream.close()
+        self._streams.clear()
+        self.server.close()
+
+    def __enter__(self) -> LiveView:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _repr_html_(self) -> str:
+        return f'<iframe src="{self.address}" width="100%" height="600" style="border:0"></iframe>'

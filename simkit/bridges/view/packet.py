@@ -1,0 +1,53 @@
+"""Packets from the server to the page: a JSON head and arrays."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Head = dict[str, Any]
+Arrays = Mapping[str, npt.NDArray[Any]]
+_ALIGNED = 4  # [bytes]; typed arrays of the page begin at multiples of their element size
+
+
+def make_packet(head: Head, arrays: Arrays) -> bytes:
+    """Return a packet.
+
+    Args:
+        head: values of the packet: `kind`, and what else JSON can express.
+        arrays: arrays by name; 64-bit numbers become 32-bit numbers.
+    """
+    table, pieces, offset = {}, [], 0
+    for name, values in arrays.items():
+        packed = np.ascontiguousarray(values, _wire_type(values.dtype))
+        raw = packed.tobytes()
+        table[name] = [packed.dtype.str, offset, list(packed.shape)]
+        padding = -len(raw) % _ALIGNED
+        pieces += [raw, bytes(padding)]
+        offset += len(raw) + padding
+    text = json.dumps(head | {"arrays": table}, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % _ALIGNED)
+    return b"".join((struct.pack("<I", len(text)), text, *pieces))
+
+
+def read_packet(data: bytes) -> tuple[Head, dict[str, npt.NDArray[Any]]]:
+    """Return head and arrays of a packet."""
+    (length,) = struct.unpack_from("<I", data)
+    head = json.loads(data[4 : 4 + length])
+    begin, arrays = 4 + length, {}
+    for name, (kind, offset, shape) in head.pop("arrays").items():
+        count = int(np.prod(shape))
+        arrays[name] = np.frombuffer(data, kind, count, begin + offset).reshape(shape)
+    return head, arrays
+
+
+def _wire_type(dtype: np.dtype[Any]) -> np.dtype[Any]:
+    """Return the type in the packet: bytes, or little-endian 32-bit numbers."""
+    if dtype.itemsize == 1:
+        return np.dtype("u1")
+    return np.dtype("<f4") if dtype.kind == "f" else np.dtype("<i4")

@@ -1,0 +1,67 @@
+"""Rules about who may connect to a server: token, origin of the page, and name of the host."""
+
+from __future__ import annotations
+
+import hmac
+import ipaddress
+import socket
+from typing import Final
+from urllib.parse import parse_qs, urlsplit
+
+_FOXGLOVE_PAGE: Final = "app.foxglove.dev"
+
+
+def is_loopback(host: str) -> bool:
+    """Check whether only this machine reaches an address."""
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def is_token(found: str, token: str) -> bool:
+    """Compare a token that a client has sent, in a time that does not depend on its letters."""
+    return hmac.compare_digest(found.encode(), token.encode())
+
+
+def has_token(path: str, token: str) -> bool | None:
+    """Check the token in an address; None if the address has none."""
+    found = parse_qs(urlsplit(path).query).get("token")
+    return is_token(found[0], token) if found else None
+
+
+def is_known_origin(origin: str | None) -> bool:
+    """Check whether a page may connect without a token: a page of this machine or Foxglove's own, or no page at all."""
+    if origin is None:
+        return True
+    parts = urlsplit(origin)
+    if parts.scheme in ("http", "https"):
+        return is_loopback(parts.hostname or "") or parts.hostname == _FOXGLOVE_PAGE
+    return bool(parts.scheme)  # "null" may be any page; pages cannot choose another scheme, such as that of an app
+
+
+def is_known_host(header: str, bound: str) -> bool:
+    """Check the Host of a request, because a foreign name that leads to this machine makes a foreign page its own.
+
+    Args:
+        header: value of the header `Host`.
+        bound: host that the server is bound to.
+    """
+    name = urlsplit(f"//{header}").hostname or ""
+    if is_loopback(bound):
+        return is_loopback(name)
+    try:
+        ipaddress.ip_address(name)  # a number belongs to no foreign name
+    except ValueError:
+        return name in ("localhost", bound.lower(), socket.gethostname().lower())
+    return True
+
+
+def is_own_origin(origin: str | None, host: str) -> bool:
+    """Check whether a request comes from a page of this server, or from no page.
+
+    Args:
+        origin: value of the header `Origin`; None without one.
+        host: value of the header `Host`.
+    """
+    return origin is None or urlsplit(origin).netloc == host

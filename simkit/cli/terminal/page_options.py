@@ -1,0 +1,88 @@
+"""Options of the live view in a browser, and its opening."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Final
+
+import typer
+from typer import Option
+
+from simkit.cli.terminal.options import option
+from simkit.cli.terminal.output import print_status
+
+if TYPE_CHECKING:
+    from simkit.bridges.view.live_view import LiveView
+    from simkit.runtime import Simulation
+
+PORT: Final = re.compile(r"\d+")
+"""Value of `--web`, which a word after it must match."""
+_MOST_PORT: Final = 65535
+_LOOPBACK: Final = "127.0.0.1"
+
+_WEB_HELP = "Show the run in a browser, on this port of this machine; default: a free one."
+_HOST_HELP = "Address of this machine that other machines reach, for --web; whoever has the page's address may drive."
+Web = Annotated[int | None, option(_WEB_HELP, "[PORT]", min=0, max=_MOST_PORT)]
+Host = Annotated[str | None, option(_HOST_HELP, "HOST")]
+NoOpen = Annotated[bool, Option("--no-open", help="Print the address of the page and open no browser.")]
+
+
+@dataclass(frozen=True)
+class PageOptions:
+    """Options of the live view.
+
+    Attributes:
+        port: port; 0 for a free one.
+        host: address to bind to.
+        opens: True to open a browser where there is a desktop.
+    """
+
+    port: int = 0
+    host: str = _LOOPBACK
+    opens: bool = True
+
+
+def page_options(port: int | None, host: str | None, *, no_open: bool) -> PageOptions | None:
+    """Return the options of the page; None without `--web`."""
+    if port is None:
+        if host is not None or no_open:
+            raise typer.BadParameter("the option needs --web", param_hint="--host" if host is not None else "--no-open")
+        return None
+    return PageOptions(port, host or _LOOPBACK, not no_open)
+
+
+def open_page(sim: Simulation, options: PageOptions, stack: ExitStack) -> LiveView:
+    """Start the live view, print its address alone on a line, and open a browser; the stack closes the view.
+
+    Raises:
+        InputError: SK-WEB-006 the address cannot be used.
+    """
+    from simkit.bridges.view.live_view import LiveView
+
+    view = stack.enter_context(LiveView(sim, options.host, options.port))
+    show_address(view.address, opens=options.opens and view.is_local)
+    if not view.is_local:
+        text = "other machines reach the page; whoever has its address may drive, spawn and reset"
+        print_status(f"warning SK-WEB-007: {text}; without --host only this machine reaches it")
+    return view
+
+
+def show_address(address: str, *, opens: bool) -> None:
+    """Print the address of a page alone on a line, and open it in a browser where there is a desktop."""
+    if sys.stdout is not None:
+        sys.stdout.write(f"{address}\n")
+        sys.stdout.flush()
+    if opens and _has_desktop():
+        import webbrowser
+
+        with suppress(webbrowser.Error):
+            webbrowser.open(address)
+
+
+def _has_desktop() -> bool:
+    """Check whether a browser window can open."""
+    return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -1,0 +1,143 @@
+// Page of simkit's live view. `app` connects its parts: they announce events and listen to those of others.
+import * as T from 'three';
+import { Connection } from './connection.js';
+import { element } from './dom.js';
+import { Layers } from './layers.js';
+import { PANELS } from './panels/index.js';
+import { Sensors } from './sensors.js';
+import { Stage } from './stage.js';
+import { makeToolbar } from './toolbar.js';
+import { Views } from './views.js';
+import { World } from './world.js';
+
+const listeners = new Map();
+
+/**
+ * Events: `scene` (a new scene is loaded), `state`, `packet:KIND`, `select`, `layers`, `view`, `link`.
+ * `scene` and `state` are the newest packets, `models` the top-level models by name, `robots` those that can move,
+ * `selected` the scoped name of the selected link.
+ */
+const app = {
+  scene: null, state: null, models: new Map(), robots: [], selected: null, stats: { states: 0 },
+  on(event, call) { listeners.set(event, [...(listeners.get(event) ?? []), call]); },
+  emit(event, value) { for (const call of listeners.get(event) ?? []) call(value); },
+  select(link) { app.selected = link; app.emit('select', link); app.stage.invalidate(); },
+  report(text) { showNotice(text); },
+};
+window.simkitView = app; // for tests, and for the curious
+
+let noticeTimer;
+function showNotice(text) {
+  const notice = document.getElementById('notice');
+  notice.textContent = text;
+  notice.hidden = !text;
+  clearTimeout(noticeTimer);
+  noticeTimer = setTimeout(() => { notice.hidden = true; }, 6000);
+}
+document.getElementById('notice').hidden = true;
+
+function receive(packet) {
+  if (packet.kind === 'state') takeState(packet);
+  else if (packet.kind === 'scene_changed') { if (packet.revision !== app.scene?.revision) loadScene(); }
+  else if (packet.kind === 'appearance') { if (packet.revision === app.scene?.revision) app.world.setAppearance(packet.arrays); }
+  app.emit(`packet:${packet.kind.split(':', 1)[0]}`, packet);
+}
+
+function takeState(packet) {
+  if (!app.scene || packet.revision !== app.scene.revision) {
+    app.early = packet;
+    if (app.scene && packet.revision > app.scene.revision) loadScene();
+    return;
+  }
+  const isBack = app.state && packet.tick < app.state.tick;
+  app.state = packet;
+  app.stats.states += 1;
+  app.world.setPoses(packet.arrays.poses);
+  if (isBack) app.layers.setPaths({});
+  app.layers.extendPaths(app.bodyOf);
+  app.emit('state', packet);
+}
+
+let isLoading = false;
+async function loadScene() {
+  if (isLoading) return;
+  isLoading = true;
+  try {
+    const scene = await app.connection.loadScene(), isFirst = !app.scene;
+    app.stage.setSurroundings(scene.surroundings, scene.arrays);
+    await app.world.load(scene);
+    app.scene = scene;
+    app.models = new Map(scene.models.map(model => [model.name, model]));
+    app.bodyOf = movingModels(scene);
+    app.robots = findRobots(scene);
+    app.layers.load();
+    app.emit('scene', scene);
+    document.title = `${scene.world} – simkit`;
+    const early = app.early;
+    app.early = null;
+    if (early?.revision === scene.revision) takeState(early);
+    if (isFirst) app.views.first();
+    app.connection.ask('travel').then(paths => app.layers.setPaths(paths)).catch(() => {});
+  } catch (error) {
+    showNotice(`the scene cannot be loaded: ${error.message}`);
+  }
+  isLoading = false;
+  app.stage.invalidate();
+}
+
+/** Returns the first moving body of each model that can move. */
+function movingModels(scene) {
+  const moving = new Set(scene.arrays.moving), found = new Map();
+  for (const [name, body] of scene.frames) {
+    const model = name.split('::', 1)[0];
+    if (moving.has(body) && !found.has(model)) found.set(model, body);
+  }
+  return found;
+}
+
+/** Returns the models with joints or sensors that can move; without any, all models that can move. */
+function findRobots(scene) {
+  const active = new Set([...scene.joints, ...scene.sensors].map(item => item.name.split('::', 1)[0]));
+  const moving = scene.models.filter(model => app.bodyOf.has(model.name));
+  const robots = moving.filter(model => active.has(model.name));
+  return robots.length ? robots : moving;
+}
+
+function pickOnClick(canvas) {
+  let down = null;
+  canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY]; canvas.focus({ preventScroll: true }); });
+  canvas.addEventListener('pointerup', event => {
+    if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || !app.scene) return;
+    const hit = app.pickAt(event.clientX, event.clientY);
+    if (app.clickMode) app.clickMode(hit);
+    else app.select(hit && !hit.isFloor ? hit.link : null);
+  });
+}
+
+app.pickAt = (x, y) => {
+  const box = app.stage.canvas.getBoundingClientRect(), ray = new T.Raycaster();
+  ray.setFromCamera(new T.Vector2(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height), app.stage.camera);
+  return app.world.pick(ray);
+};
+
+try {
+  app.stage = new Stage(document.getElementById('canvas'), new URLSearchParams(location.search).get('quality') ?? 'auto');
+  app.world = new World(app.stage);
+  app.connection = new Connection(receive, showNotice, isUp => app.emit('link', isUp));
+  app.layers = new Layers(app);
+  app.views = new Views(app);
+  app.sensors = new Sensors(app);
+  app.ask = (name, args) => app.connection.ask(name, args);
+  app.send = (name, args) => app.connection.send(name, args);
+  makeToolbar(app, document.getElementById('toolbar'));
+  for (const [side, make] of PANELS) {
+    const made = make(app);
+    if (made) document.getElementById(side).append(made);
+  }
+  pickOnClick(app.stage.canvas);
+  await loadScene();
+  app.connection.open();
+} catch (error) {
+  document.getElementById('view').append(element('p', { class: 'failure' }, error.message));
+  throw error;
+}

@@ -1,0 +1,10 @@
+// Panels of the page: side and function `make(app)`, which returns an element or null. A new panel is one line here.
+import { makeLayerPanel } from './layer_panel.js';
+import { makeSelectionPanel } from './selection_panel.js';
+import { makeTree } from './tree_panel.js';
+
+export const PANELS = [
+  ['left', makeTree],
+  ['left', makeSelectionPanel],
+  ['right', makeLayerPanel],
+];

@@ -1,0 +1,37 @@
+// Pose of the selected link, and its outline in the scene.
+import * as T from 'three';
+import { element, panel } from '../dom.js';
+
+export function makeSelectionPanel(app) {
+  const text = element('div', { class: 'selection' }), follow = element('button', { onclick: () => app.views.follow(body) }, 'Follow');
+  const box = panel('selection', 'Selected', text, follow);
+  const outline = new T.Box3Helper(new T.Box3(), 0xffd23e);
+  outline.material.depthTest = false;
+  outline.visible = false;
+  app.stage.helpers.add(outline);
+  let body = null;
+
+  const show = () => {
+    box.hidden = app.selected === null;
+    outline.visible = app.selected !== null;
+    if (app.selected === null) return;
+    const frame = app.scene.frames.find(([name]) => name === app.selected);
+    body = frame ? frame[1] : app.scene.bodies.indexOf(app.selected);
+    follow.hidden = !(body > 0);
+    const lines = [app.selected];
+    if (body > 0) {
+      const pose = app.world.bodies[body], place = new T.Vector3().setFromMatrixPosition(pose);
+      const turn = new T.Euler().setFromRotationMatrix(pose, 'ZYX'), degrees = value => (value * 180 / Math.PI).toFixed(1);
+      lines.push(`x ${place.x.toFixed(3)}  y ${place.y.toFixed(3)}  z ${place.z.toFixed(3)} m`);
+      lines.push(`roll ${degrees(turn.x)}  pitch ${degrees(turn.y)}  yaw ${degrees(turn.z)}°`);
+    } else lines.push('static');
+    text.replaceChildren(...lines.map(line => element('div', {}, line)));
+  };
+  app.on('select', show);
+  app.on('state', () => { if (app.selected !== null) show(); });
+  app.stage.before.push(() => {
+    if (app.selected !== null) outline.box.copy(app.world.boxOf(geom => app.world.linkOf(geom) === app.selected));
+  });
+  box.hidden = true;
+  return box;
+}
