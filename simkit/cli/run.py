@@ -21,7 +21,7 @@ from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, report_errors_and_json
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status
-from simkit.cli.terminal.teleop import KEY_TIMEOUT
+from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
 from simkit.run_spec import GROUND, Check, PluginErrorPolicy, Recording, RunSpec

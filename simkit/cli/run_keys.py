@@ -9,7 +9,7 @@ from simkit.cli.terminal.output import print_status
 
 if TYPE_CHECKING:
     from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
-    from simkit.cli.terminal.teleop import Teleop
+    from simkit.bridges.teleop import Teleop
     from simkit.runtime import Simulation
 
 HINT = "space resumes, n advances one step, Ctrl-C ends"

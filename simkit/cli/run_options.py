@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 from simkit.cli.terminal.given_interfaces import interface_folders
 from simkit.cli.terminal.options import source_arguments
-from simkit.cli.terminal.teleop import KEY_TIMEOUT
+from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from simkit.bridges.bridge_process import BridgeProcess
     from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
     from simkit.cli.terminal.progress import Progress
-    from simkit.cli.terminal.teleop import Teleop
+    from simkit.bridges.teleop import Teleop
     from simkit.recording.bags.playback import Playback
     from simkit.recording.bags.recorder import Recorder
     from simkit.recording.command_script import Command
@@ -195,7 +195,9 @@ class Session:
             if played is not None:
                 loop.senders.append(played)
             film = stack.enter_context(film_run(sim, display.film, driven, loop.senders))
-            loop.view = view
+            if view is not None:
+                loop.view = view
+                loop.senders.append(view.driving)
             if display.view:
                 self._open_viewer(stack, loop, watchers)
             if keyboard is not None:
@@ -292,7 +294,7 @@ class Session:
         return played
 
     def _driver(self) -> Teleop | None:
-        from simkit.cli.terminal.teleop import Teleop, find_target
+        from simkit.bridges.teleop import Teleop, find_target
 
         display = self.display
         if display.teleop is None:

@@ -33,6 +33,7 @@ export class Stage {
     this.scene.add(this.lights, this.helpers);
     this.makeSky();
     this.before = []; // functions that run before a frame
+    this.after = []; // functions that run after it
     this.draws = 0;
     this.extent = 5;
     this.dirty = false;
@@ -70,6 +71,7 @@ export class Stage {
     this.sky.scale.setScalar(0.9 * this.camera.far);
     this.gl.render(this.scene, this.camera);
     this.draws += 1;
+    for (const call of this.after) call();
   }
 
   makeSky() {
@@ -112,8 +114,8 @@ export class Stage {
     const { around, lightArrays: arrays, lights } = this;
     for (const light of [...lights.children]) { lights.remove(light); light.dispose?.(); }
     const ambient = Math.max(...around.ambient, 0.12);
-    const level = value => Math.min(value, 1.25) ** 1.8; // MuJoCo adds light without gamma; this page adds it with
-    const hemisphere = new T.HemisphereLight(0xffffff, 0xcfc8bd, Math.PI * 1.12 * level(ambient));
+    const level = value => Math.min(value, 1.05) ** 1.8; // MuJoCo adds light without gamma; this page adds it with
+    const hemisphere = new T.HemisphereLight(0xffffff, 0xcfc8bd, Math.PI * 0.92 * level(ambient));
     lights.add(hemisphere);
     this.sun = null;
     let shadows = 0, count = 0;

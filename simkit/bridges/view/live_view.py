@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit.bridges.view import scene_packet
+from simkit.bridges.view.driving import Driving
 from simkit.bridges.view.packet import make_packet
 from simkit.bridges.view.page_requests import RequestFailed, execute_request
 from simkit.bridges.view.page_server import PageRequest, PageServer
@@ -42,6 +43,7 @@ class LiveView:
 
     Attributes:
         travel: paths that the models have driven.
+        driving: robots that the pages drive; the run sends its commands when they are due.
 
     Raises:
         InputError: SK-WEB-006 the address cannot be used.
@@ -50,7 +52,7 @@ class LiveView:
     def __init__(self, sim: Simulation, host: str = "127.0.0.1", port: int = 0, token: str = "") -> None:
         self.sim, self._host, self._token = sim, host, token or secrets.token_urlsafe(16)
         self.revision = 0
-        self.travel = Travel(sim)
+        self.travel, self.driving = Travel(sim), Driving(sim)
         try:
             self.server = PageServer(host, port, self._token)
         except OSError as error:

@@ -6,7 +6,11 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
+from simkit.pose import Pose
+
 if TYPE_CHECKING:
+    from simkit.bridges.teleop import Teleop
+    from simkit.bridges.view.driving import Driving
     from simkit.bridges.view.page_server import PageRequest
     from simkit.bridges.view.travel import Travel
     from simkit.runtime import Simulation
@@ -17,10 +21,12 @@ class ViewHost(Protocol):
 
     Attributes:
         travel: paths that the models have driven.
+        driving: robots that the pages drive.
     """
 
     sim: Simulation
     travel: Travel
+    driving: Driving
 
 
 class RequestFailed(Exception):
@@ -52,6 +58,14 @@ class Call:
         if type(value) not in (int, float) or not math.isfinite(value):
             raise RequestFailed(f"{name!r} must be a finite number, got {value!r:.80}")
         return float(value)
+
+    def numbers(self, name: str, count: int) -> list[float]:
+        """Return an argument that is a list of finite numbers."""
+        values = self._arguments.get(name)
+        is_valid = isinstance(values, list) and len(values) == count
+        if not is_valid or not all(type(v) in (int, float) and math.isfinite(v) for v in values):
+            raise RequestFailed(f"{name!r} must be a list of {count} finite numbers, got {values!r:.80}")
+        return [float(v) for v in values]
 
     def flag(self, name: str) -> bool:
         """Return an argument that is true or false."""
@@ -105,12 +119,87 @@ def _travel(call: Call) -> object:
     return {name: [[round(float(x), 4) for x in point] for point in path] for name, path in paths}
 
 
+def _targets(call: Call) -> object:
+    return call.view.driving.targets()
+
+
+def _drive(call: Call) -> object:
+    """Request speeds: `ahead` and `left` [m/s], `turn` [rad/s]."""
+    driver = _driver(call)
+    driver.drive(call.number("ahead", 0.0), call.number("left", 0.0), call.number("turn", 0.0))
+    return driver.speeds
+
+
+def _key(call: Call) -> object:
+    """Process a key as `--teleop` does."""
+    driver = _driver(call)
+    driver.press(call.text("key"))
+    return driver.speeds
+
+
+def _driver(call: Call) -> Teleop:
+    topic = call.text("topic")
+    found = call.view.driving.teleop(topic, call.client)
+    if found is None:
+        raise RequestFailed(f"{topic!r:.80} is no topic for velocities")
+    return found
+
+
+def _pose(call: Call) -> object:
+    """Publish a goal or an initial pose: `kind` (goal, initial), `x`, `y` [m], `yaw` [rad], optionally `topic`."""
+    kind = call.text("kind")
+    if kind not in ("goal", "initial"):
+        raise RequestFailed(f"'kind' must be goal or initial, got {kind!r:.80}")
+    topic = call.text("topic") if call.value("topic") is not None else ""
+    place = call.number("x"), call.number("y"), call.number("yaw", 0.0)
+    return call.view.driving.send_pose(kind, *place, topic)
+
+
+def _joint(call: Call) -> None:
+    """Set the position of a joint with one axis [rad or m]; it has no velocity afterwards."""
+    joint = call.sim.joint(call.text("name"))
+    value = call.number("value")
+    if joint.dof != 1:
+        raise RequestFailed(f"joint {joint.name!r} has {joint.dof} axes; a slider moves one")
+    if joint.lower <= joint.upper:
+        value = min(max(value, float(joint.lower)), float(joint.upper))
+    joint.set_position(value)
+    joint.set_velocity(0.0)
+
+
+def _spawn(call: Call) -> object:
+    """Spawn a model by name, file or XML: `source`, `name`, `x`, `y`, `z` [m], `yaw` [rad]."""
+    name = call.text("name") if call.value("name") else None
+    pose = None
+    if call.value("x") is not None:
+        pose = Pose.from_rpy(call.number("x"), call.number("y"), call.number("z", 0.0), 0.0, 0.0, call.number("yaw", 0.0))
+    return call.sim.spawn(call.text("source"), name, pose).name
+
+
+def _move(call: Call) -> None:
+    """Move a model to `position` [m] and `quaternion` (w, x, y, z)."""
+    model = call.sim.model(call.text("name"))
+    model.set_pose(Pose(call.numbers("position", 3), call.numbers("quaternion", 4)))
+
+
+def _remove(call: Call) -> None:
+    call.sim.remove(call.text("name"))
+
+
 REQUESTS: Final[dict[str, Callable[[Call], object]]] = {
-    "left": lambda _: None,
+    "left": lambda call: call.view.driving.release(call.client),
     "pause": _pause,
     "step": _step,
     "pace": _pace,
     "reset": _reset,
     "travel": _travel,
+    "targets": _targets,
+    "drive": _drive,
+    "key": _key,
+    "pose": _pose,
+    "joint": _joint,
+    "spawn": _spawn,
+    "move": _move,
+    "remove": _remove,
 }
 """Function of each request, by the name in `do`."""

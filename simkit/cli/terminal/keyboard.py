@@ -11,7 +11,8 @@ from collections.abc import Callable
 from types import FrameType
 from typing import IO, Any, Final
 
-UP, DOWN, LEFT, RIGHT = "up", "down", "left", "right"
+from simkit.bridges.teleop import DOWN, LEFT, RIGHT, UP
+
 _LONGEST_SEQUENCE: Final = 32  # [bytes]; longer byte strings are not a sequence
 _ESCAPE: Final = 0x1B
 _ARROWS: Final = {"A": UP, "B": DOWN, "C": RIGHT, "D": LEFT}

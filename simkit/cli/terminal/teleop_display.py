@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, cast
 import numpy as np
 import numpy.typing as npt
 
-from simkit.cli.terminal.teleop import Teleop
+from simkit.bridges.teleop import Teleop
 from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:

@@ -1,4 +1,7 @@
 // Panels of the page: side and function `make(app)`, which returns an element or null. A new panel is one line here.
+import { makeCameraPanel } from './camera_panel.js';
+import { makeDrivePanel } from './drive_panel.js';
+import { makeJointPanel } from './joint_panel.js';
 import { makeLayerPanel } from './layer_panel.js';
 import { makeSelectionPanel } from './selection_panel.js';
 import { makeTree } from './tree_panel.js';
@@ -7,4 +10,7 @@ export const PANELS = [
   ['left', makeTree],
   ['left', makeSelectionPanel],
   ['right', makeLayerPanel],
+  ['right', makeCameraPanel],
+  ['right', makeDrivePanel],
+  ['right', makeJointPanel],
 ];

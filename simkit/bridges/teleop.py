@@ -1,4 +1,4 @@
-"""Keyboard driving: chooses the velocity topic and converts keys to velocity commands."""
+"""Driving by hand: chooses the velocity topic and converts keys and requested speeds to velocity commands."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from simkit.cli.terminal.keyboard import DOWN, LEFT, RIGHT, UP
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
 
 TWISTS: Final = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 Bounds = tuple[float, float]
+UP, DOWN, LEFT, RIGHT = "up", "down", "left", "right"
 
 _UNLIMITED: Final = (-math.inf, math.inf)
 _BURGER: Final = (0.22, 2.84)  # [m/s, rad/s] limits in turtlebot3_teleop; the model files have none
@@ -72,6 +72,18 @@ def find_target(sim: Simulation, requested: str = "") -> TeleopTarget:
     else:
         topic = _choose_topic(owners)
     return _describe_target(sim, topic, owners[topic])
+
+
+def find_targets(sim: Simulation) -> list[TeleopTarget]:
+    """Return all robots that can be driven: one topic of each drive plugin, with `/cmd_vel` first."""
+    found: dict[int, tuple[str, object]] = {}
+    for topic, endpoint, types, role in sim.communication.bus.endpoints():
+        if role == "takes" and endpoint.active and any(type_name in TWISTS for type_name in types):
+            known = found.setdefault(id(endpoint.owner), (topic, endpoint.owner))
+            if topic == "/cmd_vel" != known[0]:
+                found[id(endpoint.owner)] = (topic, endpoint.owner)
+    targets = [_describe_target(sim, topic, owner) for topic, owner in found.values()]
+    return sorted(targets, key=lambda target: target.topic != "/cmd_vel")
 
 
 def _choose_topic(owners: dict[str, object]) -> str:
@@ -193,6 +205,11 @@ class Teleop:
         else:
             self._add(_AHEAD.get(key, 0), _SIDEWAYS.get(key, 0), _TURN.get(key, 0))
         return True
+
+    def drive(self, ahead: float, left: float, turn: float) -> None:
+        """Request speeds within the limits: forward and to the left [m/s], and yaw rate to the left [rad/s]."""
+        self._note_key()
+        self._set_speeds(ahead, left if self.target.sideways else 0.0, turn)
 
     def stop(self) -> None:
         """Command zero speed at once."""
