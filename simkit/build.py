@@ -51,7 +51,7 @@ from simkit.writers.inspect_description import describe_scene
 if TYPE_CHECKING:
     from simkit.compiler.mjcf_parser import MjcfParser
     from simkit.plugins.run_parameter_files import ParameterFileArgument, RunParameterFile
-    from simkit.runtime import Simulation
+    from simkit.runtime.simulation import Page, Simulation
 
 Source = str | os.PathLike[str]
 
@@ -187,6 +187,7 @@ def load(
     simulation.control.write_sdf = _sdf_of
     simulation.control.resolve_world = lambda overrides: resolve_world(overrides, Diagnostics())
     simulation.control.file_arguments = file_scene.arguments
+    simulation._open_page = _open_page
     simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     options: LoadOptions = {
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
@@ -208,6 +209,13 @@ def load(
         simulation.close()
         raise
     return simulation
+
+
+def _open_page(simulation: Simulation, port: int) -> Page:
+    """Open the live view of a simulation that a script steps."""
+    from simkit.bridges.view.script_view import ScriptView
+
+    return ScriptView(simulation, port)
 
 
 def describe(
@@ -376,16 +384,9 @@ def _model_to_spawn(
 ) -> SceneModel:
     check_source(source)
     scene = load_scene(
-        source,
-        resolver=resolver,
-        diagnostics=diagnostics,
-        name=name,
-        pose=pose,
-        as_model=True,
-        mesh_reader=_read_mesh,
-        mjcf_parser=_mjcf_parser,
-        xacro_args=xacro_args,
-    )
+        source, resolver=resolver, diagnostics=diagnostics, name=name, pose=pose, as_model=True,
+        mesh_reader=_read_mesh, mjcf_parser=_mjcf_parser, xacro_args=xacro_args,
+    )  # fmt: skip
     diagnostics.raise_if_errors()
     models = [scene.model] if scene.model else list(scene.world.models)
     if len(models) != 1:

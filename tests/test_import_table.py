@@ -47,7 +47,7 @@ ROOMS: dict[str, set[str]] = {
     "sensors": {*BELOW_RUNTIME, "runtime"},
     "recording": {"runtime", "writers"},
     "plugins": {*BELOW_RUNTIME, "recording", "runtime", "sensors"},
-    "build": BELOW_BUILD,
+    "build": {*BELOW_BUILD, "bridges"},
     "bridges": {"compiler", "recording", "runtime", "scene"},
     "live": {"bridges"},
     "testing": {*BELOW_BUILD, "build"},

@@ -48,6 +48,7 @@ COMMANDS = {
     "interface": "List and show the types of messages, services and actions.",
     "model": "Show models, poses and joints of a running simulation.",
     "ros": "Connect a running simulation to ROS 2 until the simulation ends, or until Ctrl-C.",
+    "view": "Show a world, a robot, a running simulation or a bag in a browser.",
     "tf": "Show the frames of a running simulation or of a bag.",
 }
 """Commands and their help lines. The module of each command has the command's name and is imported on first use."""

@@ -12,6 +12,7 @@ import typer
 from typer import Option
 from typer.core import TyperCommand
 
+from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
 from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.gazebo_options import remove_gazebo_options
@@ -21,7 +22,6 @@ from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, report_errors_and_json
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status
-from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
 from simkit.run_spec import GROUND, Check, PluginErrorPolicy, Recording, RunSpec

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from simkit.cli.terminal.output import print_status
 
 if TYPE_CHECKING:
-    from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
     from simkit.bridges.teleop import Teleop
+    from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
     from simkit.runtime import Simulation
 
 HINT = "space resumes, n advances one step, Ctrl-C ends"

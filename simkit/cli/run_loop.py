@@ -43,7 +43,18 @@ class CommandSender(Protocol):
 
 
 class RunView(Protocol):
-    """Protocol of a live view, which the loop updates between slices."""
+    """Protocol of a live view, which the loop updates between slices.
+
+    Attributes:
+        driving: sender of the commands of the pages.
+        address: address of the page.
+    """
+
+    @property
+    def driving(self) -> CommandSender: ...
+
+    @property
+    def address(self) -> str: ...
 
     def update(self) -> None:
         """Execute the requests of the pages, and send the pages what has changed."""
@@ -128,6 +139,11 @@ class RunLoop:
                 was_paused = sim.paused
                 self._wait(_PAUSE_POLL_SECONDS if was_paused else self._ahead())
         return True
+
+    def show(self, view: RunView) -> None:
+        """Update a live view between slices, and send the commands of its pages at their ticks."""
+        self.view = view
+        self.senders.append(view.driving)
 
     def _take_commands(self) -> None:
         """Process the input between two slices: keys, due commands and requests of clients."""

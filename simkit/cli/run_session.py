@@ -18,16 +18,16 @@ from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stderr_console, stdout_console
-from simkit.cli.terminal.page_options import open_page
+from simkit.cli.terminal.page_options import open_later, open_page
 from simkit.errors import InputError, RenderError
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
 
 if TYPE_CHECKING:
     from simkit.bridges.bridge_process import BridgeProcess
+    from simkit.bridges.teleop import Teleop
     from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
     from simkit.cli.terminal.progress import Progress
-    from simkit.bridges.teleop import Teleop
     from simkit.recording.bags.playback import Playback
     from simkit.recording.bags.recorder import Recorder
     from simkit.recording.command_script import Command
@@ -196,8 +196,7 @@ class Session:
                 loop.senders.append(played)
             film = stack.enter_context(film_run(sim, display.film, driven, loop.senders))
             if view is not None:
-                loop.view = view
-                loop.senders.append(view.driving)
+                loop.show(view)
             if display.view:
                 self._open_viewer(stack, loop, watchers)
             if keyboard is not None:
@@ -361,6 +360,7 @@ class Session:
         if loop.server is None:
             print_status(note)
         else:
+            loop.server.open_view = partial(open_later, loop, self.sim, stack)
             stack.enter_context(loop.server)
 
     def _watched(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit.argument_checks import check_function, checked_integer
 from simkit.errors import InputError, SimulationDiverged
@@ -37,6 +37,20 @@ if TYPE_CHECKING:
     from simkit.scene import SceneWorld
 
 
+class Page(Protocol):
+    """Page in a browser that shows a simulation which a script steps."""
+
+    @property
+    def address(self) -> str:
+        """Address of the page."""
+
+    def advance(self, target: int, advance: Callable[[int], None]) -> None:
+        """Call `advance` up to the tick `target`, and update the page in between."""
+
+    def close(self) -> None:
+        """Close the page."""
+
+
 class Simulation(ScriptGraph, InProcess):
     """Loaded world, made by `simkit.load`; also a context manager.
 
@@ -51,6 +65,8 @@ class Simulation(ScriptGraph, InProcess):
     """
 
     run_spec: RunSpec | None = None
+    _open_page: Callable[[Simulation, int], Page] | None = None
+    _page: Page | None = None
 
     def __init__(
         self,
@@ -127,8 +143,12 @@ class Simulation(ScriptGraph, InProcess):
         journal = self._bus.journal
         if journal is not None:
             journal.before_steps()
+        advance = self.engine.loop.advance
         try:
-            self.engine.loop.advance(target, is_served=is_served)
+            if self._page is None or is_served:
+                advance(target, is_served=is_served)
+            else:
+                self._page.advance(target, advance)
         except SimulationDiverged as error:
             add_driver_hints(self.engine.structure.all_plugins(), error)
             raise
@@ -309,11 +329,29 @@ class Simulation(ScriptGraph, InProcess):
         fill_schedule(self.engine, scheduler, handles.tables["joint"].values(), handles.exact_limits)
         self.communication.on_demand.fill(scheduler)
 
+    def view(self, port: int = 0) -> str:
+        """Show the simulation in a browser; `step` and `run` then update the page.
+
+        Args:
+            port: port of the page on this machine; 0 for a free one. Only the first call uses it.
+
+        Returns:
+            Address of the page. A notebook shows the page itself.
+        """
+        self.engine.check_open()
+        if self._page is None:
+            if self._open_page is None:
+                raise InputError("only simulations from simkit.load have a view", "SK-WEB-006")
+            self._page = self._open_page(self, port)
+        return self._page.address
+
     def close(self) -> None:
         """Close plugins and sensors; further calls do nothing."""
         engine = self.engine
         if engine.is_closed:
             return
+        if self._page is not None:
+            self._page.close()
         first = self.contents.spawner.close_plugins()
         for sensor in engine.structure.all_sensors():
             sensor.close()

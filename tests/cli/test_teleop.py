@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.cli.run_keys import RunKeys
 from simkit.bridges.teleop import Teleop, find_target
+from simkit.cli.run_keys import RunKeys
 from simkit.cli.terminal.teleop_display import DriverLine
 from simkit.errors import InputError
 

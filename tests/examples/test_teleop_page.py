@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import simkit
+from simkit.bridges.teleop import Teleop, find_target
 from simkit.cli.run_keys import RunKeys
 from simkit.cli.terminal.keyboard import DOWN, LEFT, RIGHT, UP
-from simkit.bridges.teleop import Teleop, find_target
 from simkit.cli.terminal.teleop_display import DriverLine
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "teleop.md").read_text(encoding="utf-8")

@@ -41,6 +41,7 @@ class RequestHost(Protocol):
         client_topics: topics that a client created, because nothing in the simulation used them.
         is_polling: True while `poll` processes data.
         client_types: types that clients defined.
+        open_view: function that shows the run in a browser and returns the address; None if the run cannot.
     """
 
     sim: Simulation
@@ -49,6 +50,7 @@ class RequestHost(Protocol):
     client_topics: set[str]
     client_types: set[str]
     is_polling: bool
+    open_view: Callable[[], str] | None
 
     def poll(self, wait: float = 0.0) -> bool:
         """Read the frames of clients, and send the data that is queued for them."""
@@ -275,6 +277,13 @@ def set_parameter(request: Request) -> object:
     return None
 
 
+def view(request: Request) -> object:
+    """Show the run in a browser, and return the address of the page."""
+    if request.server.open_view is None:
+        raise RequestRefused("this simulation is stepped by a script; call sim.view() there")
+    return request.server.open_view()
+
+
 REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
     {
         "ping": lambda _: "pong",
@@ -295,6 +304,7 @@ REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
         "set_parameter": set_parameter,
         "nodes": lambda request: node_list(request.sim, request.server.peers.values()),
         "models": lambda request: list(request.sim.models),
+        "view": view,
         "model": lambda request: model_state(request.sim, request.arg("name", str)),
     }
 )

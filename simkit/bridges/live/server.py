@@ -13,6 +13,7 @@ import selectors
 import socket
 import time
 from collections import deque
+from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
@@ -57,6 +58,7 @@ class Server:
         client_topics: topics that clients created during the run, because nothing in the simulation used them.
         is_polling: True while `poll` processes data.
         client_types: types that clients defined during the run.
+        open_view: function that shows the run in a browser and returns the address; None if the run cannot.
 
     Raises:
         NoSocketFolder: no folder can contain the socket; the message has the reason.
@@ -71,6 +73,7 @@ class Server:
         self.peers: dict[int, ClientConnection] = {}
         self.client_topics: set[str] = set()
         self.client_types: set[str] = set()
+        self.open_view: Callable[[], str] | None = None
         self._busy: deque[ClientConnection] = deque()
         self._interest: dict[int, int] = {}
         self._numbers, self._first, self.is_polling = 0, 0, False

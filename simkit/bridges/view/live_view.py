@@ -45,13 +45,15 @@ class LiveView:
         travel: paths that the models have driven.
         driving: robots that the pages drive; the run sends its commands when they are due.
 
+        is_held: True after a page has requested a pause, until a page resumes.
+
     Raises:
         InputError: SK-WEB-006 the address cannot be used.
     """
 
     def __init__(self, sim: Simulation, host: str = "127.0.0.1", port: int = 0, token: str = "") -> None:
         self.sim, self._host, self._token = sim, host, token or secrets.token_urlsafe(16)
-        self.revision = 0
+        self.revision, self.is_held = 0, False
         self.travel, self.driving = Travel(sim), Driving(sim)
         try:
             self.server = PageServer(host, port, self._token)
@@ -210,6 +212,3 @@ class LiveView:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-    def _repr_html_(self) -> str:
-        return f'<iframe src="{self.address}" width="100%" height="600" style="border:0"></iframe>'

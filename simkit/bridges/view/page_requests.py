@@ -22,11 +22,13 @@ class ViewHost(Protocol):
     Attributes:
         travel: paths that the models have driven.
         driving: robots that the pages drive.
+        is_held: True after a page has requested a pause, until a page resumes.
     """
 
     sim: Simulation
     travel: Travel
     driving: Driving
+    is_held: bool
 
 
 class RequestFailed(Exception):
@@ -92,7 +94,7 @@ def execute_request(view: ViewHost, request: PageRequest) -> object:
 
 
 def _pause(call: Call) -> None:
-    call.sim.paused = call.flag("value")
+    call.sim.paused = call.view.is_held = call.flag("value")
 
 
 def _step(call: Call) -> None:
@@ -172,7 +174,9 @@ def _spawn(call: Call) -> object:
     name = call.text("name") if call.value("name") else None
     pose = None
     if call.value("x") is not None:
-        pose = Pose.from_rpy(call.number("x"), call.number("y"), call.number("z", 0.0), 0.0, 0.0, call.number("yaw", 0.0))
+        pose = Pose.from_rpy(
+            call.number("x"), call.number("y"), call.number("z", 0.0), 0.0, 0.0, call.number("yaw", 0.0)
+        )
     return call.sim.spawn(call.text("source"), name, pose).name
 
 

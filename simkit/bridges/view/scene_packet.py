@@ -70,7 +70,7 @@ def moving_bodies(model: mujoco.MjModel) -> npt.NDArray[np.int32]:
 
 def poses(sim: Simulation, bodies: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
     """Return position [m] and quaternion (w, x, y, z) of bodies in the world, shape (len(bodies), 7)."""
-    data = sim.mj_data
+    data = sim.engine.physics.fresh()  # of the present state, also after a pose was set
     return np.concatenate((data.xpos[bodies], data.xquat[bodies]), axis=1).astype(np.float32)
 
 

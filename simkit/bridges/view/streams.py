@@ -124,7 +124,7 @@ class ContactStream:
         if sim.tick == self._tick:
             return None
         self._tick = sim.tick
-        model, data = sim.mj_model, sim.mj_data
+        model, data = sim.mj_model, sim.engine.physics.fresh()
         count = min(data.ncon, _MOST_CONTACTS)
         normals = data.contact.frame[:count, :3]
         forces, local = np.zeros((count, 3)), np.zeros(6)

@@ -7,7 +7,7 @@ import re
 import sys
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final, Protocol
 
 import typer
 from typer import Option
@@ -29,6 +29,19 @@ _HOST_HELP = "Address of this machine that other machines reach, for --web; whoe
 Web = Annotated[int | None, option(_WEB_HELP, "[PORT]", min=0, max=_MOST_PORT)]
 Host = Annotated[str | None, option(_HOST_HELP, "HOST")]
 NoOpen = Annotated[bool, Option("--no-open", help="Print the address of the page and open no browser.")]
+
+
+class ViewLoop(Protocol):
+    """Protocol of the loop of a run.
+
+    Attributes:
+        view: live view of the run; None without one.
+    """
+
+    view: Any
+
+    def show(self, view: LiveView) -> None:
+        """Update a live view between slices."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +82,15 @@ def open_page(sim: Simulation, options: PageOptions, stack: ExitStack) -> LiveVi
         text = "other machines reach the page; whoever has its address may drive, spawn and reset"
         print_status(f"warning SK-WEB-007: {text}; without --host only this machine reaches it")
     return view
+
+
+def open_later(loop: ViewLoop, sim: Simulation, stack: ExitStack) -> str:
+    """Return the address of the run's page, which is opened for this machine if the run has none yet."""
+    if loop.view is None:
+        from simkit.bridges.view.live_view import LiveView
+
+        loop.show(stack.enter_context(LiveView(sim)))
+    return str(loop.view.address)
 
 
 def show_address(address: str, *, opens: bool) -> None:
