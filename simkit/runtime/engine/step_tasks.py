@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from simkit.runtime.engine import sleep, velocity_servos
 from simkit.runtime.engine.scheduler import Scheduler, Task
+from simkit.runtime.engine.velocity_limits import LimitedJoint, velocity_limiter
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
@@ -115,7 +114,6 @@ def _guard_group(faults: PluginFaults, group: PluginGroup, hook: str, run: Calla
     return task
 
 
-_LIMIT_SHARE = 0.999  # threshold for the sum of squares of velocities over their limits
 _NO_LIMIT = 1e6  # [rad/s or m/s] a larger limit in a file means no limit
 _LIMIT_RATE = 100.0  # [Hz] at which the velocity limit of an undriven joint is enforced
 _CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
@@ -123,21 +121,6 @@ _RANGE = "sensor_msgs/msg/Range"
 _BLIND_KINDS = frozenset(  # kinds of sensors that do not see the scene
     ("imu", "force_torque", "contact", "altimeter", "magnetometer", "air_pressure", "air_speed", "navsat", "gps")
 )
-
-
-class LimitedJoint(Protocol):
-    """Joint with a velocity limit."""
-
-    @property
-    def mj_dofs(self) -> Sequence[int]:
-        """Indices among MuJoCo's degrees of freedom."""
-
-    @property
-    def least_velocity_limit(self) -> float:
-        """Least velocity limit of the joint's axes [rad/s or m/s]."""
-
-    def clamp_velocity(self, _tick: int = 0) -> None:
-        """Clamp the velocity to the limits."""
 
 
 def fill_schedule(
@@ -159,15 +142,7 @@ def fill_schedule(
 
     if resting.watches:
         scheduler.every(sleep.RATE, look_for_rest, "after")
-    coasting = []
-    for joint in joints:
-        if joint in exact_limits:
-            scheduler.every(None, joint.clamp_velocity, "sense")
-        elif joint.mj_dofs and joint.least_velocity_limit < _NO_LIMIT:
-            coasting.append(joint)
-
-    if coasting:
-        scheduler.every(_LIMIT_RATE, _velocity_limiter(engine, coasting), "sense")
+    _schedule_velocity_limits(engine, scheduler, joints, exact_limits)
     if engine.velocity_servos.are_there:  # before the commands of the step, which have had no time to take effect
         scheduler.every(velocity_servos.RATE, engine.velocity_servos.correct, "before")
     _report_shared_topics(engine)
@@ -185,6 +160,17 @@ def fill_schedule(
         scheduler.every(rate, task, "after")
 
 
+def _schedule_velocity_limits(
+    engine: Engine, scheduler: Scheduler, joints: Iterable[LimitedJoint], exact_limits: Collection[LimitedJoint]
+) -> None:
+    moving = [joint for joint in joints if joint.mj_dofs]
+    exact = [joint for joint in moving if joint in exact_limits]
+    coasting = [joint for joint in moving if joint not in exact_limits and joint.least_velocity_limit < _NO_LIMIT]
+    for rate, limited in ((None, exact), (_LIMIT_RATE, coasting)):
+        if limited:
+            scheduler.every(rate, velocity_limiter(engine.physics, limited), "sense")
+
+
 def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[Any]) -> None:
     """Schedule plugins that move scenery, before sensors are sampled and at the ticks at which sensors see it."""
     for plugin in plugins:
@@ -194,30 +180,6 @@ def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[An
             for sensor in engine.structure.all_sensors():
                 if sensor.scene.kind not in _BLIND_KINDS:
                     scheduler.on(sensor.timetable(), task, "sense")
-
-
-def _velocity_limiter(engine: Engine, joints: Sequence[LimitedJoint]) -> Task:
-    """Return one task that enforces the velocity limits of joints.
-
-    A scalar product shows quickly that no joint is near its limit.
-    """
-    dofs = np.array([dof for joint in joints for dof in joint.mj_dofs], dtype=np.intp)
-    owners = [joint for joint in joints for _ in joint.mj_dofs]
-    # least limit of several axes; the joint checks each axis. Setting a limit makes a new schedule
-    limits = np.array([joint.least_velocity_limit for joint in owners])
-    shares = np.zeros(engine.mj_model.nv)
-    shares[dofs] = 1.0 / np.maximum(limits, 1e-9)
-    physics = engine.physics
-
-    def hold(tick: int) -> None:
-        velocities = physics.data.qvel
-        found = velocities * shares
-        if np.vdot(found, found) < _LIMIT_SHARE:  # then no velocity exceeds its limit
-            return
-        for index in np.flatnonzero(np.abs(velocities[dofs]) > limits).tolist():
-            owners[index].clamp_velocity(tick)
-
-    return hold
 
 
 def _group_sensors(engine: Engine) -> None:

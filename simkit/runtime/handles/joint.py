@@ -286,16 +286,6 @@ class Joint(TunableJoint):
         """Return the velocity limit of an axis [rad/s or m/s]."""
         return float(self._velocity_limit[axis])
 
-    def clamp_velocity(self, _tick: int = 0) -> None:
-        """Clamp the velocity to its limits."""
-        # plain numbers for speed: called often, for every joint with a limit
-        qvel, limits = self._physics.data.qvel, self._velocity_limit.tolist()
-        for i, dof in enumerate(self._plain_dofs):
-            velocity, limit = qvel.item(dof), limits[min(i, len(limits) - 1)]
-            if abs(velocity) > limit:
-                qvel[dof] = math.copysign(limit, velocity)
-                self._physics.changed_body(VELOCITY, self._body)
-
     def get_state(self) -> tuple[Vector, Vector]:
         """Return the limits for a snapshot."""
         return self._effort_limit.copy(), self._velocity_limit.copy()

@@ -1,0 +1,120 @@
+"""Velocity limits of joints, enforced by impulses at the joints."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Protocol
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.runtime.engine.physics_state import VELOCITY
+
+if TYPE_CHECKING:
+    from simkit.runtime.engine.forward_pass import ForwardPass
+
+Vector = npt.NDArray[np.float64]
+_LIMIT_SHARE = 0.999  # threshold for the sum of squares of velocities over their limits
+
+
+class LimitedJoint(Protocol):
+    """Joint with a velocity limit."""
+
+    @property
+    def mj_dofs(self) -> Sequence[int]:
+        """Indices among MuJoCo's degrees of freedom."""
+
+    @property
+    def least_velocity_limit(self) -> float:
+        """Least velocity limit of the joint's axes [rad/s or m/s]."""
+
+    def axis_velocity_limit(self, axis: int) -> float:
+        """Return the velocity limit of an axis [rad/s or m/s]."""
+
+
+def velocity_limiter(physics: ForwardPass, joints: Sequence[LimitedJoint]) -> Callable[[int], None]:
+    """Return one task that enforces the velocity limits of joints.
+
+    A scalar product shows quickly that no joint is near its limit. Setting a limit makes a new schedule.
+    """
+    dofs = np.array([dof for joint in joints for dof in joint.mj_dofs], dtype=np.intp)
+    limits = np.array([_axis_limit(joint, axis) for joint in joints for axis in range(len(joint.mj_dofs))])
+    shares = np.zeros(physics.model.nv)
+    shares[dofs] = 1.0 / np.maximum(limits, 1e-9)
+
+    def hold(_tick: int = 0) -> None:
+        found = physics.data.qvel * shares
+        if np.vdot(found, found) >= _LIMIT_SHARE:  # otherwise no velocity exceeds its limit
+            limit_velocities(physics, dofs, limits)
+
+    return hold
+
+
+def _axis_limit(joint: LimitedJoint, axis: int) -> float:
+    """Return the limit of one degree of freedom; a ball joint has one limit for three of them."""
+    try:
+        return joint.axis_velocity_limit(axis)
+    except IndexError:
+        return joint.least_velocity_limit
+
+
+def limit_velocities(physics: ForwardPass, dofs: npt.NDArray[np.intp], limits: Vector) -> None:
+    """Bring the velocities of joints within their limits, by impulses between parent and child.
+
+    Changing the joint's velocity alone would change the momentum of the robot: a robot that is not fixed would gain
+    energy and fly away. Impulses keep the momentum, and the robot never gains energy.
+
+    Args:
+        physics: state of the engine.
+        dofs: degrees of freedom with limits.
+        limits: limit of each degree of freedom [rad/s or m/s].
+    """
+    model, data = physics.model, physics.data
+    is_over = np.abs(data.qvel[dofs]) > limits
+    if not is_over.any():
+        return
+    trees = model.dof_treeid[dofs]
+    inside = np.isin(trees, trees[is_over])  # an impulse moves the other joints of its tree
+    dofs, limits = dofs[inside], limits[inside]
+    if not physics.fresh_velocities():
+        physics.fresh()
+    pulses, responses = np.zeros((len(dofs), model.nv)), np.zeros((len(dofs), model.nv))
+    pulses[np.arange(len(dofs)), dofs] = 1.0
+    mujoco.mj_solveM(model, data, responses, pulses)
+    chosen, bounds, impulses = _impulses(data.qvel[dofs], limits, responses[:, dofs])
+    data.qvel[:] += impulses @ responses[chosen]
+    data.qvel[dofs[chosen]] = bounds  # free of rounding errors
+    for body in np.unique(model.dof_bodyid[dofs[chosen]]).tolist():
+        physics.changed_body(VELOCITY, body)
+
+
+def _impulses(velocities: Vector, limits: Vector, response: Vector) -> tuple[npt.NDArray[np.intp], Vector, Vector]:
+    """Solve for the smallest impulses after which no velocity exceeds its limit.
+
+    Args:
+        velocities: velocities [rad/s or m/s].
+        limits: their limits.
+        response: change of each velocity by a unit impulse at each joint, a symmetric matrix.
+
+    Returns:
+        Indices of the joints with an impulse, their velocities afterwards, and the impulses.
+    """
+    signs = np.where(velocities < 0.0, -1.0, 1.0)
+    active = np.abs(velocities) > limits
+    chosen, impulses = np.flatnonzero(active), np.zeros(0)
+    for _ in range(2 * len(limits) + 1):
+        chosen = np.flatnonzero(active)
+        wanted = (signs * limits - velocities)[chosen]
+        impulses = np.linalg.solve(response[np.ix_(chosen, chosen)], wanted)
+        outward = impulses * signs[chosen]
+        if outward.max() > 0.0:  # another joint's impulse already slows this joint
+            active[chosen[outward.argmax()]] = False
+            continue
+        after = velocities + impulses @ response[chosen]
+        is_over = ~active & (np.abs(after) > limits * (1.0 + 1e-9))
+        if not is_over.any():
+            break
+        signs[is_over] = np.sign(after[is_over])
+        active |= is_over
+    return chosen, (signs * limits)[chosen], impulses
