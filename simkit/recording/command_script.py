@@ -126,7 +126,10 @@ def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
         raise InputError(
             f"SK-CLI-010 --cmd-vel: found {text!r}; expected LINEAR,ANGULAR such as 0.2,0.3", "SK-CLI-010"
         ) from None
-    twist_topics = [topic for topic, type_name in topics.items() if type_name in _TWISTS]
+    twists = [topic for topic, type_name in topics.items() if type_name in _TWISTS]
+    # a controller of ros2_control takes commands without a stamp on a second topic and publishes its limited commands
+    companions = {f"{topic}{suffix}" for topic in twists for suffix in ("_unstamped", "_out")}
+    twist_topics = [topic for topic in twists if topic not in companions]
     topic = "/cmd_vel" if "/cmd_vel" in twist_topics else twist_topics[0] if len(twist_topics) == 1 else None
     if topic is None:
         found = f"several ({', '.join(twist_topics)}); choose one in a --script" if twist_topics else "none"

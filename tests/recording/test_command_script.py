@@ -58,6 +58,15 @@ def test_a_constant_velocity_is_sent_on_the_only_twist_topic() -> None:
     assert command.message["twist"]["linear"] == {"x": 1.0}
 
 
+def test_a_constant_velocity_drives_a_controller_with_a_second_input_and_an_output() -> None:
+    topics = {
+        "/base/cmd_vel": "geometry_msgs/msg/Twist",
+        "/base/cmd_vel_unstamped": "geometry_msgs/msg/Twist",
+        "/base/cmd_vel_out": "geometry_msgs/msg/TwistStamped",
+    }
+    assert steady_velocity("1,0", topics).topic == "/base/cmd_vel"
+
+
 @pytest.mark.parametrize(
     ("text", "topics", "reason"),
     [
