@@ -15,8 +15,8 @@ from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 if TYPE_CHECKING:
     from simkit.bridges.ros.bridge_process import RosOptions
     from simkit.bridges.web.web_process import WebOptions
-    from simkit.recording.films.film import FilmOptions
     from simkit.cli.terminal.page_options import PageOptions
+    from simkit.recording.films.film import FilmOptions
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -285,6 +286,7 @@ class SceneModel:
         mjcf: MuJoCo's own description of the model; if present, this description is simulated.
         moved_by: object that moves the links of a static model during the run (an actor's script), or None.
         urdf: root element of a URDF robot's file, after xacro; None for a model of another format.
+        arguments: values of the arguments of the robot's xacro file.
     """
 
     name: str
@@ -307,6 +309,7 @@ class SceneModel:
     mjcf: MjcfSource | None = None
     moved_by: object | None = None
     urdf: Params | None = field(default=None, compare=False, repr=False)
+    arguments: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
 
     def all_models(self) -> list[SceneModel]:
         """Return this model and all nested models, outermost first, in document order."""

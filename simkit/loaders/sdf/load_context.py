@@ -65,6 +65,7 @@ class SdfFile:
     Attributes:
         chain: files that include one another, from the outermost file to this one.
         included: model of another format that the root describes.
+        arguments: values of the arguments of a xacro file.
     """
 
     root: Params
@@ -72,6 +73,7 @@ class SdfFile:
     folder: Path | None
     chain: tuple[str, ...] = ()
     included: IncludedModel | None = None
+    arguments: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass

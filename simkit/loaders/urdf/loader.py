@@ -30,7 +30,8 @@ class UrdfLoader(IncludableLoader):
         resolver = request.resolver.around(document.folder)
         workspace = Workspace.of(request, resolver)
         folder = document.folder or resolver.base
-        file = SdfFile(document.root, _SDF_VERSION, folder, (str(document.path or ""),))
+        chain = (str(document.path or ""),)
+        file = SdfFile(document.root, _SDF_VERSION, folder, chain, arguments=document.arguments)
         draft = declare_robot(file, workspace, resolver)
         if request.name is not None:
             draft.name = request.name
@@ -45,7 +46,7 @@ class UrdfLoader(IncludableLoader):
             return None
         path = document.path or Path()
         file = SdfFile(expanded.root, _SDF_VERSION, path.parent, (str(path.resolve()),))
-        return IncludedRobot(_frames_document(file, workspace), expanded.root)
+        return IncludedRobot(_frames_document(file, workspace), expanded)
 
 
 @dataclass
@@ -59,10 +60,11 @@ class IncludedRobot(IncludedModel):
         "include it without merge and changes, or convert it first: simkit convert ROBOT.urdf -o model.sdf",
     )
     frames: Params
-    robot: Params
+    robot: Document
 
     def build(self, draft: ModelDraft, static: bool, workspace: Workspace, base: str) -> SceneModel:
-        file = replace(draft.source.file, root=self.robot, included=None)
+        arguments = self.robot.arguments
+        file = replace(draft.source.file, root=self.robot.root, included=None, arguments=arguments)
         own = declare_robot(file, workspace, workspace.resolver)
         own.name = draft.source.name
         outer = draft.scoped.rpartition("::")[0]

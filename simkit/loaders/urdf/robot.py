@@ -123,6 +123,7 @@ def build_robot(
         transmissions=read_transmissions(draft),
         controls=read_controls(draft),
         urdf=draft.element,
+        arguments=draft.file.arguments,
     )
     draft.assets.report_packages()
     _report_frames(draft, links)

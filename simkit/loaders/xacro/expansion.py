@@ -117,7 +117,9 @@ class _Expansion:
         for name in self.given:
             if name not in self.declared:
                 known = ", ".join(sorted(self.declared)) or "none"
-                message = f"the file has no argument {name!r}, so its value has no effect; known are {known}"
+                message = (
+                    f"the file has no argument {name!r}, so its value does not change the robot; known are {known}"
+                )
                 hint = did_you_mean(name, self.declared)
                 self.diagnostics.warning("SK-XACRO-004", message, self.document.root.where, hint)
 

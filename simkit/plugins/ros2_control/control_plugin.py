@@ -26,6 +26,7 @@ from simkit.plugins.ros2_control.manager_parameter_files import (
 from simkit.plugins.ros2_control.transmissions import transmissions_of
 from simkit.plugins.ros_parameter_block import ParameterBlock
 from simkit.plugins.ros_parameter_files import ParameterFiles, read_parameter_file
+from simkit.plugins.ros_parameter_substitution import substitute_arguments
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -87,7 +88,7 @@ class ControlPlugin(ModelPlugin):
             *argument_files,
             *self._adapted_run_files(run_files, params),
         ]
-        self.files = ParameterFiles(files)
+        self.files = ParameterFiles([substitute_arguments(f, scene.arguments, params.diagnostics) for f in files])
         self._chosen_controllers = [
             (name, element) for element in params.all("controllers") for name in element.value.replace(",", " ").split()
         ]

@@ -35,9 +35,9 @@ class RateLimits(SharedByCopies):
         self.least, self.most = _read_bounds(block, "velocity")
         self.least_jerk, self.most_jerk = _read_bounds(block, "jerk")
         down, up = _read_bounds(block, "acceleration")
-        deceleration = _read_bound(block, "max_deceleration", None, 0.0)
-        reverse = _read_bound(block, "max_acceleration_reverse", None, 0.0)
-        back = _read_bound(block, "max_deceleration_reverse", 0.0, None)
+        deceleration = read_bound(block, "max_deceleration", None, 0.0)
+        reverse = read_bound(block, "max_acceleration_reverse", None, 0.0)
+        back = read_bound(block, "max_deceleration_reverse", 0.0, None)
         if up == _INFINITY:  # without `max_acceleration`, the other acceleration limits have no effect
             down, deceleration, reverse, back = -_INFINITY, None, None, None
         self.acceleration = up
@@ -77,7 +77,7 @@ def _read_bounds(block: Params, quantity: str) -> tuple[float, float]:
     """Read the bounds `min_<quantity>` and `max_<quantity>`; both are infinite if the limits do not apply."""
     has_switch = block.has(f"has_{quantity}_limits")
     is_enabled = block.boolean(f"has_{quantity}_limits", False)
-    least, most = _read_bound(block, f"min_{quantity}", None, 0.0), _read_bound(block, f"max_{quantity}", 0.0, None)
+    least, most = read_bound(block, f"min_{quantity}", None, 0.0), read_bound(block, f"max_{quantity}", 0.0, None)
     if has_switch and not is_enabled:
         return -_INFINITY, _INFINITY
     if most is None:
@@ -97,7 +97,7 @@ def _report_missing_maximum(block: Params, quantity: str) -> None:
 _UNITS = {"velocity": "m/s or rad/s", "acceleration": "m/s² or rad/s²", "jerk": "m/s³ or rad/s³"}
 
 
-def _read_bound(block: Params, name: str, minimum: float | None, maximum: float | None) -> float | None:
+def read_bound(block: Params, name: str, minimum: float | None, maximum: float | None) -> float | None:
     """Read a bound; None if it is absent or NaN."""
     found = block.child(name)
     if found is None or found.value.strip().lstrip(".").lower() == "nan":

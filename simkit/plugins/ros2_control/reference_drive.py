@@ -44,10 +44,7 @@ class ReferenceDrive(Controller):
     def configure(self) -> None:
         params, variances = self.params, self.default_variances
         self.topics = ("~/reference", "~/odometry", "~/tf_odometry")
-        name = next(
-            (name for name in ("reference_timeout", "cmd_vel_timeout") if params.has(name)), "reference_timeout"
-        )
-        self._timeout_ns = round(params.number(name, self.default_timeout, minimum=0, maximum=1e9) * 1e9)
+        self._timeout_ns = round(self.read_timeout(params) * 1e9)
         self._frames = params.text("odom_frame_id", "odom"), params.text("base_frame_id", "base_link")
         names = "pose_covariance_diagonal", "twist_covariance_diagonal"
         self._covariances = tuple(np.diag(read_numbers(params, n, variances, minimum=0.0)).reshape(36) for n in names)
@@ -66,6 +63,12 @@ class ReferenceDrive(Controller):
         self._transform = self.advertise(transform, TRANSFORMS) if has_transform else None
         if self._transform is not None:
             self._transform.present = lambda: transforms(self.sim.time_ns, self.odometry_frame)
+
+    def read_timeout(self, params: Params) -> float:
+        """Return the time [s] for which a reference is valid."""
+        names = ("reference_timeout", "cmd_vel_timeout")
+        name = next((name for name in names if params.has(name)), names[0])
+        return params.number(name, self.default_timeout, minimum=0, maximum=1e9)
 
     @abc.abstractmethod
     def read_wheels(self, params: Params) -> None:

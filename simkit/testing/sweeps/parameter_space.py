@@ -221,8 +221,9 @@ def _normal(names: Names, given: JsonObject, value: object) -> ParameterSpace:
 
 
 def _correlated(names: Names, given: JsonObject, value: object) -> ParameterSpace:
-    import numpy as np
     from statistics import NormalDist
+
+    import numpy as np
 
     count = len(names)
     rows = list(value) if isinstance(value, (list, tuple)) else []

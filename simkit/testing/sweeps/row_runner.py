@@ -115,10 +115,9 @@ class RowRunner:
         result = RowResult(row)
         spec = self._spec.row_spec(row)
         target = folder / f"{row.run:06d}.zip"
+        from simkit.testing.bundles import BundleRecorder
         from simkit.testing.bundles.bundle_writer import pack_load_failure, write_bundle
         from simkit.testing.bundles.manifest import Failure, failure_from_error
-
-        from simkit.testing.bundles import BundleRecorder
 
         try:
             sim = self._world(spec)

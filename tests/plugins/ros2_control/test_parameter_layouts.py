@@ -124,7 +124,7 @@ def test_a_parameter_file_of_an_argument_that_is_missing_is_reported(tmp_path: P
     ("kind", "reason"),
     [
         ("admittance_controller/AdmittanceController", "is not supported: it commands the references of another"),
-        ("ur_controllers/ScaledJointTrajectoryController", "joint_trajectory_controller/JointTrajectoryController has"),
+        ("ur_controllers/GPIOController", "it talks to the control box of a real UR robot"),
         ("my_controllers/Fancy", "is not known; the table of controllers in docs/ros2_control.md"),
     ],
 )
@@ -188,3 +188,43 @@ def test_a_controller_of_another_robot_in_the_same_file_is_a_warning_and_a_missp
         assert "the robot does not have j1/velocity" in reported_messages(sim, "SK-CONTROL-012")[0]
     with pytest.raises(simkit.LoadError, match="SK-CONTROL-012"):
         opened(tmp_path, yaml=OWN_TYPE + other.replace("[lift_column]", "[j1, lift_column]"))
+
+
+VARIABLES = f"""
+controller_manager:
+  ros__parameters: {{update_rate: $(var rate), $(var side)_controller: {{type: {FORWARD}}}}}
+$(var side)_controller:
+  ros__parameters: {{joints: [$(var prefix)j1, "$(arg prefix)j2"]}}
+"""
+
+
+def with_arguments(folder: Path, prefix: str | None) -> Path:
+    """Write a xacro robot with the arguments `side`, `rate` and, if given, `prefix`; return its file."""
+    declared = '<xacro:arg name="side" default="left"/><xacro:arg name="rate" default="50"/>'
+    if prefix is not None:
+        declared += f'<xacro:arg name="prefix" default="{prefix}"/>'
+    robot = arm().replace('<robot name="arm">', f'<robot name="arm" xmlns:xacro="http://ros.org/wiki/xacro">{declared}')
+    for joint in ("j1", "j2"):
+        robot = robot.replace(f'joint name="{joint}"', f'joint name="{prefix or ""}{joint}"')
+    return files(folder, robot, VARIABLES)
+
+
+def test_values_of_a_launch_file_are_the_arguments_of_the_xacro_file(tmp_path: Path) -> None:
+    with simkit.load(with_arguments(tmp_path, "a_"), xacro_args={"side": "right"}) as sim:
+        assert states(sim) == {"right_controller": "active"}
+        assert not reported_messages(sim, "SK-CONTROL-003")
+        assert sim.call("/controller_manager/list_controllers").controller[0].claimed_interfaces == [
+            "a_j1/position",
+            "a_j2/position",
+        ]
+
+
+def test_a_name_without_a_value_is_empty_and_reported_once(tmp_path: Path) -> None:
+    with simkit.load(with_arguments(tmp_path, None)) as sim:
+        assert states(sim) == {"left_controller": "active"}
+        found = reported_messages(sim, "SK-CONTROL-003")
+        assert found == ["$(var prefix) has no value, because the robot has no xacro argument 'prefix'; it is empty"]
+        assert sim.call("/controller_manager/list_controllers").controller[0].claimed_interfaces == [
+            "j1/position",
+            "j2/position",
+        ]

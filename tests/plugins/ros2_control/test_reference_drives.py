@@ -124,6 +124,48 @@ def test_after_the_timeout_the_base_stops_and_stays_steered(tmp_path: Path) -> N
         assert sim.link("base::chassis").pose.position == pytest.approx(before, abs=2e-3)
 
 
+TRICYCLE = """traction_joint_name: f_wheel, steering_joint_name: f_steering, wheel_radius: 0.1, wheelbase: 0.5,
+enable_odom_tf: true, cmd_vel_timeout: 600"""
+
+
+def tricycle(folder: Path, values: str = "") -> simkit.Simulation:
+    """Load a base whose front wheel is driven and steered by the tricycle controller."""
+    wheels = wheel("right", 0, -TRACK / 2) + wheel("left", 0, TRACK / 2) + wheel("f", BASE, 0, steered=True)
+    controller = "tricycle_controller/TricycleController"
+    return drive(folder, wheels, ["f"], ["f"], controller, f"{TRICYCLE}, {values}")
+
+
+@pytest.mark.parametrize(
+    ("ahead", "turn", "x", "y"), [(0.3, 0.0, 1.2, 0.0), (0.3, 0.3, 0.932, 0.638), (0.0, 0.3, 0.0, 0.0)]
+)
+def test_a_tricycle_controller_drives_the_distance_and_the_angle(
+    tmp_path: Path, ahead: float, turn: float, x: float, y: float
+) -> None:
+    with tricycle(tmp_path) as sim:
+        found, measured = driven_pose(sim, ahead, turn, topics=("/base/cmd_vel", "/base/odom"))
+        assert "/tf" in sim.topics()
+    assert found == pytest.approx([x, y, turn * 4], abs=0.08)
+    assert measured == pytest.approx(found, abs=0.03)
+
+
+def test_limits_of_a_tricycle_bound_the_acceleration_and_the_steering(tmp_path: Path) -> None:
+    limits = (
+        "traction: {max_acceleration: 2.0, max_deceleration: 4.0}, steering: {max_position: 0.2, max_velocity: 0.5}"
+    )
+    with tricycle(tmp_path, limits) as sim:
+        wheel_joint, steering_joint = sim.joint("base::f_wheel"), sim.joint("base::f_steering")
+        send(sim, 0.3, 0.3, topic="/base/cmd_vel")
+        sim.run(0.3)
+        # 2 rad/s² and 0.5 rad/s for 0.3 s
+        assert float(wheel_joint.velocity) == pytest.approx(0.6, abs=0.1)
+        assert float(steering_joint.position) == pytest.approx(0.15, abs=0.02)
+        sim.run(0.3)
+        assert float(steering_joint.position) == pytest.approx(0.2, abs=0.01)
+        sim.run(1.0)  # the command has expired
+        assert float(wheel_joint.velocity) == pytest.approx(0.0, abs=0.02)
+        assert float(steering_joint.position) == pytest.approx(0.0, abs=0.01)
+
+
 def test_names_of_earlier_releases_give_the_same_motion(tmp_path: Path) -> None:
     values = f"front_steering: true, rear_wheels_radius: {RADIUS}, front_wheels_radius: {RADIUS}, wheelbase: {BASE}, "
     values += "rear_wheels_names: [right_wheel, left_wheel], front_wheels_names: [f_steering], wheel_track: 0.4"

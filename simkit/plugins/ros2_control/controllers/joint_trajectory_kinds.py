@@ -1,4 +1,4 @@
-"""Joint trajectory controllers of ROS 1, and PAL's joint impedance controller."""
+"""Joint trajectory controllers of ROS 1 and of UR robots, and PAL's joint impedance controller."""
 
 from __future__ import annotations
 
@@ -39,6 +39,19 @@ class PositionVelocityJointTrajectoryController(PositionJointTrajectoryControlle
 
     types = ("pos_vel_controllers/JointTrajectoryController",)
     default_commands = ("position", "velocity")
+
+
+class ScaledJointTrajectoryController(JointTrajectoryController):
+    """Follows trajectories at full speed, as on a UR robot whose speed slider is at 100 %.
+
+    The simulation has no control box whose speed scaling the controller could read.
+    """
+
+    types = ("ur_controllers/ScaledJointTrajectoryController",)
+
+    def configure(self) -> None:
+        self.params.child("speed_scaling_interface_name")
+        super().configure()
 
 
 class ImpedanceController(JointTrajectoryController):
