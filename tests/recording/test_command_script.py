@@ -99,6 +99,8 @@ def test_a_script_is_read(tmp_path: Path) -> None:
         ("\n\n- {at: 0, topik: /cmd_vel}\n", 3, "did you mean 'topic'?"),
         ("- {topic: /cmd_vel}\n", 1, "key 'at' is missing"),
         ("- {at: -1, topic: /cmd_vel}\n", 1, "at least 0"),
+        ("- {at: 1e308, topic: /cmd_vel}\n", 1, "at most 2147483647"),
+        ("- {at: 1, until: 2, rate: 1e300, topic: /cmd_vel}\n", 1, "at most 1000000"),
         ("- {at: 2, until: 1, topic: /cmd_vel}\n", 1, "until"),
         ("- {at: 1, topic: /cmd_vel, message: 3}\n", 1, "message: found 3"),
         ("- just a text\n", 1, "expected {at, topic, message}"),
