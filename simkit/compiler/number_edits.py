@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import mujoco
@@ -16,7 +16,9 @@ import mujoco
 from simkit.compiler.bodies import add_body, is_massless
 from simkit.compiler.contact_friction import STIFF_KP, contact_properties, has_directional_friction
 from simkit.compiler.engine_options import apply_options, set_extent
+from simkit.compiler.geometry_edits import SpecEdit, is_plain_obstacle, plan_moved_link, plan_shape
 from simkit.compiler.joints import is_valid_axis, write_dynamics
+from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.model_compilation import apply_velocity_decay
 from simkit.compiler.name_map import ModelRecord
 from simkit.compiler.refused_inertias import BodyInertia, repair_inertia
@@ -24,11 +26,11 @@ from simkit.compiler.servo_gains import tune_servos
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY
-from simkit.scene import Inertial, SceneCollision, SceneJoint, SceneLink, SceneModel, SceneWorld, Surface
+from simkit.scene import Inertial, SceneCollision, SceneJoint, SceneLink, SceneModel, SceneVisual, SceneWorld, Surface
 from simkit.scene.differences import EntityChange
 
 Edit = Callable[[], None]
-"""Function that writes one change."""
+"""Function that writes one change to the specification and to the compiled model."""
 
 _EDITABLE_AXIS: Final = frozenset({"lower", "upper", "damping", "friction", "stiffness", "spring_ref"})
 _BODY_FIELDS: Final = ("body_mass", "body_inertia", "body_ipos", "body_iquat")
@@ -41,23 +43,64 @@ DERIVED_FIELDS: Final = (
 _SURFACE_FIELDS: Final = ("friction", "condim", "priority", "solref", "solimp", "solmix", "contype", "conaffinity")
 
 
-def plan_number_edits(compiled: Compiled, world: SceneWorld, changes: Sequence[EntityChange]) -> list[Edit] | None:
-    """Return functions that write all changes; None if the world must be compiled anew.
+@dataclass(frozen=True, slots=True)
+class NumberEdits:
+    """Changes of a compiled world.
 
-    Nothing is written before the functions are called. `refresh_derived_numbers` must follow them.
+    Attributes:
+        numbers: functions that write numbers to the specification and to the compiled model.
+        shapes: functions that write poses and sizes to the specification, which must then be compiled.
+    """
+
+    numbers: tuple[Edit, ...] = ()
+    shapes: tuple[SpecEdit, ...] = ()
+
+    def apply(self, compiled: Compiled) -> Compiled:
+        """Write all changes, and return the compiled model with all numbers that follow from them."""
+        for write in self.numbers:
+            write()
+        if self.shapes:
+            for write_shape in self.shapes:
+                write_shape(compiled.builder.spec)
+            return compiled.builder.compile()
+        refresh_derived_numbers(compiled)
+        return compiled
+
+
+def plan_number_edits(compiled: Compiled, world: SceneWorld, changes: Sequence[EntityChange]) -> NumberEdits | None:
+    """Return the changes as functions; None if the world must be built anew. Nothing is written yet.
 
     Args:
         compiled: compiled model with its builder.
         world: the changed world.
         changes: the entities that differ.
     """
-    edits: list[Edit] = []
+    numbers: list[Edit] = []
+    shapes: list[SpecEdit] = []
     for change in changes:
-        found = _plan(compiled, world, change)
+        is_shape = change.fields <= {"pose_world", "pose_link", "geometry"}
+        found = _plan_shape(compiled, change) if is_shape else _plan(compiled, world, change)
         if found is None:
             return None
-        edits += found
-    return edits
+        (shapes if is_shape else numbers).extend(found)  # type: ignore[arg-type]  # each list has its own kind
+    return NumberEdits(tuple(numbers), tuple(shapes))
+
+
+def _plan_shape(compiled: Compiled, change: EntityChange) -> list[SpecEdit] | None:
+    builder, owner = compiled.builder, change.owner
+    record = builder.records.get(owner.scoped) if owner is not None else None
+    if owner is None or record is None or record.movable:
+        return None
+    match change.new:
+        case SceneModel() if change.fields == {"pose_world"}:
+            return [] if is_plain_obstacle(change.new) and not builder.world.joints else None
+        case SceneLink() if change.fields == {"pose_world"}:
+            return plan_moved_link(builder.spec, record, change.old, change.new)
+        case SceneCollision() | SceneVisual():
+            shape = change.new.scoped
+            link = next(li for li in owner.all_links() if shape in {s.scoped for s in (*li.collisions, *li.visuals)})
+            return plan_shape(builder.spec, record, link, change.old)
+    return None
 
 
 def refresh_derived_numbers(compiled: Compiled) -> None:
@@ -84,7 +127,7 @@ def _plan(compiled: Compiled, world: SceneWorld, change: EntityChange) -> list[E
         return None
     record = compiled.builder.records[change.owner.scoped if change.owner is not None else ""]
     match change.new:
-        case SceneWorld() if change.fields <= {"gravity", "magnetic_field"}:
+        case SceneWorld() if change.fields == {"gravity"}:
             return [lambda: _write_options(compiled, world)]
         case SceneLink() if change.fields == {"inertial"}:
             return _plan_inertial(compiled, world, record, change.old, change.new)
@@ -249,5 +292,8 @@ def replace_scenes(record: ModelRecord, model: SceneModel) -> None:
     record.scene = model
     links = {link.scoped: link for link in model.all_links()}
     joints = {joint.scoped: joint for joint in model.all_joints()}
-    record.links = {n: replace(b, scene=links.get(n, b.scene)) for n, b in record.links.items()}
+    for name, binding in record.links.items():
+        scene = links.get(name, binding.scene)
+        is_of_world = binding.body_name == WORLD and not record.attached
+        record.links[name] = replace(binding, scene=scene, offset=scene.pose_world if is_of_world else binding.offset)
     record.joints = {n: replace(b, scene=joints.get(n, b.scene)) for n, b in record.joints.items()}

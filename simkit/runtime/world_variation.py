@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+import mujoco
+
 from simkit.compiler.name_map import NameMap
-from simkit.compiler.number_edits import plan_number_edits, refresh_derived_numbers, replace_scenes
+from simkit.compiler.number_edits import plan_number_edits, replace_scenes
 from simkit.compiler.spec_builder import Compiled
 from simkit.scene.differences import EntityChange, entity_changes
 from simkit.scene.overrides import xacro_overrides
@@ -43,16 +46,14 @@ def apply_overrides(sim: Simulation, overrides: Sequence[str], seed: int | None 
     changes = entity_changes(sim.control.loaded_world, world)
     if changes is None or any(_is_read(sim.engine, change) for change in changes):
         return False
-    loaded = sim._loaded_state()
-    edits = plan_number_edits(loaded.structure.compiled, world, changes)
-    if edits is None:
-        return False
-    if edits:
+    if changes:
+        loaded = sim._loaded_state()
+        compiled = _copied(loaded.structure.compiled)
+        edits = plan_number_edits(compiled, world, changes)
+        if edits is None:
+            return False
         sim._restore(loaded)
-        for edit in edits:
-            edit()
-        refresh_derived_numbers(loaded.structure.compiled)
-        _switch_world(sim, world)
+        _switch_world(sim, world, edits.apply(compiled))
         sim._loaded = sim.snapshot()
     if sim.run_spec is not None:
         sim.run_spec = replace(sim.run_spec, overrides=tuple(overrides))
@@ -60,13 +61,20 @@ def apply_overrides(sim: Simulation, overrides: Sequence[str], seed: int | None 
     return True
 
 
-def _is_read(engine: Engine, change: EntityChange) -> bool:
-    """Check whether a plugin or sensor has computed with a number while it was loaded.
+_SHAPE_FIELDS: Final = frozenset({"geometry", "pose_link", "pose_world"})
 
-    Plugins of simkit name such fields in `reads_at_load`. Other plugins may read anything, unless they have the
-    attribute too.
+
+def _is_read(engine: Engine, change: EntityChange) -> bool:
+    """Check whether a plugin or sensor may have computed with a number while it was loaded.
+
+    Plugins of simkit name such numbers in `reads_at_load`. They read the shapes of their own model too. Other plugins
+    may read anything, unless they have the attribute too.
     """
-    for item in (*engine.structure.all_plugins(), *engine.structure.all_sensors()):
+    structure = engine.structure
+    parts = structure.parts.get(change.owner.scoped) if change.owner is not None else None
+    if change.fields & _SHAPE_FIELDS and parts is not None and (parts.sensors or parts.plugins):
+        return True
+    for item in (*structure.all_plugins(), *structure.all_sensors()):
         read: Iterable[str] | None = getattr(item, "reads_at_load", None)
         if read is None and not type(item).__module__.startswith(_OWN_PACKAGE):
             return True
@@ -75,10 +83,17 @@ def _is_read(engine: Engine, change: EntityChange) -> bool:
     return False
 
 
-def _switch_world(sim: Simulation, world: SceneWorld) -> None:
-    """Make the simulation refer to the entities of the changed world."""
+def _copied(compiled: Compiled) -> Compiled:
+    """Return a copy of a compiled model; code that keeps values of a model recognises another model by its identity."""
+    model = copy.copy(compiled.model)
+    return Compiled(model, mujoco.MjData(model), compiled.names, compiled.builder)
+
+
+def _switch_world(sim: Simulation, world: SceneWorld, compiled: Compiled) -> None:
+    """Make the simulation refer to the entities of the changed world and to its compiled model."""
     engine, structure = sim.engine, sim.engine.structure
-    compiled, builder = structure.compiled, structure.builder
+    builder = structure.builder
+    mujoco.mj_copyData(compiled.data, compiled.model, engine.mj_data)
     models = {model.name: model for model in world.models if structure.models.get(model.name) is not model}
     for model in models.values():
         replace_scenes(builder.records[model.scoped], model)

@@ -30,6 +30,12 @@ def model_numbers(sim: simkit.Simulation) -> dict[str, bytes]:
         [f"{_ROBOT}::wheel_left_link::tread.surface.friction.ode.mu=0.4"],
         [f"{_ROBOT}::wheel_left_joint.axis.dynamics.damping=0.2"],
         ["ground_plane::link::collision.surface.friction.ode.mu=0.1"],
+        [
+            "arena::pillars::pillar_1.pose.x=0.3",
+            "arena::pillars::cap_1.pose.x=0.3",
+            "arena::pillars::pillar_2.radius=0.2",
+        ],
+        ["arena.pose=-0.1 0.2 0 0 0 0.3", "turtlebot3::base_link.mass=2"],
     ],
 )
 def test_numbers_that_are_set_in_a_loaded_world_give_the_bits_of_a_load(overrides: list[str]) -> None:
@@ -51,3 +57,32 @@ def test_a_change_of_the_structure_needs_a_new_load() -> None:
         sim.run(0.1)
         assert not apply_overrides(sim, ["ground_plane.static=false"])
         assert sim.time == 0.1
+
+
+class Heavy(simkit.ModelPlugin):
+    def load(self, model: Any, _params: Any) -> None:
+        self.weight = 9.8 * model.link("base_link").mass
+
+
+class Light(Heavy):
+    reads_at_load = ()
+
+
+@pytest.mark.parametrize(("plugin", "is_possible"), [(Heavy, False), (Light, True)])
+def test_a_plugin_that_may_have_read_a_number_needs_a_new_load(plugin: type[Heavy], is_possible: bool) -> None:
+    with simkit.load("turtlebot3_world", plugins=[(_ROBOT, plugin())]) as sim:
+        assert apply_overrides(sim, [f"{_ROBOT}::base_link.mass=2"]) is is_possible
+
+
+def test_a_varied_world_keeps_its_numbers_after_a_spawn_and_a_reset() -> None:
+    with simkit.load("turtlebot3_world") as sim:
+        assert apply_overrides(sim, [f"{_ROBOT}::base_link.mass=2", f"{_ROBOT}::wheel_left_joint.damping=0.2"], seed=5)
+        assert sim.seed == 5
+        sim.spawn('<sdf version="1.9"><model name="box"><pose>9 9 1 0 0 0</pose><link name="l"/></model></sdf>')
+        body = sim.engine.names.link(f"{_ROBOT}::base_link").body
+        assert sim.mj_model.body_mass[body] == sim.link(f"{_ROBOT}::base_link").mass == 2.0
+        assert sim.joint(f"{_ROBOT}::wheel_left_joint").damping == 0.2
+        sim.reset()
+        assert sim.link(f"{_ROBOT}::base_link").mass == 2.0
+        assert sim.run_spec is not None
+        assert sim.run_spec.overrides[0] == f"{_ROBOT}::base_link.mass=2"

@@ -47,6 +47,8 @@ class GazeboRosHandOfGod(ModelPlugin):
     `world`. The ROS 1 names are `<linkName>` and `<frameId>`.
     """
 
+    reads_at_load = ("inertial",)  # its springs follow from the mass
+
     options = OptionsOf(GazeboRosHandOfGodOptions)
     filenames = ("libgazebo_ros_hand_of_god.so",)
     drives = True

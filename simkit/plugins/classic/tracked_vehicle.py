@@ -52,6 +52,8 @@ class _TrackedVehicle(ModelPlugin):
     active until the next.
     """
 
+    reads_at_load = ("surface",)  # the belt follows from the friction
+
     endpoints = (
         listens("/{model}/cmd_vel", *COMMAND_TYPES),
         listens("/{model}/cmd_vel_twist", *COMMAND_TYPES),

@@ -22,6 +22,8 @@ class BuoyancyBase(Plugin):
     on a steady link is constant, so it is set once instead of being computed at each step.
     """
 
+    reads_at_load = ("inertial", "geometry")  # the volumes are computed once
+
     _fluid: Fluid
 
     @abstractmethod

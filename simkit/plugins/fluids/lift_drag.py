@@ -252,6 +252,8 @@ class LiftDragBase(ModelPlugin):
         is_about_mass: True if `<cp>` is relative to the centre of mass, false if it is relative to the link's origin.
     """
 
+    reads_at_load = ("inertial",)  # the centre of mass is the default reference point
+
     options = OptionsOf(AerofoilOptions)
     is_about_mass: ClassVar[bool] = False
 

@@ -235,6 +235,8 @@ class WindPluginBase(WorldPlugin):
     `/world/<world>/wind` sets the mean wind, and the service `/world/<world>/wind_info` returns it.
     """
 
+    reads_at_load = ("inertial", "geometry")  # masses and areas are computed once
+
     endpoints = (
         listens("/world/{world}/wind", WIND, VECTOR),
         offers("/world/{world}/wind_info", INFO),

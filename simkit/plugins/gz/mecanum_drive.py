@@ -67,6 +67,8 @@ class MecanumDrive(TwistDrive):
     describes the point in the middle of the wheels. Its twist is the mean over the last ten steps.
     """
 
+    reads_at_load = ("surface",)  # the rollers follow from the friction
+
     options = OptionsOf(MecanumDriveOptions)
     filenames = ("gz-sim-mecanum-drive-system",)
     names = ("gz::sim::systems::MecanumDrive",)

@@ -67,6 +67,8 @@ class TrackController(ModelPlugin):
     The travel and the speed of the belt are published on `/model/<model>/link/<link>/odometry`.
     """
 
+    reads_at_load = ("surface",)  # the belt follows from the friction
+
     endpoints = (
         listens("/model/{model}/link/{link}/track_cmd_vel", SPEED, named_by=("velocity_topic",)),
         listens(

@@ -60,6 +60,8 @@ class ControlPlugin(ModelPlugin):
         is_ros_1: true for the plugin of ROS 1.
     """
 
+    reads_at_load = ("inertial", "axes")  # gains follow from the inertias at the joints
+
     options = OptionsOf(ControlOptions)
     endpoints = offers_all(
         "controller_manager_msgs",

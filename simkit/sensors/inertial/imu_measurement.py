@@ -88,6 +88,12 @@ class ImuMeasurement(Sensor):
     options: ImuOptions
     noise: Noise
 
+    @property
+    def reads_at_load(self) -> tuple[str, ...]:
+        """Numbers of the world that the reference frame follows from."""
+        reference = self.options.reference
+        return ("gravity",) if reference is not None and reference.localization.startswith("GRAV") else ()
+
     def read_options(self, params: Params) -> ImuOptions:
         block = params.block("imu")
         return ImuOptions(
