@@ -264,6 +264,7 @@ class Joint(TunableJoint):
     def effort_limit(self, value: float) -> None:
         self._check()
         self._effort_limit[:] = _checked_limits(value, "effort_limit", len(self._effort_limit))
+        self._engine.numbers.keep("joint", self.scoped, "effort_limit", self._effort_limit.tolist())
 
     @property
     def velocity_limit(self) -> JointValue:
@@ -275,6 +276,7 @@ class Joint(TunableJoint):
     def velocity_limit(self, value: float) -> None:
         self._check()
         self._velocity_limit[:] = _checked_limits(value, "velocity_limit", len(self._velocity_limit))
+        self._engine.numbers.keep("joint", self.scoped, "velocity_limit", self._velocity_limit.tolist())
         self._handles.limit_velocity(self)
 
     @property
@@ -343,4 +345,5 @@ class Joint(TunableJoint):
                 ranges[j] = (-1e10, 1e10)
             ranges[j, side] = min(max(value, -1e10), 1e10)
             limited[j] = 1
+        self._engine.numbers.keep("joint", self.scoped, ("lower", "upper")[side], value)
         self._physics.changed(STALE)
