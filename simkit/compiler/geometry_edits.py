@@ -9,7 +9,7 @@ import mujoco
 from simkit.compiler import shape_geometry
 from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.name_map import ModelRecord
-from simkit.pose import IDENTITY
+from simkit.pose import IDENTITY, Vector
 from simkit.scene import Mesh, SceneCollision, SceneLink, SceneModel, SceneVisual
 
 SpecEdit = Callable[[mujoco.MjSpec], None]
@@ -59,7 +59,7 @@ def plan_shape(
     return [write]
 
 
-def _write_poses(spec: mujoco.MjSpec, names: list[str], position: object, quaternion: object) -> None:
+def _write_poses(spec: mujoco.MjSpec, names: list[str], position: Vector, quaternion: Vector) -> None:
     for name in names:
         geom = spec.geom(name)
         geom.pos, geom.quat = position, quaternion
@@ -73,7 +73,8 @@ def plan_moved_link(spec: mujoco.MjSpec, record: ModelRecord, old: SceneLink, ne
     if new.sensors or new.lights or new.plugins:
         return None
     edits: list[SpecEdit] = []
-    for shape in (*old.collisions, *old.visuals):
+    shapes: list[SceneCollision | SceneVisual] = [*old.collisions, *old.visuals]
+    for shape in shapes:
         found = plan_shape(spec, record, new, shape, moves=True)
         if found is None:
             return None

@@ -76,9 +76,10 @@ def write_changes(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnost
     source, read = model.mjcf, _as_read(model)
     if source is None or read is None or read.mjcf is None:
         return
+    original = read.mjcf
     read = replace(read, scoped=model.scoped, name=model.name)
     frames = {link.scoped: _in_file(source, link) for link in model.links}
-    before = {link.scoped: _in_file(read.mjcf, link) for link in read.links}
+    before = {link.scoped: _in_file(original, link) for link in read.links}
     parents = {joint.child_link: joint.parent_link for joint in model.joints}
     for scoped, body in source.bodies.items():
         parent = parents.get(scoped, "")
@@ -219,10 +220,12 @@ def _write_joint(
 
 def write_lights(child: mujoco.MjSpec, lights: Iterable[SceneLight], source: MjcfSource | None = None) -> None:
     """Write colours, direction and state of lights to the specification of a file, where they differ from the file."""
+    present = {made.name for made in child.lights}
     for light in lights:
-        made = child.light(source.lights[light.scoped][0] if source is not None else light.name)
-        if made is None:
+        written = source.lights[light.scoped][0] if source is not None else light.name
+        if written not in present:
             continue
+        made = child.light(written)
         for name in ("diffuse", "specular"):
             colour = np.float32(np.clip(np.array(getattr(light, name)[:3]) * light.intensity, 0.0, 10.0))
             if not np.array_equal(colour, np.float32(getattr(made, name))):

@@ -98,7 +98,7 @@ def _plan_shape(compiled: Compiled, change: EntityChange) -> list[SpecEdit] | No
             return plan_moved_link(builder.spec, record, change.old, change.new)
         case SceneCollision() | SceneVisual():
             shape = change.new.scoped
-            link = next(li for li in owner.all_links() if shape in {s.scoped for s in (*li.collisions, *li.visuals)})
+            link = next(li for li in owner.all_links() if li.scoped == shape.rpartition("::")[0])
             return plan_shape(builder.spec, record, link, change.old)
     return None
 

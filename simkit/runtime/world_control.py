@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
@@ -207,7 +207,8 @@ class WorldControl:
         self._advance, self._loaded = advance, loaded
         self.pausing = PauseControl(engine, advance, bus.inbox)
         self.origin = GeographicOrigin(engine)
-        self.loaded_world, self.file_arguments = engine.world, dict[str, str]()
+        self.loaded_world = engine.world
+        self.file_arguments: Mapping[str, str] = {}
 
     # ------------------------------------------------------------------ running
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from simkit.scene.differences import HELD_ENTITIES as HOLDER_FIELDS
 from simkit.scene.model import ScenePlugin
@@ -15,6 +15,7 @@ from simkit.scene.world import SceneActor, SceneWorld
 AREAS: Final[dict[str, tuple[Field, ...]]] = {"physics": PHYSICS, "world": WORLD, "scene": SCENE}
 """Values of the world itself, by the first name of their paths."""
 
+H = TypeVar("H")
 Location = tuple[tuple[str, int], ...]
 """Fields and indices that lead from the world to an entity."""
 
@@ -127,11 +128,13 @@ def _entities(holder: Any, location: Location, owner: str) -> Iterator[Entity]:
             yield from _entities(item, place, path)
 
 
-def replace_at(holder: Any, location: Location, new: Any) -> Any:
+def replace_at(holder: H, location: Location, new: Any) -> H:
     """Return a world in which the entity at a location is replaced; all other entities stay the same objects."""
-    if not location:
-        return new
-    (field, index), *rest = location
-    items = getattr(holder, field)
-    changed = replace_at(items[index], tuple(rest), new)
-    return replace(holder, **{field: (*items[:index], changed, *items[index + 1 :])})
+    same: Any = holder
+    changed: H = new
+    if location:
+        (field, index), *rest = location
+        items = getattr(holder, field)
+        inner = replace_at(items[index], tuple(rest), new)
+        changed = replace(same, **{field: (*items[:index], inner, *items[index + 1 :])})
+    return changed

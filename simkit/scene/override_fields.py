@@ -248,7 +248,7 @@ def _axis_fields(axis: str, index: int, slides: bool, has_mimic: bool) -> tuple[
     """Return the fields of one axis of a joint, `axis` or `axis2`."""
     place, effort = _PART_UNITS[slides]
     limit, some = number(place, infinite=True), f"axes.{index}"
-    fields_ = (
+    fields_: tuple[Field, ...] = (
         _field(f"{axis}.limit.lower", limit, f"{some}.lower"),
         _field(f"{axis}.limit.upper", limit, f"{some}.upper"),
         _field(f"{axis}.limit.effort", number(effort, infinite=True), f"{some}.effort"),

@@ -129,7 +129,8 @@ def _reach(model: SceneModel) -> float:
     """Return the largest horizontal distance [m] of the model's shapes of known size from the model frame."""
     most = 0.0
     for link in model.all_links():
-        for shape in (*link.collisions, *link.visuals):
+        shapes: list[SceneCollision | SceneVisual] = [*link.collisions, *link.visuals]
+        for shape in shapes:
             radius = _radius(shape.geometry)
             if radius:
                 x, y, _ = (link.pose_world @ shape.pose_link).position - model.pose_world.position
