@@ -42,7 +42,7 @@ from simkit.run_spec import (
     named_values,
 )
 from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
-from simkit.scene.overrides import apply_overrides, check_used, xacro_overrides
+from simkit.scene.overrides import Overrides, apply_overrides, check_used, override_texts, xacro_overrides
 from simkit.sensors import sensor_kinds
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
@@ -67,7 +67,7 @@ def load(
     base: str = "auto",
     xacro_args: NamedValues | None = None,
     strict: bool = False,
-    overrides: Sequence[str] = (),
+    overrides: Overrides = (),
     sleep: bool = True,
     package_paths: PackagePaths | None = None,
     render_thread: bool | None = None,
@@ -92,7 +92,7 @@ def load(
         base: base of a single model: "fixed", "floating", or "auto" (floating unless a joint connects it to the world).
         xacro_args: arguments for xacro files.
         strict: treat warnings as errors, and cameras without a renderer.
-        overrides: `PATH=VALUE` texts as for `--set`.
+        overrides: `PATH=VALUE` texts as for `--set`, or values by path.
         sleep: leave bodies at rest out of the physics until something reaches them; see `docs/sleeping.md`.
         package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`; or a list of workspaces.
         render_thread: draw camera images on a second thread in parallel to the physics; the images have the same bits.
@@ -123,6 +123,7 @@ def load(
     check_source_arguments(
         source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base
     )
+    overrides = override_texts(overrides)
     seed = check_load_arguments(
         seed=seed, plugin_paths=plugin_paths, plugins=plugins, strict=strict, overrides=overrides, sleep=sleep,
         on_error=on_error, spawn=spawn, params_files=params_files, change_world=change_world, model_world=model_world,

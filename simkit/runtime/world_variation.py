@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -13,7 +13,7 @@ from simkit.compiler.name_map import NameMap
 from simkit.compiler.number_edits import plan_number_edits, replace_scenes
 from simkit.compiler.spec_builder import Compiled
 from simkit.scene.differences import EntityChange, entity_changes
-from simkit.scene.overrides import xacro_overrides
+from simkit.scene.overrides import Overrides, override_texts, xacro_overrides
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _OWN_PACKAGE: Final = "simkit."
 
 
-def apply_overrides(sim: Simulation, overrides: Sequence[str], seed: int | None = None) -> bool:
+def apply_overrides(sim: Simulation, overrides: Overrides, seed: int | None = None) -> bool:
     """Reset a simulation to the start of its world with exactly these overrides, if only numbers differ.
 
     The result has the same bits as a simulation that is loaded with the overrides. Later resets return to this state.
@@ -31,7 +31,7 @@ def apply_overrides(sim: Simulation, overrides: Sequence[str], seed: int | None 
 
     Args:
         sim: simulation from `simkit.load`.
-        overrides: `PATH=VALUE` texts, in place of those of `simkit.load`.
+        overrides: `PATH=VALUE` texts or values by path, in place of those of `simkit.load`.
         seed: seed of all random streams; None keeps the present seed.
 
     Returns:
@@ -40,6 +40,7 @@ def apply_overrides(sim: Simulation, overrides: Sequence[str], seed: int | None 
     Raises:
         InputError: an override has no such path, or an invalid value.
     """
+    overrides = override_texts(overrides)
     if sim.control.resolve_world is None or xacro_overrides(overrides).items() - sim.control.file_arguments.items():
         return False
     world = sim.control.resolve_world(tuple(overrides))

@@ -7,7 +7,7 @@ PATH is `physics`, `world`, `scene`, or a scoped entity, then element names with
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -25,6 +25,25 @@ from simkit.scene.world import Scene, SceneWorld
 _CODE = "SK-CLI-014"
 SOURCE_PREFIX = "--set "
 XACRO = "xacro."
+
+
+Overrides = Sequence[str] | Mapping[str, object]
+"""Texts `PATH=VALUE`, or values by path."""
+
+
+def override_texts(overrides: Overrides) -> Sequence[str]:
+    """Return overrides as texts. Values may be numbers, truth values, texts, and lists of numbers."""
+    if not isinstance(overrides, Mapping):
+        return overrides
+    return tuple(f"{path}={_value_text(value)}" for path, value in overrides.items())
+
+
+def _value_text(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str) or not hasattr(value, "__iter__"):
+        return str(value)
+    return " ".join(str(part) for part in value)
 
 
 def apply_overrides(scene: Scene, overrides: Sequence[str]) -> Scene:

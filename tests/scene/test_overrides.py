@@ -124,6 +124,15 @@ def test_poses_and_sizes_and_lights_are_set() -> None:
         assert sim.world.lights[0].intensity == 0.5
 
 
+def test_python_accepts_values_by_path() -> None:
+    with load(WORLD, overrides={"world.gravity": (0, 0, -2.5), "arm.static": True, "arm.pose.x": np.float64(2)}) as sim:
+        assert sim.gravity.tolist() == [0.0, 0.0, -2.5]
+        assert sim.model("arm").static
+        assert sim.model("arm").pose.position[0] == 2.0
+        assert sim.run_spec is not None
+        assert sim.run_spec.overrides[0] == "world.gravity=0 0 -2.5"
+
+
 def test_a_mass_scales_the_inertia_unless_the_inertia_is_given_too() -> None:
     with load(WORLD, overrides=["arm::tip.mass=3"]) as sim:
         assert sim.link("arm::tip").scene.inertial.inertia == (3.0, 3.0, 3.0, 0.0, 0.0, 0.0)
