@@ -27,6 +27,7 @@ SMALL_MODULES = frozenset(
         "errors",
         "input_file",
         "interrupts",
+        "lifecycle",
         "msgs",
         "mujoco_import",
         "params",

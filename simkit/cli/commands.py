@@ -44,6 +44,7 @@ COMMANDS = {
     "param": "List, read and set the parameters of a running simulation.",
     "action": "List the actions of a running simulation and send goals.",
     "node": "List the nodes of a running simulation.",
+    "lifecycle": "Show and change the states of lifecycle nodes.",
     "log": "Print log messages of plugins and of simkit: the last 1000 and all new ones; of a bag, all recorded ones.",
     "interface": "List and show the types of messages, services and actions.",
     "model": "Show models, poses and joints of a running simulation.",

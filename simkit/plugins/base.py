@@ -235,15 +235,10 @@ class Plugin(abc.ABC):
         from simkit.plugins.live_parameters import declare_at
         from simkit.runtime.communication.parameter import Parameter
 
-        own = f"{self.ros.namespace}/{self.name}"
-        otherwise = "/" + "/".join(filter(None, (*self.scoped.split("::"), self.name)))
-        # several plugins of a model may have the same class and name; their attribute `node` distinguishes them
-        otherwise = getattr(self, "node", otherwise)
-        node = self.sim.communication.live_parameters.node_of(self, otherwise if "::" in self.name else own, otherwise)
         if on_change is not None:
             on_change = self.sim.engine.faults.guard(self, f"its callback for parameter {name!r}", on_change)
         parameter = Parameter(
-            node,
+            self.sim.communication.node_of_plugin(self),
             name,
             default,
             minimum=minimum,

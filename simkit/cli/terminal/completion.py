@@ -219,6 +219,18 @@ def _nodes_with_parameters(client: Client, _: typer.Context) -> list[str]:
     return parameter_nodes(client)
 
 
+def _lifecycle_nodes(client: Client, _: typer.Context) -> list[str]:
+    from simkit.cli.terminal.topic_sources import lifecycle_node_names
+
+    return lifecycle_node_names(client)
+
+
+def _transitions_of_node(client: Client, ctx: typer.Context) -> Iterable[str]:
+    """Return the transitions that are possible for the node earlier on the line."""
+    name = absolute_name(str(ctx.params.get("node") or ""))
+    return [t.transition.label for t in client.call(f"{name}/get_available_transitions").available_transitions]
+
+
 def _all_nodes(client: Client, _: typer.Context) -> list[str]:
     from simkit.cli.terminal.topic_sources import node_names
 
@@ -236,6 +248,8 @@ services = _of_client(lambda client, _: client.services())
 actions = _of_client(lambda client, _: client.actions())
 nodes = _of_client(_nodes_with_parameters)
 all_nodes = _of_client(_all_nodes)
+lifecycle_nodes = _of_client(_lifecycle_nodes)
+lifecycle_transitions = _of_client(_transitions_of_node)
 parameters = _of_client(_parameters_of_node)
 models = _of_client(lambda client, _: client.models())
 links = _of_client(lambda client, ctx: client.model(str(ctx.params["model"]))["links"])

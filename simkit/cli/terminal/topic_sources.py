@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from simkit.recording.bags.reader import BagReader, BagTopic
 
 LIST_PARAMETERS = "/list_parameters"
+GET_STATE = "/get_state"
+_STATE_TYPE = "lifecycle_msgs/srv/GetState"
 """Suffix after the node's name in the name of the service that lists its parameters."""
 LONGEST_WAIT = 1e6  # [s] of wall time, longest sleep of a command
 _POLL_PERIOD = 0.05  # [s] of wall time, longest time between two reads of the simulation's clock
@@ -376,6 +378,11 @@ def find_topic(source: Source, name: str) -> TopicEntry:
 def node_names(client: Client, *, hidden: bool = False) -> list[str]:
     """Return the names of the nodes, sorted."""
     return sorted(name for name in client.ask("nodes") if hidden or not is_hidden(name))
+
+
+def lifecycle_node_names(client: Client) -> list[str]:
+    """Return the lifecycle nodes, sorted."""
+    return sorted(name.removesuffix(GET_STATE) for name, kind in client.services().items() if kind == _STATE_TYPE)
 
 
 def parameter_nodes(client: Client) -> list[str]:

@@ -222,7 +222,7 @@ class Controller(SharedByCopies, abc.ABC):
             params = params.block(block)
         own, model, sim = f"{plugin.ros.namespace}/{self.name}", plugin.scoped.partition("::")[0], plugin.sim
         parameter = Parameter(
-            sim.communication.live_parameters.node_of(plugin, own, f"/{model}/{self.name}"),
+            sim.communication.node_of(plugin, own, f"/{model}/{self.name}"),
             name,
             default,
             minimum=minimum,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit import msgs
 from simkit.argument_checks import check_list, check_text, wrong_value
 from simkit.errors import MessageError
+from simkit.lifecycle import LifecycleStates
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
 from simkit.runtime.communication.action_server import ActionTable
@@ -29,6 +31,25 @@ if TYPE_CHECKING:
 
 MessageMaker = Callable[[str], "Message"]
 """Function that makes the message of a topic."""
+
+
+class Namespaced(Protocol):
+    """Names of a plugin in ROS."""
+
+    @property
+    def namespace(self) -> str:
+        """Namespace; empty for none."""
+
+
+class NamedPlugin(Protocol):
+    """Names of a plugin."""
+
+    name: str
+    scoped: str
+
+    @property
+    def ros(self) -> Namespaced:
+        """Names in ROS."""
 
 
 class OnDemandTasks:
@@ -137,6 +158,7 @@ class Communication:
         on_demand: tasks that are scheduled only while they are needed.
         transforms: transforms of `/tf` and `/tf_static`, received from their first use on.
         log_topic: topic `/rosout`.
+        lifecycle_states: states of the lifecycle nodes of plugins and scripts.
     """
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
@@ -147,6 +169,7 @@ class Communication:
         self.on_demand = OnDemandTasks(bus, engine.reschedule)
         self.transforms = TransformBuffer(bus, lambda: engine.time_ns)
         self.log_topic = LogTopic(bus, engine, self.live_parameters.node_with)
+        self.lifecycle_states = LifecycleStates()
         engine.log = TopicLogger("simkit", self, "simkit")
         self.log_topic.hear(engine.reports)
 
@@ -172,6 +195,23 @@ class Communication:
         """
         self._engine.check_open()
         self.live_parameters.set(node, name, value)
+
+    def node_of_plugin(self, plugin: NamedPlugin) -> str:
+        """Return the ROS node of a plugin: the first name that no other plugin's parameters or lifecycle node use."""
+        own = f"{plugin.ros.namespace}/{plugin.name}"
+        otherwise = "/" + "/".join(filter(None, (*plugin.scoped.split("::"), plugin.name)))
+        # several plugins of a model may have the same class and name; their attribute `node` distinguishes them
+        otherwise = getattr(plugin, "node", otherwise)
+        return self.node_of(plugin, otherwise if "::" in plugin.name else own, otherwise)
+
+    def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
+        """Return a name for a plugin's node: the first free name of `wanted`, `otherwise`, `otherwise_2` and so on."""
+        names = itertools.chain((wanted, otherwise), (f"{otherwise}_{i}" for i in itertools.count(2)))
+        return next(name for name in names if self._is_free(name, owner))
+
+    def _is_free(self, node: str, owner: object) -> bool:
+        has_lifecycle = node in self.lifecycle_states and f"{node}/get_state" not in self.services.endpoints_of(owner)
+        return not has_lifecycle and self.live_parameters.is_free(node, owner)
 
     def publish(self, topic: str, message: Message) -> None:
         """Publish a message. A message object on an unknown topic opens the topic.

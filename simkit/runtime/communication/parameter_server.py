@@ -8,7 +8,6 @@ A change takes effect between two steps.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -84,12 +83,8 @@ class ParameterTable:
                     for service in self._services.pop(parameter.node, ()):
                         service.close()
 
-    def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
-        """Return a name for a plugin's node: the first free name of `wanted`, `otherwise`, `otherwise_2` and so on."""
-        names = itertools.chain((wanted, otherwise), (f"{otherwise}_{i}" for i in itertools.count(2)))
-        return next(name for name in names if self._is_free(name, owner))
-
-    def _is_free(self, node: str, owner: object) -> bool:
+    def is_free(self, node: str, owner: object) -> bool:
+        """Check whether a node has no parameters of another plugin."""
         return all(p.owner is owner or not p.active for p in self._parameters.get(node, {}).values())
 
     def node_with(self, owner: object) -> str:

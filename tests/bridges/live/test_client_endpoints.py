@@ -13,6 +13,7 @@ import pytest
 
 import simkit
 from simkit.errors import ServiceError
+from simkit.lifecycle import LifecycleNode
 from simkit.live import Client, LiveError, Server
 from simkit.msgs.goal_status import GoalStatus
 from simkit.testing.bundles import keep, replay, write_bundle
@@ -179,6 +180,32 @@ def test_a_goal_is_cancelled_or_aborted_with_its_process(court: simkit.Simulatio
             assert client.wait(lambda: kept.status is GoalStatus.EXECUTING, 5.0)
         assert kept.wait(5.0)
         assert (kept.status, kept.reason) == (GoalStatus.ABORTED, "the action of '/server' was closed")
+
+
+def test_a_client_is_a_lifecycle_node(court: simkit.Simulation, run: Callable[..., Any]) -> None:
+    calls: list[tuple[str, str]] = []
+
+    class Driver:
+        def on_configure(self, previous: str) -> None:
+            calls.append(("configure", previous))
+
+        def on_activate(self, previous: str) -> bool:
+            calls.append(("activate", previous))
+            return False
+
+    nodes: list[LifecycleNode] = []
+    with run(court) as client, serving(client.path, lambda c: nodes.append(LifecycleNode(c, callbacks=Driver()))):
+        events = client.subscribe("/server/transition_event")
+
+        def change(label: str) -> bool:
+            found: bool = client.call("/server/change_state", {"transition": {"label": label}}).success
+            return found
+
+        assert [change("configure"), change("activate"), change("configure")] == [True, False, False]
+        assert client.call("/server/get_state").current_state.label == nodes[0].state == "inactive"
+        assert calls == [("configure", "unconfigured"), ("activate", "inactive")]
+        client.flush()
+        assert [r.message.transition.id for r in events.waiting] == [1, 10, 3, 31]
 
 
 def test_commands_topics_and_parameters_reach_the_functions_of_a_client(

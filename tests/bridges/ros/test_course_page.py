@@ -5,8 +5,12 @@ from __future__ import annotations
 from contextlib import ExitStack
 from pathlib import Path
 
+import pytest
+
 from tests.bridges.ros.conftest import DOMAIN
 from tests.cli.course_page import WITH_ROS, WITHOUT_ROS, Desk
+
+pytestmark = pytest.mark.ros
 
 
 def test_nodes_of_the_page_talk_with_nodes_of_ros(ros_python: Path, sockets: Path, tmp_path: Path) -> None:
