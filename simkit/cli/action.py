@@ -143,6 +143,8 @@ class _GoalRun:
         elif handle.is_done and handle.status.name != "REJECTED":
             print_line(f"Result:\n    {_yaml_text(result)}")
             print_line(f"Goal finished with status: {handle.status.name}")
+            if handle.reason:
+                print_line(f"Reason: {handle.reason}")
 
     def _on_feedback(self, message: object) -> None:
         from simkit.msgs.message_text import message_to_dict

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from simkit.params import Params
 from simkit.runtime.communication.parameter import Parameter
-from simkit.runtime.communication.parameter_server import offer_parameter_services
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -39,7 +38,7 @@ def declare_at(plugin: ParameterOwner, parameter: Parameter[T], params: Params, 
     communication.live_parameters.add(parameter)
     if is_new:
         with communication.bus.owned_by(plugin):
-            offer_parameter_services(communication.services, communication.live_parameters, parameter.node)
+            communication.live_parameters.open_services(communication.services, parameter.node)
     return parameter
 
 

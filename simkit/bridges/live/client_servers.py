@@ -7,7 +7,7 @@ from typing import Any
 
 from simkit import msgs
 from simkit.bridges.live.client_handles import LiveSubscription
-from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveError
+from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
 from simkit.bridges.live.server_link import ServerLink
 from simkit.errors import callback_name
 from simkit.msgs.message_arguments import checked_message
@@ -18,7 +18,9 @@ CALLBACK_ERROR = "SK-TOPIC-002"
 
 
 def raised(callback: object, kind: str, name: str, error: Exception) -> LiveError:
-    """Return the error for a callback of this client that raised."""
+    """Return the error for a callback of this client that raised; raise the error of an ended simulation itself."""
+    if isinstance(error, LiveClosed):
+        raise error
     reason = str(error) if isinstance(error, LiveError) else repr(error)
     return LiveError(f"callback {callback_name(callback)} of {kind} {name!r} raised: {reason}", CALLBACK_ERROR)
 

@@ -150,11 +150,16 @@ class ClientConnection:
         """Drop the queued messages of a subscription that is closed."""
         self._queue.remove(subscribed)
 
-    def clear(self) -> None:
-        """Close the endpoints of the client, and release its handles and queued data."""
+    def close_endpoints(self) -> None:
+        """Close the endpoints of the client; its goals are aborted, and its callers receive an error."""
         for endpoint in list(self.endpoints.values()):
             endpoint.close()
-        for table in (self.subscriptions, self.publishers, self.goals, self.endpoints, self._answers, self._pieces):
+        self.endpoints.clear()
+
+    def clear(self) -> None:
+        """Close the endpoints of the client, and release its handles and queued data."""
+        self.close_endpoints()
+        for table in (self.subscriptions, self.publishers, self.goals, self._answers, self._pieces):
             table.clear()
         self._queue.clear()
 

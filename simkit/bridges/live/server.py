@@ -364,6 +364,8 @@ class Server:
         if self.is_closed:
             return
         self.feeds.deliver_ready()
+        for peer in self.peers.values():  # all first: other clients are told of their goals that are aborted now
+            peer.close_endpoints()
         self._send_goal_states()
         for peer in list(self.peers.values()):
             self.refuse(peer, why or f"simulation {self.name!r} has ended", "SK-LIVE-005")

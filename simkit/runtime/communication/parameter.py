@@ -34,6 +34,7 @@ class Parameter(Generic[T]):
         on_change: function that receives each new value; None without one.
         owner: plugin of the parameter.
         active: True if the plugin is part of the simulation; False if only a restore can bring the plugin back.
+        remove: function that removes the parameter from its node; None before the declaration.
     """
 
     def __init__(
@@ -54,6 +55,12 @@ class Parameter(Generic[T]):
         self.description, self.owner = description, owner
         self.default, self.on_change = value, on_change
         self.active = True
+        self.remove: Callable[[AnyParameter], None] | None = None
+
+    def close(self) -> None:
+        """Remove the parameter permanently; the services of its node end with the node's last parameter."""
+        if self.remove is not None:
+            self.remove(self)
 
     @property
     def allowed(self) -> str:

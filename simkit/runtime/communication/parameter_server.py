@@ -55,7 +55,12 @@ class ParameterTable:
     def add(self, parameter: AnyParameter) -> None:
         """Add a parameter to its node."""
         self._parameters.setdefault(parameter.node, {})[id(parameter.owner), parameter.name] = parameter
+        parameter.remove = self.remove
         self._events.publish("new", [parameter])
+
+    def open_services(self, services: ServiceTable, node: str) -> None:
+        """Open the parameter services of a node."""
+        self._services[node] = offer_parameter_services(services, self, node)
 
     def declare(self, services: ServiceTable, parameter: AnyParameter) -> None:
         """Add a parameter of a script or of another process, with the parameter services of a new node.
@@ -70,10 +75,10 @@ class ParameterTable:
         with self._bus.passing("declare", parameter=parameter):
             self.add(parameter)
             if not present:
-                self._services[node] = offer_parameter_services(services, self, node)
+                self.open_services(services, node)
 
     def remove(self, parameter: AnyParameter) -> None:
-        """Remove a parameter that `declare` added; its node's services end with the last parameter."""
+        """Remove a parameter; its node's services end with the last parameter."""
         found = self._parameters.get(parameter.node, {})
         if found.get((id(parameter.owner), parameter.name)) is parameter:
             with self._bus.passing("close", endpoint=parameter):

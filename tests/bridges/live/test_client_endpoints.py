@@ -182,6 +182,58 @@ def test_a_goal_is_cancelled_or_aborted_with_its_process(court: simkit.Simulatio
         assert (kept.status, kept.reason) == (GoalStatus.ABORTED, "the action of '/server' was closed")
 
 
+def test_a_goal_is_aborted_for_its_sender_when_the_server_of_the_simulation_closes(sockets: Path) -> None:
+    with simkit.load(BALL) as sim, Server(sim) as server:
+        over = threading.Event()
+        found: list[Any] = []
+
+        def send() -> None:
+            with Client(server.path) as client:
+                waited = client.send_goal("/fibonacci", {"order": 1})
+                waited.wait_accepted(10.0)
+                over.set()
+                waited.wait(10.0)
+                found.append((waited.status, waited.reason))
+
+        failed: list[LiveError] = []
+        with serving_until_the_end(server.path, failed):
+            poll_until(server, lambda: "/fibonacci" in sim.communication.actions.names())
+            sender = threading.Thread(target=send)
+            sender.start()
+            while not over.is_set():
+                sim.step()
+                server.poll(0.01)
+            server.close()
+            sender.join(10.0)
+        assert found == [(GoalStatus.ABORTED, "the action of '/server' was closed")]
+        assert not failed, "a callback that waits ends with the simulation"
+
+
+@contextmanager
+def serving_until_the_end(path: Path, failed: list[LiveError]) -> Iterator[None]:
+    """A client whose action waits until the simulation ends."""
+
+    def run() -> None:
+        with Client(path, node="server") as client:
+
+            def execute(goal: Any) -> None:
+                goal.accept()
+                while True:
+                    goal.publish_feedback({"sequence": [1]})
+                    client.receive(0.1)
+
+            client.act("/fibonacci", FIBONACCI, execute)
+            try:
+                client.spin()
+            except LiveError as error:
+                failed.append(error)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    yield
+    thread.join()
+
+
 def test_a_client_is_a_lifecycle_node(court: simkit.Simulation, run: Callable[..., Any]) -> None:
     calls: list[tuple[str, str]] = []
 

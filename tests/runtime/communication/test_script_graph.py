@@ -229,3 +229,20 @@ def test_a_parameter_cannot_have_any_value(sim: simkit.Simulation, name: Any, va
     with pytest.raises(InputError):
         sim.declare(name, value, **options)
     assert "/script" not in sim.communication.parameters
+
+
+def test_a_parameter_is_closed_and_its_node_ends_with_the_last_one(sim: simkit.Simulation) -> None:
+    events = sim.subscribe("/parameter_events")
+    gain, offset = sim.declare("gain", 2.0, node="/arm"), sim.declare("offset", 0.5, node="/arm")
+    gain.close()
+    with pytest.raises(ParameterError, match="'/arm' has no parameter 'gain'"):
+        sim.set_parameter("/arm", "gain", 3.0)
+    assert [p.name for p in events.latest.deleted_parameters] == ["gain"]
+    assert "/arm/get_parameters" in sim.communication.services.names()
+    again = sim.declare("gain", 1.0, node="/arm")
+    gain.close()  # the first one is closed already
+    sim.set_parameter("/arm", "gain", 4.0)
+    assert (gain.value, again.value) == (2.0, 4.0)
+    again.close()
+    offset.close()
+    assert not [name for name in sim.communication.services.names() if name.startswith("/arm/")]
