@@ -14,10 +14,10 @@ from simkit.bridges.live.message_log import ClientSubscription
 from simkit.bridges.live.protocol import (
     ANSWER,
     ASK,
-    HEAD,
     LARGEST_IN,
     LARGEST_OUT,
     MESSAGE,
+    MESSAGE_FRAME_HEAD,
     MESSAGE_HEAD,
     TELL,
     BadFrame,
@@ -201,21 +201,31 @@ class ClientConnection:
             self._answer_bytes -= len(frame)
             found.append(frame)
             size += len(frame)
-        while not self._answers and size < _PIECE and (item := self._queue.next()) is not None:
-            subscribed, (_, time_ns, type_name, data, _) = item
-            if type_name not in self._types:
-                found.append(self._type_frame(type_name))
-            found.append(HEAD.pack(MESSAGE_HEAD.size + len(data), MESSAGE))
-            found.append(MESSAGE_HEAD.pack(subscribed.number, self._types[type_name], time_ns, subscribed.lost))
-            size += len(data) + 29
-            if len(data) < _PIECE:
-                found.append(data)
-            else:  # large data are not copied
-                self._pieces += memoryview(b"".join(found)), memoryview(data)
-                return True
+        if size < _PIECE and self._fill_messages(found, size):
+            return True
         if found:
             self._pieces.append(memoryview(b"".join(found)))
         return bool(found)
+
+    def _fill_messages(self, found: list[bytes], size: int) -> bool:
+        """Add messages up to the size of a piece; return True if `found` and a large message were queued separately."""
+        types, lost, pack = self._types, dict[ClientSubscription, int](), MESSAGE_FRAME_HEAD.pack
+        while size < _PIECE and (item := self._queue.next()) is not None:
+            _, subscribed, (_, time_ns, type_name, data, _) = item
+            type_number, length = types.get(type_name), len(data)
+            if type_number is None:
+                found.append(self._type_frame(type_name))
+                type_number = types[type_name]
+            if subscribed not in lost:
+                lost[subscribed] = subscribed.lost
+            head = MESSAGE_HEAD.size + length, MESSAGE, subscribed.number, type_number, time_ns, lost[subscribed]
+            found.append(pack(*head))
+            size += length + MESSAGE_FRAME_HEAD.size
+            if length >= _PIECE:  # large data are not copied
+                self._pieces += memoryview(b"".join(found)), memoryview(data)
+                return True
+            found.append(data)
+        return False
 
     def _type_frame(self, type_name: str) -> bytes:
         """Return the notification that gives a type its number."""

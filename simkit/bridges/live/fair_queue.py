@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections import deque
+from operator import itemgetter
 
 from simkit.bridges.live.message_log import ClientSubscription, Entry
 
 _SHARE = 1 << 16  # [bytes] that a subscription may send in one round
 _OVERHEAD = 64  # [bytes] that each message counts besides its data
 _LARGEST_ROUND = 1 << 20  # [bytes] above which the next round begins; other subscriptions then come first
+
+
+Item = tuple[int, ClientSubscription, Entry]
+"""Position in the order of publication, subscription and message."""
 
 
 class FairQueue:
@@ -21,7 +26,7 @@ class FairQueue:
 
     def __init__(self) -> None:
         self._active: dict[ClientSubscription, None] = {}
-        self._round: deque[tuple[ClientSubscription, Entry]] = deque()
+        self._round: deque[Item] = deque()
 
     def __bool__(self) -> bool:
         return bool(self._round or self._active)
@@ -33,16 +38,16 @@ class FairQueue:
     def remove(self, reader: ClientSubscription) -> None:
         """Remove a subscription with its messages."""
         self._active.pop(reader, None)
-        if any(found is reader for found, _ in self._round):
-            self._round = deque(item for item in self._round if item[0] is not reader)
+        if any(found is reader for _, found, _ in self._round):
+            self._round = deque(item for item in self._round if item[1] is not reader)
 
     def clear(self) -> None:
         """Remove all subscriptions with their messages."""
         self._active.clear()
         self._round.clear()
 
-    def next(self) -> tuple[ClientSubscription, Entry] | None:
-        """Remove the next message and return it with its subscription; None if there is none."""
+    def next(self) -> Item | None:
+        """Remove the next message and return it with its position and subscription; None if there is none."""
         while not self._round:
             if not self._active:
                 return None
@@ -51,22 +56,22 @@ class FairQueue:
 
     def _begin_round(self) -> None:
         """Take the messages of a round. If no subscription can pay for its message, skip the rounds until one can."""
-        found: list[tuple[ClientSubscription, Entry]] = []
+        found: list[Item] = []
         missing: list[int] = []
         size = 0
         for reader in list(self._active):
             del self._active[reader]
-            reader.credit += _SHARE
-            while (entry := reader.next_entry()) is not None:
+            credit = reader.credit + _SHARE
+            for entry in reader.take_entries():
                 cost = len(entry[3]) + _OVERHEAD
-                if cost > reader.credit:
+                if cost > credit:
                     self._active[reader] = None
-                    missing.append(cost - reader.credit)
+                    missing.append(cost - credit)
+                    reader.credit = credit
                     break
-                reader.credit -= cost
+                credit -= cost
                 size += cost
-                reader.advance()
-                found.append((reader, entry))
+                found.append((entry[0], reader, entry))
             else:
                 reader.rest()
             if size > _LARGEST_ROUND:
@@ -75,4 +80,5 @@ class FairQueue:
             skipped = (min(missing) - 1) // _SHARE * _SHARE
             for reader in self._active:
                 reader.credit += skipped
-        self._round.extend(sorted(found, key=lambda item: item[1][0]))
+        found.sort(key=itemgetter(0))
+        self._round.extend(found)

@@ -7,6 +7,7 @@ none of them, unless all logs together are too large. Then the largest log loses
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final, Protocol
 
 MOST_BYTES: Final = 32 << 20
@@ -144,6 +145,10 @@ class MessageLog:
 
     def drop_to(self, size: int) -> None:
         """Drop the oldest messages until the log has at most this size [bytes]."""
+        if not size:
+            self._memory.total -= self.size
+            self.entries.clear()
+            self.begin, self.size = self.end, 0
         while self.size > size:
             self._drop_oldest()
 
@@ -189,28 +194,19 @@ class ClientSubscription:
         self._skip_dropped()
         return self.lost_before + (self.first.lost if self.first is not None else 0)
 
-    def next_entry(self) -> Entry | None:
-        """Return the oldest queued message; None if there is none."""
+    def take_entries(self) -> Iterator[Entry]:
+        """Yield the queued messages, the oldest first. A message is removed when the next one is requested."""
         if self.first is not None:
-            if (found := self.first.next_entry()) is not None:
-                return found
+            yield from self.first.take_entries()
             self._forget_first()
-        log = self.log
+        log, peer = self.log, self.peer
         if log is None:
-            return None
+            return
         self._skip_dropped()
         while self.position < log.end:
             found = log.entries[self.position]
-            if found[4] is not self.peer:
-                return found
-            self.position += 1
-        return None
-
-    def advance(self) -> None:
-        """Remove the message that `next_entry` returned from the queue of this subscription."""
-        if self.first is not None:
-            self.first.position += 1
-        else:
+            if found[4] is not peer:
+                yield found
             self.position += 1
 
     def rest(self) -> None:

@@ -38,6 +38,8 @@ PROTOCOL: Final = 1
 ASK, ANSWER, TELL, MESSAGE = 1, 2, 3, 4
 HEAD: Final = struct.Struct("<IB")
 MESSAGE_HEAD: Final = struct.Struct("<IIqQ")
+MESSAGE_FRAME_HEAD: Final = struct.Struct(HEAD.format + MESSAGE_HEAD.format[1:])
+"""Head of a frame with a message: `HEAD` and `MESSAGE_HEAD`."""
 NUMBER: Final = struct.Struct("<I")
 LARGEST_IN: Final = 16 << 20  # [bytes] in a frame to the simulation
 _COPY_BYTES: Final = 2048  # [bytes] below which copying a frame is faster than a view

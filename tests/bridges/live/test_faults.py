@@ -64,7 +64,7 @@ class Caller:
 def queued(peer: ClientConnection, number: int) -> list[Entry]:
     """The messages that wait for a subscription of a client."""
     subscribed = peer.subscriptions[number]
-    subscribed.next_entry()  # goes to the oldest that is still there
+    next(subscribed.take_entries(), None)  # goes to the oldest that is still there
     log = subscribed.log
     return [] if log is None else [log.entries[n] for n in range(subscribed.position, log.end)]
 
