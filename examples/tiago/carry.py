@@ -141,8 +141,9 @@ def main(arguments: list[str]) -> None:
     def watch(sim: simkit.Simulation) -> None:
         from simkit.sensors.cameras.rendering.overview_image import render_view
 
-        view = {"eye": (1.6, -2.2, 1.7), "target": (0.0, 0.1, 0.6), "vertical_fov": 0.75}
-        pictures.append(render_view(sim, 400, 300, **view))
+        view = {"eye": (2.6, -3.0, 1.9), "target": (0.25, -0.05, 0.56), "vertical_fov": 0.42}
+        shadows = {"quality": "gazebo", "passes": 16, "lit": (np.array((0.2, 0.0, 0.5)), 2.0)}
+        pictures.append(render_view(sim, 400, 340, **view, **shadows))
 
     carried = run(watch=None if picture is None else watch)
     for part, place in carried.places.items():
@@ -150,10 +151,14 @@ def main(arguments: list[str]) -> None:
     held, whole = (carried.slips[part] * 1000 for part in ("held", "carried"))
     print(f"slip in the hand: {held:.2f} mm while held, {whole:.2f} mm with the way; tilt {carried.tilt:.4f} rad")
     if picture is not None:
-        import cv2
+        from PIL import Image, ImageDraw, ImageFont
 
         rows = [np.hstack(pictures[i : i + 3]) for i in (0, 3)]
-        cv2.imwrite(str(picture), np.vstack(rows)[..., ::-1])
+        whole_picture = Image.fromarray(np.vstack(rows))
+        draw, font = ImageDraw.Draw(whole_picture), ImageFont.load_default(17)
+        for number, part in enumerate(carried.places):
+            draw.text((12 + number % 3 * 400, 10 + number // 3 * 340), f"{number + 1}  {part}", (32, 36, 40), font)
+        whole_picture.save(picture, optimize=True)
         print(f"wrote {picture}")
 
 

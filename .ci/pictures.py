@@ -1,0 +1,107 @@
+"""Draw the pictures of the documentation anew: `python .ci/pictures.py [NAME...]`; without a name, all of them.
+
+A picture of more than 150 kB gets a palette of 256 colours. The gallery has a script of its own: `.ci/gallery.py`.
+"""
+
+from __future__ import annotations
+
+import math
+import runpy
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+import simkit
+from simkit.recording.pictures.camera import frame_points, line_of_sight
+from simkit.recording.pictures.frames import Look, draw_frame
+from simkit.recording.pictures.overlay import Marks
+from simkit.recording.pictures.subject import find_subject
+from simkit.sensors.cameras.rendering.overview_image import render_view
+
+ROOT = Path(__file__).resolve().parents[1]
+IMAGES = ROOT / "docs" / "images"
+MOST = 150_000  # bytes
+
+
+def run(*words: str) -> Callable[[Path], None]:
+    """Return a function that draws the end of a run."""
+
+    def draw(path: Path) -> None:
+        command = [sys.executable, "-m", "simkit", "run", *words, "--quiet", "--picture", str(path)]
+        subprocess.run(command, cwd=ROOT, check=True)
+
+    return draw
+
+
+def graph(path: Path) -> None:
+    subprocess.run([sys.executable, "-m", "simkit", "graph", "turtlebot3_world", "-o", str(path)], cwd=ROOT, check=True)
+
+
+def script(name: str) -> Callable[[Path], None]:
+    """Return a function that runs an example, which writes a picture."""
+
+    def draw(path: Path) -> None:
+        subprocess.run([sys.executable, name, str(path)], cwd=ROOT, check=True)
+
+    return draw
+
+
+def tiago(path: Path) -> None:
+    """TIAGo from the front, from its left and from behind."""
+    views: list[Any] = []
+    with simkit.load("empty", spawn=["tiago:0,0,0"]) as sim:
+        sim.run(2.0)
+        subject = find_subject(sim, [])
+        look = Look(400, 500)
+        for turn in (-30.0, 65.0, 150.0):
+            sight = line_of_sight(math.radians(turn), math.radians(12.0))
+            camera = frame_points(subject.robots, sight, look.width, look.height)
+            views.append(draw_frame(sim, render_view, camera, look, Marks(), subject))
+    Image.fromarray(np.hstack(views)).save(path, optimize=True)
+
+
+PICTURES: dict[str, Callable[[Path], None]] = {
+    "first_run.png": run(
+        "turtlebot3_world", "--script", "worlds/turtlebot3_world_drive.yaml", "--duration", "36"
+    ),
+    "house.png": run("turtlebot3_house", "--script", "worlds/turtlebot3_house_drive.yaml", "--duration", "72"),
+    "office.png": run("simple_office_with_people", "--spawn", "tiago:0,0,0", "--duration", "20"),
+    "tiago_table.png": run("tiago_table", "--duration", "2"),
+    "tiago.png": tiago,
+    "tiago_carry.png": script("examples/tiago/carry.py"),
+    "visual_servoing.png": script("examples/visual_servoing/servo.py"),
+    "graph.svg": graph,
+    "rendering": lambda path: runpy.run_path(str(ROOT / "examples/rendering/looks.py"))["main"](path),
+    **{
+        f"sensors/{path.stem}.png": script(f"examples/sensors/{path.name}")
+        for path in sorted((ROOT / "examples" / "sensors").glob("*.py"))
+        if path.stem != "plots" and (IMAGES / "sensors" / f"{path.stem}.png").exists()
+    },
+}
+
+
+def shrink(path: Path) -> None:
+    """Reduce the colours of a PNG file that is too large."""
+    if path.suffix == ".png" and path.stat().st_size > MOST:
+        with Image.open(path) as image:
+            image.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
+
+
+def main(names: list[str]) -> None:
+    for name in names or PICTURES:
+        PICTURES[name](IMAGES / name)
+    for path in sorted(IMAGES.rglob("*.png")):
+        shrink(path)
+        print(f"{path.stat().st_size:8d} {path.relative_to(ROOT)}")
+
+
+if __name__ == "__main__":
+    unknown = [name for name in sys.argv[1:] if name not in PICTURES]
+    if unknown:
+        sys.exit(f"unknown: {', '.join(unknown)}; there are {', '.join(PICTURES)}")
+    main(sys.argv[1:])
