@@ -1,6 +1,7 @@
 """Draw the pictures of the documentation anew: `python .ci/pictures.py [NAME...]`; without a name, all of them.
 
-A picture of more than 150 kB gets a palette of 256 colours. The gallery has a script of its own: `.ci/gallery.py`.
+A picture of more than 150 kB gets smaller: a chart gets a palette, another picture fewer pixels. The gallery has a
+script of its own: `.ci/gallery.py`.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from PIL import Image
 
 import simkit
-from simkit.recording.pictures.camera import frame_points, line_of_sight
+from simkit.recording.pictures.camera import Camera, frame_points, line_of_sight
 from simkit.recording.pictures.frames import Look, draw_frame
 from simkit.recording.pictures.overlay import Marks
 from simkit.recording.pictures.subject import find_subject
@@ -26,6 +27,7 @@ from simkit.sensors.cameras.rendering.overview_image import render_view
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images"
 MOST = 150_000  # bytes
+FEW = 3_000  # colours of a chart
 
 
 def run(*words: str) -> Callable[[Path], None]:
@@ -58,17 +60,17 @@ def tiago(path: Path) -> None:
         sim.run(2.0)
         subject = find_subject(sim, [])
         look = Look(400, 500)
-        for turn in (-30.0, 65.0, 150.0):
-            sight = line_of_sight(math.radians(turn), math.radians(12.0))
-            camera = frame_points(subject.robots, sight, look.width, look.height)
+        sights = [line_of_sight(math.radians(turn), math.radians(12.0)) for turn in (-30.0, 65.0, 150.0)]
+        cameras = [frame_points(subject.robots, sight, look.width, look.height) for sight in sights]
+        distance = max(camera.distance for camera in cameras)
+        for sight, found in zip(sights, cameras, strict=True):
+            camera = Camera(found.target - distance * sight, found.target, look.width, look.height)
             views.append(draw_frame(sim, render_view, camera, look, Marks(), subject))
     Image.fromarray(np.hstack(views)).save(path, optimize=True)
 
 
 PICTURES: dict[str, Callable[[Path], None]] = {
-    "first_run.png": run(
-        "turtlebot3_world", "--script", "worlds/turtlebot3_world_drive.yaml", "--duration", "36"
-    ),
+    "first_run.png": run("turtlebot3_world", "--script", "worlds/turtlebot3_world_drive.yaml", "--duration", "36"),
     "house.png": run("turtlebot3_house", "--script", "worlds/turtlebot3_house_drive.yaml", "--duration", "72"),
     "office.png": run("simple_office_with_people", "--spawn", "tiago:0,0,0", "--duration", "20"),
     "tiago_table.png": run("tiago_table", "--duration", "2"),
@@ -86,10 +88,16 @@ PICTURES: dict[str, Callable[[Path], None]] = {
 
 
 def shrink(path: Path) -> None:
-    """Reduce the colours of a PNG file that is too large."""
-    if path.suffix == ".png" and path.stat().st_size > MOST:
-        with Image.open(path) as image:
-            image.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
+    """Reduce a PNG file that is too large: a chart to 256 colours, a picture to fewer pixels."""
+    with Image.open(path) as opened:
+        image = opened.convert("RGB")
+    if path.stat().st_size > MOST and image.getcolors(FEW) is not None:
+        image.quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
+    share = 1.0
+    while path.stat().st_size > MOST:
+        share -= 0.05
+        size = round(image.width * share), round(image.height * share)
+        image.resize(size, Image.Resampling.LANCZOS).save(path, optimize=True)
 
 
 def main(names: list[str]) -> None:

@@ -141,7 +141,7 @@ def main(arguments: list[str]) -> None:
     def watch(sim: simkit.Simulation) -> None:
         from simkit.sensors.cameras.rendering.overview_image import render_view
 
-        view = {"eye": (2.6, -3.0, 1.9), "target": (0.25, -0.05, 0.56), "vertical_fov": 0.42}
+        view = {"eye": (2.6, -3.0, 1.9), "target": (-0.15, 0.15, 0.66), "vertical_fov": 0.56}
         shadows = {"quality": "gazebo", "passes": 16, "lit": (np.array((0.2, 0.0, 0.5)), 2.0)}
         pictures.append(render_view(sim, 400, 340, **view, **shadows))
 

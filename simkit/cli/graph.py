@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -108,8 +109,7 @@ def _of_world(source: str, arguments: Mapping[str, object], *, tf: bool) -> tupl
         if tf:
             for topic, type_name in sim.topics().items():
                 if type_name == "tf2_msgs/msg/TFMessage" and topic.rpartition("/")[2] in ("tf", "tf_static"):
-                    static = topic.endswith("tf_static")
-                    sim.subscribe(topic, lambda message, static=static: frames.take(message, static=static))
+                    sim.subscribe(topic, partial(frames.take, static=topic.endswith("tf_static")))
             sim.run(_FRAMES_AFTER)
             return {}, frames
         return node_list(sim, ()), frames

@@ -81,15 +81,15 @@ def _without_cycles(names: Sequence[str], edges: Sequence[Edge]) -> list[tuple[E
         waiting = [(root, iter(after[root]))]
         while waiting:
             name, following = waiting[-1]
-            end = next(following, None)
-            if end is None:
+            other = next(following, None)
+            if other is None:
                 state[name] = 2
                 waiting.pop()
-            elif state[end] == 1:
-                closing.add((name, end))
-            elif not state[end]:
-                state[end] = 1
-                waiting.append((end, iter(after[end])))
+            elif state[other] == 1:
+                closing.add((name, other))
+            elif not state[other]:
+                state[other] = 1
+                waiting.append((other, iter(after[other])))
     return [(((end, start), True) if (start, end) in closing else ((start, end), False)) for start, end in edges]
 
 

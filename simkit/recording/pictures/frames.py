@@ -27,7 +27,9 @@ _ENOUGH: Final = 0.1  # a viewpoint is taken if it shows at most this share less
 _FLAT, _TALL = 0.12, 0.7  # height of a subject, relative to its width, that is seen steeply or from the side
 _STEEP, _LEVEL = math.radians(50), math.radians(20)
 _AZIMUTHS: Final = tuple(math.radians(turn) for turn in (0, 90, -90, 180))
-_TOP: Final = (math.radians(65), math.radians(82))
+_TOP: Final = ((math.radians(65), 0.15), (math.radians(82), 0.3))
+"""Steeper elevations, which show less of the sides, and the share of a subject that they must show in addition."""
+_ROBOTS: Final = 0.7  # weight of robots beside that of scans and paths
 
 
 @dataclass(frozen=True)
@@ -80,10 +82,13 @@ def choose_camera(sim: Simulation, render: Render, subject: Subject, look: Look)
     robots, scans and paths is hidden behind walls.
     """
     best: tuple[float, Camera] | None = None
-    cameras = [frame_points(subject.points, view, look.width, look.height) for view in _views(subject)]
+    views = list(_views(subject))
+    cameras = [frame_points(subject.points, view, look.width, look.height) for view, _ in views]
     if not len(subject.centres) and not len(subject.traces):
         return cameras[0]
-    shares = [_visible_share(sim, render, camera, subject) for camera in cameras]
+    shares = [
+        _visible_share(sim, render, camera, subject) - more for camera, (_, more) in zip(cameras, views, strict=True)
+    ]
     for share, camera in zip(shares, cameras, strict=True):
         if best is None or share > best[0] + _ENOUGH:
             best = share, camera
@@ -91,8 +96,8 @@ def choose_camera(sim: Simulation, render: Render, subject: Subject, look: Look)
     return best[1]
 
 
-def _views(subject: Subject) -> Iterator[Points]:
-    """Yield lines of sight, the preferred one first."""
+def _views(subject: Subject) -> Iterator[tuple[Points, float]]:
+    """Yield lines of sight with the share that each must show in addition, the preferred one first."""
     span = np.ptp(subject.points, axis=0)
     ratio = float(span[2] / max(math.hypot(span[0], span[1]), 1e-9))
     share = min(max((ratio - _FLAT) / (_TALL - _FLAT), 0.0), 1.0)
@@ -100,13 +105,14 @@ def _views(subject: Subject) -> Iterator[Points]:
     # a robot alone is seen from its front, a scene from the side that maps have below
     front = subject.heading + math.radians(-40) if not len(subject.traces) and not len(subject.room) else None
     azimuth = math.radians(-127) if front is None else front
-    for rise in (elevation, *(top for top in _TOP if top > elevation + 0.1)):
+    steeper = [(rise, more) for rise, more in _TOP if rise > elevation + 0.1]
+    for rise, more in ((elevation, 0.0), *steeper):
         for turn in _AZIMUTHS:
-            yield line_of_sight(azimuth + turn, rise)
+            yield line_of_sight(azimuth + turn, rise), more
 
 
 def _visible_share(sim: Simulation, render: Render, camera: Camera, subject: Subject) -> float:
-    """Return the share of robots (half of the weight) and of traces that a camera sees."""
+    """Return the share of robots and of traces that a camera sees."""
     width, height = _TRIAL
     small = camera.resized(width, height)
     distances = np.full((height, width), np.inf, dtype=np.float32)
@@ -115,14 +121,18 @@ def _visible_share(sim: Simulation, render: Render, camera: Camera, subject: Sub
         distances=distances,
     )  # fmt: skip
     radius = float(np.linalg.norm(np.ptp(subject.robots, axis=0))) / 2 if len(subject.robots) else 0.0
-    shares = []
-    for points, slack in ((subject.centres, min(radius, 1.0)), (subject.traces, 0.02 * camera.distance)):
+    shares, weights = [], []
+    for points, slack, weight in (
+        (subject.centres, min(radius, 1.0), _ROBOTS),
+        (subject.traces, 0.02 * camera.distance, 1.0 - _ROBOTS),
+    ):
         if len(points):
+            weights.append(weight)
             pixels, depth = small.project(points[:: max(1, len(points) // 200)])
             column = np.clip(np.rint(pixels[:, 0]), 0, width - 1).astype(int)
             row = np.clip(np.rint(pixels[:, 1]), 0, height - 1).astype(int)
-            shares.append(float((depth <= distances[row, column] + slack).mean()))
-    return sum(shares) / len(shares)
+            shares.append(weight * float((depth <= distances[row, column] + slack).mean()))
+    return sum(shares) / sum(weights)
 
 
 def _lit_sphere(subject: Subject, camera: Camera) -> tuple[Points, float]:

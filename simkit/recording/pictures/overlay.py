@@ -208,7 +208,7 @@ def _draw_scale(draw: ImageDraw, camera: Camera, font: FreeTypeFont, edge: float
             draw.line(line, fill=colour, width=wide)
     text = length_text(metres)
     _text(draw, (right + 0.6 * font.size, bottom), text, font, "lm")
-    return right + 0.6 * font.size + font.getlength(text)
+    return float(right + 0.6 * font.size + font.getlength(text))
 
 
 def _legend(marks: Marks) -> list[tuple[str, Colour, str]]:

@@ -128,7 +128,8 @@ def _without_floors(boxes: Points) -> Points:
     if not len(solid):
         return boxes
     span = np.ptp(solid.reshape(-1, 3), axis=0)
-    return boxes[~is_flat | (widths <= math.hypot(span[0], span[1]))]
+    walls: Points = boxes[~is_flat | (widths <= math.hypot(span[0], span[1]))]
+    return walls
 
 
 def _size(points: Points) -> float:

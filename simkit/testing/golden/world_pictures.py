@@ -52,7 +52,7 @@ def draw_worlds(golden: RunRecord, run: RunRecord) -> tuple[tuple[tuple[str, byt
     except RenderError as error:
         return (), f"no pictures of the worlds: {error}"
     except SimkitError as error:
-        return (), f"no pictures of the worlds: the golden world cannot be built again ({error.message})"
+        return (), f"no pictures of the worlds: the golden world cannot be built again ({str(error).splitlines()[0]})"
     except Exception as error:  # noqa: BLE001 - golden values come from a file and may cause any error
         return (), f"no pictures of the worlds: the golden world cannot be built again ({type(error).__name__})"
     return tuple(reversed(found)), ""
