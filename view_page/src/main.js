@@ -100,6 +100,7 @@ function findRobots(scene) {
   const active = new Set([...scene.joints, ...scene.sensors].map(item => item.name.split('::', 1)[0]));
   const moving = scene.models.filter(model => app.bodyOf.has(model.name));
   const robots = moving.filter(model => active.has(model.name));
+  app.hasRobots = robots.length > 0;
   return robots.length ? robots : moving;
 }
 

@@ -2,7 +2,7 @@
 import * as T from 'three';
 
 const DIRECTIONS = [[0.55, 0.62, -0.56], [-0.55, 0.62, -0.56], [0.55, -0.62, -0.56], [-0.55, -0.62, -0.56], [0.4, 0.45, -0.9], [0.1, 0.15, -1]];
-const LARGEST_WHOLE = 14; // [m] up to which the first view shows the whole world
+const LARGEST_WHOLE = 12; // [m] up to which the first view shows the whole world
 
 export class Views {
   constructor(app) {
@@ -28,7 +28,7 @@ export class Views {
     const all = this.worldBox(), robots = this.robotBox();
     let box = all.isEmpty() ? new T.Box3(new T.Vector3(-2, -2, 0), new T.Vector3(2, 2, 1)) : all;
     const isWhole = all.isEmpty() || robots.isEmpty() || all.getSize(new T.Vector3()).length() < LARGEST_WHOLE;
-    if (!isWhole) {
+    if (!isWhole && this.app.hasRobots) {
       box = robots.clone();
       const size = box.getSize(new T.Vector3()), margin = Math.max(0.35 * size.length(), 1.2);
       box.min.x -= margin; box.min.y -= margin; box.max.x += margin; box.max.y += margin;

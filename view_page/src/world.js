@@ -15,6 +15,24 @@ export function readPose(array, offset, matrix) {
   return matrix.compose(scratch.p, scratch.q, ONE);
 }
 
+const DIRECTIONS = [];
+for (const x of [-1, 0, 1]) for (const y of [-1, 0, 1]) for (const z of [-1, 0, 1]) if (x || y || z) DIRECTIONS.push([x, y, z]);
+
+/** Returns the vertices of a shape that lie farthest in 26 directions: a turned mesh has no tight box of its own axes. */
+function outermostPoints(geometry) {
+  if (geometry.userData.outermost) return geometry.userData.outermost;
+  const { array } = geometry.attributes.position, found = new Set();
+  for (const [x, y, z] of DIRECTIONS) {
+    let best = 0, most = -Infinity;
+    for (let i = 0; i < array.length; i += 3) {
+      const reach = x * array[i] + y * array[i + 1] + z * array[i + 2];
+      if (reach > most) { most = reach; best = i; }
+    }
+    found.add(best);
+  }
+  return geometry.userData.outermost = [...found].flatMap(i => [array[i], array[i + 1], array[i + 2]]);
+}
+
 export class World {
   constructor(stage) {
     this.stage = stage;
@@ -285,15 +303,15 @@ export class World {
 
   /** Returns the box of the drawn shapes of the geoms that `accept(geom, isFloor)` takes. */
   boxOf(accept) {
-    const box = new T.Box3(), one = new T.Box3();
+    const box = new T.Box3(), point = new T.Vector3();
     this.place();
     for (const { mesh, geoms, isVisual, isFloor } of this.shapes) {
       if (!isVisual) continue;
-      if (!mesh.geometry.boundingBox) mesh.geometry.computeBoundingBox();
+      const outermost = outermostPoints(mesh.geometry);
       geoms.forEach((geom, k) => {
         if (!accept(geom, isFloor)) return;
         mesh.getMatrixAt(k, scratch.m);
-        box.union(one.copy(mesh.geometry.boundingBox).applyMatrix4(scratch.m));
+        for (let i = 0; i < outermost.length; i += 3) box.expandByPoint(point.fromArray(outermost, i).applyMatrix4(scratch.m));
       });
     }
     return box;

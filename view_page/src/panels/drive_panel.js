@@ -21,7 +21,7 @@ export function makeDrivePanel(app) {
   const show = () => {
     driving.hidden = help.hidden = targets.length === 0;
     choice.hidden = targets.length < 2;
-    box.hidden = targets.length === 0 && app.robots.length === 0;
+    box.hidden = targets.length === 0;
   };
   const report = found => { if (Array.isArray(found)) speeds.textContent = `${found[0].toFixed(2)} m/s  ${found[2].toFixed(2)} rad/s`; };
   const key = name => { if (target()) app.send('key', { topic: target().topic, key: name }).then(report); };

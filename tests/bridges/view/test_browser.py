@@ -1,0 +1,228 @@
+"""The page in a real browser: what it draws, and that each control does what it says."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import simkit
+from simkit.bridges.view.live_view import LiveView
+from tests.bridges.view.conftest import YARD
+
+pytestmark = pytest.mark.browser
+TIMEOUT = 60_000  # [ms]; a browser without a graphics card draws slowly
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+PICTURES = os.environ.get("SIMKIT_BROWSER_PICTURES", "")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Chromium of the system; nothing is downloaded."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
+    program = next((found for name in BROWSERS if (found := shutil.which(name))), None)
+    if program is None:
+        pytest.skip("there is no Chromium; install it with `apt-get install chromium`")
+    software = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    with playwright.sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=program, args=software)
+        yield opened
+        opened.close()
+
+
+class Session:
+    """Simulation in a thread that keeps it running, and its page in a browser."""
+
+    def __init__(self, browser: Any, stack: ExitStack, world: str, *, checks_policy: bool = False) -> None:
+        self.sim = stack.enter_context(simkit.load(world))
+        self.view = stack.enter_context(LiveView(self.sim))
+        self._ends = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+        stack.callback(self._end)
+        # Playwright's waiting functions need `eval`, which the page's policy forbids
+        context = browser.new_context(viewport={"width": 1100, "height": 700}, bypass_csp=not checks_policy)
+        stack.callback(context.close)
+        self.page = context.new_page()
+        self.outside: list[str] = []
+        self.errors: list[str] = []
+        self.page.on("request", lambda request: self._note(request.url))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on("console", lambda m: self.errors.append(m.text) if m.type == "error" else None)
+        self.page.goto(self.view.address)
+        self.has_drawn = self.page.locator("#link.on")
+        self.has_drawn.wait_for(timeout=TIMEOUT)
+
+    def _note(self, url: str) -> None:
+        if not url.startswith((f"http://127.0.0.1:{self.view.server.port}/", "blob:", "data:")):
+            self.outside.append(url)
+
+    def _run(self) -> None:
+        pausing = self.sim.control.pausing
+        with pausing.served():
+            while not self._ends.wait(0.01):
+                self.view.update()
+                self.view.driving.send_due()
+                if not self.sim.paused:
+                    pausing.advance(5)
+
+    def _end(self) -> None:
+        self._ends.set()
+        self._thread.join()
+
+    def until(self, expression: str) -> Any:
+        """Wait until an expression of the page is true; `app` is its main object."""
+        text = f"(() => {{ const app = window.simkitView; return {expression}; }})()"
+        return self.page.wait_for_function(text, timeout=TIMEOUT).json_value()
+
+    def get(self, expression: str) -> Any:
+        return self.page.evaluate(f"(() => {{ const app = window.simkitView; return {expression}; }})()")
+
+    def picture(self, name: str) -> Path | None:
+        """Keep a picture where SIMKIT_BROWSER_PICTURES names a folder."""
+        if not PICTURES:
+            return None
+        path = Path(PICTURES) / f"{name}.png"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self.page.screenshot(path=path, timeout=TIMEOUT)
+        return path
+
+
+@pytest.fixture
+def session(browser: Any) -> Iterator[Callable[..., Session]]:
+    with ExitStack() as stack:
+        yield lambda world=YARD, **more: Session(browser, stack, world, **more)
+
+
+COLOURS = """(() => { const app = window.simkitView, c = document.createElement('canvas'); c.width = c.height = 64;
+  app.stage.draw(); c.getContext('2d').drawImage(app.stage.canvas, 0, 0, 64, 64);
+  const d = c.getContext('2d').getImageData(0, 0, 64, 64).data, found = new Set();
+  for (let i = 0; i < d.length; i += 4) found.add((d[i] >> 4) * 256 + (d[i + 1] >> 4) * 16 + (d[i + 2] >> 4));
+  return found.size; })()"""
+
+
+def test_the_page_draws_the_world_and_loads_nothing_from_outside(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("app.stage.draws > 1 && app.state.tick > 20")
+    assert found.page.evaluate(COLOURS) > 12
+    assert found.get("app.robots.map(robot => robot.name)") == ["rover"]
+    corners = """(() => { const b = app.views.robotBox(), out = []; for (let i = 0; i < 8; i++) { const p = b.min.clone();
+      if (i & 1) p.x = b.max.x; if (i & 2) p.y = b.max.y; if (i & 4) p.z = b.max.z; p.project(app.stage.camera);
+      out.push(Math.max(Math.abs(p.x), Math.abs(p.y))); } return Math.max(...out); })()"""
+    assert found.get(corners) < 1.0
+    assert found.outside == [] and found.errors == []
+    found.picture("yard")
+
+
+def test_the_page_works_with_its_security_policy(session: Callable[..., Session]) -> None:
+    found = session(checks_policy=True)
+    found.page.locator("#show-frames").check(timeout=TIMEOUT)
+    assert found.errors == []
+
+
+def test_the_bar_pauses_steps_resets_and_sets_the_speed(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("app.state?.tick > 0")
+    found.page.locator("#play").click()
+    found.until("app.state.paused")
+    tick = found.sim.tick
+    found.page.locator("#count").fill("7")
+    found.page.locator("#step").click()
+    found.until(f"app.state.tick === {tick + 7}")
+    found.page.locator("#speed").select_option("0.5 ×")
+    found.until("app.state.pace === 0.5")
+    found.page.locator("#reset").click()
+    found.until("app.state.tick < 7")
+    found.page.locator("#play").click()
+    found.until("!app.state.paused")
+    assert not found.sim.paused
+
+
+def test_keys_and_the_pad_drive(session: Callable[..., Session]) -> None:
+    found = session()
+    sent = found.sim.subscribe("/cmd_vel")
+    found.until("document.getElementById('drive').hidden === false")
+    found.page.locator("#canvas").press("w")
+    found.until("document.getElementById('speeds').textContent.startsWith('0.0')")
+    assert sent.latest.linear.x > 0
+    found.page.locator("#stop").click()
+    pad = found.page.locator("#pad").bounding_box()
+    middle = pad["x"] + pad["width"] / 2, pad["y"] + pad["height"] / 2
+    found.page.mouse.move(*middle)
+    found.page.mouse.down()
+    found.page.mouse.move(middle[0], pad["y"] + 2)
+    found.until("parseFloat(document.getElementById('speeds').textContent) > 0.5")
+    found.page.mouse.up()
+    found.until("parseFloat(document.getElementById('speeds').textContent) === 0")
+    assert sent.latest.linear.x == 0
+
+
+def test_a_click_on_the_ground_sends_a_goal(session: Callable[..., Session]) -> None:
+    found = session()
+    goals = found.sim.subscribe("/goal_pose")
+    found.until("app.stage.draws > 1")
+    found.page.locator("#go").click()
+    box = found.page.locator("#canvas").bounding_box()
+    place = box["x"] + 0.3 * box["width"], box["y"] + 0.8 * box["height"]
+    x, y = found.get(f"(() => {{ const p = app.pickAt({place[0]}, {place[1]}).point; return [p.x, p.y]; }})()")
+    found.page.mouse.click(*place)
+    found.until("app.aiming === null")
+    found.get("app.ask('travel')")  # answered after the goal
+    assert (goals.latest.pose.position.x, goals.latest.pose.position.y) == pytest.approx((x, y), abs=0.02)
+
+
+def test_layers_show_what_they_say(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("app.sensors.points.geometry.attributes.position?.count === 9")
+    for name in ("collisions", "frames", "joints", "inertia", "mass", "contacts"):
+        found.page.locator(f"#show-{name}").check()
+    found.until("app.world.collisions.visible && app.layers.contacts.arrays.position.length > 0")
+    found.until("app.layers.frames.points.length === 3 * 2 * 3 * 2")  # two moving links, three axes
+    found.until("app.layers.inertia.mesh.count === 2 && app.layers.mass.mesh.count === 2")
+    found.until("app.layers.joints.points.length === 6")
+    found.page.locator("#show-visuals").uncheck()
+    assert found.get("app.world.visuals.visible") is False
+    found.page.locator("#show-lidar").uncheck()
+    found.until("!('lidar' in app.connection.wants)")
+    found.picture("layers")
+
+
+def test_a_spawned_model_appears_and_a_click_in_the_tree_selects(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("app.state?.tick > 0")
+    xml = "<sdf version='1.9'><model name='ball'><link name='l'><visual name='v'><geometry><sphere><radius>0.2</radius>"
+    found.get(f'app.send("spawn", {{source: "{xml}</sphere></geometry></visual></link></model></sdf>", x: 1, y: 1, z: 1}})')
+    found.until("app.models.has('ball')")
+    found.page.locator("#tree summary", has_text="rover").click()
+    found.page.locator("[data-link='rover::mast']").click()
+    found.until("app.selected === 'rover::mast'")
+    assert "yaw" in found.page.locator("#selection").inner_text()
+
+
+def test_sliders_move_joints_of_a_paused_world(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("document.querySelector('[data-joint]') !== null")
+    found.page.locator("#play").click()
+    found.until("app.state.paused && !document.querySelector('[data-joint]').disabled")
+    found.page.locator("[data-joint='rover::turn']").fill("0.5")
+    found.until("document.querySelector('[data-joint]').previousSibling.textContent === '28.6°'")
+    assert found.sim.joint("rover::turn").position == pytest.approx(0.5, abs=0.003)
+
+
+def test_a_hidden_page_costs_nothing(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("app.state?.tick > 0")
+    hide = "Object.defineProperty(document, 'hidden', {get: () => %s, configurable: true})"
+    found.page.evaluate(hide % "true")
+    found.page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
+    found.page.locator("#link.off").wait_for(timeout=TIMEOUT)
+    assert found.get("app.connection.socket") is None
+    found.page.evaluate(hide % "false")
+    found.page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
+    found.page.locator("#link.on").wait_for(timeout=TIMEOUT)
