@@ -8,6 +8,7 @@ from typing import Annotated
 
 from typer import Option
 
+from simkit.cli.plot_sources import is_bag
 from simkit.cli.run import execute
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.run_options import RunDisplay, load_options
@@ -37,10 +38,16 @@ def view(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    html: Annotated[Path | None, option("HTML file to write instead: a bag that plays without simkit.", "OUT")] = None,
     verbose: Annotated[bool, Option("--verbose", "-v", help="Show every note instead of their number.")] = False,
 ) -> int:
     """Show a world that is paused, a robot with sliders, a running simulation, or a bag in a browser."""
     page = page_options.PageOptions(port, host or "127.0.0.1", not no_open)
+    if is_bag(Path(target)) or html is not None:
+        from simkit.cli.bag_view import show_bag
+
+        loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
+        return show_bag(Path(target), model_world, loading, page, html)
     if not Path(target).exists() and target in _running():
         return _show_running(target, page)
     loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)

@@ -16,7 +16,7 @@ export class Connection {
   }
 
   open() {
-    if (this.socket || document.hidden) return;
+    if (this.socket || document.hidden || window.simkitFile) return;
     const socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws?token=${encodeURIComponent(token)}`);
     this.socket = socket;
     socket.binaryType = 'arraybuffer';
@@ -41,6 +41,7 @@ export class Connection {
     const socket = this.socket;
     this.socket = null;
     socket?.close();
+    if (socket) this.onLink(false);
   }
 
   take(data) {
@@ -60,6 +61,7 @@ export class Connection {
 
   /** Sends a request; returns a promise of its answer. */
   ask(name, args = {}) {
+    if (this.player) return this.player.ask(name, args);
     if (this.socket?.readyState !== WebSocket.OPEN) return Promise.reject(new Error('there is no connection'));
     const id = ++this.number;
     this.socket.send(JSON.stringify({ ...args, do: name, id }));
@@ -84,8 +86,13 @@ export class Connection {
   }
 
   async loadScene() {
-    const answer = await fetch(`scene?token=${encodeURIComponent(token)}`);
+    if (window.simkitFile) return readPacket(window.simkitFile.scene);
+    return readPacket(await (await this.fetch('scene')).arrayBuffer());
+  }
+
+  async fetch(name) {
+    const answer = await fetch(`${name}?token=${encodeURIComponent(token)}`);
     if (!answer.ok) throw new Error(await answer.text());
-    return readPacket(await answer.arrayBuffer());
+    return answer;
   }
 }

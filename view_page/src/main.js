@@ -4,6 +4,7 @@ import { Connection } from './connection.js';
 import { element } from './dom.js';
 import { Layers } from './layers.js';
 import { PANELS } from './panels/index.js';
+import { Player, loadRecording } from './player.js';
 import { Sensors } from './sensors.js';
 import { Stage } from './stage.js';
 import { makeToolbar } from './toolbar.js';
@@ -24,6 +25,7 @@ const app = {
   select(link) { app.selected = link; app.emit('select', link); app.stage.invalidate(); },
   report(text) { showNotice(text); },
 };
+app.receive = packet => receive(packet);
 window.simkitView = app; // for tests, and for the curious
 
 let noticeTimer;
@@ -76,6 +78,11 @@ async function loadScene() {
     const early = app.early;
     app.early = null;
     if (early?.revision === scene.revision) takeState(early);
+    if (scene.recording && isFirst) {
+      app.player = app.connection.player = new Player(app, await loadRecording(app.connection));
+      app.player.show();
+      app.emit('recording', app.player);
+    }
     if (isFirst) app.views.first();
     app.connection.ask('travel').then(paths => app.layers.setPaths(paths)).catch(() => {});
   } catch (error) {
@@ -124,7 +131,7 @@ app.pickAt = (x, y) => {
 try {
   app.stage = new Stage(document.getElementById('canvas'), new URLSearchParams(location.search).get('quality') ?? 'auto');
   app.world = new World(app.stage);
-  app.connection = new Connection(receive, showNotice, isUp => app.emit('link', isUp));
+  app.connection = new Connection(packet => { if (!app.player) receive(packet); }, showNotice, isUp => app.emit('link', isUp));
   app.layers = new Layers(app);
   app.views = new Views(app);
   app.sensors = new Sensors(app);

@@ -1,5 +1,5 @@
 // Packets of the server: a JSON head and typed arrays. See simkit/bridges/view/packet.py.
-const TYPES = { '<f4': Float32Array, '<i4': Int32Array, '|u1': Uint8Array };
+const TYPES = { '<f4': Float32Array, '<i4': Int32Array, '<u2': Uint16Array, '|u1': Uint8Array };
 
 /** Returns the head of a packet, with its arrays in `head.arrays`; the arrays share the memory of the buffer. */
 export function readPacket(buffer) {

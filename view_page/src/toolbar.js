@@ -35,9 +35,14 @@ export function makeToolbar(app, bar) {
     if (document.activeElement !== speed && index >= 0) speed.selectedIndex = index;
   });
   app.on('link', isUp => {
+    if (app.player) return;
     link.textContent = isUp ? '● live' : '● ended';
     link.className = isUp ? 'on' : 'off';
     if (!isUp) rtf.textContent = 'no connection';
+  });
+  app.on('recording', player => {
+    link.textContent = `● recording ${player.recording.name}`;
+    link.className = 'on';
   });
   let draws = 0, states = 0, bytes = 0;
   setInterval(() => {

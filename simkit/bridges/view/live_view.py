@@ -32,6 +32,11 @@ _REQUESTS_PER_TURN: Final = 64
 _PACKING: Final = 5  # level of gzip
 
 
+def compress_packet(packet: bytes) -> bytes:
+    """Return a packet compressed with gzip; equal packets give equal bytes."""
+    return gzip.compress(packet, _PACKING, mtime=0)
+
+
 class LiveView:
     """Live view of a simulation; a context manager. The run calls `update` between two slices.
 
@@ -40,6 +45,7 @@ class LiveView:
         host: address to bind to.
         port: port; 0 for a free one.
         token: token of the address; a random one by default.
+        recording: packet with a recording, which pages play instead of the simulation's states.
 
     Attributes:
         travel: paths that the models have driven.
@@ -51,7 +57,9 @@ class LiveView:
         InputError: SK-WEB-006 the address cannot be used.
     """
 
-    def __init__(self, sim: Simulation, host: str = "127.0.0.1", port: int = 0, token: str = "") -> None:
+    def __init__(
+        self, sim: Simulation, host: str = "127.0.0.1", port: int = 0, token: str = "", recording: bytes = b""
+    ) -> None:
         self.sim, self._host, self._token = sim, host, token or secrets.token_urlsafe(16)
         self.revision, self.is_held = 0, False
         self.travel, self.driving = Travel(sim), Driving(sim)
@@ -60,6 +68,9 @@ class LiveView:
         except OSError as error:
             text = f"SK-WEB-006 {host}:{port} cannot be used for the page: {error.strerror or error}"
             raise InputError(f"{text}\n    help: choose another port, or 0 for a free one", "SK-WEB-006") from None
+        self._is_recording = bool(recording)
+        if recording:
+            self.server.set_recording(compress_packet(recording))
         self._streams: dict[str, Stream | None] = {}
         self._last = self._looked = 0.0
         self._sent: tuple[object, ...] = ()
@@ -153,10 +164,10 @@ class LiveView:
             if stream is not None:
                 stream.close()
         self._streams.clear()
-        extra = {"seed": self.sim.seed}
+        extra = {"seed": self.sim.seed, "recording": self._is_recording}
         packet = scene_packet.make_scene_packet(self.sim, self.revision, extra)
         self._looks = self._appearance_digest()
-        self.server.set_scene(gzip.compress(packet, _PACKING, mtime=0))
+        self.server.set_scene(compress_packet(packet))
         self.server.send("scene_changed", make_packet({"kind": "scene_changed", "revision": self.revision}, {}))
         self._sent = ()
 

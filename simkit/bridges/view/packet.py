@@ -47,7 +47,9 @@ def read_packet(data: bytes) -> tuple[Head, dict[str, npt.NDArray[Any]]]:
 
 
 def _wire_type(dtype: np.dtype[Any]) -> np.dtype[Any]:
-    """Return the type in the packet: bytes, or little-endian 32-bit numbers."""
+    """Return the type in the packet: bytes, 16-bit numbers, or little-endian 32-bit numbers."""
     if dtype.itemsize == 1:
         return np.dtype("u1")
+    if dtype == np.uint16:
+        return np.dtype("<u2")
     return np.dtype("<f4") if dtype.kind == "f" else np.dtype("<i4")

@@ -113,7 +113,9 @@ def _pace(call: Call) -> None:
 
 
 def _reset(call: Call) -> None:
+    was_paused = call.sim.paused
     call.sim.reset()
+    call.sim.paused = was_paused  # the state at t = 0 runs
 
 
 def _travel(call: Call) -> object:

@@ -96,7 +96,7 @@ class PageServer:
         self.wants: Mapping[str, list[Any]] = {}
         self._clients: dict[PageClient, Any] = {}
         self._newest: dict[str, bytes] = {}
-        self._scene: tuple[int, bytes] = (0, b"")
+        self._scene = self._recording = b""
         ready: Future[None] = Future()
         self._thread = threading.Thread(target=self._run, args=(ready,), name="simkit view", daemon=True)
         self._thread.start()
@@ -111,7 +111,11 @@ class PageServer:
 
     def set_scene(self, packed: bytes) -> None:
         """Set the scene, compressed with gzip, that pages load from now on."""
-        self._scene = (self._scene[0] + 1, packed)
+        self._scene = packed
+
+    def set_recording(self, packed: bytes) -> None:
+        """Set the recording, compressed with gzip, that pages play."""
+        self._recording = packed
 
     def send(self, stream: str, packet: bytes) -> None:
         """Send a packet to the pages that show the stream; it replaces an older packet that waits."""
@@ -200,7 +204,9 @@ class PageServer:
         if path == "/":
             return _file("index.html")
         if path == "/scene":
-            return _response(HTTPStatus.OK, self._scene[1], "application/octet-stream", is_packed=True)
+            return _response(HTTPStatus.OK, self._scene, "application/octet-stream", is_packed=True)
+        if path == "/recording" and self._recording:
+            return _response(HTTPStatus.OK, self._recording, "application/octet-stream", is_packed=True)
         return _response(HTTPStatus.NOT_FOUND, b"not found\n")
 
     # ------------------------------------------------------------------ WebSocket

@@ -28,6 +28,8 @@ YARD = """<sdf version="1.9"><world name="yard">
 <collision name="c"><geometry><box><size>0.1 4 1</size></box></geometry></collision>
 <visual name="v"><geometry><box><size>0.1 4 1</size></box></geometry>
 <material><diffuse>0.1 0.6 0.2 1</diffuse></material></visual></link></model>
+<model name="stone"><pose>-1 0 0.05 0 0 0</pose><link name="l"><inertial><mass>1</mass></inertial>
+<collision name="c"><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision></link></model>
 <model name="rover"><pose>0 0 0.1 0 0 0</pose><link name="base">
 <inertial><mass>2</mass></inertial>
 <collision name="c"><geometry><box><size>0.4 0.2 0.1</size></box></geometry></collision>

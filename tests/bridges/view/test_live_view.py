@@ -34,12 +34,12 @@ def test_a_packet_has_the_same_arrays_when_it_is_read() -> None:
 
 def test_the_scene_has_every_drawn_shape_with_its_colour_and_owner(stage: Stage) -> None:
     head, arrays = stage.scene()
-    assert [model["name"] for model in head["models"]] == ["ground", "wall", "rover"]
+    assert [model["name"] for model in head["models"]] == ["ground", "wall", "stone", "rover"]
     wall = [i for i, owner in enumerate(head["owners"]) if owner == ["wall::l", "wall::l::v"]]
     shown = np.flatnonzero(arrays["geom_owner"] == wall[0])
     assert arrays["geom_size"][shown[0]] == pytest.approx([0.05, 2.0, 0.5])
     assert arrays["geom_rgba"][shown[0]] == pytest.approx([0.1, 0.6, 0.2, 1.0], abs=0.01)
-    assert {head["bodies"][body] for body in arrays["moving"]} == {"rover::base", "rover::mast"}
+    assert {head["bodies"][body] for body in arrays["moving"]} == {"stone::l", "rover::base", "rover::mast"}
     assert [(j["name"], j["lower"], j["upper"]) for j in head["joints"]] == [("rover::turn", -1.0, 1.0)]
     assert [s["name"] for s in head["sensors"]] == [SCAN]
 
@@ -47,10 +47,10 @@ def test_the_scene_has_every_drawn_shape_with_its_colour_and_owner(stage: Stage)
 def test_a_state_has_the_pose_of_each_moving_body(stage: Stage) -> None:
     page = stage.page()
     stage.sim.model("rover").set_pose(simkit.Pose((1.0, 0.5, 0.1)))
-    page.until(lambda: page.packets["state"][1]["poses"][0][0] == np.float32(1.0))
+    page.until(lambda: page.packets["state"][1]["poses"][1][0] == np.float32(1.0))
     poses = page.packets["state"][1]["poses"]
-    assert poses.shape == (2, 7)
-    assert poses[0] == pytest.approx([1.0, 0.5, 0.1, 1, 0, 0, 0], abs=1e-6)
+    assert poses.shape == (3, 7)
+    assert poses[1] == pytest.approx([1.0, 0.5, 0.1, 1, 0, 0, 0], abs=1e-6)
 
 
 def test_nothing_is_sent_while_nothing_changes(stage: Stage) -> None:
@@ -82,12 +82,12 @@ def test_a_spawned_and_a_removed_model_change_the_scene(stage: Stage) -> None:
     xml = f'<sdf version="1.9"><model name="crate"><link name="l"><visual name="v">{box}</visual></link></model></sdf>'
     assert page.ask("spawn", source=xml, x=3.0, y=1.0, z=0.5)["ok"] == "crate"
     page.until(lambda: page.packets["scene_changed"][0]["revision"] == 2)
-    assert [model["name"] for model in stage.scene()[0]["models"]] == ["ground", "wall", "rover", "crate"]
+    assert [model["name"] for model in stage.scene()[0]["models"]] == ["ground", "wall", "stone", "rover", "crate"]
     page.ask("move", name="crate", position=[1.0, 2.0, 3.0], quaternion=[1, 0, 0, 0])
     assert stage.sim.model("crate").pose.position == pytest.approx([1.0, 2.0, 3.0])
     page.ask("remove", name="crate")
     page.until(lambda: page.packets["scene_changed"][0]["revision"] == 3)
-    assert [model["name"] for model in stage.scene()[0]["models"]] == ["ground", "wall", "rover"]
+    assert [model["name"] for model in stage.scene()[0]["models"]] == ["ground", "wall", "stone", "rover"]
 
 
 def test_a_light_and_a_colour_that_change_are_sent(stage: Stage) -> None:
@@ -160,7 +160,7 @@ def test_a_page_that_sends_nonsense_changes_nothing(stage: Stage) -> None:
     page, before = stage.page(), state_hash(stage.sim)
     for text in NONSENSE:
         page.socket.send(text)
-    assert page.ask("travel")["ok"].keys() == {"rover"}
+    assert page.ask("travel")["ok"].keys() == {"stone", "rover"}
     assert state_hash(stage.sim) == before and not stage.sim.paused
     assert page.state()["revision"] == 1
     assert len([answer for answer in page.answers if "error" in answer]) == len(NONSENSE) - 1

@@ -22,7 +22,7 @@ export function makeJointPanel(app) {
     const robots = new Set(app.robots.map(robot => robot.name));
     rows = scene.joints.map((joint, i) => [joint, i]).filter(([joint]) => robots.has(joint.name.split('::', 1)[0])).slice(0, MOST).map(([joint, i]) => make(joint, i));
     list.replaceChildren(...rows.map(({ row }) => row));
-    box.hidden = rows.length === 0;
+    box.hidden = rows.length === 0 || scene.recording;
     want();
   });
   app.on('packet:joints', ({ arrays: { position } }) => {
