@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import mujoco
@@ -24,7 +24,19 @@ from simkit.compiler.wheel_cylinders import RoundMesh, TurningAxis, round_mesh
 from simkit.compiler.world_geoms import WorldGeoms
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
-from simkit.scene import Cone, Empty, Geometry, Heightmap, Material, Mesh, Plane, Polyline, SceneCollision, SceneVisual
+from simkit.scene import (
+    Cone,
+    Empty,
+    Geometry,
+    Heightmap,
+    Material,
+    Mesh,
+    Plane,
+    Polyline,
+    SceneCollision,
+    SceneVisual,
+    Surface,
+)
 
 _HALF_SPACE = (50.0, 50.0, 0.05)
 _OVER = Pose((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))  # rotated by 180° about x
@@ -69,6 +81,7 @@ class GeomWriter:
         timestep: length of a step [s].
         diagnostics: collection for problems.
         ambient: ambient light of the scene.
+        has_rolling: true if the world's engine in Gazebo has rolling friction.
     """
 
     def __init__(
@@ -79,9 +92,10 @@ class GeomWriter:
         timestep: float,
         diagnostics: Diagnostics,
         ambient: Colour,
+        has_rolling: bool = False,
     ) -> None:
         self.assets, self.record, self.timestep, self.diagnostics = assets, record, timestep, diagnostics
-        self._world, self._ambient = world, ambient
+        self._world, self._ambient, self._has_rolling = world, ambient, has_rolling
         self._count: Counter[str] = Counter()
 
     def _add(self, parent: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> None:
@@ -95,12 +109,21 @@ class GeomWriter:
 
     # ------------------------------------------------------------------ collisions
 
+    def _without_rolling(self, surface: Surface) -> Surface:
+        """Return a surface without Bullet's rolling friction, which Gazebo's other engines ignore."""
+        if not surface.rolling or self._has_rolling:
+            return surface
+        message = "<rolling_friction> is ignored, as in Gazebo: the engine of the world is not Bullet"
+        self.diagnostics.note("SK-PHYS-007", message, surface.where, '<physics type="bullet"> uses it')
+        return replace(surface, rolling=None)
+
     def collision(self, parent: GeomParent, collision: SceneCollision) -> None:
         """Add the geoms of one `<collision>`."""
         shape = collision.geometry
         if isinstance(shape, Empty) or not self._has_size(shape, collision.where):
             return
-        contact = contact_properties(collision.surface, self.timestep, parent.mass, self.diagnostics)
+        surface = self._without_rolling(collision.surface)
+        contact = contact_properties(surface, self.timestep, parent.mass, self.diagnostics)
         solid: GeomSettings = {"group": COLLISION, **contact._asdict()}
         owner = GeomOwner(parent.link, collision.scoped, False)
         primitive = shape_geometry.primitive_of(shape, False)

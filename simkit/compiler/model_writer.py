@@ -40,7 +40,8 @@ class ModelWriter:
     ) -> None:
         self.spec, self.record, self.world, self.diagnostics = world_geoms.spec, record, world, diagnostics
         step = float(self.spec.option.timestep)
-        self.geoms = GeomWriter(world_geoms, assets, record, step, diagnostics, world.surroundings.ambient)
+        ambient, has_rolling = world.surroundings.ambient, world.physics.is_bullet
+        self.geoms = GeomWriter(world_geoms, assets, record, step, diagnostics, ambient, has_rolling)
         self.joints = JointWriter(self.spec, record, step, diagnostics)
 
     def write(self, joints: list[SceneJoint]) -> None:

@@ -199,12 +199,23 @@ def test_a_torsional_patch_stops_a_spinning_body_evenly(make, compiled):
 def test_rolling_friction_slows_a_rolling_ball_evenly(make, compiled):
     """Of the torque μ N [m · N] and the friction at the ground: a = μ g / r / (1 + I / (m r²))."""
     ball = make.solid("ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=Surface(rolling=0.002), inertia=0.004)
-    c = compiled(make.ground(), ball)
+    c = compiled(make.ground(), ball, is_bullet=True)
     mujoco.mj_step(c.model, c.data, 300)
     c.data.qvel[0], c.data.qvel[4] = 1.0, 10.0
     mujoco.mj_step(c.model, c.data, 1000)
     slowed = 0.002 * G / 0.1 / (1 + 0.004 / 0.01)
     assert c.data.qvel[0] == pytest.approx(1.0 - slowed, rel=0.01)
+
+
+def test_without_bullet_a_ball_rolls_on_and_a_note_says_so(make):
+    ball = make.solid("ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=Surface(rolling=0.1), inertia=0.004)
+    builder = SpecBuilder(make.world(make.ground(), ball), Diagnostics())
+    c = builder.compile()
+    mujoco.mj_step(c.model, c.data, 300)
+    c.data.qvel[0], c.data.qvel[4] = 1.0, 10.0
+    mujoco.mj_step(c.model, c.data, 1000)
+    assert c.data.qvel[0] == pytest.approx(1.0, rel=1e-3)
+    assert [d.code for d in builder.diagnostics] == ["SK-PHYS-007"]
 
 
 def test_without_a_patch_spinning_goes_on(make, compiled):

@@ -37,7 +37,15 @@ def read_physics(world: Params) -> tuple[Physics, Vec3]:
         step = 0.001
     law = block.choice("contact_law", CONTACT_LAWS, "simkit")
     factor = max(0.0, _real_time_factor(block, step))
-    return Physics(step, factor, block.where, _contacts(block), contact_law=law), gravity
+    is_bullet = block.attribute("type") == "bullet" or _names_bullet(world)
+    return Physics(step, factor, block.where, _contacts(block), contact_law=law, is_bullet=is_bullet), gravity
+
+
+def _names_bullet(world: Params) -> bool:
+    """Check whether a Physics system names one of gz's libraries of Bullet in `<engine><filename>`."""
+    plugins = (child for child in world.children if child.name == "plugin")
+    engines = (child for plugin in plugins for child in plugin.children if child.name == "engine")
+    return any("bullet" in file.value for engine in engines for file in engine.children if file.name == "filename")
 
 
 def _contacts(block: Params) -> int:

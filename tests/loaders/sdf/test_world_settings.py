@@ -53,3 +53,22 @@ def test_shininess_is_the_exponent_of_the_specular_highlight(load):
     found, diagnostics = load(f'<sdf version="1.9"><model name="m"><link name="l">{visual}</link></model></sdf>')
     assert found.model.links[0].visuals[0].material.shininess == 32.0
     assert "shininess" not in " ".join(d.message for d in diagnostics)
+
+
+@pytest.mark.parametrize(
+    ("content", "is_bullet"),
+    [
+        ("", False),
+        ("<physics type='ode'/>", False),
+        ("<physics type='bullet'/>", True),
+        (
+            "<plugin filename='gz-sim-physics-system' name='gz::sim::systems::Physics'>"
+            "<engine><filename>gz-physics-bullet-featherstone-plugin</filename></engine></plugin>",
+            True,
+        ),
+    ],
+)
+def test_the_engine_bullet_survives_writing_and_reading(load, content, is_bullet):
+    first, _ = load(f"<sdf version='1.9'><world name='w'>{content}</world></sdf>")
+    again, _ = load(sdf_text(first, Diagnostics()))
+    assert [found.world.physics.is_bullet for found in (first, again)] == [is_bullet, is_bullet]
