@@ -70,6 +70,14 @@ def check_paths(value: object, name: str) -> None:
     check_list(value, (str, os.PathLike), name, "paths")
 
 
+def check_folders(value: Sequence[str | os.PathLike[str]], name: str) -> None:
+    """Raise ArgumentTypeError if a value is not a list of paths, and ArgumentValueError if one is no folder."""
+    check_paths(value, name)
+    for path in value:
+        if not os.path.isdir(path):
+            raise wrong_value(name, "paths of folders that exist", os.fspath(path))
+
+
 def check_table(value: object, kinds: type | tuple[type, ...], name: str, expected: str) -> None:
     """Raise ArgumentTypeError if a value is neither None nor a mapping from names to items of these classes."""
     if value is None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit import progress
-from simkit.argument_checks import check_paths
+from simkit.argument_checks import check_folders
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import LoadError, PluginError, RenderError
 from simkit.loaders import Resolver, load_scene
@@ -235,7 +235,7 @@ def describe(
     Raises:
         LoadError: the file has errors.
     """
-    check_paths(plugin_paths, "plugin_paths")
+    check_folders(plugin_paths, "plugin_paths")
     scene, diagnostics = read_scene(
         source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base,
         missing_meshes=True,

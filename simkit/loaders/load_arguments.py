@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from simkit.argument_checks import (
+    check_folders,
     check_function,
     check_kind,
     check_list,
@@ -54,7 +55,7 @@ def check_source(source: object) -> None:
 def check_load_arguments(
     *,
     seed: object,
-    plugin_paths: object,
+    plugin_paths: Any,
     plugins: object,
     strict: object,
     overrides: object,
@@ -72,7 +73,7 @@ def check_load_arguments(
         ArgumentTypeError: an argument has another kind than expected.
         ArgumentValueError: the seed is not a whole number, or `on_error` is unknown.
     """
-    check_paths(plugin_paths, "plugin_paths")
+    check_folders(plugin_paths, "plugin_paths")
     check_paths(interfaces, "interfaces")
     check_list(plugins, object, "plugins", "plugins")
     check_kind(strict, _FLAG, "strict", "True or False")

@@ -102,6 +102,8 @@ WRONG_TYPES: dict[str, Call] = {
 }
 WRONG_VALUES: dict[str, Call] = {
     "step negative": lambda sim: sim.step(-1),
+    "plugin path of load": lambda _: simkit.load(WORLD, plugin_paths=["no/such/folder"]),
+    "plugin path of check": lambda _: simkit.check(WORLD, plugin_paths=[__file__]),
     "step fraction": lambda sim: sim.step(1.5),
     "step huge": lambda sim: sim.step(10**400),
     "run NaN": lambda sim: sim.run(math.nan),

@@ -162,6 +162,7 @@ class PackageIndex:
             if folder.name == name:
                 yield self._offer(name, folder, f"no package is named {name}; {self._shown(folder)} is used")
         for folder in around:
+            yield from (self._offer(name, own) for own in _own_folders(name, folder))
             home = enclosing_package(folder)
             if home is not None and not is_private(home.parent / name):
                 yield self._offer(name, home.parent / name)
@@ -275,6 +276,15 @@ def _subfolders(folder: Path) -> list[Path]:
         return []
     names.sort(key=lambda name: (name == "install", name != "src", name))
     return [folder / name for name in names]
+
+
+def _own_folders(name: str, folder: Path) -> Iterator[Path]:
+    """Yield the folders of this name that contain a folder, in its project or as an install without `package.xml`."""
+    project = enclosing_project(folder)
+    for ancestor in (folder, *folder.parents[:_PARENT_LEVELS]):
+        is_inside = project is not None and ancestor.is_relative_to(project)
+        if ancestor.name == name and (is_inside or ancestor.parent.name == "share"):
+            yield ancestor
 
 
 def _is_copy(folder: Path) -> bool:

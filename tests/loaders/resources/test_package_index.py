@@ -258,3 +258,11 @@ def test_all_functions_take_a_workspace_and_the_command_line_too(package, write,
         simkit.load(file, package_paths=["nothing"])
     with pytest.raises(simkit.errors.ArgumentTypeError):
         simkit.load(file, package_paths="nothing")  # type: ignore[arg-type]
+
+
+def test_a_file_finds_the_install_without_a_package_file_that_contains_it(used, write):
+    write("env/share/robots/models/arm/parts/m.stl", "own")
+    write("env/other/robots/models/arm/parts/m.stl", "own")
+    uri = "package://robots/models/arm/parts/m.stl"
+    assert used("env/share/robots/models/arm/r.urdf", uri)[0] == "own"
+    assert used("env/other/robots/models/arm/r.urdf", uri)[0] == ""  # any folder of that name is not enough
