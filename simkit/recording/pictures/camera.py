@@ -15,7 +15,7 @@ VERTICAL_FOV: Final = 0.6
 """Opening angle of a picture [rad]: small, so that parallel edges stay nearly parallel."""
 MARGIN: Final = 0.075
 """Part of the image's height that is left free at each edge, for the title and the legend."""
-_NEAREST: Final = 0.05  # [m] least distance of the eye
+_NEAREST: Final = 0.002  # [m] least distance of the eye
 
 
 @dataclass(frozen=True)
