@@ -54,18 +54,49 @@ def apply_overrides(scene: Scene, overrides: Sequence[str]) -> Scene:
     """
     if not overrides:
         return scene
-    parsed = [item for item in map(_Override, overrides) if not item.is_argument(scene)]
+    problems = _Problems()
+    parsed = []
+    for text in overrides:
+        with problems:
+            item = _Override(text)
+            if not item.is_argument(scene):
+                parsed.append(item)
     world = scene.world
-    for item in parsed:
-        if item.path.endswith(".count"):
+    for item in (item for item in parsed if item.path.endswith(".count")):
+        with problems:
             world = item.copy_model(world)
-    rest = [item for item in parsed if not item.path.endswith(".count")]
     paths = EntityPaths(world)
-    explicit = {(target.path, field) for item in rest for target, field in item.named(paths)}
+    rest, explicit = [], set()
+    for item in (item for item in parsed if not item.path.endswith(".count")):
+        with problems:
+            explicit |= {(target.path, field) for target, field in item.named(paths)}
+            rest.append(item)
     for item in rest:
-        world = item.apply(world, paths, explicit)
-        paths.world = world
+        with problems:
+            world = paths.world = item.apply(world, paths, explicit)
+    problems.raise_if_any()
     return _with_world(scene, world, parsed)
+
+
+class _Problems:
+    """Errors of overrides, which are raised together."""
+
+    def __init__(self) -> None:
+        self._found: list[str] = []
+
+    def __enter__(self) -> None:
+        """Begin to collect the error of one override."""
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
+        if isinstance(error, InputError):
+            self._found.append(str(error))
+            return True
+        return False
+
+    def raise_if_any(self) -> None:
+        """Raise one InputError with all errors."""
+        if self._found:
+            raise InputError("\n".join(self._found), _CODE)
 
 
 def xacro_overrides(overrides: Sequence[str]) -> dict[str, str]:
@@ -248,7 +279,8 @@ class _Override:
         known += ["pose"] if not entity.path or entity.path not in AREAS else []
         if element.startswith("axis2.") and not any(name.startswith("axis2.") for name in known):
             return _NoElementError(self._error(f"joint {entity.path!r} has {len(item.axes)} axes"))
-        hint = did_you_mean(element, known) or _listed(known)
+        ends = {name.rpartition(".")[2]: name for name in known}
+        hint = did_you_mean(element, [*known, *ends]) or _listed(known)
         return _NoElementError(self._error(f"the element {element!r} cannot be set here; {hint}"))
 
 

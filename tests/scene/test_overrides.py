@@ -94,6 +94,14 @@ def test_an_invalid_override_is_an_error(override: str, reason: str) -> None:
     assert error.value.exit_code == 2
 
 
+def test_all_wrong_overrides_are_reported_together() -> None:
+    with pytest.raises(InputError) as error:
+        load(WORLD, overrides=["arm.statik=1", "arm::tip.mas=2", "arm.static=1", "amr.pose.x=1", "nonsense"]).close()
+    lines = str(error.value).splitlines()
+    assert len(lines) == 4
+    assert "did you mean 'mass'?" in "".join(lines)
+
+
 def test_an_override_of_an_unknown_sensor_element_is_an_error() -> None:
     with pytest.raises(InputError, match="visualise_it"):
         load(WORLD, overrides=["arm::tip::imu.visualise_it=1"]).close()
