@@ -107,7 +107,7 @@ def xacro_overrides(overrides: Sequence[str]) -> dict[str, str]:
 
 def _with_world(scene: Scene, world: SceneWorld, parsed: Sequence[_Override]) -> Scene:
     """Return the scene with a changed world in the form in which it was loaded."""
-    placed = {item.path.rpartition(".pose")[0] for item in parsed}
+    placed = {item.path.rpartition(".pose")[0] for item in parsed if item.path.endswith((".pose", ".pose.z"))}
     standing = tuple(name for name in scene.standing if name not in placed)
     if scene.worlds:
         return replace(scene, worlds=(world, *scene.worlds[1:]), standing=standing)

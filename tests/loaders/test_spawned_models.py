@@ -60,6 +60,17 @@ def test_spawned_models_still_exist_after_a_reset() -> None:
         assert {"a", "b"} <= set(sim.models)
 
 
+def test_a_spawned_model_stands_where_an_override_moves_it_unless_the_override_sets_its_height() -> None:
+    spawn = ["turtlebot3_burger:0,0,0:a"]
+    with (
+        simkit.load("empty", spawn=spawn) as plain,
+        simkit.load("empty", spawn=spawn, overrides=["a.pose.x=2"]) as moved,
+    ):
+        assert moved.model("a").pose.position.tolist() == [2.0, 0.0, plain.model("a").pose.position[2]]
+    with simkit.load("empty", spawn=spawn, overrides=["a.pose.z=0.5"]) as high:
+        assert high.model("a").pose.position[2] == 0.5
+
+
 def test_overrides_apply_to_spawned_models() -> None:
     with simkit.load("empty", spawn=["turtlebot3_burger:0,0,0:a"], overrides=["a::base_link.inertial.mass=2"]) as sim:
         assert sim.model("a").link("base_link").mass == pytest.approx(2.0)
