@@ -27,7 +27,7 @@ def apply_overrides(sim: Simulation, overrides: Overrides, seed: int | None = No
     """Reset a simulation to the start of its world with exactly these overrides, if only numbers differ.
 
     The result has the same bits as a simulation that is loaded with the overrides. Later resets return to this state.
-    Overrides of an earlier call do not add up. Snapshots from before the call must not be restored.
+    Overrides of an earlier call do not add up. Snapshots from before the call can no longer be restored.
 
     Args:
         sim: simulation from `simkit.load`.
@@ -98,6 +98,7 @@ def _switch_world(sim: Simulation, world: SceneWorld, compiled: Compiled) -> Non
     models = {model.name: model for model in world.models if structure.models.get(model.name) is not model}
     for model in models.values():
         replace_scenes(builder.records[model.scoped], model)
+    sim.contents.spawner.snapshots.variant += 1
     builder.world = engine.world = sim.control.loaded_world = world
     names = NameMap.of(builder.records.values(), compiled.model)
     sim.contents.handles.replace_scenes(structure.models, models)

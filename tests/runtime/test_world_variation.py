@@ -52,6 +52,14 @@ def test_numbers_that_are_set_in_a_loaded_world_give_the_bits_of_a_load(override
             assert model_numbers(varied) == model_numbers(base)
 
 
+def test_a_snapshot_from_before_other_overrides_is_refused() -> None:
+    with simkit.load("turtlebot3_world") as sim:
+        before = sim.snapshot()
+        assert apply_overrides(sim, {"world.gravity": (0, 0, -5)})
+        with pytest.raises(ValueError, match="before the world got other overrides"):
+            sim.restore(before)
+
+
 def test_a_change_of_the_structure_needs_a_new_load() -> None:
     with simkit.load("turtlebot3_world") as sim:
         sim.run(0.1)

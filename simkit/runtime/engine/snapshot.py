@@ -36,6 +36,7 @@ class Snapshot(InProcess):
         tick: tick of the state.
         structure: structure of the world.
         owner: simulation of the snapshot.
+        variant: number of changes of the world by other overrides before the snapshot.
     """
 
     tick: int
@@ -53,6 +54,7 @@ class Snapshot(InProcess):
     sleep: RestState = (False,)
     seed: int = 0
     owner: object = None
+    variant: int = 0
 
     @property
     def is_complete(self) -> bool:
@@ -95,6 +97,9 @@ class Snapshots:
         parts: function that returns every part with a state, except sensors and plugins, in the order of restoring.
         commands: commands that wait for the next step.
         adopt: function that switches to another structure.
+
+    Attributes:
+        variant: number of changes of the world by other overrides.
     """
 
     def __init__(
@@ -107,6 +112,7 @@ class Snapshots:
     ) -> None:
         self._owner, self._engine, self._parts, self._commands = owner, engine, parts, commands
         self._adopt = adopt
+        self.variant = 0
 
     def defer(self) -> tuple[Snapshot, Callable[[], None]]:
         """Return a snapshot that is not yet taken, and the function that takes it."""
@@ -123,6 +129,8 @@ class Snapshots:
         if not snapshot.is_complete:
             message = "the snapshot was requested in a step that has not ended; restore it after that step"
             raise ArgumentValueError(message)
+        if snapshot.variant != self.variant:
+            raise ArgumentValueError("the snapshot is from before the world got other overrides")
 
     def take(self) -> Snapshot:
         """Take a snapshot of the present state."""
@@ -150,6 +158,7 @@ class Snapshots:
             window=physics.window,
             seed=engine.streams.seed,
             owner=self._owner,
+            variant=self.variant,
         )
 
     def restore(self, snapshot: Snapshot, *, with_inbox: bool = True) -> None:
