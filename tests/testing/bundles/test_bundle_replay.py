@@ -110,6 +110,23 @@ def test_direct_changes_are_repeated(tmp_path: Path) -> None:
         assert found.is_same, found.differences
 
 
+def test_changed_masses_and_dynamics_are_repeated(tmp_path: Path) -> None:
+    """The start of a robot repeats bit for bit although its mass and its wheels change, also after a kept reset."""
+    with simkit.load("turtlebot3_world") as sim, keep(sim):
+        drive = sim.advertise("/cmd_vel", "geometry_msgs/msg/Twist")
+        sim.run(0.2)
+        sim.link("turtlebot3::base_link").mass = 4.0
+        sim.joint("turtlebot3::wheel_left_joint").damping = 0.1
+        sim.link("turtlebot3::wheel_right_link").collisions["tread"].friction = 0.3
+        drive.publish({"linear": {"x": 0.2}})
+        sim.run(0.5)
+        sim.reset(keep_changes=True)
+        drive.publish({"linear": {"x": 0.2}})
+        sim.run(0.5)
+        path = packed(sim, tmp_path)
+    assert replay(path).is_same
+
+
 def test_spawn_remove_reset_and_restore_are_repeated(tmp_path: Path) -> None:
     (tmp_path / "ball.sdf").write_text(BALL)
     with simkit.load(WORLD) as sim, keep(sim):
