@@ -19,7 +19,7 @@ from simkit.scene.model import SceneLink, SceneModel, ScenePlugin, SceneSensor
 from simkit.scene.override_fields import INERTIA, MASS, MU, MU2, Field, fields_of
 from simkit.scene.override_poses import copies, move_held_model, move_link, pose_of, set_pose
 from simkit.scene.override_values import POSE, ValueKind
-from simkit.scene.param_paths import set_parameter
+from simkit.scene.param_paths import has_parameter, set_parameter
 from simkit.scene.world import Scene, SceneWorld
 
 _CODE = "SK-CLI-014"
@@ -197,6 +197,8 @@ class _Override:
             explicit: all entities and elements that the overrides name.
         """
         targets = self.named(paths)
+        if "*" in self.path:  # a pattern adds no element to a sensor or plugin if another entity has the element
+            targets = [t for t in targets if _has_element(paths.item(t[0]), t[1])] or targets
         refusals: list[InputError] = []
         for entity, element in targets:
             paths.world = world
@@ -314,6 +316,15 @@ def _full_element(item: Any, element: str) -> str:
         last = element.rpartition(".")[0]
         ends = [f"{name}.{element.rpartition('.')[2]}" for name in known if last and name.endswith("." + last)]
     return ends[0] if len(ends) == 1 else element
+
+
+def _has_element(item: Any, element: str) -> bool:
+    """Check whether an entity has an element; a sensor or plugin may read elements that its file leaves out."""
+    if element.split(".")[0] == "pose":
+        return not isinstance(item, ScenePlugin)
+    if isinstance(item, (SceneSensor, ScenePlugin)) and has_parameter(item.params, element):
+        return True
+    return any(element == f.element or element.rpartition(".")[0] == f.element for f in fields_of(item))
 
 
 def _field_of(entity: Entity, item: Any, element: str) -> tuple[str, str, Field | None]:

@@ -30,6 +30,15 @@ def _index(block: Params, name: str) -> int | None:
     return found[number] if number < len(found) else None
 
 
+def has_parameter(params: Params, element: str) -> bool:
+    """Check whether a block has an element or attribute."""
+    head, _, rest = element.partition(".")
+    at = _index(params, head)
+    if at is None:
+        return not rest and head in params.attributes
+    return not rest or has_parameter(params.children[at], rest)
+
+
 def set_parameter(params: Params, element: str, value: str, source: str) -> Params:
     """Return a copy of a block in which an element or attribute has another value; a missing element is added.
 

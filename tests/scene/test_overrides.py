@@ -94,6 +94,12 @@ def test_an_invalid_override_is_an_error(override: str, reason: str) -> None:
     assert error.value.exit_code == 2
 
 
+def test_a_pattern_changes_only_entities_that_have_the_element() -> None:
+    with load(WORLD, overrides=["**.mu=0.3", "arm::**.update_rate=20"]) as sim:
+        assert sim.link("arm::tip").scene.collisions[0].surface.mu == 0.3
+        assert sim.sensor("arm::tip::imu").update_rate == 20.0
+
+
 def test_all_wrong_overrides_are_reported_together() -> None:
     with pytest.raises(InputError) as error:
         load(WORLD, overrides=["arm.statik=1", "arm::tip.mas=2", "arm.static=1", "amr.pose.x=1", "nonsense"]).close()
