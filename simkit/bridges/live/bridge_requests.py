@@ -14,6 +14,7 @@ from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_types import full_name, type_of
 from simkit.msgs.type_hashes import rihs
+from simkit.runtime.communication.service_call import Service
 from simkit.scene.geometry import Mesh
 from simkit.scene.urdf_text import urdf_text
 
@@ -22,6 +23,8 @@ _TEXTURES: Final = (".bmp", ".gif", ".jpeg", ".jpg", ".mtl", ".png", ".tga", ".t
 
 def graph(request: Request) -> object:
     """Return topics, heard topics, services, actions and URDF robots, with type hashes and the simulated time.
+
+    `bridged` has the services of bridges, which are not part of the simulation.
 
     If nothing has changed since the graph with the revision in the request, return only revision and time.
     """
@@ -46,10 +49,18 @@ def graph(request: Request) -> object:
         "topics": topics,
         "heard": heard,
         "services": services,
+        "bridged": _bridged(request),
         "actions": actions,
         "robots": robots,
         "hashes": _hashes(names),
     }
+
+
+def _bridged(request: Request) -> list[str]:
+    """Return the names of the services that bridges offer."""
+    bridges = [peer for peer in request.server.peers.values() if peer.is_bridge]
+    endpoints = [endpoint.opened for peer in bridges for endpoint in peer.endpoints.values()]
+    return [endpoint.name for endpoint in endpoints if isinstance(endpoint, Service)]
 
 
 def _hashes(names: Collection[str]) -> dict[str, str]:

@@ -11,6 +11,7 @@ from typing import Any
 
 from simkit.bridges.live.protocol import JsonObject, LiveClosed
 from simkit.bridges.ros.action_bridge import ActionBridge
+from simkit.bridges.ros.remote_service import RemoteService
 from simkit.bridges.ros.ros_names import parameter_node, ros_name
 from simkit.bridges.ros.ros_session import RosSession
 from simkit.bridges.ros.ros_types import RosType, TypeUnavailable
@@ -23,7 +24,7 @@ _LOOK_PERIOD = 0.1  # [s] between two counts of ROS's subscriptions
 _GRAPH_PERIOD = 0.5  # [s] between two looks at the graphs of the simulation and of ROS
 _LAST_WAIT = 1.0  # [s], longest wait for subscriptions of ROS that have not received the last messages yet
 
-Reader = IncomingTopic | ServiceBridge | ActionBridge
+Reader = IncomingTopic | ServiceBridge | ActionBridge | RemoteService
 
 
 class Bridge:
@@ -44,6 +45,7 @@ class Bridge:
         self._incoming: dict[str, IncomingTopic] = {}
         self._services: dict[str, ServiceBridge] = {}
         self._actions: dict[str, ActionBridge] = {}
+        self._remote: dict[str, RemoteService] = {}
         self._descriptions: dict[str, RobotDescription] = {}
         self._reported: set[str] = set()
         self._names: dict[str, str] = {}
@@ -76,6 +78,7 @@ class Bridge:
             if self.link.fileno() in ready:
                 self.link.receive(0.0)
                 self.link.dispatch_answers()
+                self._send_requests()
             if self._waiter.fileno() in ready and self._waiter.is_stopped():
                 self._take_from_ros()
             now = time.monotonic()
@@ -90,6 +93,15 @@ class Bridge:
     def _look(self) -> None:
         for outgoing in self._outgoing.values():
             outgoing.look()
+        self._send_requests()
+
+    def _send_requests(self) -> None:
+        """Send the requests of the simulation to services of ROS; a client is opened with the first request."""
+        unopened = [remote.open for remote in self._remote.values() if remote.needs_client]
+        if unopened:
+            self._change(*unopened)
+        for remote in self._remote.values():
+            remote.send()
 
     def _take_from_ros(self) -> None:
         for pointer in self._waiter.ready:
@@ -121,6 +133,7 @@ class Bridge:
             self._apply_graph(found)
         else:
             self._apply_incoming()
+        self._apply_remote()
 
     def _apply_graph(self, found: JsonObject) -> None:
         """Open what is new in the simulation's graph, and close what is gone."""
@@ -128,10 +141,11 @@ class Bridge:
         self._session.types.hashes.update(found["hashes"])
         self._apply_outgoing()
         self._apply_incoming()
-        self._apply(self._services, found["services"], self._service)
+        own = {name: kind for name, kind in found["services"].items() if name not in found["bridged"]}
+        self._apply(self._services, own, self._service)
         self._apply(self._actions, found["actions"], self._action)
         self._apply_descriptions()
-        parameter_nodes = {parameter_node(self._ros_name(name)) for name in found["services"]}
+        parameter_nodes = {parameter_node(self._ros_name(name)) for name in own}
         self._session.close_nodes_except(parameter_nodes)
 
     def _apply_descriptions(self) -> None:
@@ -190,6 +204,17 @@ class Bridge:
         if changes:
             self._change(*changes)
 
+    def _apply_remote(self) -> None:
+        """Offer the services of ROS nodes in the simulation, and close those that are gone."""
+        wanted = self._session.services_of_others()
+        gone = [name for name, remote in self._remote.items() if wanted.get(name) != remote.type_name]
+        if gone:
+            self._change(*(self._remote.pop(name).close for name in gone))
+        for name in [name for name in wanted if name not in self._remote]:
+            service = name.removeprefix(self._namespace) if name.startswith(f"{self._namespace}/") else name
+            arguments = self.link, self._session, service, name, wanted[name], partial(self._note, name)
+            self._remote[name] = RemoteService(*arguments)
+
     def _takable(self) -> dict[str, tuple[tuple[str, ...], bool]]:
         """Return the topics that the simulation takes: their types (none: any), and whether they are command inputs.
 
@@ -234,7 +259,9 @@ class Bridge:
         services = [(end.service, bridge) for bridge in bridges for end in bridge.ends]
         self._readers = {incoming.subscription.handle.pointer: incoming for incoming in self._incoming.values()}
         self._readers |= {service.handle.pointer: bridge for service, bridge in services}
-        self._waiter.watch(subscriptions, [service for service, _ in services])
+        clients = [(remote.end.client, remote) for remote in self._remote.values() if remote.end is not None]
+        self._readers |= {client.handle.pointer: remote for client, remote in clients}
+        self._waiter.watch(subscriptions, [service for service, _ in services], [client for client, _ in clients])
 
     def _open(self, table: dict[str, Any], name: str, make: Callable[[], Any]) -> None:
         """Open a topic, service or action; report one that ROS does not accept."""

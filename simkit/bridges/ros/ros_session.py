@@ -9,6 +9,7 @@ from simkit.bridges.ros.ros_types import RosType, TypeFinder
 
 _DEPTH, _LARGE_DEPTH = 100, 10  # messages that a publisher keeps for a slow subscription
 _LARGE = frozenset({"sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"})
+_SERVICES_OF_EVERY_NODE = ("rcl_interfaces/srv/", "type_description_interfaces/srv/")
 _LATCHED_DEPTHS = {"/tf_static": 100, "/rosout": 1000}  # the last message is not enough of these latched topics
 
 
@@ -56,6 +57,31 @@ class ServiceEnd:
         handle = self.service.handle
         with handle:
             handle.service_send_response(response, header.request_id)
+
+
+class ClientEnd:
+    """Client of a service whose requests and responses are CDR."""
+
+    def __init__(self, client: Any, ros_type: RosType) -> None:
+        self.client, self._type = client, ros_type
+
+    def is_ready(self) -> bool:
+        """Check whether ROS has connected the client to the service."""
+        return bool(self.client.service_is_ready())
+
+    def send(self, data: bytes) -> int:
+        """Send a request, given as CDR, and return its number."""
+        request = self._type.from_cdr(data, self._type.cls.Request)
+        handle = self.client.handle
+        with handle:
+            return int(handle.send_request(request))
+
+    def take(self) -> tuple[int, bytes] | None:
+        """Return the number of a request and the CDR of its response; None if no response has arrived."""
+        handle = self.client.handle
+        with handle:
+            header, response = handle.take_response(self._type.cls.Response) or (None, None)
+        return None if header is None else (int(header.request_id.sequence_number), self._type.to_cdr(response))
 
 
 class SubscriptionEnd:
@@ -179,6 +205,25 @@ class RosSession:
         owner = self.node if node is None else node
         service = owner.create_service(ros_type.cls, name, _unused, qos_profile=qos_profile_services_default)
         return ServiceEnd(service, ros_type)
+
+    def call(self, name: str, ros_type: RosType) -> ClientEnd:
+        """Open a client of a service."""
+        return ClientEnd(self.node.create_client(ros_type.cls, name), ros_type)
+
+    def services_of_others(self) -> dict[str, str]:
+        """Return the types of the services of other nodes, by name, except those of actions and of parameters."""
+        nodes = (self.node, *self._nodes.values())
+        ours = {
+            name
+            for node in nodes
+            for name, _ in self.node.get_service_names_and_types_by_node(node.get_name(), node.get_namespace())
+        }
+        found = {
+            name: types[0]
+            for name, types in self.node.get_service_names_and_types()
+            if name not in ours and "/_" not in name and not types[0].startswith(_SERVICES_OF_EVERY_NODE)
+        }
+        return {name: kind for name, kind in found.items() if self.node.count_services(name)}  # not only clients
 
     def close_service(self, end: ServiceEnd) -> None:
         """Close a service server."""

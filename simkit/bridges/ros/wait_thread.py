@@ -21,7 +21,7 @@ class RosWaiter:
         context: context of rclpy.
 
     Attributes:
-        ready: pointers of the subscriptions and services that have data, while the thread is stopped.
+        ready: pointers of the subscriptions, services and clients that have data, while the thread is stopped.
     """
 
     def __init__(self, context: Any) -> None:
@@ -32,6 +32,7 @@ class RosWaiter:
             self._guard = rclpy_implementation.GuardCondition(context.handle)
         self._subscriptions: Sequence[Any] = ()
         self._services: Sequence[Any] = ()
+        self._clients: Sequence[Any] = ()
         self._is_changed = True
         self.ready: frozenset[int] = frozenset()
         self._read, self._write = os.pipe()
@@ -60,9 +61,10 @@ class RosWaiter:
             self._is_stopped = bool(os.read(self._read, 1))
             os.set_blocking(self._read, False)
 
-    def watch(self, subscriptions: Sequence[Any], services: Sequence[Any]) -> None:
-        """Set the subscriptions and services of rclpy to wait for; the thread must be stopped."""
+    def watch(self, subscriptions: Sequence[Any], services: Sequence[Any], clients: Sequence[Any]) -> None:
+        """Set the subscriptions, services and clients of rclpy to wait for; the thread must be stopped."""
         self._subscriptions, self._services = [s.handle for s in subscriptions], [s.handle for s in services]
+        self._clients = [c.handle for c in clients]
         self._is_changed = True
 
     def resume(self) -> None:
@@ -86,7 +88,7 @@ class RosWaiter:
                 break
             if self._is_changed:
                 self._is_changed = False
-                counts = len(self._subscriptions), 1, 0, 0, len(self._services), 0
+                counts = len(self._subscriptions), 1, 0, len(self._clients), len(self._services), 0
                 with self._context.handle:
                     entities = self._implementation.WaitSet(*counts, self._context.handle)
             entities.clear_entities()
@@ -94,8 +96,10 @@ class RosWaiter:
                 entities.add_subscription(subscription)
             for service in self._services:
                 entities.add_service(service)
+            for client in self._clients:
+                entities.add_client(client)
             entities.add_guard_condition(self._guard)
             entities.wait(_LONGEST)
-            found = *entities.get_ready_entities("subscription"), *entities.get_ready_entities("service")
-            self.ready = frozenset(found)
+            kinds = ("subscription", "service", "client")
+            self.ready = frozenset(pointer for kind in kinds for pointer in entities.get_ready_entities(kind))
             os.write(self._write, b"1")

@@ -143,16 +143,20 @@ def simkit_run(bridge_options: list[str]) -> Callable[..., Any]:
     return start
 
 
+def ros_environment() -> dict[str, str]:
+    """The environment of a node of ROS."""
+    found = {k: v for k, v in os.environ.items() if not k.startswith(("_ROS", "PYTHON"))}
+    found["PYTHONPATH"] = f"{FOLDER}{os.pathsep}{ROOT}"
+    return found | {"ROS_DOMAIN_ID": str(DOMAIN), "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
+
+
 @pytest.fixture
 def ros_node(ros_python: Path) -> Callable[[str], Any]:
     """`ros_node(code)`: what the code of a ROS node tells, with the settings that ROS has by default."""
 
     def run(code: str) -> Any:
-        environment = {k: v for k, v in os.environ.items() if not k.startswith(("_ROS", "PYTHON"))}
-        environment["PYTHONPATH"] = f"{FOLDER}{os.pathsep}{ROOT}"
-        environment |= {"ROS_DOMAIN_ID": str(DOMAIN), "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
         command = [str(ros_python), str(FOLDER / "ros_client.py"), textwrap.dedent(code)]
-        found = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=TIMEOUT)
+        found = subprocess.run(command, capture_output=True, text=True, env=ros_environment(), timeout=TIMEOUT)
         answers = [line for line in found.stdout.splitlines() if line.startswith("answer ")]
         assert answers, found.stdout + found.stderr
         return json.loads(answers[-1].removeprefix("answer "))
