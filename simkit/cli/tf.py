@@ -11,13 +11,14 @@ import typer
 from typer import Argument, Option
 
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
+from simkit.cli.terminal.frame_tree import receive_transforms, tree_lines
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, print_name, report_errors_quietly
 from simkit.cli.terminal.topic_sources import open_source
-from simkit.errors import InputError
+from simkit.errors import InputError, TransformError
 
 if TYPE_CHECKING:
+    from simkit.msgs.transform_tree import TransformTree
     from simkit.pose import Pose
 
 _COLLECTION_TIME = 1.0  # [s] of wall time
@@ -37,15 +38,20 @@ def tree(
     json_: options.Json = False,
 ) -> None:
     """Print the tree of frames."""
-    frames = FrameTree()
+    from simkit.msgs.transform_tree import TransformTree  # imports NumPy
+
+    frames = TransformTree()
     with open_source(sim, bag) as source:
         for _ in receive_transforms(source, frames, topic or None, duration=duration):
             pass
     if json_:
-        rows = {c: {"parent": e.parent, "static": e.static, "time": e.time_ns * 1e-9} for c, e in frames.edges.items()}
+        parents = {child: parent for child, parent in frames.frames().items() if parent}
+        rows = {
+            c: {"parent": p, "static": frames.is_static(c), "time": frames.newest(c) * 1e-9} for c, p in parents.items()
+        }
         print_json(rows)
-    elif frames.edges:
-        for text in frames.lines():
+    elif frames.frames():
+        for text in tree_lines(frames):
             print_name(text)
     else:
         print_line("no transforms received")
@@ -65,27 +71,39 @@ def echo(
     json_: options.Json = False,
 ) -> None:
     """Print the pose of TARGET in SOURCE; for a bag, at its end."""
-    frames = FrameTree()
+    from simkit.msgs.transform_tree import TransformTree
+
+    frames = TransformTree()
     with open_source(sim, bag) as source:
         begun = time.monotonic()
         while True:
             for _ in receive_transforms(source, frames, topic or None, duration=1.0 / rate):
-                if once and source.is_live and frames.pose_between(source_frame, target_frame) is not None:
+                if once and source.is_live and _has_pose(frames, source_frame, target_frame):
                     break
-            found = frames.pose_between(source_frame, target_frame)
-            if found is None and time.monotonic() - begun < _COLLECTION_TIME and source.is_live:
-                continue
-            if found is None:
-                raise _not_connected(frames, source_frame, target_frame, source.where)
+            try:
+                found = frames.latest(source_frame, target_frame)
+            except TransformError:
+                if time.monotonic() - begun < _COLLECTION_TIME and source.is_live:
+                    continue
+                raise _not_connected(frames, source_frame, target_frame, source.where) from None
             _print(*found, precision, json_)
             if once or not source.is_live:
                 return
 
 
-def _not_connected(frames: FrameTree, source: str, target: str, where: str) -> InputError:
+def _has_pose(frames: TransformTree, source: str, target: str) -> bool:
+    try:
+        frames.latest(source, target)
+    except TransformError:
+        return False
+    return True
+
+
+def _not_connected(frames: TransformTree, source: str, target: str, where: str) -> InputError:
+    known = list(frames.frames())
     for name in (source, target):
-        if name not in frames.names():
-            return not_found_error("frame", name, frames.names(), "SK-CLI-038", where)
+        if name.lstrip("/") not in known:
+            return not_found_error("frame", name, known, "SK-CLI-038", where)
     text = f"SK-CLI-038 {source!r} and {target!r} are not connected: they are in separate trees in {where}"
     return InputError(text, "SK-CLI-038")
 

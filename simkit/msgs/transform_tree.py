@@ -125,6 +125,7 @@ class TransformTree:
         self.since_ns: int | None = None
         self.ignored = 0
         self._frames: dict[str, _Frame] = {}
+        self._received_ns: dict[str, int] = {}
 
     @property
     def length(self) -> float:
@@ -153,6 +154,26 @@ class TransformTree:
             else:
                 frame.add(stamp.sec * _NS + stamp.nanosec, (parent, *numbers), self._length_ns)
 
+    def advance(self, topic: str, now_ns: int) -> None:
+        """Forget the transforms of a future that a reset or a restore has undone, as tf2 does.
+
+        Args:
+            topic: topic of the next transforms.
+            now_ns: simulated time of their publication [ns].
+        """
+        if now_ns < self._received_ns.get(topic, now_ns):
+            self._frames = {name: frame for name, frame in self._frames.items() if frame.is_static}
+            self.since_ns = now_ns
+        self._received_ns[topic] = now_ns
+
+    def is_static(self, name: str) -> bool:
+        """Check whether the transform of a frame is valid at all times."""
+        return name in self._frames and self._frames[name].is_static
+
+    def newest(self, name: str) -> int:
+        """Return the time of the newest transform of a frame [ns]; 0 if it is valid at all times."""
+        return self._frames[name].stamps[-1]
+
     def frames(self) -> dict[str, str]:
         """Return the parent of each frame, sorted by name; an empty text for a root."""
         found = {name: frame.parent(None) for name, frame in self._frames.items()}
@@ -171,21 +192,22 @@ class TransformTree:
             TransformError: SK-TF-001 a frame is unknown; SK-TF-002 the frames are not connected; SK-TF-003 a transform
                 between them is not known at that time.
         """
-        names = []
-        for frame, name in ((target, "the target frame"), (source, "the source frame")):
-            check_text(frame, name)
-            names.append(frame.lstrip("/"))
         stamp = _nanoseconds(time)
-        self._check_known(names)
-        up, down = self._path(names[0], names[1], stamp)
         if stamp is None:
-            stamp = min((step.frame.stamps[-1] for step in (*up, *down) if not step.frame.is_static), default=0)
-            up, down = self._path(names[0], names[1], stamp)
-        else:
-            for step in (*up, *down):
-                if not step.frame.covers(stamp):
-                    raise self._outside(step, stamp)
+            return self.latest(target, source)[0]
+        up, down = self._path(*self._known_names(target, source), stamp)
+        for step in (*up, *down):
+            if not step.frame.covers(stamp):
+                raise self._outside(step, stamp)
         return self._chain(up, stamp).inverse() @ self._chain(down, stamp)
+
+    def latest(self, target: str, source: str) -> tuple[Pose, int]:
+        """Return the pose at the latest time at which all transforms are known, and this time [ns]; see `lookup`."""
+        names = self._known_names(target, source)
+        up, down = self._path(*names, None)
+        stamp = min((step.frame.stamps[-1] for step in (*up, *down) if not step.frame.is_static), default=0)
+        up, down = self._path(*names, stamp)
+        return self._chain(up, stamp).inverse() @ self._chain(down, stamp), stamp
 
     def _chain(self, steps: list[_Step], stamp: int) -> Pose:
         """Return the pose of the first frame in the parent of the last frame."""
@@ -231,7 +253,15 @@ class TransformTree:
             yield _Step(name, self._frames[name])
             name = self._frames[name].parent(stamp)
 
-    def _check_known(self, names: list[str]) -> None:
+    def _known_names(self, target: str, source: str) -> tuple[str, str]:
+        """Return the names of two frames without leading slashes; raise TransformError for an unknown frame."""
+        for frame, name in ((target, "the target frame"), (source, "the source frame")):
+            check_text(frame, name)
+        names = target.lstrip("/"), source.lstrip("/")
+        self._check_known(names)
+        return names
+
+    def _check_known(self, names: Collection[str]) -> None:
         known: Collection[str] = self._frames.keys() | {frame.parent(None) for frame in self._frames.values()}
         missing = list(dict.fromkeys(name for name in names if name not in known))
         if not missing:

@@ -173,3 +173,18 @@ def test_arguments_of_a_wrong_kind_are_refused() -> None:
         tree.lookup("map", "odom", msgs.header(0, ""))
     with pytest.raises(ArgumentValueError, match="the time must be a finite number"):
         tree.lookup("map", "odom", math.inf)
+
+
+def test_a_time_that_goes_back_forgets_what_moved_and_keeps_what_is_fixed() -> None:
+    tree = filled()
+    for now in (1.0, 2.0):
+        tree.advance("/tf", round(now * 1e9))
+    tree.advance("/other_tf", 0)  # another topic has times of its own
+    assert tree.latest("odom", "base")[1] == 2_000_000_000
+    tree.advance("/tf", 500_000_000)
+    assert list(tree.frames()) == ["base", "door", "lidar", "map", "odom"]
+    with pytest.raises(TransformError, match="transforms are received|not connected"):
+        tree.lookup("odom", "base")
+    put(tree, "odom", "base", Pose((7.0, 0.0, 0.0)), 0.5)
+    pose, stamp = tree.latest("odom", "lidar")
+    assert (pose.position.tolist(), stamp) == ([7.1, 0.0, 0.3], 500_000_000)

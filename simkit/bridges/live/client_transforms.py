@@ -77,4 +77,5 @@ class LiveTransforms(TransformTree):
         for subscription in self._subscriptions:
             while subscription.waiting:
                 received = subscription.waiting.popleft()
+                self.advance(subscription.topic, received.time_ns)
                 self.take(received.message, is_static=subscription.topic == TOPICS[0])

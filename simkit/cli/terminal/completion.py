@@ -284,10 +284,11 @@ def _types_of_name(ctx: typer.Context, what: str, kind: str) -> list[str]:
 @_silent
 def frames(ctx: typer.Context) -> Iterable[str]:
     """Complete frames that arrive on /tf within half a second."""
-    from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
+    from simkit.cli.terminal.frame_tree import receive_transforms
+    from simkit.msgs.transform_tree import TransformTree
 
     with _source(ctx) as source:
-        found = FrameTree()
+        found = TransformTree()
         for _ in receive_transforms(source, found, duration=_TIMEOUT / 2):
             pass
-    return found.names()
+    return found.frames()

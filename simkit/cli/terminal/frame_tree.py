@@ -1,10 +1,9 @@
-"""Tree of the coordinate frames in the transforms on `/tf` and `/tf_static`."""
+"""Transforms on `/tf` and `/tf_static` of a simulation or a bag, and the text of their tree."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from simkit.cli.terminal.output import not_found_error
@@ -12,104 +11,32 @@ from simkit.cli.terminal.topic_sources import ReceivedMessage, Source
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
-    from simkit.msgs import TFMessage
-    from simkit.pose import Pose
+    from simkit.msgs.transform_tree import TransformTree
 
 _TOPICS = ("/tf", "/tf_static")
 _TYPE = "tf2_msgs/msg/TFMessage"
 
 
-@dataclass(frozen=True)
-class FrameTransform:
-    """Pose of a frame in its parent frame.
+def tree_lines(tree: TransformTree) -> list[str]:
+    """Return the trees of frames as text, one frame per line, indented by depth."""
+    parents = tree.frames()
+    children: dict[str, list[str]] = {}
+    for child, parent in parents.items():
+        children.setdefault(parent, []).append(child)
+    found: list[str] = []
 
-    Attributes:
-        parent: name of the parent frame.
-        pose: pose of the frame in the parent frame.
-        time_ns: time of the transform [ns].
-        static: True for a transform from `/tf_static`.
-    """
+    def add(name: str, depth: int, seen: frozenset[str]) -> None:
+        found.append("  " * depth + name + (" (static)" if tree.is_static(name) else ""))
+        for child in children.get(name, ()) if name not in seen else ():
+            add(child, depth + 1, seen | {name})
 
-    parent: str
-    pose: Pose
-    time_ns: int
-    static: bool
-
-
-class FrameTree:
-    """Newest transform of every received frame."""
-
-    def __init__(self) -> None:
-        self.edges: dict[str, FrameTransform] = {}
-
-    def take(self, message: TFMessage, *, static: bool) -> None:
-        """Store the transforms of a `tf2_msgs/msg/TFMessage`."""
-        from simkit import msgs  # imported late: NumPy and rosbags would delay shell completion
-        from simkit.pose import Pose
-
-        for stamped in message.transforms:
-            position, rotation = stamped.transform.translation, stamped.transform.rotation
-            pose = Pose((position.x, position.y, position.z), (rotation.w, rotation.x, rotation.y, rotation.z))
-            child = stamped.child_frame_id.lstrip("/")
-            self.edges[child] = FrameTransform(
-                stamped.header.frame_id.lstrip("/"), pose, msgs.stamp_ns(stamped.header.stamp), static
-            )
-
-    def names(self) -> list[str]:
-        """Return the names of all frames, sorted."""
-        return sorted({*self.edges, *(edge.parent for edge in self.edges.values())})
-
-    def lines(self) -> list[str]:
-        """Return the trees as text, one frame per line, indented by depth."""
-        children: dict[str, list[str]] = {}
-        for child, edge in sorted(self.edges.items()):
-            children.setdefault(edge.parent, []).append(child)
-        found: list[str] = []
-
-        def add(name: str, depth: int, seen: frozenset[str]) -> None:
-            edge = self.edges.get(name)
-            note = " (static)" if edge is not None and edge.static else ""
-            found.append("  " * depth + name + note)
-            for child in children.get(name, ()) if name not in seen else ():
-                add(child, depth + 1, seen | {name})
-
-        roots = [name for name in self.names() if name not in self.edges]
-        for root in roots or self.names()[:1]:
-            add(root, 0, frozenset())
-        return found
-
-    def chain(self, name: str) -> list[tuple[str, Pose, int]]:
-        """Return a frame and its ancestors.
-
-        Returns:
-            For each frame: its name, the pose of `name` in it, and the oldest time on the path [ns] (-1: only static).
-        """
-        from simkit.pose import Pose
-
-        pose, oldest, found = Pose(), -1, [(name, Pose(), -1)]
-        while name in self.edges and len(found) <= len(self.edges):
-            edge = self.edges[name]
-            pose, name = edge.pose @ pose, edge.parent
-            if not edge.static:
-                oldest = edge.time_ns if oldest < 0 else min(oldest, edge.time_ns)
-            found.append((name, pose, oldest))
-        return found
-
-    def pose_between(self, source: str, target: str) -> tuple[Pose, int] | None:
-        """Return the pose of `target` in `source` and its time [ns]; None for unknown frames or separate trees."""
-        if source not in self.names():
-            return None  # without this check, an unknown frame would have a pose in its own frame
-        ancestors = {name: (pose, time_ns) for name, pose, time_ns in reversed(self.chain(source))}
-        for name, pose, time_ns in self.chain(target):
-            if name in ancestors:
-                source_pose, source_time_ns = ancestors[name]
-                times = [t for t in (time_ns, source_time_ns) if t >= 0]
-                return source_pose.inverse() @ pose, min(times, default=0)
-        return None
+    for root in children.get("", ()) or list(parents)[:1]:  # frames in a circle have no root
+        add(root, 0, frozenset())
+    return found
 
 
 def receive_transforms(
-    source: Source, frames: FrameTree, topics: list[str] | None = None, *, duration: float
+    source: Source, frames: TransformTree, topics: list[str] | None = None, *, duration: float
 ) -> Iterator[ReceivedMessage]:
     """Store transforms in `frames` and yield their messages.
 
@@ -135,7 +62,8 @@ def receive_transforms(
             if not hasattr(message, "transforms"):
                 text = f"SK-CLI-032 {received.topic} has type {received.type_name}; expected {_TYPE}"
                 raise InputError(text, "SK-CLI-032")
-            frames.take(message, static=received.topic in static)
+            frames.advance(received.topic, received.time_ns)
+            frames.take(message, is_static=received.topic in static)
             yield received
     finally:
         feed.close()

@@ -239,3 +239,10 @@ def test_a_client_looks_up_poses_between_frames(client: Client) -> None:
     assert client.tf.lookup("hall", "tag", 2.0, timeout=10.0).position.tolist() == [0.0, 2.0, 0.0]
     with pytest.raises(LookupError, match=r"unknown frame 'tga' \(did you mean 'tag'\?\)"):
         client.tf.lookup("hall", "tga", timeout=0.0)
+    client.call("/world/court/control", {"world_control": {"reset": {"all": True}}})
+    moving.publish({"transforms": [{"header": {"frame_id": "hall"}, "child_frame_id": "tag",
+                                    "transform": {"translation": {"y": 9.0}}}]})  # fmt: skip
+    client.flush()
+    assert client.tf.lookup("hall", "tag", timeout=10.0).position.tolist() == [0.0, 9.0, 0.0], (
+        "not those before the reset"
+    )
