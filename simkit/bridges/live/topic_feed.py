@@ -19,10 +19,6 @@ _REVIEW_PERIOD = 0.5  # [s] of wall time between two searches for topics of imag
 _MOST_WAITING = 100  # largest number of messages of a topic that wait until an image is rendered
 
 
-FeedLabel = tuple["TopicFeed", int]
-"""Feed of a message, and the tick of the publication."""
-
-
 class TopicFeed:
     """Feed of one topic to all clients that subscribe to the topic.
 
@@ -34,11 +30,11 @@ class TopicFeed:
             a time are serialised faster.
     """
 
-    def __init__(self, sim: Simulation, topic: str, memory: LogMemory, common: MessageQueue[FeedLabel]) -> None:
+    def __init__(self, sim: Simulation, topic: str, memory: LogMemory, common: MessageQueue[TopicFeed]) -> None:
         self._sim, self.topic, self._memory, self._common = sim, topic, memory, common
         self.log, self._physics, self.time_of = MessageLog(memory), sim.engine.physics, sim.engine.clock.time_ns
         # a message is serialised at once, even if it waits for an image, because its publisher may change it later
-        self._queue: MessageQueue[FeedLabel] = MessageQueue(_deliver, _serialise_valid)
+        self._queue: MessageQueue[TopicFeed] = MessageQueue(_deliver, _serialise_valid)
         self._tap: Subscription | None = None
         self._is_rendered = False  # True for images, whose rendering costs much more than anything else here
 
@@ -105,13 +101,13 @@ class TopicFeed:
         """Queue a message that was just published."""
         tick, is_lazy = self._physics.tick, isinstance(message, LazyMessage)
         if not self._queue and (not is_lazy or message.can_wait):
-            self._common.add((self, tick), message)
+            self._common.add(self, tick, message)
             if not is_lazy:  # at once, because a bridge does not receive what it publishes at this moment
                 self._common.deliver_ready()
             return
         if is_lazy and message.work is not None:
             self._is_rendered = True
-        self._queue.add((self, tick), message)
+        self._queue.add(self, tick, message)
         if len(self._queue) > _MOST_WAITING:
             self._queue.deliver_ready()
         if len(self._queue) > _MOST_WAITING:
@@ -127,9 +123,9 @@ def _serialise_valid(message: Message | LazyMessage) -> Any:
         return NO_MESSAGE
 
 
-def _deliver(messages: list[tuple[FeedLabel, tuple[str, bytes]]]) -> None:
-    """Queue serialised messages for all clients of their topics."""
-    for (feed, tick), (type_name, data) in messages:
+def _deliver(feeds: list[TopicFeed], ticks: list[int], contents: list[Any]) -> None:
+    """Queue serialised messages, types and CDR in turn, for all clients of their topics."""
+    for feed, tick, type_name, data in zip(feeds, ticks, contents[::2], contents[1::2], strict=True):
         feed.log.append(feed.time_of(tick), type_name, data)
 
 
@@ -143,7 +139,7 @@ class TopicFeeds:
     def __init__(self, sim: Simulation) -> None:
         self._sim, self.memory = sim, LogMemory()
         self._feeds: dict[str, TopicFeed] = {}
-        self._common: MessageQueue[FeedLabel] = MessageQueue(_deliver, _serialise_valid)
+        self._common: MessageQueue[TopicFeed] = MessageQueue(_deliver, _serialise_valid)
         self._reviewed = 0.0
 
     def add(self, reader: ClientSubscription) -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from simkit.errors import SimkitError
 from simkit.recording.bags.bag_contents import matches_topic
-from simkit.recording.bags.writer import Channel, McapBag, open_bag
+from simkit.recording.bags.writer import McapBag, open_bag
 from simkit.recording.message_taps import MessageQueue, TopicTaps, serialised
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ class Recorder:
             tick = physics.tick
             if not self._first_tick <= tick < self._end_tick:
                 self._end_second()
-            add((topic, tick), message)
+            add(topic, tick, message)
 
         return receive
 
@@ -153,22 +153,22 @@ class Recorder:
         """Check whether the options select the topic."""
         return topic in self._taps
 
-    def _write(self, messages: list[tuple[tuple[str, int], tuple[str, bytes]]]) -> None:
-        """Write serialised messages with their topics and ticks."""
+    def _write(self, topics: list[str], ticks: list[int], contents: list[Any]) -> None:
+        """Write serialised messages, types and CDR in turn."""
         bag, time_of = self._bag, self._sim.engine.clock.time_ns
         if bag is None:
             return
+        types, data = contents[::2], contents[1::2]
         try:
-            found: list[tuple[Channel, bytes, int]] = []
-            channels = bag.channels
-            for (topic, tick), (type_name, data) in messages:
-                channel = channels.get((topic, type_name))
+            found = [bag.channels.get(key) for key in zip(topics, types, strict=True)]
+            if None not in found and time_of(min(ticks)) // _SECOND == time_of(max(ticks)) // _SECOND:
+                bag.write_all(found, data, [time_of(tick) for tick in ticks])
+                return
+            for topic, tick, type_name, content in zip(topics, ticks, types, data, strict=True):
+                channel = bag.channels.get((topic, type_name))
                 if channel is None:
-                    bag.write_all(found)
-                    found = []
                     channel = bag.channel(topic, type_name, topic in self._sim.communication.bus.latched())
-                found.append((channel, data, time_of(tick)))
-            bag.write_all(found)
+                bag.write_raw(channel, content, time_of(tick))
         except OSError as error:
             self._stop(error)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
@@ -144,25 +144,19 @@ class McapBag:
         channel.count += 1
         self.span.add(time_ns)
 
-    def write_all(self, messages: Sequence[tuple[Channel, bytes, int]]) -> None:
-        """Append serialised messages with their recording times; many of one second take half the time."""
-        if not messages:
-            return
-        times = [time_ns for _, _, time_ns in messages]
+    def write_all(self, channels: Sequence[Channel], data: Sequence[bytes], times: Sequence[int]) -> None:
+        """Append serialised messages of one second with their recording times [ns], in half the time of `write_raw`."""
         first, last = min(times), max(times)
-        if first // _SECOND != last // _SECOND:
-            for message in messages:
-                self.write_raw(*message)
-            return
         self._begin_second(first // _SECOND)
-        rows: list[Row] = []
-        for channel, data, time_ns in messages:
-            rows.append((channel.id, time_ns, data, time_ns, channel.count))
-            channel.count += 1
-        self._writer.add_messages(rows)
+        self._writer.add_messages(self._rows(channels, data, times))
         self.span.add(first)
         self.span.add(last)
-        self.span.count += len(rows) - 2
+        self.span.count += len(data) - 2
+
+    def _rows(self, channels: Sequence[Channel], data: Sequence[bytes], times: Sequence[int]) -> Iterator[Row]:
+        for channel, content, time_ns in zip(channels, data, times, strict=True):
+            yield channel.id, time_ns, content, time_ns, channel.count
+            channel.count += 1
 
     def _begin_second(self, second: int) -> None:
         if second != self._second:

@@ -216,7 +216,7 @@ class RunRecorder:
             return None
         sim = self._sim
         stream = self._streams[topic] = StreamRecorder(self._scenario, sim, topic, type_name)
-        return lambda message: stream.queue.add(sim.time_ns, message)
+        return lambda message: stream.queue.add(topic, sim.time_ns, message)
 
     def _is_recorded(self, topic: str, type_name: str) -> bool:
         scenario = self._scenario
@@ -258,8 +258,8 @@ class StreamRecorder:
             self._message_recorder.fill(stream)
         return stream
 
-    def _keep(self, messages: list[tuple[int, object]]) -> None:
-        for now, message in messages:
+    def _keep(self, _: list[str], times: list[int], messages: list[object]) -> None:
+        for now, message in zip(times, messages, strict=True):
             self._keep_one(now, message)
 
     def _keep_one(self, now: int, message: object) -> None:
