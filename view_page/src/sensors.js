@@ -73,7 +73,7 @@ export class Sensors {
     let begin = 0;
     lidars.forEach(([name, count], which) => {
       const sensor = this.lidars?.find(found => found.name === name)?.lidar;
-      const isFlat = sensor?.v_samples === 1;
+      const isFlat = !sensor || sensor.v_samples === 1; // a recording has scans by topic
       const origin = corners.length / 3;
       if (isFlat) corners.push(...origins.slice(3 * which, 3 * which + 3));
       let last = -2;

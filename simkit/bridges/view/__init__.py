@@ -9,8 +9,8 @@ Addresses: `/` (page, needs `?token=`), `/app.js`, `/app.css`, `/scene?token=` (
 
 Packets (server to page, binary): the length of the JSON head (uint32, little endian), the head, and arrays. The head
 has `kind`, and `arrays`: name -> [type, offset in bytes after the head, shape]. Types are those of NumPy: `<f4`, `<i4`,
-`<u2` and `|u1`. The kind of a packet is the name of its stream. `scene_changed`, `state` and `appearance` always come; a page
-asks for other streams with `{"do": "want", "streams": {name: options}}`, which replaces what it asked for before.
+`<u2` and `|u1`. The kind of a packet is the name of its stream. `scene_changed`, `state` and `appearance` always come;
+a page asks for other streams with `{"do": "want", "streams": {name: options}}`, which replaces the former.
 
 Requests (page to server, text): one JSON object with `do` and its arguments. A request with an `id` is answered by
 `{"id": …, "ok": value}` or `{"id": …, "error": text}`; without an `id`, errors come as `{"error": text}`.

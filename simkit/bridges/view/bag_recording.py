@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import msgs
 from simkit.bridges.view import scene_packet
-from simkit.bridges.view.packet import make_packet
+from simkit.bridges.view.packet import Head, make_packet
 from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
@@ -67,7 +68,9 @@ class BagPoses:
     def packet(self) -> bytes:
         """Read the bag and return the packet."""
         wanted = [n for n, kind in self._topics.items() if kind in (_ODOMETRY, _JOINTS, _TRANSFORMS, _SCAN)]
-        times, states, begun = [], [], None
+        times: list[float] = []
+        states: list[npt.NDArray[Any]] = []
+        begun = None
         for message in self._bag.messages(wanted):
             time = message.time_ns * 1e-9
             begun = time if begun is None else begun
@@ -77,7 +80,7 @@ class BagPoses:
             self._take(message.topic, self._bag.decode(message), time - begun)
         times.append(len(times) / RATE)
         states.append(scene_packet.poses(self._sim, self._moving))
-        head = {"kind": "recording", "name": self._bag.path.name, "begin": begun or 0.0, "lidars": []}
+        head: Head = {"kind": "recording", "name": self._bag.path.name, "begin": begun or 0.0, "lidars": []}
         arrays = {"times": np.array(times), "poses": np.array(states)}
         for number, (topic, lidar) in enumerate(self._lidars.items()):
             head["lidars"].append({"topic": topic, "low": lidar.low, "step": lidar.step, "count": lidar.count})
@@ -132,7 +135,8 @@ class BagPoses:
         for _ in range(len(self._edges) + 1):
             link = self._links.get(frame.split("/")[-1])
             if link is not None:
-                return link.pose @ offset
+                found: Pose = link.pose @ offset
+                return found
             if frame in self._origins or frame not in self._edges:
                 break
             parent, pose = self._edges[frame]
@@ -148,8 +152,8 @@ class _Lidar:
         self.low, self.step = float(message.angle_min), float(message.angle_increment)
         self.count = len(message.ranges)
         self._times: list[float] = []
-        self._poses: list[np.ndarray[Any, Any]] = []
-        self._ranges: list[np.ndarray[Any, Any]] = []
+        self._poses: list[npt.NDArray[Any]] = []
+        self._ranges: list[npt.NDArray[Any]] = []
 
     def add(self, message: Any, time: float, pose: Pose) -> None:
         """Add a scan; one with another number of rays is left out."""
@@ -161,7 +165,7 @@ class _Lidar:
         self._times.append(time)
         self._poses.append(np.concatenate((pose.position, pose.quaternion)))
 
-    def arrays(self) -> dict[str, np.ndarray[Any, Any]]:
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
         """Return times [s], poses (x y z, w x y z) and ranges [mm]; 0 is no hit."""
         return {"times": np.array(self._times), "poses": np.array(self._poses), "ranges": np.array(self._ranges)}
 

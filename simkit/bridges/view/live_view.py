@@ -174,7 +174,7 @@ class LiveView:
     def _appearance_digest(self) -> bytes:
         digest = hashlib.blake2b(digest_size=16)
         for values in scene_packet.appearance(self.sim).values():
-            digest.update(np.ascontiguousarray(values))
+            digest.update(np.ascontiguousarray(values).data)
         return digest.digest()
 
     def _send_appearance(self) -> None:

@@ -56,14 +56,14 @@ class Call:
 
     def number(self, name: str, default: float | None = None) -> float:
         """Return an argument that is a finite number."""
-        value = self._arguments.get(name, default)
+        value: Any = self._arguments.get(name, default)
         if type(value) not in (int, float) or not math.isfinite(value):
             raise RequestFailed(f"{name!r} must be a finite number, got {value!r:.80}")
         return float(value)
 
     def numbers(self, name: str, count: int) -> list[float]:
         """Return an argument that is a list of finite numbers."""
-        values = self._arguments.get(name)
+        values: Any = self._arguments.get(name)
         is_valid = isinstance(values, list) and len(values) == count
         if not is_valid or not all(type(v) in (int, float) and math.isfinite(v) for v in values):
             raise RequestFailed(f"{name!r} must be a list of {count} finite numbers, got {values!r:.80}")

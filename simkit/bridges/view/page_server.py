@@ -128,7 +128,7 @@ class PageServer:
     def tell_all(self, content: Mapping[str, Any]) -> None:
         """Send a notification to all pages."""
         text = json.dumps(content, default=str)
-        self._call(lambda: [self._queue_answer(client, text) for client in self._clients])
+        self._call(self._queue_for_all, text)
 
     def close(self) -> None:
         """Disconnect all pages and end the thread."""
@@ -177,6 +177,10 @@ class PageServer:
             if stream in client.wants or stream in _FOR_ALL:
                 client.slots[stream] = packet
                 client.is_due.set()
+
+    def _queue_for_all(self, text: str) -> None:
+        for client in list(self._clients):
+            self._queue_answer(client, text)
 
     def _queue_answer(self, client: PageClient, text: str) -> None:
         client.answers.append(text)

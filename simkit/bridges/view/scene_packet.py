@@ -34,7 +34,8 @@ def make_scene_packet(sim: Simulation, revision: int, extra: Head) -> bytes:
         revision: number of the structure; packets with states name it.
         extra: further values of the head.
     """
-    model, arrays = sim.mj_model, {}
+    model = sim.mj_model
+    arrays: Packed = {}
     head: Head = {
         "kind": "scene",
         "revision": revision,
@@ -78,7 +79,7 @@ def appearance(sim: Simulation) -> Packed:
     """Return the arrays that may change without a change of the structure: colours, fixed shapes and lights."""
     model = sim.mj_model
     colours = model.geom_rgba.copy()
-    with_material = (model.geom_matid >= 0) & np.all(colours == np.float32(_UNSET), axis=1)
+    with_material = (model.geom_matid >= 0) & np.all(colours == np.array(_UNSET, np.float32), axis=1)
     colours[with_material] = model.mat_rgba[model.geom_matid[with_material]]
     return {
         "geom_rgba": colours,

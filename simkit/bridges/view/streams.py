@@ -12,6 +12,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.bridges.view.packet import make_packet
 from simkit.errors import SimkitError
+from simkit.pose import IDENTITY
 
 if TYPE_CHECKING:
     from simkit.pose import Pose
@@ -222,10 +223,9 @@ class CloudStream:
         """Return the pose of a frame in the world: of an optical frame, a sensor, or a link."""
         for sensor in self._sim.contents.sensors.values():
             optical = sensor.optical_frames()
-            if frame in optical:
-                return sensor.pose @ optical[frame]
-            if frame == sensor.frame_id:
-                return sensor.pose
+            if frame in optical or frame == sensor.frame_id:
+                pose: Pose = sensor.pose @ optical.get(frame, IDENTITY)
+                return pose
         links = self._sim.contents.handles.tables["link"]
         found = next((link for name, link in links.items() if name == frame or name.endswith(f"::{frame}")), None)
         return found.pose if found is not None else self._sim.models[next(iter(self._sim.models))].pose

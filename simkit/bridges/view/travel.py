@@ -25,6 +25,7 @@ class Travel:
         self._sim = sim
         self.paths: dict[str, list[npt.NDArray[Any]]] = {}
         self._model: object = None
+        self._last: npt.NDArray[Any] = np.zeros((0, 3))
         self._tick = -1
 
     def sample(self) -> None:

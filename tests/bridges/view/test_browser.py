@@ -10,10 +10,14 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import simkit
+from simkit.bridges.view.html_file import html_file
 from simkit.bridges.view.live_view import LiveView
+from simkit.bridges.view.packet import make_packet
+from simkit.bridges.view.scene_packet import make_scene_packet, moving_bodies
 from tests.bridges.view.conftest import YARD
 
 pytestmark = pytest.mark.browser
@@ -40,7 +44,7 @@ class Session:
     """Simulation in a thread that keeps it running, and its page in a browser."""
 
     def __init__(self, browser: Any, stack: ExitStack, world: str, *, checks_policy: bool = False) -> None:
-        self.sim = stack.enter_context(simkit.load(world))
+        self.sim = stack.enter_context(simkit.load(world, sleep=False))  # a body asleep has no contacts
         self.view = stack.enter_context(LiveView(self.sim))
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -112,9 +116,12 @@ def test_the_page_draws_the_world_and_loads_nothing_from_outside(session: Callab
     found.until("app.stage.draws > 1 && app.state.tick > 20")
     assert found.page.evaluate(COLOURS) > 12
     assert found.get("app.robots.map(robot => robot.name)") == ["rover"]
-    corners = """(() => { const b = app.views.robotBox(), out = []; for (let i = 0; i < 8; i++) { const p = b.min.clone();
-      if (i & 1) p.x = b.max.x; if (i & 2) p.y = b.max.y; if (i & 4) p.z = b.max.z; p.project(app.stage.camera);
-      out.push(Math.max(Math.abs(p.x), Math.abs(p.y))); } return Math.max(...out); })()"""
+    corners = """(() => { const box = app.views.robotBox(), out = [];
+      for (const x of [box.min.x, box.max.x]) for (const y of [box.min.y, box.max.y])
+        for (const z of [box.min.z, box.max.z]) {
+        const p = box.min.clone().set(x, y, z).project(app.stage.camera);
+        out.push(Math.max(Math.abs(p.x), Math.abs(p.y)));
+      } return Math.max(...out); })()"""
     assert found.get(corners) < 1.0
     assert found.outside == [] and found.errors == []
     found.picture("yard")
@@ -230,3 +237,35 @@ def test_a_hidden_page_costs_nothing(session: Callable[..., Session]) -> None:
     found.page.evaluate(hide % "false")
     found.page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
     found.page.locator("#link.on").wait_for(timeout=TIMEOUT)
+
+
+def test_one_file_opens_without_simkit_and_seeks(browser: Any, tmp_path: Path) -> None:
+    with simkit.load(YARD) as sim:
+        poses = make_packet(
+            {"kind": "recording", "name": "drive.mcap", "begin": 0.0, "lidars": []},
+            {"times": np.arange(31) / 15, "poses": _moving_poses(sim)},
+        )
+        text = html_file("drive", make_scene_packet(sim, 1, {"recording": True, "seed": 0}), poses)
+    path = tmp_path / "drive.html"
+    path.write_text(text, encoding="utf-8")
+    page = browser.new_page()
+    requests: list[str] = []
+    page.on("request", lambda request: requests.append(request.url))
+    page.goto(path.as_uri())
+    page.locator("#seek").wait_for(timeout=TIMEOUT)
+    page.locator("#seek").fill("1.5")
+    page.locator("#time", has_text="1.500 s").wait_for(timeout=TIMEOUT)
+    assert page.evaluate("simkitView.world.bodies[simkitView.bodyOf.get('rover')].elements[12]") == pytest.approx(1.5)
+    page.locator("#play").click()
+    page.locator("#rtf", has_text="paused").wait_for(timeout=TIMEOUT)  # at the end
+    assert [url for url in requests if not url.startswith(("file:", "data:", "blob:"))] == []
+    page.close()
+
+
+def _moving_poses(sim: simkit.Simulation) -> np.ndarray:
+    """States in which all bodies move by 1 m/s along x."""
+    bodies = moving_bodies(sim.mj_model)
+    states = np.zeros((31, len(bodies), 7))
+    states[:, :, 0] = (np.arange(31) / 15)[:, None]
+    states[:, :, 3] = 1.0
+    return states

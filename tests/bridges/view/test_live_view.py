@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import http.client
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import simkit
+from simkit.bridges.view import scene_packet
+from simkit.bridges.view.bag_recording import MARKER, make_recording
+from simkit.bridges.view.html_file import html_file
 from simkit.bridges.view.live_view import LiveView
 from simkit.bridges.view.packet import make_packet, read_packet
 from simkit.bridges.view.page_server import PAGE
+from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording.bags.recorder import Recorder
 from simkit.runtime.engine.snapshot import state_hash
 from tests.bridges.view.conftest import YARD, Stage
 
@@ -269,3 +276,49 @@ def test_the_page_loads_nothing_from_outside() -> None:
 
 def test_packets_are_plain_json_without_nan(stage: Stage) -> None:
     json.dumps(stage.scene()[0], allow_nan=False)
+
+
+# ---------------------------------------------------------------------- recordings
+
+
+def _bag(folder: Path) -> Path:
+    """Record a drive of the rover's twin, which has odometry, in `folder`."""
+    with simkit.load(YARD.replace("</model></world>", f"{ODOMETRY}</model></world>")) as sim:
+        with Recorder(sim, folder / "drive.mcap"):
+            sim.publish("/cmd_vel", {"linear": {"x": 0.5}})
+            sim.run(2.0)
+        assert sim.model("rover").pose.position[0] == pytest.approx(1.0, abs=0.02)
+    return folder / "drive.mcap"
+
+
+ODOMETRY = """<plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
+<odom_frame>odom</odom_frame><robot_base_frame>base</robot_base_frame><odom_topic>/odom</odom_topic>
+<odom_publish_frequency>50</odom_publish_frequency></plugin>"""
+
+
+@pytest.mark.parametrize("world", [YARD, MARKER.format(name="bag")])
+def test_a_bag_moves_its_robot_and_shows_its_scans(tmp_path: Path, world: str) -> None:
+    with open_bag_to_read(_bag(tmp_path)) as bag, simkit.load(world) as sim:
+        before = state_hash(sim)
+        head, arrays = read_packet(make_recording(sim, bag))
+        body = scene_packet.moving_bodies(sim.mj_model).tolist().index(sim.mj_model.body(_base(world)).id)
+        assert state_hash(sim) == before
+    assert arrays["times"][-1] == pytest.approx(2.0, abs=0.1)
+    places = arrays["poses"][:, body, 0]
+    assert places[-1] - places[0] == pytest.approx(1.0, abs=0.05)
+    assert np.abs(np.diff(places, 2)[3:-3]).max() < 0.02  # steadily, without jumps
+    assert [(lidar["topic"], lidar["count"]) for lidar in head["lidars"]] == [("/scan", 9)]
+    ends = arrays["lidar0.poses"][:, 0] + arrays["lidar0.ranges"][:, 4] / 1000 - places[0]
+    assert ends == pytest.approx([1.95] * len(ends), abs=0.05)  # the wall stays where it is
+
+
+def _base(world: str) -> str:
+    return "rover::base" if world == YARD else "robot::base"
+
+
+def test_one_file_has_the_page_and_its_data_and_no_address(tmp_path: Path) -> None:
+    with open_bag_to_read(_bag(tmp_path)) as bag, simkit.load(YARD) as sim:
+        text = html_file("drive", scene_packet.make_scene_packet(sim, 1, {"recording": True}), make_recording(sim, bag))
+    assert len(text) < 500_000
+    assert not re.search(r"""(src|href)=["']?(https?:)?//""", text) and "<link" not in text
+    assert "three.js authors" in text
