@@ -13,6 +13,13 @@ export const LAYERS = [
   ['grid', 'Grid', true], ['shadows', 'Shadows', true], ['transparent', 'Transparent', false],
 ];
 
+/** Ends of the twelve edges of a box of size 1. */
+const EDGES = [[0, 1, 2], [1, 2, 0], [2, 0, 1]].flatMap(([along, u, v]) => [[-1, -1], [-1, 1], [1, -1], [1, 1]].map(([a, b]) => {
+  const from = [0, 0, 0];
+  from[u] = a / 2; from[v] = b / 2;
+  return [-0.5, 0.5].map(end => { const point = [...from]; point[along] = end; return point; });
+}));
+
 /** Line segments with a colour for each vertex, whose arrays grow as needed. */
 class Lines {
   constructor(parent, depthTest = false) {
@@ -49,7 +56,7 @@ export class Layers {
     this.frames = new Lines(stage.helpers);
     this.joints = new Lines(stage.helpers);
     this.contactLines = new Lines(stage.helpers);
-    this.inertia = this.instances(new T.BoxGeometry(1, 1, 1), 0xb45bd6, 0.45);
+    this.inertia = new Lines(stage.helpers);
     this.mass = this.instances(new T.SphereGeometry(0.018, 16, 12), 0xffc53d, 0.95);
     this.contactPoints = this.instances(new T.SphereGeometry(0.012, 10, 8), 0xff3b8d, 0.95);
     this.makeGrid();
@@ -98,7 +105,7 @@ export class Layers {
     if (name === 'transparent') this.setTransparent(on);
     if (name === 'contacts') this.app.connection.want('contacts', on ? {} : null);
     for (const [layer, objects] of [['contacts', [this.contactLines.object, this.contactPoints.mesh]], ['frames', [this.frames.object]],
-      ['joints', [this.joints.object]], ['inertia', [this.inertia.mesh]], ['mass', [this.mass.mesh]]]) {
+      ['joints', [this.joints.object]], ['inertia', [this.inertia.object]], ['mass', [this.mass.mesh]]]) {
       for (const object of objects) object.visible = this.on[layer];
     }
     for (const { mesh } of this.paths.values()) mesh.visible = this.on.path;
@@ -162,17 +169,18 @@ export class Layers {
   }
 
   drawInertias() {
-    const { arrays } = this.app.scene, bodies = this.massiveBodies(), { mesh, resize } = this.inertia;
-    resize(bodies.length);
-    const local = new T.Matrix4(), size = new T.Vector3();
-    bodies.forEach((body, k) => { // a box of the same inertia
+    const { arrays } = this.app.scene;
+    const local = new T.Matrix4(), size = new T.Vector3(), from = new T.Vector3(), to = new T.Vector3();
+    this.inertia.clear();
+    for (const body of this.massiveBodies()) { // the edges of a box with the same inertia
       const mass = arrays.body_mass[body], [x, y, z] = arrays.body_inertia.subarray(3 * body, 3 * body + 3);
       const edge = value => Math.sqrt(Math.max(6 * value / mass, 1e-8));
       readPose([...arrays.body_ipos.subarray(3 * body, 3 * body + 3), ...arrays.body_iquat.subarray(4 * body, 4 * body + 4)], 0, local);
       local.scale(size.set(edge(y + z - x), edge(x + z - y), edge(x + y - z)));
-      mesh.setMatrixAt(k, m.multiplyMatrices(this.app.world.bodies[body], local));
-    });
-    mesh.instanceMatrix.needsUpdate = true;
+      m.multiplyMatrices(this.app.world.bodies[body], local);
+      for (const [a, b] of EDGES) this.inertia.add(from.fromArray(a).applyMatrix4(m), to.fromArray(b).applyMatrix4(m), 0xb45bd6);
+    }
+    this.inertia.show();
   }
 
   drawMasses() {

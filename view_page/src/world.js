@@ -124,7 +124,7 @@ export class World {
   makeGeometry(i, type, data, material) {
     const { arrays: a } = this, size = a.geom_size.subarray(3 * i, 3 * i + 3);
     if (type === CAPSULE) return new T.CapsuleGeometry(size[0], 2 * size[1], 8, 24).rotateX(Math.PI / 2);
-    if (type === HEIGHTS) return this.heightGeometry(data);
+    if (type === HEIGHTS) return this.heightGeometry(data, material);
     if (type === MESH) {
       if (!a[`mesh${data}.position`]) return null;
       const made = new T.BufferGeometry();
@@ -143,7 +143,7 @@ export class World {
     return this.unit[type] ?? null;
   }
 
-  heightGeometry(field) {
+  heightGeometry(field, material) {
     const { arrays: a, scene } = this, heights = a[`heights${field}`];
     if (!heights) return null;
     const [rx, ry, top] = a[`heights${field}.size`];
@@ -154,6 +154,8 @@ export class World {
         position.setZ((rows - 1 - row) * columns + column, top * heights[row * columns + column]);
       }
     }
+    const { uv } = made.attributes;
+    for (let k = 0; material && k < uv.count; k++) uv.setXY(k, uv.getX(k) * material.repeat[0], uv.getY(k) * material.repeat[1]);
     made.computeVertexNormals();
     return made;
   }

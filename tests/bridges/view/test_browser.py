@@ -43,7 +43,9 @@ def browser() -> Iterator[Any]:
 class Session:
     """Simulation in a thread that keeps it running, and its page in a browser."""
 
-    def __init__(self, browser: Any, stack: ExitStack, world: str, *, checks_policy: bool = False) -> None:
+    def __init__(
+        self, browser: Any, stack: ExitStack, world: str, *, checks_policy: bool = False, more: str = ""
+    ) -> None:
         self.sim = stack.enter_context(simkit.load(world, sleep=False))  # a body asleep has no contacts
         self.view = stack.enter_context(LiveView(self.sim))
         self._ends = threading.Event()
@@ -51,7 +53,7 @@ class Session:
         self._thread.start()
         stack.callback(self._end)
         # Playwright's waiting functions need `eval`, which the page's policy forbids
-        context = browser.new_context(viewport={"width": 1100, "height": 700}, bypass_csp=not checks_policy)
+        context = browser.new_context(viewport={"width": 1200, "height": 720}, bypass_csp=not checks_policy)
         stack.callback(context.close)
         self.page = context.new_page()
         self.outside: list[str] = []
@@ -59,7 +61,7 @@ class Session:
         self.page.on("request", lambda request: self._note(request.url))
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.on("console", lambda m: self.errors.append(m.text) if m.type == "error" else None)
-        self.page.goto(self.view.address)
+        self.page.goto(self.view.address + more)
         self.has_drawn = self.page.locator("#link.on")
         self.has_drawn.wait_for(timeout=TIMEOUT)
 
@@ -92,9 +94,9 @@ class Session:
         """Keep a picture where SIMKIT_BROWSER_PICTURES names a folder."""
         if not PICTURES:
             return None
-        path = Path(PICTURES) / f"{name}.png"
+        path = Path(PICTURES) / f"{name}.jpg"
         path.parent.mkdir(parents=True, exist_ok=True)
-        self.page.screenshot(path=path, timeout=TIMEOUT)
+        self.page.screenshot(path=path, timeout=4 * TIMEOUT, quality=85)
         return path
 
 
@@ -125,6 +127,19 @@ def test_the_page_draws_the_world_and_loads_nothing_from_outside(session: Callab
     assert found.get(corners) < 1.0
     assert found.outside == [] and found.errors == []
     found.picture("yard")
+
+
+@pytest.mark.parametrize(
+    "world", ["turtlebot3_world", "turtlebot3_house", "tiago_table", "simple_office_with_people", "sensor_bench"]
+)
+def test_the_worlds_of_simkit_are_drawn_with_shadows(session: Callable[..., Session], world: str) -> None:
+    found = session(world, more="&quality=full")
+    if "/cmd_vel" in found.sim.topics():
+        found.page.evaluate("simkitView.send('drive', {topic: '/cmd_vel', ahead: 0.2, turn: 0.3})")
+    found.until("app.stage.draws > 3 && app.state.time > 3")
+    assert found.get("app.stage.gl.shadowMap.enabled") and found.page.evaluate(COLOURS) > 20
+    assert found.errors == [] and found.outside == []
+    found.picture(f"view_{world}")
 
 
 def test_the_page_works_with_its_security_policy(session: Callable[..., Session]) -> None:
@@ -193,7 +208,7 @@ def test_layers_show_what_they_say(session: Callable[..., Session]) -> None:
         found.page.locator(f"#show-{name}").check()
     found.until("app.world.collisions.visible && app.layers.contacts?.arrays.position.length > 0")
     found.until("app.layers.frames.points.length === 3 * 3 * 3 * 2")  # three moving links, three axes
-    found.until("app.layers.inertia.mesh.count === 3 && app.layers.mass.mesh.count === 3")
+    found.until("app.layers.inertia.points.length === 3 * 12 * 6 && app.layers.mass.mesh.count === 3")
     found.until("app.layers.joints.points.length === 6")
     found.page.locator("#show-visuals").uncheck()
     assert found.get("app.world.visuals.visible") is False
