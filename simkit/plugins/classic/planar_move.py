@@ -57,6 +57,7 @@ class PlanarMoveRos1Options(DriveOutputOptions):
     is_level = True
 
     publish_rate: float = number(20.0, "Hz", element="odometryRate", minimum=0)
+    publishes_transform: bool = boolean(True, element="publishOdometryTf")
     cmd_timeout: float = number(-1.0, "s", element="cmdTimeout")
     command_topic: str = text("cmd_vel", element="commandTopic")
     odometry_topic: str = text("odom", element="odometryTopic")
@@ -71,7 +72,8 @@ class PlanarMoveRos1Options(DriveOutputOptions):
     def read_all(self) -> Self:
         """Read all options; a rate of 0 publishes neither the odometry nor the transform."""
         super().read_all()
-        self.publish_odom = self.publish_odom_tf = self.publish_rate > 0
+        self.publish_odom = self.publish_rate > 0
+        self.publish_odom_tf = self.publish_odom and self.publishes_transform
         return self
 
 
@@ -90,6 +92,8 @@ class GazeboRosPlanarMove(KinematicPlugin):
     its true twist along its heading. In ROS 1 the odometry has the height 0 and the twist covariance 0; an
     `<odometryRate>` of 0 publishes nothing.
 
+    `libgazebo_ros_force_based_move.so` of ROS 1 reaches the same velocities by forces; its gains are not used.
+
     Gazebo sets the velocity only at `<update_rate>` (20 Hz), and friction brakes the model in between. simkit reads
     commands at this rate, but sets the velocity at every step.
     """
@@ -100,7 +104,7 @@ class GazeboRosPlanarMove(KinematicPlugin):
         publishes("/tf", TRANSFORMS),
     )
     option_types = (PlanarMoveOptions, PlanarMoveRos1Options)
-    filenames = ("libgazebo_ros_planar_move.so",)
+    filenames = ("libgazebo_ros_planar_move.so", "libgazebo_ros_force_based_move.so")
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self.options = read_options(params)
