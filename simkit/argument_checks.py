@@ -6,6 +6,7 @@ import math
 import numbers
 import os
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import ArgumentTypeError, ArgumentValueError
@@ -74,7 +75,7 @@ def check_folders(value: Sequence[str | os.PathLike[str]], name: str) -> None:
     """Raise ArgumentTypeError if a value is not a list of paths, and ArgumentValueError if one is no folder."""
     check_paths(value, name)
     for path in value:
-        if not os.path.isdir(path):
+        if not Path(path).is_dir():
             raise wrong_value(name, "paths of folders that exist", os.fspath(path))
 
 

@@ -214,7 +214,10 @@ class Resolver:
         uri = package_uri(uri)
         scheme, separator, rest = uri.partition("://")
         if not separator:
-            return self._search_path(unquote(uri) if not self._exists(uri, relative_to) else uri, relative_to)
+            found, places = self._search_path(unquote(uri) if not self._exists(uri, relative_to) else uri, relative_to)
+            if found is None and places is not None and is_bare_name(uri):  # gz reads a name as model://NAME
+                return first_existing(chain(places, self._all_models(uri, relative_to)))
+            return found, places
         rest = unquote(rest)
         if scheme == "file":
             return self._search_path(rest, relative_to)
@@ -222,15 +225,20 @@ class Resolver:
             return None, []
         if leaves_folder(rest):
             return None, None
-        named = self._model_candidates(rest, relative_to)
         if scheme == "model":
-            packages = self._package_candidates(rest, relative_to)
-            return first_existing(chain(named, packages, self._models_of_packages(rest, relative_to)))
+            return first_existing(self._all_models(rest, relative_to))
+        named = self._model_candidates(rest, relative_to)
         renamed = self._renamed_checkout_candidates(rest, relative_to)
         return first_existing(chain(self._package_candidates(rest, relative_to), named, renamed))
 
     def _exists(self, text: str, relative_to: Path | None) -> bool:
         return relative_to is not None and is_existing(relative_to / text)
+
+    def _all_models(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+        """Yield all candidates for `model://name/...`."""
+        yield from self._model_candidates(rest, relative_to)
+        yield from self._package_candidates(rest, relative_to)
+        yield from self._models_of_packages(rest, relative_to)
 
     def _model_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield candidates for `model://name/...`: below each folder, and in a folder that itself has that name."""

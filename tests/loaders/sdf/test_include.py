@@ -180,3 +180,12 @@ def test_a_missing_include_of_a_bare_model_is_an_error(load, write):
     includes = "<include><uri>model://box</uri></include><include><uri>model://lamp</uri></include>"
     _, found = load(f'<sdf version="1.9"><model name="m">{includes}</model></sdf>', (root,))
     assert [d.code for d in found if d.severity == "error"] == ["SK-URI-001"]
+
+
+def test_a_name_alone_is_the_model_of_that_name(load, write):
+    write("project/models/platform/model.sdf", "<sdf version='1.9'><model name='p'><link name='l'/></model></sdf>")
+    write("project/models/platform/model.config", "<model><sdf version='1.9'>model.sdf</sdf></model>")
+    world = "<sdf version='1.9'><world name='w'><include><uri>platform</uri></include></world></sdf>"
+    scene, found = load(write("project/worlds/w.sdf", world))
+    assert [model.name for model in scene.world.models] == ["p"]
+    assert not [d for d in found if d.code.startswith("SK-URI")]

@@ -10,10 +10,11 @@ from plugin_worlds import GROUND, element, world
 import simkit
 
 TOPIC = "/mobile_base/commands/velocity"
-WHEEL = """<link name='{s}'><pose>0 {y} 0.035 -1.5707963267948966 0 0</pose><inertial><mass>0.1</mass><inertia><ixx>1e-3</ixx>
-<iyy>1e-3</iyy><izz>1e-3</izz></inertia></inertial><collision name='c'><geometry><sphere><radius>0.035</radius></sphere>
-</geometry></collision></link><joint name='wheel_{s}_joint' type='continuous'><parent>base</parent><child>{s}</child>
-<axis><xyz>0 0 1</xyz></axis></joint>"""
+WHEEL = """<link name='{s}'><pose>0 {y} 0.035 -1.5707963267948966 0 0</pose><inertial><mass>0.1</mass>
+<inertia><ixx>1e-3</ixx><iyy>1e-3</iyy><izz>1e-3</izz></inertia></inertial>
+<collision name='c'><geometry><sphere><radius>0.035</radius></sphere></geometry></collision></link>
+<joint name='wheel_{s}_joint' type='continuous'><parent>base</parent><child>{s}</child><axis><xyz>0 0 1</xyz></axis>
+</joint>"""
 
 
 def kobuki(**values: object) -> simkit.Simulation:
@@ -22,8 +23,8 @@ def kobuki(**values: object) -> simkit.Simulation:
         "left_wheel_joint_name": "wheel_left_joint", "right_wheel_joint_name": "wheel_right_joint",
         "wheel_separation": 0.23, "wheel_diameter": 0.07, "torque": 1.0, "velocity_command_timeout": 0.6, **values,
     }  # fmt: skip
-    base = """<link name='base'><pose>0 0 0.05 0 0 0</pose><inertial><pose>0 0 -0.04 0 0 0</pose><mass>2.4</mass><inertia>
-    <ixx>0.02</ixx><iyy>0.02</iyy><izz>0.04</izz></inertia></inertial></link>"""
+    base = """<link name='base'><pose>0 0 0.05 0 0 0</pose><inertial><pose>0 0 -0.04 0 0 0</pose><mass>2.4</mass>
+    <inertia><ixx>0.02</ixx><iyy>0.02</iyy><izz>0.04</izz></inertia></inertial></link>"""
     wheels = "".join(WHEEL.format(s=s, y=y) for s, y in (("left", 0.115), ("right", -0.115)))
     plugin = element("plugin", settings, "name='kobuki' filename='libgazebo_ros_kobuki.so'")
     return simkit.load(world(GROUND, f"<model name='kobuki'>{base}{wheels}{plugin}</model>", step=0.002))
