@@ -268,7 +268,16 @@ def build_model(draft: ModelDraft, static: bool, workspace: Workspace, base: str
         plugins=read_plugins(draft.plugins, draft.scoped),
         where=source.where,
         allow_auto_disable=element.boolean("allow_auto_disable", True),
+        controls=_read_controls(element),
     )
+
+
+def _read_controls(element: Params) -> tuple[Params, ...]:
+    """Return the `<ros2_control>` blocks of a model unchanged; gz_ros2_control reads them as those of a URDF."""
+    blocks = element.all("ros2_control")
+    for block in blocks:
+        block.mark_all_read()
+    return tuple(blocks)
 
 
 def read_frames(parts: Iterable[NamedElement]) -> tuple[SceneFrame, ...]:

@@ -102,7 +102,8 @@ def _impulses(velocities: Vector, limits: Vector, response: Vector) -> tuple[npt
     """
     signs = np.where(velocities < 0.0, -1.0, 1.0)
     active = np.abs(velocities) > limits
-    chosen, impulses = np.flatnonzero(active), np.zeros(0)
+    chosen = np.flatnonzero(active)
+    impulses: Vector = np.zeros(0)
     for _ in range(2 * len(limits) + 1):
         chosen = np.flatnonzero(active)
         wanted = (signs * limits - velocities)[chosen]

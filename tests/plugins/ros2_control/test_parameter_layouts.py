@@ -228,3 +228,20 @@ def test_a_name_without_a_value_is_empty_and_reported_once(tmp_path: Path) -> No
             "j1/position",
             "j2/position",
         ]
+
+
+def test_a_model_in_sdf_has_its_own_hardware(tmp_path: Path) -> None:
+    (tmp_path / "arm.yaml").write_text(OWN_TYPE.replace("[j1, j2]", "[j1]"), encoding="utf-8")
+    model = """<sdf version="1.9"><model name="arm"><link name="l1"><inertial><mass>1</mass><inertia><ixx>0.1</ixx>
+    <iyy>0.1</iyy><izz>0.1</izz></inertia></inertial></link><joint name="j1" type="revolute"><parent>world</parent>
+    <child>l1</child><axis><xyz>0 0 1</xyz><limit><effort>40</effort></limit></axis></joint>
+    <ros2_control name="arm" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+    <joint name="j1"><command_interface name="position"/><state_interface name="position"/></joint></ros2_control>
+    <plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
+    <parameters>arm.yaml</parameters></plugin></model></sdf>"""
+    (tmp_path / "arm.sdf").write_text(model, encoding="utf-8")
+    with simkit.load(tmp_path / "arm.sdf") as sim:
+        assert not [d for d in sim.diagnostics if d.severity != "note"]
+        command(sim, "arm_controller", 0.4)
+        sim.run(2.0)
+        assert position(sim, "j1") == pytest.approx([0.4], abs=1e-3)
