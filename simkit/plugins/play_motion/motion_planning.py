@@ -223,6 +223,7 @@ def course_from(start: Vector, motion: Motion, limits: Vector, approach: Approac
     times = np.array(motion.times)
     is_there = float(np.max(np.abs(points[1] - start))) <= _REACHED_DISTANCE
     needed = SHORTEST_INTERVAL if is_there else approach_time(start, points[1], approach.speed, approach.shortest)
+    needed = min(needed, 2 * _LONGEST_DURATION)  # infinite at a speed near 0; too long in any case
     shifted = np.concatenate([[0.0], times + max(needed - times[0], 0.0)])
     given = np.array(motion.velocities) if motion.velocities else None
     return time_course(points, shifted, given, limits)

@@ -94,3 +94,8 @@ def test_velocities_of_the_file_are_kept_or_all_reduced() -> None:
     assert slowed.velocities[2, 0] <= 0.25 + 1e-9
     assert speeds(slowed).max() <= 0.25 * (1 + 1e-3)
     assert slowed.stretched > 1.9
+
+
+def test_an_approach_at_a_speed_near_zero_has_a_finite_duration() -> None:
+    course = course_from(np.zeros(2), motion((0.1, 0.0), (0.2, 0.3), times=(1.0, 2.5)), LIMITS, Approach(1e-320))
+    assert 2.0**31 < course.duration < 2.0**33
