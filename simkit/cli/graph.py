@@ -11,7 +11,7 @@ from typer import Option
 
 from simkit.cli.run_options import load_options
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
+from simkit.cli.terminal.frame_tree import receive_transforms
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     JsonObject,
@@ -27,6 +27,7 @@ from simkit.errors import InputError
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
+    from simkit.msgs.transform_tree import TransformTree
     from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
 
 _OWN_NODES = frozenset(
@@ -84,11 +85,12 @@ def graph(
         )
 
 
-def _of_simulation(name: str, *, tf: bool) -> tuple[Mapping[str, JsonObject], FrameTree]:
+def _of_simulation(name: str, *, tf: bool) -> tuple[Mapping[str, JsonObject], TransformTree]:
     """Return the nodes and the frames of a running simulation."""
     from simkit.cli.terminal.topic_sources import connect_to_simulation
+    from simkit.msgs.transform_tree import TransformTree
 
-    frames = FrameTree()
+    frames = TransformTree()
     if tf:
         with open_source(name, None) as source:
             for _ in receive_transforms(source, frames, duration=_COLLECTION_TIME):
@@ -98,18 +100,21 @@ def _of_simulation(name: str, *, tf: bool) -> tuple[Mapping[str, JsonObject], Fr
         return client.ask("nodes"), frames
 
 
-def _of_world(source: str, arguments: Mapping[str, object], *, tf: bool) -> tuple[Mapping[str, JsonObject], FrameTree]:
+def _of_world(
+    source: str, arguments: Mapping[str, object], *, tf: bool
+) -> tuple[Mapping[str, JsonObject], TransformTree]:
     """Return the nodes of a world, and with `tf` the frames that it sends at the beginning of a run."""
     from simkit.bridges.live.introspection import node_list
     from simkit.build import load
+    from simkit.msgs.transform_tree import TransformTree
 
-    frames = FrameTree()
+    frames = TransformTree()
     with load(source, **arguments) as sim:  # type: ignore[arg-type]
         print_diagnostics(sim.diagnostics, verbose=False)
         if tf:
             for topic, type_name in sim.topics().items():
                 if type_name == "tf2_msgs/msg/TFMessage" and topic.rpartition("/")[2] in ("tf", "tf_static"):
-                    sim.subscribe(topic, partial(frames.take, static=topic.endswith("tf_static")))
+                    sim.subscribe(topic, partial(frames.take, is_static=topic.endswith("tf_static")))
             sim.run(_FRAMES_AFTER)
             return {}, frames
         return node_list(sim, ()), frames
@@ -159,10 +164,11 @@ def _listed(kind: str, names: Iterable[str]) -> list[str]:
     return lines + ([f"and {more} more {kind}{'s' if more > 1 else ''}"] if more > 0 else [])
 
 
-def frame_graph(frames: FrameTree) -> tuple[list[GraphBox], list[GraphEdge]]:
+def frame_graph(frames: TransformTree) -> tuple[list[GraphBox], list[GraphEdge]]:
     """Return the tree of frames; dashed edges are static transforms."""
     from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
 
-    boxes = [GraphBox(name, "frame", name) for name in frames.names()]
-    edges = [GraphEdge(edge.parent, child, edge.static) for child, edge in sorted(frames.edges.items())]
+    parents = frames.frames()
+    boxes = [GraphBox(name, "frame", name) for name in parents]
+    edges = [GraphEdge(parent, child, frames.is_static(child)) for child, parent in sorted(parents.items()) if parent]
     return boxes, edges

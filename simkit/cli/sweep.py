@@ -47,7 +47,9 @@ def run(
     file: SweepFile,
     output: Annotated[
         Path | None,
-        option("Folder for the results; default: NAME_sweep. The same command continues there.", "DIR", "--output", "-o"),
+        option(
+            "Folder for the results; default: NAME_sweep. The same command continues there.", "DIR", "--output", "-o"
+        ),
     ] = None,
     jobs: Annotated[
         int | None, option("Number of parallel processes; default: one per processor core.", "N", "--jobs", "-n", min=1)
@@ -126,7 +128,9 @@ def _search(
     add_to_report(folder=str(folder), best=best)
     if not quiet:
         values = ", ".join(f"{name} = {value}" for name, value in best["values"].items())
-        stdout_console().print(f"best of {trials} runs: run {best['run']} with {metric} = {best['value']:.6g}: {values}")
+        stdout_console().print(
+            f"best of {trials} runs: run {best['run']} with {metric} = {best['value']:.6g}: {values}"
+        )
     return 0
 
 
@@ -151,7 +155,9 @@ def _shard(text: str) -> tuple[int, int]:
 @report_errors_and_json
 def report(
     folder: Results,
-    output: Annotated[Path | None, option("Page to write; default: DIR/report.html.", "OUT.html", "--output", "-o")] = None,
+    output: Annotated[
+        Path | None, option("Page to write; default: DIR/report.html.", "OUT.html", "--output", "-o")
+    ] = None,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
     """Write a page with histograms, scatter plots, sensitivities and the worst runs of a sweep."""

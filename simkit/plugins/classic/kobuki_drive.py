@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.classic.diff_drive import CommonDiffDriveOptions, GazeboRosDiffDrive, Pair
-from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS
+from simkit.plugins.drives.odometry import COMMAND_TYPES
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joint_states import JOINT_STATE
 from simkit.plugins.options import boolean, number, text

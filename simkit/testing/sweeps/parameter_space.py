@@ -67,7 +67,9 @@ def parameter_space(names: str | Names, description: object) -> ParameterSpace:
     """
     together = (names,) if isinstance(names, str) else tuple(names)
     if hasattr(description, "ppf"):
-        return ParameterSpace(together, _distribution_text(description), convert=lambda u: [float(description.ppf(u[0]))])
+        return ParameterSpace(
+            together, _distribution_text(description), convert=lambda u: [float(description.ppf(u[0]))]
+        )
     if not isinstance(description, Mapping):
         listed = list(description) if isinstance(description, (list, tuple, range)) else None
         if listed is None:
@@ -118,7 +120,9 @@ def plain_value(value: Any) -> Any:
     if isinstance(value, list) and all(isinstance(item, (bool, int, float, str)) for item in value):
         return value
     if not isinstance(value, (bool, int, float, str)):
-        raise InvalidSpace(f"found {shorten(repr(value), 60)}; expected a number, a text, true, false or a list of these")
+        raise InvalidSpace(
+            f"found {shorten(repr(value), 60)}; expected a number, a text, true, false or a list of these"
+        )
     return value
 
 

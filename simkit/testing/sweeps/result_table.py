@@ -64,9 +64,7 @@ def typed_blocks(store: ResultStore) -> Iterator[dict[str, list[Any]]]:
     kinds, columns = column_kinds(store), table_columns(store)
     for block in store.blocks:
         rows = [flat_row(row, columns) for row in store.block_rows(block)]
-        yield {
-            name: [cell_of(kinds[name], row[at]) for row in rows] for at, name in enumerate(columns)
-        }
+        yield {name: [cell_of(kinds[name], row[at]) for row in rows] for at, name in enumerate(columns)}
 
 
 def read_table(folder: str | Path) -> pd.DataFrame:

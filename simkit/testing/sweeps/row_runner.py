@@ -61,7 +61,9 @@ class RowResult:
     def fail(self, error: Exception) -> None:
         """Store an error."""
         self.exit_code = error.exit_code if isinstance(error, SimkitError) else 1
-        self.code = str(getattr(error, "code", "") or "SK-CORE-001") if isinstance(error, SimkitError) else "SK-CORE-001"
+        self.code = (
+            str(getattr(error, "code", "") or "SK-CORE-001") if isinstance(error, SimkitError) else "SK-CORE-001"
+        )
         text = str(error) if isinstance(error, SimkitError) else f"{type(error).__name__}: {error}"
         self.message = (text.strip() or type(error).__name__).splitlines()[0][:_LONGEST_MESSAGE]
 

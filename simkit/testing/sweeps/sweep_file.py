@@ -16,7 +16,17 @@ from simkit.testing.sweeps.metrics import FileMetric
 from simkit.testing.sweeps.sweep import make_design
 from simkit.testing.sweeps.sweep_spec import Keep, Metric, SweepSpec, sequence_of_seeds
 
-SWEEP_KEYS: Final = ("parameters", "correlated", "seeds", "samples", "sampling", "design_seed", "metrics", "keep", "bags")
+SWEEP_KEYS: Final = (
+    "parameters",
+    "correlated",
+    "seeds",
+    "samples",
+    "sampling",
+    "design_seed",
+    "metrics",
+    "keep",
+    "bags",
+)
 """Keys of a sweep file beside those of a scenario file."""
 _CORRELATED_KEYS: Final = ("parameters", "mean", "deviation", "correlation")
 
@@ -82,7 +92,9 @@ class _SweepReader(ValueReader):
             message = line.removeprefix(error.code).strip()
             name = message.partition("'")[2].partition("'")[0] if message.startswith("parameter ") else None
             keys = (key,) if name is None else (key, name)
-            self._document.error(error.code, message, *(keys if not message.startswith(("samples", "sampling")) else ()))
+            self._document.error(
+                error.code, message, *(keys if not message.startswith(("samples", "sampling")) else ())
+            )
 
     def _correlated(self) -> dict[tuple[str, ...], Any]:
         listed = self._fields.get("correlated", [])

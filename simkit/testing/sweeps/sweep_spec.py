@@ -84,7 +84,9 @@ class SweepSpec:
         _, variables = split_values(row.values)
         if not variables:
             return self.metrics
-        return {name: fill_template(one, variables) if isinstance(one, str) else one for name, one in self.metrics.items()}
+        return {
+            name: fill_template(one, variables) if isinstance(one, str) else one for name, one in self.metrics.items()
+        }
 
 
 def split_values(values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:

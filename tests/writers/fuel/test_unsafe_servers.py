@@ -58,7 +58,11 @@ def test_a_dangerous_archive_is_refused_and_nothing_is_stored(fuel: Fuel, name: 
     assert result.exit_code == 2
     assert "w.sdf:2: error SK-FETCH-004" in result.output and reason in result.output, result.output
     assert {p.relative_to("cache").parts[3] for p in stored(fuel)} == {"good"}
-    assert not list(Path("cache/.simkit-fetch").iterdir()) and not list(Path.cwd().rglob("outside*")) and not Path("../outside").exists()
+    assert (
+        not list(Path("cache/.simkit-fetch").iterdir())
+        and not list(Path.cwd().rglob("outside*"))
+        and not Path("../outside").exists()
+    )
 
 
 def test_a_broken_download_continues_in_the_same_run(fuel: Fuel) -> None:
