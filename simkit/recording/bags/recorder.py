@@ -160,9 +160,9 @@ class Recorder:
             return
         types, data = contents[::2], contents[1::2]
         try:
-            found = [bag.channels.get(key) for key in zip(topics, types, strict=True)]
-            if None not in found and time_of(min(ticks)) // _SECOND == time_of(max(ticks)) // _SECOND:
-                bag.write_all(found, data, [time_of(tick) for tick in ticks])
+            known = [found for found in map(bag.channels.get, zip(topics, types, strict=True)) if found is not None]
+            if len(known) == len(data) and time_of(min(ticks)) // _SECOND == time_of(max(ticks)) // _SECOND:
+                bag.write_all(known, data, [time_of(tick) for tick in ticks])
                 return
             for topic, tick, type_name, content in zip(topics, ticks, types, data, strict=True):
                 channel = bag.channels.get((topic, type_name))
