@@ -107,7 +107,7 @@ def _impulses(velocities: Vector, limits: Vector, response: Vector) -> tuple[npt
     for _ in range(2 * len(limits) + 1):
         chosen = np.flatnonzero(active)
         wanted = (signs * limits - velocities)[chosen]
-        impulses = np.linalg.solve(response[np.ix_(chosen, chosen)], wanted)
+        impulses = np.asarray(np.linalg.solve(response[np.ix_(chosen, chosen)], wanted), dtype=np.float64)
         outward = impulses * signs[chosen]
         if outward.max() > 0.0:  # another joint's impulse already slows this joint
             active[chosen[outward.argmax()]] = False
