@@ -81,6 +81,7 @@ MODEL = f"""<model name="m" canonical_link="a" placement_frame="">{POSE}<static>
   {joint("gears", "gearbox", "<gearbox_ratio>2</gearbox_ratio><gearbox_reference_body>a</gearbox_reference_body>")}
   <joint name="old" type="fixed"><parent link="a"/><child link="b"/></joint>
   <frame name="f" attached_to="a">{POSE}</frame><model name="n"><link name="l"/></model>{PLUGIN}
+  <ros2_control name="h" type="system"/>
   <include merge="false"><uri>model://box</uri><name>k</name>{POSE}<static>0</static>
   <placement_frame>l</placement_frame>{PLUGIN}<experimental:params/></include></model>"""
 WORLD = f"""<sdf version="1.6"><world name="w">{MODEL}{LIGHT}{PLUGIN}<frame name="g" attached_to="world">{POSE}</frame>
