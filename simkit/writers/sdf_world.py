@@ -124,6 +124,7 @@ class _Writer:
             _world_joint(model, canonical) if model.base == "fixed" and canonical else None,
             *(self.model(nested, here) for nested in model.models),
             *(parts.plugin(p) for p in model.plugins),
+            *model.controls,
         ]
         return element("model", children, **attributes)
 
@@ -213,7 +214,6 @@ class _Writer:
     def _report_lost(self, model: SceneModel) -> None:
         lost = {
             "transmissions": len(model.transmissions),
-            "<ros2_control> blocks": len(model.controls),
             "<safety_controller>": sum(j.safety is not None for j in model.joints),
             "<calibration>": sum(j.calibration is not None for j in model.joints),
         }

@@ -7,6 +7,9 @@ from pathlib import Path
 import pytest
 
 import simkit
+from simkit.diagnostics import Diagnostics
+from simkit.loaders import Resolver, load_scene
+from simkit.writers.sdf_world import sdf_text
 from tests.plugins.ros2_control.control_robots import arm, command, files, opened, position, reported_messages, states
 
 FORWARD = "position_controllers/JointGroupPositionController"
@@ -245,3 +248,7 @@ def test_a_model_in_sdf_has_its_own_hardware(tmp_path: Path) -> None:
         command(sim, "arm_controller", 0.4)
         sim.run(2.0)
         assert position(sim, "j1") == pytest.approx([0.4], abs=1e-3)
+    scene = load_scene(tmp_path / "arm.sdf", resolver=Resolver(), diagnostics=Diagnostics())
+    (tmp_path / "written.sdf").write_text(sdf_text(scene, Diagnostics()), encoding="utf-8")
+    with simkit.load(tmp_path / "written.sdf") as again:
+        assert states(again) == {"arm_controller": "active"}
