@@ -2,6 +2,7 @@
 import * as T from 'three';
 import { readPose } from './world.js';
 
+const MOST_CLOUDS = 4;
 const MOST_FANS = 8; // scans that are drawn at once; with more lidars, those of the selected robot
 const CAMERAS = /camera|depth|rgbd/;
 const m = new T.Matrix4(), local = new T.Matrix4();
@@ -58,7 +59,7 @@ export class Sensors {
     this.frusta.visible = layers.on.frusta;
     connection.want('lidar', layers.on.lidar && shown.length ? shown.map(sensor => sensor.name) : null);
     connection.want('ranges', this.cones.visible && this.sonars.length ? this.sonars.map(sensor => sensor.name) : null);
-    const topics = layers.on.clouds ? this.app.cloudTopics ?? [] : [];
+    const topics = layers.on.clouds ? this.app.scene.clouds.slice(0, MOST_CLOUDS) : [];
     for (const topic of topics) connection.want(`cloud:${topic}`, {});
     for (const [topic, object] of this.clouds) {
       if (!topics.includes(topic)) { this.app.stage.helpers.remove(object); this.clouds.delete(topic); }
@@ -97,7 +98,11 @@ export class Sensors {
     this.app.stage.invalidate();
   }
 
-  drawCloud({ kind, arrays: { points, colours } }) {
+  drawCloud({ kind, error, arrays: { points, colours } }) {
+    if (error) {
+      this.app.report(`${kind.slice(6)}: ${error}`);
+      return;
+    }
     const topic = kind.slice(6);
     if (!this.clouds.has(topic)) {
       const object = dynamic(new T.PointsMaterial({ size: 2.5, sizeAttenuation: false, vertexColors: true, fog: false }), T.Points);

@@ -147,10 +147,14 @@ class LiveView:
             if stream is not None:
                 stream.close()
         for name, options in wants.items():
-            if name not in self._streams:
-                self._streams[name] = make_stream(self.sim, name)
-            stream = self._streams[name]
-            packet = None if stream is None else stream.packet(options)
+            try:
+                if name not in self._streams:
+                    self._streams[name] = make_stream(self.sim, name)
+                stream = self._streams[name]
+                packet = None if stream is None else stream.packet(options)
+            except SimkitError as error:  # no renderer, or a message that is invalid: the run goes on without it
+                self._streams[name] = None
+                packet = make_packet({"kind": name, "error": str(error)}, {})
             if packet is not None:
                 self.server.send(name, packet)
 

@@ -184,8 +184,16 @@ def _spawn(call: Call) -> object:
 
 def _move(call: Call) -> None:
     """Move a model to `position` [m] and `quaternion` (w, x, y, z)."""
-    model = call.sim.model(call.text("name"))
-    model.set_pose(Pose(call.numbers("position", 3), call.numbers("quaternion", 4)))
+    sim = call.sim
+    model = sim.model(call.text("name"))
+    position, quaternion = call.numbers("position", 3), call.numbers("quaternion", 4)
+    pose = {
+        "position": dict(zip("xyz", position, strict=True)),
+        "orientation": dict(zip("wxyz", quaternion, strict=True)),
+    }
+    answer = sim.call(f"/world/{sim.world.name}/set_pose", {"entity": {"name": model.scoped}, "pose": pose})
+    if not answer.success:
+        raise RequestFailed(f"{model.scoped!r} cannot be moved")
 
 
 def _remove(call: Call) -> None:

@@ -21,6 +21,7 @@ _JPEG_QUALITY: Final = 90
 _ROLE: Final = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
 _FREE, _BALL = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
 _UNSET = (0.5, 0.5, 0.5, 1.0)  # colour of a geom that has none of its own
+_CLOUD: Final = "sensor_msgs/msg/PointCloud2"
 _MESH, _HEIGHTS = int(mujoco.mjtGeom.mjGEOM_MESH), int(mujoco.mjtGeom.mjGEOM_HFIELD)
 
 Packed = dict[str, npt.NDArray[Any]]
@@ -46,6 +47,7 @@ def make_scene_packet(sim: Simulation, revision: int, extra: Head) -> bytes:
         "models": [_model_dict(found) for found in sim.models.values()],
         "joints": _joints(sim),
         "surroundings": _surroundings(sim),
+        "clouds": [topic for topic, type_name in sim.topics().items() if type_name == _CLOUD],
         "frames": _frames(sim),
         **_geoms(sim, arrays),
         **_meshes(model, arrays),

@@ -83,6 +83,19 @@ def test_a_lidar_is_sent_only_to_the_page_that_asks_and_lies_on_the_wall(stage: 
     assert stage.sim.communication.bus.subscriptions() == []
 
 
+def test_a_cloud_is_read_only_while_a_page_shows_it(stage: Stage) -> None:
+    page = stage.page()
+    assert stage.scene()[0]["clouds"] == ["/scan/points"]
+    page.want(**{"cloud:/scan/points": {}, "cloud:not a topic": {}})
+    page.until(lambda: len(stage.sim.communication.bus.subscriptions()) > 0)
+    stage.sim.run(0.1)
+    page.until(lambda: "points" in page.packets.get("cloud:/scan/points", ({}, {}))[1])
+    points = page.packets["cloud:/scan/points"][1]["points"]
+    assert points[:, 0] == pytest.approx([1.95] * 9, abs=0.01)
+    page.want()
+    page.until(lambda: len(stage.sim.communication.bus.subscriptions()) == 0)
+
+
 def test_a_spawned_and_a_removed_model_change_the_scene(stage: Stage) -> None:
     page = stage.page()
     box = "<geometry><box><size>1 1 1</size></box></geometry>"
