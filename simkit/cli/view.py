@@ -41,7 +41,10 @@ def view(
     html: Annotated[Path | None, option("HTML file to write instead: a bag that plays without simkit.", "OUT")] = None,
     verbose: Annotated[bool, Option("--verbose", "-v", help="Show every note instead of their number.")] = False,
 ) -> int:
-    """Show a world that is paused, a robot with sliders, a running simulation, or a bag in a browser."""
+    """Show a world, a robot, a running simulation or a bag in a browser.
+
+    A world and a robot are paused; a robot has a slider for each joint.
+    """
     page = page_options.PageOptions(port, host or "127.0.0.1", not no_open)
     if is_bag(Path(target)) or html is not None:
         from simkit.cli.bag_view import show_bag

@@ -179,7 +179,7 @@ export class Stage {
   }
 
   /** Looks at a box from a direction, so that all its corners are in the picture. */
-  fit(box, direction, fill = 0.86) {
+  fit(box, direction, fill = 0.94) {
     const centre = box.getCenter(new T.Vector3());
     const ahead = direction.clone().normalize();
     const distance = this.fitDistance(box, ahead, fill);

@@ -38,7 +38,7 @@ export class Views {
       const target = robots.getCenter(new T.Vector3()), ray = new T.Raycaster();
       const names = new Set(this.app.robots.map(robot => robot.name));
       const sees = DIRECTIONS.find(values => {
-        const ahead = new T.Vector3(...values).normalize(), distance = stage.fitDistance(box, ahead, 0.86);
+        const ahead = new T.Vector3(...values).normalize(), distance = stage.fitDistance(box, ahead, 0.94);
         const eye = box.getCenter(new T.Vector3()).addScaledVector(ahead, -distance);
         ray.set(eye, target.clone().sub(eye).normalize());
         ray.camera = stage.camera;

@@ -62,7 +62,12 @@ export class World {
     this.moving = moving;
     this.isMoving = new Uint8Array(scene.bodies.length);
     for (const body of moving) this.isMoving[body] = 1;
-    this.textures = await this.loadTextures(scene);
+    const textures = await this.loadTextures(scene);
+    for (const texture of this.textures ?? []) texture?.dispose();
+    const units = new Set(Object.values(this.unit));
+    for (const geometry of this.geometries?.values() ?? []) if (geometry && !units.has(geometry)) geometry.dispose();
+    this.textures = textures;
+    this.geometries = new Map();
     this.rebuild();
   }
 
@@ -75,7 +80,6 @@ export class World {
       }
     }
     this.shapes = [];
-    this.geometries = new Map();
     this.groupGeoms();
     this.makeSkins();
     this.place(true);
@@ -294,10 +298,12 @@ export class World {
   /** Applies changed colours, fixed poses and lights. */
   setAppearance(arrays) {
     if (arrays.geom_rgba.length !== this.arrays.geom_rgba.length) return;
+    const isSame = name => this.arrays[name].every((value, i) => value === arrays[name][i]);
+    const hasShapes = !['geom_rgba', 'geom_pos', 'geom_quat'].every(isSame); // a lamp on a robot moves all the time
     Object.assign(this.arrays, arrays);
     this.stage.lightArrays = this.arrays;
     this.stage.makeLights();
-    this.rebuild();
+    if (hasShapes) this.rebuild();
     this.stage.invalidate();
   }
 

@@ -231,6 +231,18 @@ def test_a_spawned_model_appears_and_a_click_in_the_tree_selects(session: Callab
     assert "yaw" in found.page.locator("#selection").inner_text()
 
 
+def test_a_colour_and_a_light_change_in_the_scene(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("app.state?.tick > 0")
+    number = found.get("app.stage.lights.children.length")
+    found.sim.visual("wall::l::v").set_colour(1.0, 0.0, 0.0)
+    found.until("app.world.arrays.geom_rgba.join().includes('1,0,0,1')")
+    found.sim.light("sun").switch(False)
+    found.until("app.world.arrays.light_active[0] === 0")
+    assert found.get("app.stage.lights.children.length") <= number
+    assert found.errors == []
+
+
 def test_sliders_move_joints_of_a_paused_world(session: Callable[..., Session]) -> None:
     found = session()
     found.until("document.querySelector('[data-joint]') !== null")
