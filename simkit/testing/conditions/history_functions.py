@@ -1,7 +1,7 @@
 """Functions of the whole run so far: extremes, averages, times, path lengths and collisions.
 
-An expression whose argument depends only on one topic is evaluated when the topic receives a message. Other arguments
-are evaluated after each step, and positions of a path at 100 Hz.
+An argument that depends only on one topic is evaluated when the topic receives a message. Other arguments are evaluated
+after each step, and the positions of a path at 100 Hz.
 """
 
 from __future__ import annotations
@@ -14,15 +14,16 @@ import numpy as np
 
 from simkit.pose import Vector
 from simkit.testing.conditions import value_types as kinds
-from simkit.testing.conditions.bound_expression import BoundNode, ExpressionBinder, Function, quoted_argument
+from simkit.testing.conditions.bound_expression import BoundNode, ExpressionBinder, Function
 from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.syntax_tree import Call, UndecidedValue
+from simkit.testing.conditions.world_functions import contact_query, entity_argument
 
 if TYPE_CHECKING:
     from simkit.testing.conditions.world_view import Entity, WorldView
 
 _PATH_RATE: Final = 100.0
-"""Rate at which a path is sampled [Hz]. At 1 m/s, a step of the path has 1 cm, and the noise of contacts is left out."""
+"""Rate at which a path is sampled [Hz]. At 1 m/s, a piece of the path has 1 cm; noise of contacts is left out."""
 
 _NOTHING: Final = object()
 
@@ -222,44 +223,39 @@ class _Collisions(HistoryValue):
         return float(self._count)
 
 
-def _of_number(kind: type[HistoryValue], usage: str) -> Function:
+def _bind_observed(kind: type[HistoryValue], usage: str, *, is_condition: bool = False) -> Function:
+    """Return a function of the expression language that observes a number, or a condition."""
+
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
-        part = binder.number(call.arguments[0])
-        return BoundNode(call, kinds.NUMBER, binder.view.add_history(kind(binder.view, part)).read)
+        part = (binder.truth if is_condition else binder.number)(call.arguments[0])
+        return _observed(binder, call, kind(binder.view, part))
 
     return Function(usage, 1, 1, make)
 
 
-def _of_truth(kind: type[HistoryValue], usage: str) -> Function:
-    def make(binder: ExpressionBinder, call: Call) -> BoundNode:
-        part = binder.truth(call.arguments[0])
-        return BoundNode(call, kinds.NUMBER, binder.view.add_history(kind(binder.view, part)).read)
-
-    return Function(usage, 1, 1, make)
+def _observed(binder: ExpressionBinder, call: Call, value: HistoryValue) -> BoundNode:
+    """Bind a call to an observed value."""
+    binder.view.add_history(value)
+    return BoundNode(call, kinds.NUMBER, value.read)
 
 
 def _path_length(binder: ExpressionBinder, call: Call) -> BoundNode:
-    node = quoted_argument(binder, call, 0, "the name of a model or a link")
-    entity = binder.view.entity(node.value, binder.source, node.span)
-    return BoundNode(call, kinds.NUMBER, binder.view.add_history(_PathLength(binder.view, entity)).read)
+    entity = entity_argument(binder, call, 0)
+    return _observed(binder, call, _PathLength(binder.view, entity))
 
 
 def _collisions(binder: ExpressionBinder, call: Call) -> BoundNode:
-    nodes = [
-        quoted_argument(binder, call, index, "the name of a model or a link") for index in range(len(call.arguments))
-    ]
-    names = [binder.view.scoped_name(node.value, binder.source, node.span) for node in nodes]
-    touching = ContactQuery(binder.view.sim, *names)
-    return BoundNode(call, kinds.NUMBER, binder.view.add_history(_Collisions(binder.view, touching)).read)
+    touching = contact_query(binder, call)
+    return _observed(binder, call, _Collisions(binder.view, touching))
 
 
 HISTORY_FUNCTIONS: Final[dict[str, Function]] = {
-    "lowest": _of_number(_Extreme, "lowest(number)"),
-    "highest": _of_number(_Highest, "highest(number)"),
-    "average": _of_number(_Average, "average(number)"),
-    "integral": _of_number(_Integral, "integral(number)"),
-    "first_time": _of_truth(_FirstTime, "first_time(condition)"),
-    "time_true": _of_truth(_TimeTrue, "time_true(condition)"),
+    "lowest": _bind_observed(_Extreme, "lowest(number)"),
+    "highest": _bind_observed(_Highest, "highest(number)"),
+    "average": _bind_observed(_Average, "average(number)"),
+    "integral": _bind_observed(_Integral, "integral(number)"),
+    "first_time": _bind_observed(_FirstTime, "first_time(condition)", is_condition=True),
+    "time_true": _bind_observed(_TimeTrue, "time_true(condition)", is_condition=True),
     "path_length": Function("path_length('model or link')", 1, 1, _path_length),
     "collisions": Function("collisions('model or link'[, 'another'])", 1, 2, _collisions),
 }

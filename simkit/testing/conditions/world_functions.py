@@ -170,14 +170,15 @@ def _age(binder: ExpressionBinder, call: Call) -> BoundNode:
     return BoundNode(call, kinds.NUMBER, value)
 
 
-def _contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
+def contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
+    """Return the contacts of the models, links or collisions that the arguments name."""
     nodes = [quoted_argument(binder, call, index, _ENTITY_ARGUMENT) for index in range(len(call.arguments))]
     names = [binder.view.scoped_name(node.value, binder.source, node.span) for node in nodes]
     return ContactQuery(binder.view.sim, *names)
 
 
 def _contact(binder: ExpressionBinder, call: Call) -> BoundNode:
-    touching = _contact_query(binder, call)
+    touching = contact_query(binder, call)
 
     def contact_details() -> str:
         found = touching.describe()
@@ -187,12 +188,12 @@ def _contact(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 
 def _contacts(binder: ExpressionBinder, call: Call) -> BoundNode:
-    touching = _contact_query(binder, call)
+    touching = contact_query(binder, call)
     return BoundNode(call, kinds.NUMBER, lambda: float(len(touching.now())))
 
 
 def _contact_force(binder: ExpressionBinder, call: Call) -> BoundNode:
-    return BoundNode(call, kinds.NUMBER, _contact_query(binder, call).force)
+    return BoundNode(call, kinds.NUMBER, contact_query(binder, call).force)
 
 
 WORLD_FUNCTIONS: Final[dict[str, Function]] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
-from typing import Any, Literal, Protocol, TypeVar
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
@@ -176,9 +176,6 @@ class History(Protocol):
         """Add the present state."""
 
 
-HistoryT = TypeVar("HistoryT", bound=History)
-
-
 class WorldView:
     """View of a simulation for expressions.
 
@@ -269,12 +266,11 @@ class WorldView:
             counter.open()
         return counter
 
-    def add_history(self, history: HistoryT) -> HistoryT:
-        """Observe a value of the whole run between `open` and `close`; return it."""
+    def add_history(self, history: History) -> None:
+        """Observe a value of the whole run between `open` and `close`."""
         self._histories.append(history)
         if self._is_open:
             self._open_history(history)
-        return history
 
     def _open_history(self, history: History) -> None:
         """Observe the present state, and later states with the messages of a topic or at a rate."""
