@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from simkit.argument_checks import check_function, checked_integer
 from simkit.errors import InputError, SimulationDiverged
@@ -35,6 +36,9 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.scheduler import Scheduler
     from simkit.scene import SceneWorld
+
+
+_ASYNC_SLICE: Final = 0.02  # [s] wall time in which `run_async` does not return to the event loop
 
 
 class Page(Protocol):
@@ -126,6 +130,20 @@ class Simulation(ScriptGraph, InProcess):
         If a hook restores an earlier time, the number of steps stays the same.
         """
         self._advance(self.tick + self.engine.clock.checked_ticks(duration, "duration"))
+
+    async def run_async(self, duration: float) -> None:
+        """Advance like `run`; between short slices of wall time, other tasks of the event loop continue."""
+        from asyncio import sleep
+
+        engine, slice_ = self.engine, 1
+        end = engine.steps + engine.clock.checked_ticks(duration, "duration")
+        while engine.steps < end:
+            begun = time.perf_counter()
+            slice_ = min(slice_, end - engine.steps)
+            self._advance(self.tick + slice_)
+            share = _ASYNC_SLICE / max(time.perf_counter() - begun, 1e-6)
+            slice_ = max(1, int(slice_ * min(share, 2.0)))
+            await sleep(0)
 
     def run_until(self, condition: Callable[[Simulation], bool], timeout: float) -> bool:
         """Step until `condition(sim)` holds after a step; return False if `timeout` [s] passed first."""
