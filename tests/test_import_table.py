@@ -63,8 +63,10 @@ FRONT = {"__init__", "__main__"}
 HEAVY = {
     "action_msgs": "only the Python of ROS has it",
     "av": "optional: the extra `video`",
+    "asyncio": "0.03 s; few scripts use it",
     "cbor2": "optional: the extra `rosbridge`",
     "coacd": "optional: the extra `decompose`",
+    "cloudpickle": "optional: the extra `experiments`",
     "cv2": "0.1 s",
     "embreex": "optional: has no wheels for some machines",
     "concurrent": "0.02 s; few commands start processes",
@@ -81,12 +83,14 @@ HEAVY = {
     "mcap": "only bags need it",
     "mujoco": "0.23 s, and looks for a renderer",
     "numpy": "0.11 s; the pytest plugin and `--help` do without",
+    "optuna": "optional: the extra `search`",
     "OpenGL": "needs a renderer",
     "PIL": "only pictures need it",
     "pandas": "optional: the extra `pandas`",
     "pvlib": "optional: the extra `sun`",
     "pyarrow": "optional: the extra `parquet`",
     "pytest": "only tests have it",
+    "ray": "optional: the extra `cluster`",
     "rclpy": "only the Python of ROS has it",
     "rich": "0.05 s",
     "rosbags": "0.04 s; only messages need it",
@@ -221,7 +225,6 @@ def test_a_room_imports_only_the_rooms_that_it_may_use(room: str) -> None:
 
 FRONT_USERS = {
     ("simkit.pytest_plugin", "simkit"): "tests load worlds as users do",
-    ("simkit.testing.gz_fixture", "simkit"): "TestFixture loads a world as a user's test does",
 }
 """Modules that use simkit as its users do, with the reason."""
 

@@ -30,6 +30,7 @@ COMMANDS = {
     "fetch": "Download the models that a world names on Fuel servers.",
     "bench": "Compare the speed of a world with bare MuJoCo.",
     "grade": "Run an exercise with submitted plugins and print the results.",
+    "sweep": "Run a world with many parameters and seeds, and report the results.",
     "doctor": "Check the installation and print a remedy for each problem.",
     "golden": "Record and compare golden runs (reference sensor outputs).",
     "bundle": "Run a world or scenario and pack it into a repeatable bundle.",

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, ClassVar, Final
 
-import simkit
+from simkit.build import load
 from simkit.plugins.gz_python import transport
 from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager, manager_of
 from simkit.plugins.gz_python.sim.system_hub import EventManager, UpdateInfo, update_paused
@@ -85,7 +85,7 @@ class Server:
     def __init__(self, config: ServerConfig | None = None, callbacks: _Callbacks | None = None) -> None:
         chosen = config if config is not None else ServerConfig()
         self._callbacks = callbacks if callbacks is not None else _Callbacks()
-        self.simulation = simkit.load(chosen._source, seed=chosen._seed, plugins=[self._callbacks])
+        self.simulation = load(chosen._source, seed=chosen._seed, plugins=[self._callbacks])
         self._thread: threading.Thread | None = None
         self._stops = False
         transport.adopt_early_nodes(self.simulation)

@@ -5,4 +5,5 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent / "golden"))
+for folder in ("golden", "sweeps"):
+    sys.path.insert(0, str(Path(__file__).parent / folder))

@@ -31,6 +31,7 @@ class PageChart:
         mark: x value of a vertical line.
         is_log: True for two logarithmic axes; values of zero or less are gaps.
         caption: text below the chart.
+        dots: series of which each pair of finite numbers is a dot, with its CSS class; "times" are the x values.
     """
 
     lines: Sequence[tuple[Series, str]]
@@ -41,14 +42,16 @@ class PageChart:
     mark: float | None = None
     is_log: bool = False
     caption: str = ""
+    dots: Sequence[tuple[Series, str]] = ()
 
 
 def page_chart_svg(chart: PageChart) -> str:
     """Return a chart as an SVG element."""
     lines = [(_logarithm(series) if chart.is_log else series, role) for series, role in chart.lines]
+    dots = [(_logarithm(series) if chart.is_log else series, role) for series, role in chart.dots]
     bottom, right = chart.height - _BOTTOM, WIDTH - _RIGHT
-    x = axis_over([series.times for series, _ in lines], _LEFT, right, margin=0.0, is_log=chart.is_log)
-    y = axis_over([series.values for series, _ in lines], bottom, _TOP, margin=0.06, is_log=chart.is_log)
+    x = axis_over([series.times for series, _ in (*lines, *dots)], _LEFT, right, margin=0.0, is_log=chart.is_log)
+    y = axis_over([series.values for series, _ in (*lines, *dots)], bottom, _TOP, margin=0.06, is_log=chart.is_log)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {chart.height}" role="img" class="chart">',
         f"<title>{_text(chart.title)}</title>",
@@ -57,6 +60,7 @@ def page_chart_svg(chart: PageChart) -> str:
     if chart.mark is not None and x.low <= chart.mark <= x.high:
         parts.append(f'<path class="mark" d="M{float(x.at(np.array(chart.mark))):.1f} {_TOP}V{bottom}"/>')
     parts += [f'<path class="line {role}" d="{path}"/>' for series, role in lines if (path := _path(series, x, y))]
+    parts += [f'<path class="{role}" d="{_dots(series, x, y)}"/>' for series, role in dots]
     middle, upright = (_LEFT + right) / 2, (bottom + _TOP) / 2
     parts.append(f'<text x="{middle:.0f}" y="{chart.height - 4}" class="middle">{_text(chart.x_label)}</text>')
     turned = f'transform="translate(11 {upright:.0f}) rotate(-90)"'
@@ -90,6 +94,13 @@ def _path(series: Series, x: Axis, y: Axis) -> str:
         points = thin_line(np.column_stack((px, py)), 0.5)
         found.append(path_data(points) + ("h.01" if len(points) == 1 else ""))
     return "".join(found)
+
+
+def _dots(series: Series, x: Axis, y: Axis) -> str:
+    """Return the commands of an SVG path with a dot for each pair of finite numbers."""
+    known = np.isfinite(series.times) & np.isfinite(series.values)
+    across, up = x.at(series.times[known]), y.at(series.values[known])
+    return "".join(f"M{px:.1f} {py:.1f}h.01" for px, py in zip(across.tolist(), up.tolist(), strict=True))
 
 
 def _logarithm(series: Series) -> Series:

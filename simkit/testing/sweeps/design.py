@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any, Final, Literal
+from functools import cache, cached_property, lru_cache
+from typing import Any, Final, Literal
+
+import numpy as np
+import numpy.typing as npt
 
 from simkit.testing.sweeps.parameter_space import ParameterSpace
 
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
-    Points = npt.NDArray[np.float64]
+Points = npt.NDArray[np.float64]
 
 Sampling = Literal["random", "sobol", "latin_hypercube", "saltelli"]
 """Placement of the samples of distributions.
@@ -135,7 +134,7 @@ class Design:
         return map(self.row, runs)
 
     def _sampled(self, point: int) -> dict[str, Any]:
-        unit = self._unit_point(point)
+        unit: list[float] = self._unit_point(point).tolist()
         values: dict[str, Any] = {}
         at = 0
         for space in self.distributions:
@@ -147,44 +146,34 @@ class Design:
         """Return a point between 0 and 1, shape (dimensions,)."""
         count, dimensions = self.points, self.dimensions
         if self.sampling == "latin_hypercube":
-            return _latin_hypercube(count, dimensions, self.design_seed)[point]
+            points: Points = _latin_hypercube(count, dimensions, self.design_seed)
+            return np.asarray(points[point])
         if self.sampling != "saltelli":
             make = _sobol if self.sampling == "sobol" else _random
-            return make(dimensions, self.design_seed, point // _CHUNK)[point % _CHUNK]
+            return np.asarray(make(dimensions, self.design_seed, point // _CHUNK)[point % _CHUNK])
         matrix, at = divmod(point, count // (dimensions + 2))
         both = _sobol(2 * dimensions, self.design_seed, at // _CHUNK)[at % _CHUNK]
         mixed = both[dimensions:].copy() if matrix == 1 else both[:dimensions].copy()
         if matrix > 1:  # the point of matrix A with one coordinate of matrix B
             mixed[matrix - 2] = both[dimensions + matrix - 2]
-        return mixed
+        return np.asarray(mixed)
 
 
 @cache
 def _latin_hypercube(count: int, dimensions: int, seed: int) -> Points:
-    import numpy as np
     from scipy.stats import qmc
 
     points: Points = qmc.LatinHypercube(dimensions, seed=np.random.default_rng(seed)).random(count)
     return points
 
 
-def _chunked(make: Any) -> Any:
-    """Keep the last chunks of a function of dimensions, seed and chunk."""
-    from functools import lru_cache
-
-    return lru_cache(maxsize=8)(make)
-
-
-@_chunked
+@lru_cache(maxsize=8)
 def _random(dimensions: int, seed: int, chunk: int) -> Points:
-    import numpy as np
-
     return np.random.default_rng((seed, chunk)).random((_CHUNK, dimensions))
 
 
-@_chunked
+@lru_cache(maxsize=8)
 def _sobol(dimensions: int, seed: int, chunk: int) -> Points:
-    import numpy as np
     from scipy.stats import qmc
 
     sequence = qmc.Sobol(dimensions, scramble=True, seed=np.random.default_rng(seed))

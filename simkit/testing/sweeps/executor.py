@@ -23,7 +23,7 @@ class SweepTask:
 
     Attributes:
         row: run to make.
-        keep: folder for the bundle and the bag of the run; None to run without them.
+        keep: bundle to write; None to run without them.
     """
 
     row: SweepRow

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable, Generator, Mapping
+from functools import partial
 from importlib import import_module, util
 from pathlib import Path
 from types import TracebackType
@@ -67,7 +68,7 @@ class RunMetrics:
             for name, metric in self._metrics.items():
                 if inspect.isgeneratorfunction(metric):
                     generator = metric(self._sim)
-                    self._call(name, lambda generator=generator: next(generator))
+                    self._call(name, partial(next, generator))
                     self._generators[name] = generator
         except BaseException:
             self.__exit__(None, None, None)
@@ -99,8 +100,7 @@ class RunMetrics:
             except UndecidedValue:
                 return math.nan
         if name in self._generators:
-            generator = self._generators[name]
-            return _plain(name, self._call(name, lambda: next(generator)))
+            return _plain(name, self._call(name, partial(next, self._generators[name])))
         return _plain(name, self._call(name, lambda: metric(self._sim)))
 
     def _call(self, name: str, function: Callable[[], Any]) -> Any:
@@ -186,12 +186,12 @@ class FileMetric:
 
     def __init__(self, text: str, folder: Path) -> None:
         self.__qualname__, self._folder = text, folder
-        self._function = metric_function(text, folder)
-        self.__wrapped__ = self._function  # tells `inspect` whether it is a generator function
+        self.function = metric_function(text, folder)
+        self.__wrapped__ = self.function  # tells `inspect` whether it is a generator function
 
     def __call__(self, sim: Simulation) -> Any:
         """Return the value of the metric."""
-        return self._function(sim)
+        return self.function(sim)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return FileMetric, (self.__qualname__, self._folder)

@@ -20,7 +20,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from statistics import NormalDist
 from typing import Any, Final
+
+import numpy as np
 
 from simkit.diagnostics import did_you_mean, shorten
 from simkit.run_spec import JsonObject
@@ -29,7 +32,7 @@ Names = tuple[str, ...]
 """Names of the parameters of a space; several for a correlated space."""
 
 _EDGE: Final = 2.0**-54
-"""Distance from 0 and 1 of the numbers that an inverse distribution receives, because normal values are infinite there."""
+"""Smallest distance from 0 and 1 of the numbers for an inverse distribution; at 0, a normal value is infinite."""
 
 
 class InvalidSpace(ValueError):
@@ -200,8 +203,6 @@ def _choice(names: Names, given: JsonObject, value: object) -> ParameterSpace:
 
 def _normal(names: Names, given: JsonObject, value: object) -> ParameterSpace:
     """Return a normal distribution: of one parameter, or of several with a matrix of correlations."""
-    from statistics import NormalDist
-
     standard = NormalDist()
     if len(names) > 1:
         return _correlated(names, given, value)
@@ -225,10 +226,6 @@ def _normal(names: Names, given: JsonObject, value: object) -> ParameterSpace:
 
 
 def _correlated(names: Names, given: JsonObject, value: object) -> ParameterSpace:
-    from statistics import NormalDist
-
-    import numpy as np
-
     count = len(names)
     rows = list(value) if isinstance(value, (list, tuple)) else []
     if len(rows) != 2:

@@ -13,6 +13,7 @@ import time
 from collections import deque
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import IO, Any, Final
@@ -40,15 +41,15 @@ def pickled_spec(spec: SweepSpec) -> bytes:
         InputError: SK-SWEEP-009 a function or plugin cannot be sent.
     """
     try:
-        from cloudpickle import dumps
+        dumps: Any = import_module("cloudpickle").dumps
     except ImportError:
         dumps = pickle.dumps
     try:
         content: bytes = dumps(spec)
         if dumps is pickle.dumps and b"__main__" in content:
             raise pickle.PicklingError("a function or class of the main script")
-    except Exception as error:
-        hint = "pip install 'simkit-robotics[experiments]' sends functions of scripts; or move them to a module, or use jobs=1"
+    except Exception as error:  # noqa: BLE001 - objects of the caller may raise anything
+        hint = "pip install 'simkit-robotics[experiments]'; or move functions of the script to a module; or use jobs=1"
         text = f"{NOT_SENDABLE} the sweep cannot be sent to other processes: {error}\n    help: {hint}"
         raise InputError(text, NOT_SENDABLE) from None
     return content
@@ -66,7 +67,7 @@ class _Worker:
         self.waiting: deque[SweepTask] = deque()
         self.is_ready = False
         self.since = time.monotonic()
-        self._output: IO[bytes] = tempfile.TemporaryFile()
+        self._output: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - `close` closes it
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", "simkit.testing.sweeps.worker"],
             stdin=subprocess.PIPE,
@@ -77,7 +78,8 @@ class _Worker:
         )
         assert self._process.stdin is not None and self._process.stdout is not None
         self._tasks, self._results = self._process.stdin, self._process.stdout
-        threading.Thread(target=self._receive, args=(inbox,), daemon=True).start()
+        self._thread = threading.Thread(target=self._receive, args=(inbox,), daemon=True)
+        self._thread.start()
         self._send(first)
 
     def give(self, tasks: list[SweepTask]) -> None:
@@ -95,8 +97,9 @@ class _Worker:
             send_message(self._tasks, content)
 
     def _receive(self, inbox: SimpleQueue[tuple[_Worker, bytes | None]]) -> None:
-        while (content := receive_message(self._results)) is not None:
-            inbox.put((self, content))
+        with self._results as results:
+            while (content := receive_message(results)) is not None:
+                inbox.put((self, content))
         inbox.put((self, None))
 
     def end_reason(self) -> str:
@@ -121,6 +124,7 @@ class _Worker:
         """Kill the process and wait for its end."""
         self.kill()
         self._process.wait()
+        self._thread.join()
         for pipe in (self._tasks, self._output):
             with suppress(OSError):
                 pipe.close()

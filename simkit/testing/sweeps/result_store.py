@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import IO, Any, Final
 
 from simkit.errors import InputError
+from simkit.input_file import read_failure, read_input, read_input_text
 from simkit.run_spec import JsonObject
 from simkit.writers.atomic_output import write_atomically
 
@@ -26,6 +27,7 @@ OTHER_SWEEP: Final = "SK-SWEEP-003"
 NO_SWEEP: Final = "SK-SWEEP-008"
 _DESCRIPTION: Final = "sweep.json"
 _FORMAT: Final = 1
+_LARGEST_FILE: Final = 1 << 30  # [bytes]
 _MOST_IN_BLOCK: Final = 10_000
 _BLOCKS: Final = 64  # number of blocks of a small sweep, so that several machines can share it
 
@@ -63,7 +65,7 @@ class ResultStore:
             InputError: SK-SWEEP-008 the folder has no sweep.
         """
         try:
-            found = json.loads((self.folder / _DESCRIPTION).read_text("utf-8"))
+            found = json.loads(read_input_text(self.folder / _DESCRIPTION, _LARGEST_FILE))
             self.count, self.size = int(found["count"]), int(found["block"])
             if found["format"] != _FORMAT or self.size < 1:
                 raise ValueError
@@ -193,7 +195,7 @@ class ResultStore:
             rows = self._path(block, "log")
             ordered = self._path(block, "rows")
             if ordered.exists() and not rows.exists():  # the sweep has more runs than when the block was completed
-                write_atomically(rows, ordered.read_bytes())
+                write_atomically(rows, _content(ordered))
             timings = self.folder / "timings" / f"{block:06d}.log"
             _repair(timings)
             # without a buffer: a line reaches the system with its call, and a kill of this process cannot lose it
@@ -214,12 +216,19 @@ class ResultStore:
         self._open_rows.pop(block, None)
 
 
+def _content(path: Path) -> bytes:
+    """Return the content of a file of the store; empty if it does not exist."""
+    try:
+        return read_input(path, _LARGEST_FILE)
+    except FileNotFoundError:
+        return b""
+    except (OSError, ValueError) as error:
+        raise InputError(f"{NO_SWEEP} {path} cannot be read: {read_failure(error)}", NO_SWEEP) from None
+
+
 def _whole_lines(path: Path) -> list[bytes]:
     """Return the lines of a file that end with a line break."""
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        return []
+    content = _content(path)
     return content[: content.rfind(b"\n") + 1].splitlines()
 
 
@@ -234,10 +243,7 @@ def _row_of(line: bytes) -> Any:
 
 def _repair(path: Path) -> None:
     """Remove the incomplete last line of a log, and damaged lines."""
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        return
+    content = _content(path)
     whole = b"".join(line + b"\n" for line in _whole_lines(path) if _row_of(line) is not None)
     if whole != content:
         write_atomically(path, whole)

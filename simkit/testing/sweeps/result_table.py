@@ -5,19 +5,18 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Iterator, Sequence
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any
 
 from simkit.errors import InputError
+from simkit.input_file import read_failure, read_input_text
+from simkit.msgs.data_frames import DataFrame
 from simkit.run_spec import JsonObject
 from simkit.testing.sweeps.result_store import ResultStore
 from simkit.testing.sweeps.sweep_spec import RESULT_COLUMNS, ROW_COLUMNS, value_text
 from simkit.writers.atomic_output import AtomicOutput
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-_CELLS: Final = {"exit_code": int, "time": float, "steps": int}
 
 
 def table_columns(store: ResultStore) -> list[str]:
@@ -67,14 +66,14 @@ def typed_blocks(store: ResultStore) -> Iterator[dict[str, list[Any]]]:
         yield {name: [cell_of(kinds[name], row[at]) for row in rows] for at, name in enumerate(columns)}
 
 
-def read_table(folder: str | Path) -> pd.DataFrame:
+def read_table(folder: str | Path) -> DataFrame:
     """Return the results of a stored sweep as a DataFrame, one row for each finished run, in the order of the runs.
 
     Raises:
         InputError: SK-SWEEP-008 the folder has no sweep; SK-INPUT-004 pandas is not installed.
     """
     try:
-        import pandas as pd
+        pandas = import_module("pandas")
     except ImportError:
         hint = "pip install 'simkit-robotics[experiments]'"
         raise InputError(f"SK-INPUT-004 the table needs pandas, which is missing: {hint}", "SK-INPUT-004") from None
@@ -84,7 +83,7 @@ def read_table(folder: str | Path) -> pd.DataFrame:
     for block in typed_blocks(store):
         for name, column in block.items():
             cells[name] += column
-    return pd.DataFrame(cells)
+    return pandas.DataFrame(cells)
 
 
 def write_tables(store: ResultStore) -> list[Path]:
@@ -92,9 +91,7 @@ def write_tables(store: ResultStore) -> list[Path]:
     path = store.folder / "results.csv"
     with AtomicOutput(path, "results_files", overwrite=True) as output:
         _write_csv(output.file, store)
-    try:
-        import pyarrow  # noqa: F401
-    except ImportError:
+    if find_spec("pyarrow") is None:
         return [path]
     parquet = store.folder / "results.parquet"
     with AtomicOutput(parquet, "results_files", overwrite=True) as output:
@@ -112,9 +109,7 @@ def _write_csv(path: Path, store: ResultStore) -> None:
 
 
 def _write_parquet(path: Path, store: ResultStore) -> None:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
+    pa, pq = import_module("pyarrow"), import_module("pyarrow.parquet")
     types = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: pa.string()}
     schema = pa.schema([(name, types[kind]) for name, kind in column_kinds(store).items()])
     with pq.ParquetWriter(path, schema) as writer:
@@ -129,8 +124,6 @@ def read_parameters(path: Path) -> tuple[dict[str, Any], ...]:
     Raises:
         InputError: SK-SWEEP-001 the file cannot be read, has no rows, or a row has another number of cells.
     """
-    from simkit.input_file import read_failure, read_input_text
-
     try:
         text = read_input_text(path, 256 << 20)
     except (OSError, ValueError) as error:

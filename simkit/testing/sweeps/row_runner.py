@@ -4,20 +4,29 @@ from __future__ import annotations
 
 import copy
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
-from simkit.errors import InputError, LoadError, SimkitError
+from simkit.build import read_scene
+from simkit.errors import InputError, SimkitError
+from simkit.recording.bags.recorder import Recorder
 from simkit.run_spec import RunSpec
 from simkit.runtime import Simulation
 from simkit.runtime.engine.snapshot import state_hash
+from simkit.runtime.world_variation import apply_overrides
+from simkit.scene.overrides import apply_overrides as apply_to_scene
+from simkit.scene.overrides import check_used
+from simkit.testing.bundles import BundleRecorder
+from simkit.testing.bundles.bundle_writer import pack_load_failure, write_bundle
+from simkit.testing.bundles.manifest import CHECK, Failure, failure_from_error
+from simkit.testing.conditions import Watch
 from simkit.testing.scenarios.scenario_run import ScenarioResult, open_scenario, run_scenario
 from simkit.testing.sweeps.design import SweepRow
 from simkit.testing.sweeps.metrics import RunMetrics
-from simkit.testing.sweeps.sweep_spec import SweepSpec
+from simkit.testing.sweeps.sweep_spec import SweepSpec, value_text
 
 _STATUS: Final = {0: "ok", 1: "error", 2: "invalid", 3: "diverged", 4: "plugin", 5: "failed"}
 CHECKS_FAILED: Final = "SK-SWEEP-006"
@@ -80,7 +89,8 @@ class RowResult:
 class RowRunner:
     """Runner of a sweep's rows; one worker has one.
 
-    A world whose load arguments are the same as those of the last run is reset, not loaded. The bits are the same.
+    A world stays loaded between runs: it is reset, or numbers that the parameters change are written into its compiled
+    model. It is loaded again if a parameter changes more than such numbers. The bits are the same.
 
     Args:
         spec: sweep.
@@ -95,49 +105,45 @@ class RowRunner:
         """Run a row; a failure is a result too."""
         begun = time.perf_counter()
         result = RowResult(row)
+        sim: Simulation | None = None
         try:
             spec = self._spec.row_spec(row)
             sim = self._world(spec)
             self._measure(spec, sim, result)
         except Exception as error:  # noqa: BLE001 - any failure of a run is a row of the table
             result.fail(error)
-            self._note_end(result)
+            _note_end(result, sim)
             self.close()
         result.wall_time = time.perf_counter() - begun
         return result
 
-    def keep(self, row: SweepRow, folder: Path) -> RowResult:
-        """Repeat a run and write its bundle and, if topics are chosen, its bag.
+    def keep(self, row: SweepRow, target: Path) -> RowResult:
+        """Repeat a run and write its bundle and, if topics are chosen, its bag beside it.
 
         Args:
             row: run.
-            folder: folder for `RUN.zip` and `RUN.mcap`.
+            target: bundle to write.
         """
         self.close()
         result = RowResult(row)
         spec = self._spec.row_spec(row)
-        target = folder / f"{row.run:06d}.zip"
-        from simkit.testing.bundles import BundleRecorder
-        from simkit.testing.bundles.bundle_writer import pack_load_failure, write_bundle
-        from simkit.testing.bundles.manifest import Failure, failure_from_error
-
         try:
             sim = self._world(spec)
         except Exception as error:  # noqa: BLE001 - the bundle repeats the failure
             result.fail(error)
             with suppress(SimkitError, OSError):
-                pack_load_failure(spec, folder, failure_from_error(error)).replace(target)
+                pack_load_failure(spec, target.parent, failure_from_error(error)).replace(target)
             return result
         failure: Failure | None = None
         recorder = BundleRecorder(sim)
-        bag = self._open_bag(sim, folder / f"{row.run:06d}.mcap")
+        bag = self._open_bag(sim, target.with_suffix(".mcap"))
         try:
             self._measure(spec, sim, result)
             if result.exit_code:
-                failure = Failure("check", "", result.message)
+                failure = Failure(CHECK, "", result.message)
         except Exception as error:  # noqa: BLE001 - the bundle repeats the failure
             result.fail(error)
-            self._note_end(result)
+            _note_end(result, sim)
             failure = failure_from_error(error)
         finally:
             if bag is not None:
@@ -156,21 +162,23 @@ class RowRunner:
     def _open_bag(self, sim: Simulation, path: Path) -> Any:
         if not self._spec.bag_topics:
             return None
-        from simkit.recording.bags.recorder import Recorder
-
         return Recorder(sim, path, overwrite=True, topics=self._spec.bag_topics)
 
     def _world(self, spec: RunSpec) -> Simulation:
         """Return the world of a run at t = 0."""
-        key = (spec.overrides, spec.spawn, repr(spec.options.get("xacro_args")))
+        key = (spec.spawn, repr(spec.options.get("xacro_args")))
         sim = self._sim
         if sim is not None and self._spec.is_warm and key == self._key:
-            sim.reset(seed=spec.seed)
-            return sim
+            assert sim.run_spec is not None
+            if spec.overrides == sim.run_spec.overrides:
+                sim.reset(seed=spec.seed)
+                return sim
+            if apply_overrides(sim, spec.overrides, spec.seed):
+                return sim
         self.close()
         self._sim = sim = open_scenario(replace(spec, plugins=copy.deepcopy(spec.plugins)))
         self._key = key
-        _check_overrides(sim)
+        check_used(sim.diagnostics)
         return sim
 
     def _measure(self, spec: RunSpec, sim: Simulation, result: RowResult) -> None:
@@ -178,27 +186,22 @@ class RowRunner:
             outcome = run_scenario(spec, sim)
             result.metrics = metrics.values()
         result.end = outcome.reason
-        self._note_end(result)
+        _note_end(result, sim)
         if not outcome.passed:
             result.exit_code, result.code = 5, CHECKS_FAILED
             result.message = _failed_checks(outcome)
 
-    def _note_end(self, result: RowResult) -> None:
-        sim = self._sim
-        if sim is not None:
-            with suppress(Exception):  # the state after a failure may be unreadable
-                result.time, result.steps, result.state_hash = sim.time, sim.tick, state_hash(sim)
+
+def _note_end(result: RowResult, sim: Simulation | None) -> None:
+    """Store time, steps and state at the end of a run; nothing for a world that was not loaded."""
+    if sim is not None:
+        with suppress(Exception):  # the state after a failure may be unreadable
+            result.time, result.steps, result.state_hash = sim.time, sim.tick, state_hash(sim)
 
 
 def _failed_checks(outcome: ScenarioResult) -> str:
     lines = [f"{one.check.title}: {one.message}" for one in outcome.results if not one.passed]
     return "; ".join(lines or ["the run was stopped at its wall-clock limit"])[:_LONGEST_MESSAGE]
-
-
-def _check_overrides(sim: Simulation) -> None:
-    from simkit.scene.overrides import check_used
-
-    check_used(sim.diagnostics)
 
 
 def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> None:
@@ -214,45 +217,40 @@ def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> None:
         InputError: SK-SWEEP-002 a parameter cannot be set with any of the values; an expression has an error; the world
             cannot be loaded. The message lists all problems.
     """
-    from simkit.testing.conditions import Watch
-
-    problems: list[InputError] = []
-    usable = None
     runner = RowRunner(spec)
+    failures: list[InputError] = []
     try:
-        failures: dict[int, InputError] = {}
         for row in rows:
-            run = spec.row_spec(row)
             try:
-                sim = runner._world(run)
+                sim = runner._world(spec.row_spec(row))
             except InputError as error:
-                failures[row.run] = error
-                continue
-            usable = row
-            for check in (
-                lambda: RunMetrics(sim, spec.row_metrics(row)),
-                lambda: Watch(sim, run.checks, until=run.until, timeout=run.longest),
-            ):
-                try:
-                    check()
-                except InputError as error:
-                    problems.append(error)
-            break
-        if usable is None and failures:
-            problems.append(next(iter(failures.values())))
+                failures.append(error)
+            else:
+                _check_expressions(spec, row, sim)
+                return
     finally:
         runner.close()
-    if len(problems) == 1 and isinstance(problems[0], LoadError):
-        raise problems[0]
+    raise failures[0]
+
+
+def _check_expressions(spec: SweepSpec, row: SweepRow, sim: Simulation) -> None:
+    """Check the expressions of metrics and conditions in a world."""
+    run = spec.row_spec(row)
+    problems: list[InputError] = []
+    try:
+        RunMetrics(sim, spec.row_metrics(row))
+    except InputError as error:
+        problems.append(error)
+    try:
+        Watch(sim, run.checks, until=run.until, timeout=run.longest)
+    except InputError as error:
+        problems.append(error)
     if problems:
         raise InputError("\n".join(map(str, problems)), problems[0].code)
 
 
-def parameter_problems(spec: SweepSpec, rows: list[SweepRow]) -> Mapping[str, InputError]:
+def parameter_problems(spec: SweepSpec, rows: Sequence[SweepRow]) -> Mapping[str, InputError]:
     """Return the error of each parameter that no row can set, by the parameter's name."""
-    from simkit.build import read_scene
-    from simkit.scene.overrides import apply_overrides
-
     scene, _ = read_scene(spec.run.source, **spec.run.source_options())
     found: dict[str, InputError] = {}
     for name in spec.design.names:
@@ -260,16 +258,10 @@ def parameter_problems(spec: SweepSpec, rows: list[SweepRow]) -> Mapping[str, In
             continue
         for row in rows:
             try:
-                apply_overrides(scene, [f"{name}={_text(row.values[name])}"] if name in row.values else [])
+                apply_to_scene(scene, [f"{name}={value_text(row.values[name])}"] if name in row.values else [])
             except InputError as error:
                 found.setdefault(name, error)
             else:
                 found.pop(name, None)
                 break
     return found
-
-
-def _text(value: Any) -> str:
-    from simkit.testing.sweeps.sweep_spec import value_text
-
-    return value_text(value)

@@ -5,35 +5,38 @@ from __future__ import annotations
 import os
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 from simkit import progress
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.msgs.data_frames import DataFrame
 from simkit.run_spec import FilePath, RunSpec
+from simkit.sensors.cameras.rendering.render_thread import usable_cores
 from simkit.testing.sweeps.design import SAMPLINGS, Design, Sampling, SweepRow
 from simkit.testing.sweeps.executor import Executor, SerialExecutor, SweepTask
 from simkit.testing.sweeps.parameter_space import InvalidSpace, ParameterSpace, parameter_space, plain_value
+from simkit.testing.sweeps.process_executor import ProcessExecutor
+from simkit.testing.sweeps.ray_executor import RayExecutor
 from simkit.testing.sweeps.result_store import ResultStore
 from simkit.testing.sweeps.result_table import read_parameters, read_table, write_tables
-from simkit.testing.sweeps.row_runner import RowResult, check_runs, parameter_problems
+from simkit.testing.sweeps.row_runner import check_runs, parameter_problems
 from simkit.testing.sweeps.sweep_spec import (
     INVALID,
     UNKNOWN_PARAMETER,
     Keep,
     Metric,
     SweepSpec,
-    check_names,
+    name_problems,
+    raise_problems,
     sequence_of_seeds,
     spec_of_world,
 )
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Parameters = Mapping[Any, Any] | Sequence[Mapping[str, Any]] | FilePath
 """Spaces by parameter, a list of values by parameter for each run, or a CSV file with such a list."""
@@ -58,7 +61,7 @@ def sweep(
     bag_topics: Sequence[str] = (),
     warm: bool = True,
     cluster: str | None = None,
-) -> pd.DataFrame:
+) -> DataFrame:
     """Run a world with every combination of parameters and seeds, and return a table with a row for each run.
 
     A run that fails or diverges is a row too. The same call gives the same table with any number of processes.
@@ -91,11 +94,9 @@ def sweep(
             has another sweep; SK-INPUT-004 pandas is not installed.
         LoadError: the world has errors.
     """
-    import importlib.util
-
-    if importlib.util.find_spec("pandas") is None:
-        text = "SK-INPUT-004 simkit.sweep needs pandas, which is missing\n    help: pip install 'simkit-robotics[experiments]'"
-        raise InputError(text, "SK-INPUT-004")
+    if find_spec("pandas") is None:
+        hint = "pip install 'simkit-robotics[experiments]'"
+        raise InputError(f"SK-INPUT-004 simkit.sweep needs pandas, which is missing\n    help: {hint}", "SK-INPUT-004")
     run = spec_of_world(world, duration, until)
     design = make_design(
         parameters, sequence_of_seeds(seeds, run.seed), samples=samples, sampling=sampling, design_seed=design_seed
@@ -212,10 +213,12 @@ def run_sweep(
         always_processes: use a process also for one job, so that a crash of a plugin costs one run only.
         shard: number and count of the parts of the sweep, each of which is run by another call, from 0.
     """
-    check_names(spec)
+    names = name_problems(spec)
+    if names:
+        raise_problems(names + path_problems(spec, checked_rows(spec.design)))
     store = ResultStore(folder)
     begun = time.perf_counter()
-    with _locked(folder, shard):
+    with locked_folder(folder, shard):
         store.begin(spec.fingerprint(), spec.design.count, description_of(spec))
         blocks = [block for block in store.blocks if block % shard[1] == shard[0]]
         total = sum(len(store.runs_of(block)) for block in blocks)
@@ -235,7 +238,11 @@ def run_sweep(
                             show_progress(task, total - missing, time.perf_counter() - begun, simulated)
                 finally:
                     store.close()
-                keep_runs(spec, store, executor)
+                if cluster is None:
+                    keep_runs(spec, store, executor)
+            if cluster is not None:  # the nodes of a cluster cannot write to the folder
+                with make_executor(spec, jobs, None, min_tasks=missing, always_processes=True) as local:
+                    keep_runs(spec, store, local)
         tables = write_tables(store) if writes_tables and store.finished_count() == store.count else ()
         failed = sum(row["exit_code"] != 0 for row in store.rows())
     wall = time.perf_counter() - begun
@@ -274,15 +281,18 @@ def check_sweep(spec: SweepSpec) -> None:
     """
     rows = checked_rows(spec.design)
     with progress.task("checking the sweep"):
-        if not spec.run.overrides and not spec.run.spawn:
-            problems = parameter_problems(spec, rows)
-            if problems:
-                text = "\n".join(
-                    f"{UNKNOWN_PARAMETER} the parameter {name!r} cannot be set: {str(error).partition(' ')[2]}"
-                    for name, error in problems.items()
-                )
-                raise InputError(text, UNKNOWN_PARAMETER)
+        raise_problems(path_problems(spec, rows))
         check_runs(spec, rows)
+
+
+def path_problems(spec: SweepSpec, rows: Sequence[SweepRow]) -> list[str]:
+    """Return a message for each parameter that no row can set."""
+    if spec.run.spawn or spec.run.overrides or spec.run.change_world is not None:
+        return []  # the world's file alone does not have all entities; the first run shows the problem
+    return [
+        f"{UNKNOWN_PARAMETER} the parameter {name!r} cannot be set: {str(error).partition(': ')[2]}"
+        for name, error in parameter_problems(spec, rows).items()
+    ]
 
 
 def checked_rows(design: Design) -> list[SweepRow]:
@@ -297,20 +307,14 @@ def make_executor(
 ) -> Executor:
     """Return the executor for a number of processes or a cluster."""
     if cluster is not None:
-        from simkit.testing.sweeps.ray_executor import RayExecutor
-
         return RayExecutor(spec, cluster)
     if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
         raise InputError(f"{INVALID} jobs: found {jobs!r}; expected a whole number of at least 1", INVALID)
     if jobs is None:
-        from simkit.sensors.cameras.rendering.render_thread import usable_cores
-
         jobs = usable_cores()
     jobs = min(jobs, min_tasks)
     if jobs == 1 and not always_processes:
         return SerialExecutor(spec)
-    from simkit.testing.sweeps.process_executor import ProcessExecutor
-
     return ProcessExecutor(spec, jobs)
 
 
@@ -325,12 +329,12 @@ def keep_runs(spec: SweepSpec, store: ResultStore, executor: Executor) -> None:
         return
     folder.mkdir(exist_ok=True)
     with progress.task("keeping runs", len(chosen)) as task:
-        for result in executor.stream(SweepTask(spec.design.row(run), folder) for run in chosen):
+        for result in executor.stream(SweepTask(spec.design.row(run), folder / f"{run:06d}.zip") for run in chosen):
             task.advance(f"run {result.row.run}")
 
 
 @contextmanager
-def _locked(folder: Path, shard: tuple[int, int]) -> Iterator[None]:
+def locked_folder(folder: Path, shard: tuple[int, int]) -> Iterator[None]:
     """Allow one process at a time to write a part of a sweep; the system releases the lock of a killed process."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -348,6 +352,3 @@ def _locked(folder: Path, shard: tuple[int, int]) -> Iterator[None]:
             text = f"SK-SWEEP-010 another process runs the sweep in {folder}"
             raise InputError(f"{text}\n    help: wait for its end, or name another folder", "SK-SWEEP-010") from None
         yield
-
-
-Progress = Callable[[RowResult], None]

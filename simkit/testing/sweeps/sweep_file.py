@@ -69,7 +69,7 @@ class _SweepReader(ValueReader):
             seeds = sequence_of_seeds(cast(Any, self._fields.get("seeds")), seed)
         except InputError as error:
             self._report(error, "seeds")
-            return None
+            seeds = (0, 1)  # with these, the parameters are checked too
         found: Any = self._fields.get("parameters", {})
         if isinstance(found, str):
             found = self._document.path.parent / found
@@ -142,6 +142,6 @@ class _SweepReader(ValueReader):
     def _keep(self) -> Keep:
         value = self._fields.get("keep", 10)
         if value in ("failed", "all") or (isinstance(value, int) and not isinstance(value, bool) and value >= 0):
-            return cast(Keep, value)
+            return value
         self._wrong(value, "failed, all, or a number of failed runs", "keep")
         return 10

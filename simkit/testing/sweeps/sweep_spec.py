@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-import string
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, cast
 
 from simkit.errors import InputError
 from simkit.input_file import read_input
-from simkit.run_spec import RunSpec
+from simkit.run_spec import LoadOptions, RunSpec
 from simkit.testing.sweeps.design import Design, SweepRow
 
 Metric = str | Callable[[Any], Any]
@@ -20,6 +20,7 @@ Metric = str | Callable[[Any], Any]
 Keep = Literal["failed", "all"] | int
 """Runs whose bundle and bag are kept: all failed ones, all, or at most this number of failed ones."""
 
+_LARGEST_WORLD: Final = 1 << 30  # [bytes]
 INVALID: Final = "SK-SWEEP-001"
 UNKNOWN_PARAMETER: Final = "SK-SWEEP-002"
 
@@ -105,16 +106,11 @@ def value_text(value: Any) -> str:
 # ---------------------------------------------------------------------- variables
 
 
-class _Template(string.Formatter):
-    """Formatter of `{name}` for known names; other braces stay, because messages and expressions may contain them."""
-
-    def __init__(self, values: Mapping[str, Any]) -> None:
-        self._values = values
-
-    def fill(self, text: str) -> str:
-        for name, value in self._values.items():
-            text = text.replace("{" + name + "}", value_text(value))
-        return text
+def _fill(text: str, values: Mapping[str, Any]) -> str:
+    """Replace `{name}` for known names; other braces stay, because messages and expressions may contain them."""
+    for name, value in values.items():
+        text = text.replace("{" + name + "}", value_text(value))
+    return text
 
 
 def fill_template(value: Any, variables: Mapping[str, Any]) -> Any:
@@ -122,7 +118,7 @@ def fill_template(value: Any, variables: Mapping[str, Any]) -> Any:
     if isinstance(value, str):
         if value.startswith("{") and value.endswith("}") and value[1:-1] in variables:
             return variables[value[1:-1]]
-        return _Template(variables).fill(value)
+        return _fill(value, variables)
     if isinstance(value, Mapping):
         return {key: fill_template(item, variables) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
@@ -134,14 +130,16 @@ _TEMPLATE_FIELDS: Final = ("overrides", "spawn", "until", "velocity")
 
 
 def _substitute(spec: RunSpec, variables: Mapping[str, Any]) -> RunSpec:
-    changes = {name: _as_text(fill_template(getattr(spec, name), variables)) for name in _TEMPLATE_FIELDS}
+    changes: dict[str, Any] = {
+        name: _as_text(fill_template(getattr(spec, name), variables)) for name in _TEMPLATE_FIELDS
+    }
     commands = tuple(fill_template(dict(command), variables) for command in spec.commands)
     checks = tuple(replace(one, expression=_as_text(fill_template(one.expression, variables))) for one in spec.checks)
-    options = dict(spec.options)
-    if isinstance(options.get("xacro_args"), Mapping):
-        arguments: Any = options["xacro_args"]
+    options: dict[str, Any] = dict(spec.options)
+    arguments = options.get("xacro_args")
+    if isinstance(arguments, Mapping):
         options["xacro_args"] = {name: _as_text(fill_template(one, variables)) for name, one in arguments.items()}
-    return replace(spec, **changes, commands=commands, checks=checks, options=options)  # type: ignore[arg-type]
+    return replace(spec, **changes, commands=commands, checks=checks, options=cast(LoadOptions, options))
 
 
 def _as_text(value: Any) -> Any:
@@ -159,18 +157,22 @@ def used_variables(spec: SweepSpec) -> set[str]:
 # ---------------------------------------------------------------------- description
 
 
+_PLACES: Final = ("file", "folder", "where")
+"""Fields that say where a value stands; they differ between machines and working folders."""
+
+
 def plain_description(value: Any) -> Any:
     """Return any value as plain data that is equal in all processes; functions are described by their names."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, Mapping):
-        return {str(key): plain_description(item) for key, item in value.items()}
+        return {str(key): plain_description(item) for key, item in value.items() if key not in _PLACES}
     if isinstance(value, range) and len(value) > 1000:
         return repr(value)
     if isinstance(value, (list, tuple, set, frozenset, range)):
         return [plain_description(item) for item in value]
     if is_dataclass(value) and not isinstance(value, type):
-        own = {f.name: plain_description(getattr(value, f.name)) for f in fields(value)}
+        own = {f.name: plain_description(getattr(value, f.name)) for f in fields(value) if f.name not in _PLACES}
         return {"type": type(value).__name__, **own}
     if isinstance(value, Path):
         return str(value)
@@ -183,15 +185,11 @@ def _world_hash(run: RunSpec) -> str:
     file = run.beside
     if file is None or not file.is_file():
         return ""
-    return hashlib.sha256(read_input(file)).hexdigest()
+    return hashlib.sha256(read_input(file, _LARGEST_WORLD)).hexdigest()
 
 
-def check_names(spec: SweepSpec) -> None:
-    """Check that the columns of the table have different names, and that every variable is used.
-
-    Raises:
-        InputError: SK-SWEEP-001 two columns have the same name; SK-SWEEP-002 a variable is not used.
-    """
+def name_problems(spec: SweepSpec) -> list[str]:
+    """Return a message for each column whose name is used twice, and for each variable that is not used."""
     problems: list[str] = []
     seen: set[str] = set()
     for name in spec.columns:
@@ -206,17 +204,22 @@ def check_names(spec: SweepSpec) -> None:
                 f"{UNKNOWN_PARAMETER} the parameter {name!r} is not used\n    help: write a path with a dot, such as "
                 f"tb3::wheel.inertial.mass, or use {{{name}}} in set, commands, until or a metric"
             )
+    return problems
+
+
+def raise_problems(problems: Sequence[str]) -> None:
+    """Raise one error for messages that each begin with a code; none for no messages."""
     if problems:
         raise InputError("\n".join(problems), problems[0].partition(" ")[0])
 
 
 def spec_of_world(world: Any, duration: float | None, until: str) -> RunSpec:
     """Return the run specification of a world, or of a specification with another duration and end condition."""
-    import os
-
     if isinstance(world, RunSpec):
         changes: dict[str, Any] = {} if duration is None else {"duration": duration, "timeout": None}
-        return replace(world, **changes, **({"until": until} if until else {}))
+        if until:
+            changes["until"] = until
+        return replace(world, **changes)
     run = RunSpec(os.fspath(world), until=until, folder=Path.cwd())
     return run if duration is None else replace(run, duration=duration)
 
@@ -229,9 +232,10 @@ def sequence_of_seeds(seeds: int | Sequence[int] | range | None, default: int) -
     """
     if seeds is None:
         return (default,)
-    if isinstance(seeds, bool) or not isinstance(seeds, (int, Sequence)) or isinstance(seeds, str):
-        seeds = list(seeds) if hasattr(seeds, "__iter__") and not isinstance(seeds, str) else ["?"]  # type: ignore[list-item]
-    found = range(seeds) if isinstance(seeds, int) else seeds
+    given: Any = seeds  # from YAML, or from a caller that does not check types
+    found = range(given) if isinstance(given, int) and not isinstance(given, bool) else given
+    if isinstance(found, (str, bool)) or not hasattr(found, "__iter__"):
+        found = [-1]
     listed = found if isinstance(found, range) else tuple(getattr(one, "__index__", lambda: -1)() for one in found)
     if not listed or min(listed[0], listed[-1]) < 0 or (not isinstance(listed, range) and min(listed) < 0):
         raise InputError(f"{INVALID} seeds: found {seeds!r}; expected a count, or whole numbers of at least 0", INVALID)

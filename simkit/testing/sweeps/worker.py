@@ -17,6 +17,8 @@ from queue import SimpleQueue
 from typing import IO, Any, Final
 
 from simkit.child_process import exit_immediately
+from simkit.testing.sweeps.executor import run_task
+from simkit.testing.sweeps.row_runner import RowRunner
 
 _LENGTH: Final = struct.Struct("<Q")
 
@@ -69,10 +71,7 @@ def main() -> None:
 
 
 def _runner(spec: bytes) -> Any:
-    """Return the function that runs a task; the imports come after the import path is set."""
-    from simkit.testing.sweeps.executor import run_task
-    from simkit.testing.sweeps.row_runner import RowRunner
-
+    """Return the function that runs a task; the import path of the parent process is set."""
     runner = RowRunner(pickle.loads(spec))
     return lambda task: run_task(runner, task)
 

@@ -1,0 +1,94 @@
+"""Repetition of one run of a stored sweep, compared with its row in the table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from simkit.errors import InputError
+from simkit.testing.sweeps.result_store import NO_SWEEP, OTHER_SWEEP, ResultStore
+from simkit.testing.sweeps.row_runner import RowResult, RowRunner
+from simkit.testing.sweeps.sweep_file import read_sweep
+
+_COMPARED = ("exit_code", "end", "code", "time", "steps", "state_hash")
+
+
+@dataclass(frozen=True)
+class Repetition:
+    """Result of a repeated run.
+
+    Attributes:
+        stored: row of the table; None if the run was not finished.
+        found: row of the repeated run.
+    """
+
+    stored: dict[str, Any] | None
+    found: RowResult
+
+    @property
+    def differences(self) -> list[str]:
+        """Columns that differ from the table."""
+        if self.stored is None:
+            return []
+        row = self.found.plain()
+        names = [name for name in _COMPARED if row[name] != self.stored[name]]
+        metrics = self.stored["metrics"]
+        return names + [name for name, one in row["metrics"].items() if repr(one) != repr(metrics.get(name))]
+
+    @property
+    def is_same(self) -> bool:
+        """True if the run has the results of the table, or the table does not have the run yet."""
+        return not self.differences
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the row and the names of the columns that differ."""
+        return {"row": self.found.plain(), "differences": self.differences}
+
+    def lines(self) -> list[str]:
+        """Return a report."""
+        row = self.found.plain()
+        end = f"{row['status']} at t = {row['time']:g} s, state {row['state_hash'][:16]}"
+        found = [f"run {row['run']}, seed {row['seed']}: {end}"]
+        found += [f"  {name} = {value}" for name, value in {**row["values"], **row["metrics"]}.items()]
+        if row["message"]:
+            found.append(f"  {row['message']}")
+        if self.stored is None:
+            return [*found, "the table does not have this run yet"]
+        same = "same as in the table"
+        return [*found, f"differs from the table: {', '.join(self.differences)}" if self.differences else same]
+
+
+def repeat_run(folder: Path, number: int, file: Path | None = None, bundle: Path | None = None) -> Repetition:
+    """Repeat a run of a sweep in this process.
+
+    Args:
+        folder: folder of the results.
+        number: number of the run.
+        file: sweep file; None for the file that the folder names.
+        bundle: bundle to write; None for none.
+
+    Raises:
+        InputError: SK-SWEEP-003 the file describes another sweep; SK-SWEEP-008 the folder has no such run, or names no
+            file.
+    """
+    store = ResultStore(folder)
+    store.open()
+    source = file or (Path(store.description["file"]) if store.description.get("file") else None)
+    if source is None:
+        text = f"{NO_SWEEP} the sweep in {folder} was made in Python, so no file describes its runs"
+        raise InputError(f"{text}\n    help: repeat it with simkit.load and the values of the row", NO_SWEEP)
+    if not 0 <= number < store.count:
+        raise InputError(f"{NO_SWEEP} {folder} has no run {number}; its runs are 0 to {store.count - 1}", NO_SWEEP)
+    spec = read_sweep(source)
+    if spec.fingerprint() != store.description.get("fingerprint"):
+        text = f"{OTHER_SWEEP} {source} describes another sweep than {folder}"
+        raise InputError(f"{text}\n    help: undo the changes of the file or the world, or pass --file", OTHER_SWEEP)
+    stored = next((row for row in store.block_rows(number // store.size) if row["run"] == number), None)
+    runner = RowRunner(spec)
+    row = spec.design.row(number)
+    try:
+        found = runner.run(row) if bundle is None else runner.keep(row, bundle.absolute())
+    finally:
+        runner.close()
+    return Repetition(stored, found)
