@@ -230,12 +230,11 @@ def run_sweep(
             tasks = (SweepTask(spec.design.row(run)) for run in runs)
             with make_executor(spec, jobs, cluster, min_tasks=missing, always_processes=always_processes) as executor:
                 try:
-                    with progress.task("running the sweep", total) as task:
-                        task.done = total - missing
+                    with progress.task("running the sweep", missing) as task:
                         for result in executor.stream(tasks):
                             store.add(result.plain())
                             simulated += result.time
-                            show_progress(task, total - missing, time.perf_counter() - begun, simulated)
+                            show_progress(task, simulated)
                 finally:
                     store.close()
                 if cluster is None:
@@ -249,10 +248,10 @@ def run_sweep(
     return SweepOutcome(store.count, failed, total - missing, wall, simulated, tuple(tables))
 
 
-def show_progress(task: progress.Task, before: int, elapsed: float, simulated: float) -> None:
+def show_progress(task: progress.Task, simulated: float) -> None:
     """Count a finished run, and show the rate of runs and of simulated time."""
-    made = task.done + 1 - before
-    task.advance(f"{made / elapsed:.3g} runs/s, {simulated / elapsed:.3g} × real time")
+    elapsed = time.perf_counter() - task.begun
+    task.advance(f"{(task.done + 1) / elapsed:.3g} runs/s, {simulated / elapsed:.3g} × real time")
 
 
 def description_of(spec: SweepSpec) -> dict[str, Any]:
