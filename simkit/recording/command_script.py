@@ -19,7 +19,6 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 from simkit.input_file import read_failure, read_input_text
 from simkit.run_spec import JsonMapping, JsonObject
-from simkit.runtime.engine.simulated_time import LONGEST_DURATION
 from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 
 if TYPE_CHECKING:
@@ -30,6 +29,7 @@ _Result = TypeVar("_Result")
 _KEYS = ("at", "topic", "message", "until", "rate")
 _RATE = 10.0  # [Hz] default rate of a repeated command
 _HIGHEST_RATE = 1e6  # [Hz]
+_LATEST = 2.0**31 - 1.0  # [s], latest time that a ROS time stamp can hold
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 
@@ -254,8 +254,8 @@ def _command(item: JsonMapping, where: str, topics: Mapping[str, str] | None) ->
     if not isinstance(message, dict):
         kind = "its message" if topics is None else topics[topic]
         raise _script_error(where, f"message: found {message!r:.60}; expected a mapping of the fields of {kind}")
-    at = _number(item["at"], "at", where, 0.0, LONGEST_DURATION)
-    until = None if item.get("until") is None else _number(item["until"], "until", where, at, LONGEST_DURATION)
+    at = _number(item["at"], "at", where, 0.0, _LATEST)
+    until = None if item.get("until") is None else _number(item["until"], "until", where, at, _LATEST)
     rate = _number(item.get("rate", _RATE), "rate", where, 1e-6, _HIGHEST_RATE)
     return Command(at, topic, message, until, rate, where)
 

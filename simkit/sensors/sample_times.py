@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Final
 
 from simkit.params import Params
 from simkit.runtime.engine.random_streams import RandomStreams
@@ -16,6 +17,8 @@ from simkit.sensors.sample import Sample
 
 MAX_LATENCY = 3600.0  # [s]; all readings that have not arrived yet are kept
 _MILLISECOND = Fraction(1, 1000)
+_LOWEST_RATE: Final = 2.0**-31
+"""Rate [Hz] whose period is the longest duration of a run; a lower one has the same samples."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +85,7 @@ class SampleTimes:
 
     def period(self, rate: float) -> Fraction:
         """Return the period [s] of a rate [Hz] on the grid; 0 is every step."""
-        period = 1 / exact_rate(rate) if rate > 0 else Fraction(0)
+        period = 1 / exact_rate(max(rate, _LOWEST_RATE)) if rate > 0 else Fraction(0)
         return period // _MILLISECOND * _MILLISECOND if self._in_milliseconds else period
 
     def is_too_fast(self, rate: float) -> bool:

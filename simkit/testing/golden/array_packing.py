@@ -89,7 +89,8 @@ class Packer:
         if step <= 0 or not values.size:
             return None
         finite = np.isfinite(values)
-        scaled = np.rint(np.where(finite, values, 0).astype(np.float64) / step)
+        with np.errstate(over="ignore"):  # a tiny step: the values are stored bit by bit
+            scaled = np.rint(np.where(finite, values, 0).astype(np.float64) / step)
         if np.abs(scaled).max(initial=0) >= 2**52:
             return None
         entry["step"] = step

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -106,7 +107,8 @@ def _lines_by_path(node: Any, keys: tuple[object, ...]) -> Iterator[tuple[tuple[
 def resolve_spawn_file(folder: Path, spawn: str) -> str:
     """Resolve the file in `MODEL:x,y,yaw[:name]` relative to a folder, if the folder contains the file."""
     model, colon, rest = spawn.partition(":")
-    return f"{folder / model}{colon}{rest}" if model and (folder / model).exists() else spawn
+    is_here = model and os.path.exists(folder / model)  # noqa: PTH110 (a long name is no error)
+    return f"{folder / model}{colon}{rest}" if is_here else spawn
 
 
 def short_repr(value: object) -> str:
