@@ -35,6 +35,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     timing: TimingOptions
     batch: Batch | None = None
     batch_index = 0
+    is_manual = False  # True if only calls of `sample` take samples, and none are taken at the rate
     _times: SampleTimes
 
     def __init__(self) -> None:

@@ -34,10 +34,15 @@ class PublishedProduct(Protocol):
 
 
 class AttachedSensor(Protocol):
-    """Interface of a sensor that the runtime needs."""
+    """Interface of a sensor that the runtime needs.
+
+    Attributes:
+        is_manual: True if the simulation takes no samples at the sensor's rate.
+    """
 
     scene: SceneSensor
     scoped: str
+    is_manual: bool
     _topics: dict[str, str]
 
     def check_available(self) -> None:

@@ -150,7 +150,8 @@ def fill_schedule(
     plugins = [plugin for plugin in engine.structure.all_plugins() if not engine.faults.is_disabled(plugin)]
     _schedule_scenery(engine, scheduler, plugins)
     for sensor in engine.structure.all_sensors():
-        scheduler.on(sensor.timetable(), sensor.sample, "sense")
+        if not sensor.is_manual:
+            scheduler.on(sensor.timetable(), sensor.sample, "sense")
     for rate, task in hook_tasks(engine.faults, plugins, "before_step"):
         scheduler.every(rate, task, "before")
     for plugin in plugins:

@@ -1,0 +1,92 @@
+"""Environments for learning, with the interface of Gymnasium (the extra `experiments`).
+
+import simkit.gym
+
+env = simkit.gym.make("simkit/TurtleBot3Goal-v0")
+observation, info = env.reset(seed=1)
+observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from typing import TYPE_CHECKING, Any
+
+from simkit.errors import InputError
+from simkit.run_spec import FilePath, RunSpec
+from simkit.testing.environments.specification import EnvironmentSpec, JointVelocities, Observation
+
+if TYPE_CHECKING:
+    import gymnasium
+
+    from simkit.testing.environments.environment import SimulationEnv
+
+__all__ = ["EnvironmentSpec", "JointVelocities", "Observation", "SimulationEnv", "make", "make_vec"]
+
+
+def make(world: FilePath | RunSpec, **options: Any) -> SimulationEnv:
+    """Return a world as an environment of Gymnasium.
+
+    Args:
+        world: world as for `simkit.load`, a run specification, or a registered id such as `simkit/TurtleBot3Goal-v0`.
+        options: fields of `EnvironmentSpec` (observation, action, reward, terminated, …), which replace those of a
+            registered id; further `overrides` (`PATH=VALUE`), `seed`, `render_mode` ("rgb_array") and `size` of the
+            images (width, height) [px].
+
+    Raises:
+        InputError: SK-GYM-001 to SK-GYM-003 an option is invalid; SK-INPUT-004 Gymnasium is not installed.
+        LoadError: the world has errors.
+    """
+    _check_gymnasium("simkit.gym.make")
+    from simkit.testing.environments.make import make_env
+
+    return make_env(world, **options)
+
+
+def make_vec(
+    world: FilePath | RunSpec, *, num_envs: int, processes: bool = True, autoreset: Any = "next_step", **options: Any
+) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
+    """Return several environments of a world that step together.
+
+    Environment k has the results of `make` with the seed of the specification plus k.
+
+    Args:
+        world: world, run specification or registered id.
+        num_envs: number of environments.
+        processes: run each environment in a process of its own, with shared memory for observations.
+        autoreset: start of the next episode: "next_step", "same_step" or "disabled", as Gymnasium defines these words.
+        options: options of `make`.
+
+    Raises:
+        InputError: SK-GYM-001 to SK-GYM-003 an option is invalid; SK-INPUT-004 Gymnasium is not installed.
+    """
+    _check_gymnasium("simkit.gym.make_vec")
+    from simkit.testing.environments.make import make_vector_env
+
+    return make_vector_env(world, num_envs, processes=processes, autoreset=autoreset, **options)
+
+
+def _check_gymnasium(user: str) -> None:
+    if importlib.util.find_spec("gymnasium") is None:
+        text = f"SK-INPUT-004 {user} needs Gymnasium, which is missing"
+        raise InputError(f"{text}\n    help: pip install 'simkit-robotics[experiments]'", "SK-INPUT-004")
+
+
+def _register() -> None:
+    """Register the ids, so that `gymnasium.make` finds them after `import simkit.gym`."""
+    if importlib.util.find_spec("gymnasium") is not None:
+        from simkit.testing.environments.make import register_ids
+
+        register_ids()
+
+
+def __getattr__(name: str) -> Any:
+    if name == "SimulationEnv":  # imported lazily: it needs Gymnasium
+        _check_gymnasium("simkit.gym.SimulationEnv")
+        from simkit.testing.environments.environment import SimulationEnv
+
+        return SimulationEnv
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+_register()

@@ -1,0 +1,1 @@
+"""Environments for learning: worlds as environments of Gymnasium. `simkit.gym` is the public module."""

@@ -1,0 +1,286 @@
+"""Actions of an environment: numbers that become messages on topics and efforts of joints."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from gymnasium.spaces import Box
+
+from simkit import msgs
+from simkit.diagnostics import did_you_mean, shorten
+from simkit.errors import InputError
+from simkit.msgs.message_builder import builder_of
+from simkit.msgs.topic_names import absolute_name
+from simkit.testing.environments.specification import INVALID_ACTION, ActionTarget, JointVelocities, Problems, invalid
+
+if TYPE_CHECKING:
+    from simkit.runtime import Joint, Simulation
+
+Bounds = tuple[float, float]
+Send = Callable[[list[float]], None]
+"""Function that sends the numbers of one target."""
+
+_FIELD: Final = re.compile(r"[a-z_][a-z0-9_]*(\.[a-z_][a-z0-9_]*)*(\[\d{1,4}\])?")
+_LEAD: Final = 0.3  # [rad, m] a blocked joint must not store a long way that it makes up for later
+_TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
+_TWISTS: Final = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+
+
+class Actions:
+    """Targets of an environment's actions, bound to its simulation.
+
+    Args:
+        sim: simulation.
+        targets: one target, or targets with their bounds.
+        period: time between two actions [s].
+        is_scaled: True for actions from -1 to 1, which stand for the bounds.
+
+    Attributes:
+        names: name of each number of an action.
+        space: space of the actions.
+
+    Raises:
+        InputError: SK-GYM-002 targets have errors; the message lists all of them.
+    """
+
+    def __init__(
+        self, sim: Simulation, targets: str | Mapping[str, ActionTarget], period: float, is_scaled: bool
+    ) -> None:
+        self.sim, self._period = sim, period
+        self._sends: list[tuple[int, Send]] = []
+        self._efforts: list[tuple[Joint, float]] = []
+        self._integrals: list[_VelocityIntegral] = []
+        self._has_joints = False
+        self.names: list[str] = []
+        bounds: list[Bounds] = []
+        problems = Problems()
+        for target, given in ({targets: None} if isinstance(targets, str) else targets).items():
+            try:
+                names, limits, send = self._bind(target, given)
+            except InputError as error:
+                problems.add(error, f"action {target!r}")
+                continue
+            self._sends.append((len(names), send))
+            self.names += names
+            bounds += limits
+        if not targets:
+            problems.add(_wrong("there is none"), "action")
+        problems.raise_all()
+        low, high = (np.array(ends) for ends in zip(*bounds, strict=True))
+        self._middle, self._half = (high + low) / 2, (high - low) / 2
+        self._low, self._high = (-np.ones(len(low)), np.ones(len(low))) if is_scaled else (low, high)
+        self._is_scaled = is_scaled
+        self.space = Box(self._low.astype(np.float32), self._high.astype(np.float32), dtype=np.float32)
+        if self._has_joints:
+            # an effort acts in one step only, but an action holds for the whole control period
+            sim.communication.on_demand.add(lambda: True, None, self._push, "before")
+
+    def send(self, action: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Send an action, limited to its bounds, and return the limited numbers.
+
+        Raises:
+            InputError: SK-GYM-004 the action has another shape, or a number is NaN.
+        """
+        values = np.asarray(action, dtype=np.float64)
+        if values.shape != self._low.shape or values.sum() != values.sum():
+            names = ", ".join(self.names)
+            raise invalid(f"found the action {shorten(repr(action), 60)}; expected {names}", code="SK-GYM-004")
+        values = np.minimum(np.maximum(values, self._low), self._high)
+        numbers: list[float] = (self._middle + self._half * values if self._is_scaled else values).tolist()
+        self._efforts.clear()
+        start = 0
+        for count, send in self._sends:
+            send(numbers[start : start + count])
+            start += count
+        return values
+
+    def clear(self) -> None:
+        """Forget the efforts and positions of the last action."""
+        self._efforts.clear()
+        for integral in self._integrals:
+            integral.clear()
+
+    def _push(self, _: int) -> None:
+        for joint, effort in self._efforts:
+            joint.set_effort(effort)
+
+    # ------------------------------------------------------------------ targets
+
+    def _bind(self, target: str, given: ActionTarget) -> tuple[list[str], list[Bounds], Send]:
+        joints = self.sim.contents.handles.tables["joint"]
+        if target in joints:
+            return self._joint(joints[target], given)
+        topics = self.sim.communication.bus.all_topics()
+        topic = absolute_name(target) if target.startswith("/") else target
+        if topic not in topics:
+            hint = did_you_mean(topic, [*topics, *joints]) or "simkit inspect and `simkit topic list` show the names"
+            raise _wrong("the world has no such topic or joint", hint)
+        types = self.sim.communication.bus.types_of(topic)
+        if _TRAJECTORY in types:
+            return self._trajectory(topic, given)
+        return self._message(topic, types[0], given)
+
+    def _joint(self, joint: Joint, given: ActionTarget) -> tuple[list[str], list[Bounds], Send]:
+        limit = joint.effort_limit if joint.dof == 1 else math.inf
+        if joint.dof != 1:
+            raise _wrong(f"the joint has {joint.dof} degrees of freedom; expected one")
+        if given is None and not math.isfinite(float(limit)):
+            raise _wrong("the joint has no effort limit", "give the bounds of the effort, such as (-1.0, 1.0)")
+        bounds = (-float(limit), float(limit)) if given is None else _bounds(given)
+        self._has_joints = True
+        return [f"{joint.scoped} effort"], [bounds], lambda numbers: self._efforts.append((joint, numbers[0]))
+
+    def _trajectory(self, topic: str, given: ActionTarget) -> tuple[list[str], list[Bounds], Send]:
+        """Return the target of a trajectory controller: joint positions to reach at the end of the control period."""
+        is_velocity = isinstance(given, JointVelocities)
+        named: Any = given.joints if isinstance(given, JointVelocities) else given
+        if (
+            not named
+            or not isinstance(named, (Mapping, list, tuple))
+            or not all(isinstance(name, str) for name in named)
+        ):
+            raise _wrong("a trajectory needs the names of joints", 'write {"' + topic + '": ["arm_1_joint", …]}')
+        joints = [self._joint_of_trajectory(name) for name in named]
+        limits = []
+        for name, joint in zip(named, joints, strict=True):
+            if isinstance(given, JointVelocities):
+                most = float(joint.velocity_limit) if given.limit is None else given.limit
+                limits.append(_bounds((-most, most)))
+            else:
+                limits.append(
+                    _bounds(named[name] if isinstance(named, Mapping) else (float(joint.lower), float(joint.upper)))
+                )
+        publisher = self.sim.advertise(topic, _TRAJECTORY)
+        time_from_start = msgs.duration(round(self._period * 1e9))
+        point = msgs.type_of("trajectory_msgs/msg/JointTrajectoryPoint")
+        make, nothing = builder_of(_TRAJECTORY).default, np.empty(0)
+        follower = _VelocityIntegral(joints, self._period)
+        if is_velocity:
+            self._integrals.append(follower)
+
+        def send(numbers: list[float]) -> None:
+            message = make()
+            message.joint_names = list(named)
+            positions = follower.positions(numbers) if is_velocity else np.array(numbers)
+            message.points = [point(positions, nothing, nothing, nothing, time_from_start)]
+            publisher.publish(message)
+
+        return list(named), limits, send
+
+    def _joint_of_trajectory(self, name: str) -> Joint:
+        joints = self.sim.contents.handles.tables["joint"]
+        found = [joint for scoped, joint in joints.items() if scoped.rpartition("::")[2] == name]
+        if not found:
+            raise _wrong(
+                f"the world has no joint {name!r}", did_you_mean(name, [n.rpartition("::")[2] for n in joints])
+            )
+        return found[0]
+
+    def _message(self, topic: str, type_name: str, given: ActionTarget) -> tuple[list[str], list[Bounds], Send]:
+        if not isinstance(given, Mapping):
+            fields = "linear.x" if type_name in _TWISTS else "data"
+            hint = 'write {"' + topic + '": {"' + fields + '": (-1.0, 1.0)}}'
+            raise _wrong(f"a {type_name} needs the bounds of its fields", hint)
+        make, setters, lengths = builder_of(type_name).default, [], {}
+        sample = make()
+        for path in given:
+            setter, array, index = _setter(sample, str(path), type_name)
+            setters.append(setter)
+            if array:
+                lengths[array] = max(lengths.get(array, 0), index + 1)
+        publisher = self.sim.advertise(topic, type_name)
+
+        def send(numbers: list[float]) -> None:
+            message = make()
+            for array, length in lengths.items():
+                owner, name = _owner(message, array)
+                setattr(owner, name, np.zeros(length, getattr(owner, name).dtype))
+            for setter, number in zip(setters, numbers, strict=True):
+                setter(message, number)
+            publisher.publish(message)
+
+        return [f"{topic} {path}" for path in given], [_bounds(given[path]) for path in given], send
+
+
+class _VelocityIntegral:
+    """Integral of the velocities of joints, from their positions at the first action.
+
+    Args:
+        joints: joints with one degree of freedom.
+        period: time between two actions [s].
+    """
+
+    def __init__(self, joints: list[Joint], period: float) -> None:
+        self._joints, self._period = joints, period
+        self._wanted: npt.NDArray[np.float64] | None = None
+
+    def clear(self) -> None:
+        """Begin at the present positions again."""
+        self._wanted = None
+
+    def positions(self, velocities: list[float]) -> npt.NDArray[np.float64]:
+        """Return the positions at the end of the control period, at most `_LEAD` before the present ones."""
+        present = np.array([float(joint.position) for joint in self._joints])
+        if self._wanted is None:
+            self._wanted = present
+        low = np.array([float(joint.lower) for joint in self._joints])
+        high = np.array([float(joint.upper) for joint in self._joints])
+        wanted = self._wanted + self._period * np.array(velocities)
+        self._wanted = np.clip(np.clip(wanted, present - _LEAD, present + _LEAD), low, high)
+        return self._wanted
+
+
+def _wrong(message: str, hint: str = "") -> InputError:
+    return invalid(message, hint, INVALID_ACTION)
+
+
+def _bounds(value: object) -> Bounds:
+    listed: Sequence[Any] = value if isinstance(value, (tuple, list)) else ()
+    numbers = [float(one) for one in listed if isinstance(one, (int, float)) and math.isfinite(one)]
+    if len(listed) != 2 or len(numbers) != 2 or not numbers[0] < numbers[1]:
+        raise _wrong(f"found {value!r}; expected two finite numbers, the lower bound first")
+    return numbers[0], numbers[1]
+
+
+def _owner(message: Any, path: str) -> tuple[Any, str]:
+    """Return the message that has the last field of a path, and the name of this field."""
+    *parents, name = path.split(".")
+    for parent in parents:
+        message = getattr(message, parent)
+    return message, name
+
+
+def _setter(sample: Any, path: str, type_name: str) -> tuple[Callable[[Any, float], None], str, int]:
+    """Return the function that sets a field, and the path and the index of an array's item."""
+    if not _FIELD.fullmatch(path):
+        raise _wrong(f"found the field {path!r}; expected a path such as linear.x or data[0]")
+    plain, _, item = path.partition("[")
+    try:
+        owner, name = _owner(sample, plain)
+        found = getattr(owner, name)
+    except AttributeError:
+        raise _wrong(f"a {type_name} has no field {plain!r}") from None
+    if item:
+        if not isinstance(found, np.ndarray):
+            raise _wrong(f"the field {plain!r} of a {type_name} is no list of numbers")
+        index = int(item[:-1])
+
+        def set_item(message: Any, number: float) -> None:
+            owner, name = _owner(message, plain)
+            getattr(owner, name)[index] = number
+
+        return set_item, plain, index
+    if not isinstance(found, (int, float)) or isinstance(found, bool):
+        raise _wrong(f"the field {path!r} of a {type_name} is no number")
+    convert = type(found)
+
+    def set_field(message: Any, number: float) -> None:
+        owner, name = _owner(message, plain)
+        setattr(owner, name, convert(number))
+
+    return set_field, "", 0

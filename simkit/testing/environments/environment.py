@@ -1,0 +1,332 @@
+"""Simulation as an environment of Gymnasium."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+
+from simkit.errors import InputError, SimulationDiverged
+from simkit.runtime import Simulation
+from simkit.runtime.world_variation import apply_overrides
+from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.testing.conditions.binder import bind
+from simkit.testing.conditions.bound_expression import is_scalar
+from simkit.testing.conditions.parser import parse
+from simkit.testing.conditions.syntax_tree import UndecidedValue, expression_error
+from simkit.testing.conditions.value_types import TEXT
+from simkit.testing.conditions.world_view import WorldView
+from simkit.testing.environments.actions import Actions
+from simkit.testing.environments.observations import Observations, no_message
+from simkit.testing.environments.specification import EnvironmentSpec, Problems, Value, invalid
+from simkit.testing.scenarios.scenario_run import open_scenario
+from simkit.testing.sweeps.parameter_space import InvalidSpace, ParameterSpace, parameter_space
+from simkit.testing.sweeps.sweep_spec import fill_template, split_values, value_text
+
+_LONGEST_WAIT = 1.0  # [s] of simulated time for the first message of an observed topic
+
+
+class SimulationEnv(gymnasium.Env[Any, Any]):
+    """Environment of a simulated world; `simkit.gym.make` makes it.
+
+    The same seed and the same actions give the same observations and rewards, bit for bit. A run without a seed in
+    `reset` uses the seed of the run specification.
+
+    Args:
+        spec: specification.
+        render_mode: "rgb_array" for images by `render`; None for none.
+        size: width and height of the images [px].
+
+    Attributes:
+        spec_of_env: specification.
+        sim, values, memory, action, observation: as `specification.Environment` describes them.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 10}
+
+    def __init__(
+        self, spec: EnvironmentSpec, render_mode: str | None = None, size: tuple[int, int] = (480, 360)
+    ) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise invalid(f"render_mode: found {render_mode!r}; expected 'rgb_array' or None")
+        self.spec_of_env, self.render_mode, self._size = spec, render_mode, size
+        self.metadata = {**self.metadata, "render_fps": max(1, round(1.0 / spec.control_period))}
+        self._spaces = _parameter_spaces(spec.randomise)
+        self.values: dict[str, Any] = {}
+        self.memory: dict[str, Any] = {}
+        self._variables: dict[str, Any] = {}
+        self._is_seeded = False
+        self._begun: tuple[dict[str, Any], Mapping[str, Any] | None] | None = None
+        self._sent: list[Any] = []
+        self._draw(np.random.default_rng(spec.run.seed), {})
+        self._open(self._overrides())
+        self._begin(spec.run.seed)
+        self.observation_space = self._observations.space
+        self.action_space = self._actions.space
+
+    # ------------------------------------------------------------------ Gymnasium
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begin an episode.
+
+        Args:
+            seed: seed of everything that is drawn from now on; None continues.
+            options: `{"values": {name: value}}` sets values instead of drawing them.
+
+        Returns:
+            First observation and info.
+        """
+        if seed is None and not self._is_seeded:
+            seed = self.spec_of_env.run.seed
+        super().reset(seed=seed)
+        self._is_seeded = True
+        given = dict((options or {}).get("values", {}))
+        self._check_values(given, options)
+        self._begun = self.np_random.bit_generator.state, options
+        self._draw(self.np_random, given)
+        self._apply_values(int(self.np_random.integers(1 << 31)))
+        return self.observation, self._info()
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Send an action, advance by one control period, and return observation, reward, both ends, and info.
+
+        A simulation that diverges truncates the episode; the info then has the text of the error as "diverged".
+        """
+        if self._begun is None:
+            raise invalid("step was called before reset", "call reset first", "SK-GYM-005")
+        self.action = self._actions.send(action)
+        self._sent.append(self.action)
+        try:
+            self.sim.step(self._steps)
+            self.observation = self._observations.read()
+        except SimulationDiverged as error:
+            return self.observation, 0.0, False, True, {"time": self.sim.time, "diverged": str(error)}
+        reward, is_over = float(self._reward()), bool(self._terminated())
+        is_late = self._last_tick is not None and self.sim.tick >= self._last_tick
+        return self.observation, reward, is_over, is_late and not is_over, self._info()
+
+    def render(self) -> Any:
+        """Return an image of the world from outside, shape (height, width, 3)."""
+        if self.render_mode is None:
+            return None
+        return render_view(self.sim, *self._size)
+
+    def close(self) -> None:
+        """Close the world."""
+        if "sim" in vars(self):
+            self._view_of_sim.close()
+            self.sim.close()
+
+    # ------------------------------------------------------------------ copies
+
+    def clone(self) -> SimulationEnv:
+        """Return another environment in the same state; the same actions then give the same results.
+
+        The copy loads its own world and repeats the episode so far.
+        """
+        other = SimulationEnv(self.spec_of_env, self.render_mode, self._size)
+        if self._begun is None:
+            return other
+        state, options = self._begun
+        other._is_seeded = True
+        other.np_random = np.random.Generator(type(self.np_random.bit_generator)())
+        other.np_random.bit_generator.state = copy.deepcopy(state)
+        other.reset(options=dict(options) if options else None)
+        for action in self._sent:
+            other.step(action)
+        other.np_random.bit_generator.state = self.np_random.bit_generator.state
+        return other
+
+    # ------------------------------------------------------------------ for functions of the environment
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the reset [s]."""
+        return (self.sim.tick - self._first_tick) * self.sim.timestep
+
+    @property
+    def view(self) -> WorldView:
+        """View of the world for expressions."""
+        return self._view_of_sim
+
+    def expression(self, source: str) -> Callable[[], Any]:
+        """Return a function that returns the present value of an expression; it is kept for later episodes.
+
+        Raises:
+            InputError: the expression has an error, or its value is not a number, true or false.
+        """
+        text = self.with_variables(source)
+        if text not in self._expressions:
+            self._expressions[text] = self._getter(text)
+        return self._expressions[text]
+
+    def with_variables(self, text: str) -> str:
+        """Return a text in which each `{name}` of a variable is replaced by its value."""
+        return str(fill_template(text, self._variables)) if self._variables else text
+
+    # ------------------------------------------------------------------ episodes
+
+    def _check_values(self, given: Mapping[str, Any], options: Mapping[str, Any] | None) -> None:
+        unknown = [name for name in given if name not in self.values]
+        unknown += [f"options[{name!r}]" for name in options or {} if name != "values"]
+        if unknown:
+            known = ", ".join(self.values) or "none"
+            raise invalid(f"reset: found {', '.join(map(str, unknown))}; the values of this environment are: {known}")
+
+    def _draw(self, random: np.random.Generator, given: Mapping[str, Any]) -> None:
+        drawn: dict[str, Any] = {}
+        for space in self._spaces:
+            if space.levels is not None:
+                drawn[space.names[0]] = space.levels[int(random.integers(len(space.levels)))]
+            else:
+                drawn.update(space.values(random.random(len(space.names)).tolist()))
+        self.values = {**drawn, **given}
+        self._variables = split_values(self.values)[1]
+
+    def _overrides(self) -> tuple[str, ...]:
+        paths, _ = split_values(self.values)
+        added = tuple(f"{path}={value_text(value)}" for path, value in paths.items())
+        return (*self.spec_of_env.run.overrides, *added)
+
+    def _apply_values(self, seed: int) -> None:
+        """Reset the world with the present values."""
+        overrides = self._overrides()
+        if overrides == self._loaded_overrides:
+            self.sim.reset(seed)
+        elif apply_overrides(self.sim, overrides, seed):
+            self._loaded_overrides = overrides
+        else:
+            self.close()
+            self._open(overrides)
+            self.sim.reset(seed)
+        if self._uses_variables:
+            self._bind()
+        self._begin(seed)
+
+    def _begin(self, seed: int) -> None:
+        """Begin the episode at the present state: call `on_reset` and make the first observation."""
+        spec = self.spec_of_env
+        self.memory, self._sent = {}, []
+        self._actions.clear()
+        self.action = np.zeros(len(self._actions.names))
+        if spec.on_reset is not None:
+            spec.on_reset(self)
+        waited = 0.0
+        while True:
+            try:
+                self.observation = self._observations.read()
+                break
+            except UndecidedValue as reason:
+                if waited >= _LONGEST_WAIT:
+                    raise no_message(reason, waited) from None
+                self.sim.step(self._steps)
+                waited += spec.control_period
+        self._first_tick = self.sim.tick
+        limit = spec.time_limit
+        self._last_tick = None if limit is None else self._first_tick + max(1, round(limit / self.sim.timestep))
+
+    def _info(self) -> dict[str, Any]:
+        info: dict[str, Any] = {"time": self.time}
+        if self._success is not None:
+            info["is_success"] = bool(self._success())
+        return info
+
+    # ------------------------------------------------------------------ the world
+
+    def _open(self, overrides: tuple[str, ...]) -> None:
+        spec = self.spec_of_env
+        run = replace(spec.run, overrides=overrides, plugins=copy.deepcopy(spec.run.plugins))
+        self.sim: Simulation = open_scenario(run)
+        self._loaded_overrides = overrides
+        self._steps = round(spec.control_period / self.sim.timestep)
+        if self._steps < 1 or abs(self._steps * self.sim.timestep - spec.control_period) > 1e-9:
+            step = self.sim.timestep
+            self.sim.close()
+            raise invalid(
+                f"control_period: found {spec.control_period:g} s; expected a multiple of the step, {step:g} s"
+            )
+        self._view_of_sim = WorldView(self.sim)
+        try:
+            self._bind()
+        except BaseException:
+            self.sim.close()
+            raise
+
+    def _bind(self) -> None:
+        """Bind observations, actions, reward and ends to the simulation."""
+        spec, problems = self.spec_of_env, Problems()
+        self._view_of_sim.close()
+        self._view_of_sim = WorldView(self.sim)
+        self._expressions: dict[str, Callable[[], Any]] = {}
+        try:
+            self._observations = Observations(self, spec.observation, spec.sync)
+        except InputError as error:
+            problems.add(error, "")
+        if "_actions" not in vars(self) or self._actions.sim is not self.sim:
+            try:
+                self._actions = Actions(self.sim, spec.action, spec.control_period, spec.scaled_actions)
+            except InputError as error:
+                problems.add(error, "")
+        getters: dict[str, Callable[[], Any]] = {}
+        for name in ("reward", "terminated", "success"):
+            value = getattr(spec, name)
+            try:
+                getters[name] = self._getter(value)
+            except InputError as error:
+                problems.add(error, name)
+        problems.raise_all()
+        self._reward, self._terminated = getters["reward"], getters["terminated"]
+        self._success = getters["success"] if spec.success is not None else None
+        self._view_of_sim.open()
+        if not spec.samples_all:
+            self._observations.take_over_sensors()
+
+    @property
+    def _uses_variables(self) -> bool:
+        """True if expressions contain variables, whose values are new in each episode."""
+        if not self._variables:
+            return False
+        texts = str(
+            (
+                self.spec_of_env.observation,
+                self.spec_of_env.reward,
+                self.spec_of_env.terminated,
+                self.spec_of_env.success,
+            )
+        )
+        return any("{" + name + "}" in texts for name in self._variables)
+
+    def _getter(self, value: Value | None) -> Callable[[], Any]:
+        """Return the function that returns the present value of a reward or an end."""
+        if callable(value):
+            return lambda: value(self)
+        if not isinstance(value, str):
+            return lambda: value
+        source = self.with_variables(value)
+        part = bind(parse(source), self._view_of_sim)
+        if not is_scalar(part.kind) or part.kind is TEXT:
+            message = f"the value is {part.kind}, but must be a number, or true or false"
+            raise expression_error("SK-COND-004", message, source, part.node.span)
+
+        def get() -> Any:
+            try:
+                return part.get()
+            except UndecidedValue:
+                return 0.0
+
+        return get
+
+
+def _parameter_spaces(randomise: Mapping[Any, object]) -> list[ParameterSpace]:
+    problems, spaces = Problems(), []
+    for names, description in randomise.items():
+        try:
+            spaces.append(parameter_space(names, description))
+        except InvalidSpace as error:
+            problems.add(invalid(str(error)), f"randomise {names!r}")
+    problems.raise_all()
+    return spaces

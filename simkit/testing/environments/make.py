@@ -1,0 +1,99 @@
+"""Environments by world or by registered id, one or several."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
+from functools import partial
+from typing import Any, Final, Literal
+
+import gymnasium
+
+from simkit.diagnostics import did_you_mean
+from simkit.run_spec import FilePath, RunSpec
+from simkit.testing.environments.environment import SimulationEnv
+from simkit.testing.environments.specification import EnvironmentSpec, invalid
+from simkit.testing.environments.tiago_tasks import pick_spec, reach_spec
+from simkit.testing.environments.turtlebot3_tasks import goal_spec, maze_spec
+from simkit.testing.sweeps.sweep_spec import spec_of_world
+
+IDS: Final[Mapping[str, Callable[[], EnvironmentSpec]]] = {
+    "simkit/TurtleBot3Goal-v0": goal_spec,
+    "simkit/TurtleBot3Maze-v0": maze_spec,
+    "simkit/TiagoReach-v0": reach_spec,
+    "simkit/TiagoPick-v0": pick_spec,
+}
+"""Functions of the registered environments by id."""
+
+Autoreset = Literal["next_step", "same_step", "disabled"]
+_FIELDS: Final = tuple(one.name for one in fields(EnvironmentSpec) if one.name != "run")
+
+
+def environment_spec(world: FilePath | RunSpec, changes: Mapping[str, Any]) -> EnvironmentSpec:
+    """Return the specification of a world or of a registered id, with changes.
+
+    Raises:
+        InputError: SK-GYM-001 an argument is unknown or missing, or no environment has this id.
+    """
+    changes = dict(changes)
+    overrides, seed = tuple(changes.pop("overrides", ())), changes.pop("seed", None)
+    for name in changes:
+        if name not in _FIELDS:
+            hint = did_you_mean(name, _FIELDS) or f"allowed: {', '.join(_FIELDS)}"
+            raise invalid(f"found the argument {name!r}; {hint}")
+    if isinstance(world, str) and world.startswith("simkit/"):
+        if world not in IDS:
+            raise invalid(
+                f"no environment has the id {world!r}", did_you_mean(world, IDS) or f"available: {', '.join(IDS)}"
+            )
+        spec = replace(IDS[world](), **changes)
+    else:
+        missing = [name for name in ("observation", "action") if name not in changes]
+        if missing:
+            raise invalid(f"{' and '.join(missing)} missing", "docs/learning.md has an example")
+        spec = EnvironmentSpec(spec_of_world(world, None, ""), **changes)
+    run = replace(spec.run, overrides=(*spec.run.overrides, *overrides))
+    return replace(spec, run=run if seed is None else replace(run, seed=seed))
+
+
+def make_env(
+    world: FilePath | RunSpec,
+    *,
+    render_mode: str | None = None,
+    size: tuple[int, int] = (480, 360),
+    **changes: Any,
+) -> SimulationEnv:
+    """Return one environment; see `simkit.gym.make`."""
+    return SimulationEnv(environment_spec(world, changes), render_mode, size)
+
+
+def make_vector_env(
+    world: FilePath | RunSpec,
+    num_envs: int,
+    *,
+    processes: bool = True,
+    autoreset: Autoreset = "next_step",
+    **changes: Any,
+) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
+    """Return several environments that step together; see `simkit.gym.make_vec`."""
+    if not isinstance(num_envs, int) or num_envs < 1:
+        raise invalid(f"num_envs: found {num_envs!r}; expected a whole number of at least 1")
+    modes = {mode.name.lower(): mode for mode in gymnasium.vector.AutoresetMode}
+    if autoreset not in modes:
+        raise invalid(f"autoreset: found {autoreset!r}; expected one of {', '.join(modes)}")
+    options = {name: changes.pop(name) for name in ("render_mode", "size") if name in changes}
+    spec = environment_spec(world, changes)
+    makers = [
+        partial(SimulationEnv, replace(spec, run=replace(spec.run, seed=spec.run.seed + number)), **options)
+        for number in range(num_envs)
+    ]
+    if processes:
+        return gymnasium.vector.AsyncVectorEnv(makers, shared_memory=True, autoreset_mode=modes[autoreset])
+    return gymnasium.vector.SyncVectorEnv(makers, autoreset_mode=modes[autoreset])
+
+
+def register_ids() -> None:
+    """Register the environments, so that `gymnasium.make` finds them too."""
+    for name in IDS:
+        if name not in gymnasium.registry:
+            gymnasium.register(name, entry_point=partial(make_env, name))

@@ -1,0 +1,156 @@
+"""Specification of an environment for learning: a run, observations, actions, reward, end and random values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+from simkit.errors import InputError
+from simkit.run_spec import RunSpec
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from simkit.runtime import Simulation
+    from simkit.testing.conditions.world_view import WorldView
+
+INVALID: Final = "SK-GYM-001"
+INVALID_ACTION: Final = "SK-GYM-002"
+NO_MESSAGE: Final = "SK-GYM-003"
+
+
+class Environment(Protocol):
+    """Environment as its functions use it.
+
+    Attributes:
+        sim: simulation; its state may be read at any time, without noise.
+        values: values drawn at the last reset, by path or name of a variable.
+        memory: data of functions of the environment; empty after each reset.
+        action: last action within its bounds; zeros after a reset.
+        observation: last observation.
+    """
+
+    sim: Simulation
+    values: dict[str, Any]
+    memory: dict[str, Any]
+    action: npt.NDArray[np.float64]
+    observation: Any
+
+    @property
+    def np_random(self) -> np.random.Generator:
+        """Random numbers of the environment, from the seed of `reset`."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the reset [s]."""
+
+    @property
+    def view(self) -> WorldView:
+        """View of the world for expressions."""
+
+    def expression(self, source: str) -> Callable[[], Any]:
+        """Return a function that returns the present value of an expression."""
+
+    def with_variables(self, text: str) -> str:
+        """Return a text in which each `{name}` of a variable is replaced by its value."""
+
+
+Value = str | float | bool | Callable[[Environment], Any]
+"""Number, expression of the condition language, or function of the environment."""
+
+
+@dataclass(frozen=True)
+class Observation:
+    """Source of one observation, with bounds.
+
+    Attributes:
+        source: topic, scoped name of a sensor, joint, link or model, expression, or function of the environment.
+        low, high: bounds of the values, for all or for each; None for the bounds of the source.
+        truth: observe a sensor without its noise.
+        sectors: number of equal groups of neighbouring values; the observation has the smallest value of each group.
+            None for all values.
+    """
+
+    source: str | Callable[[Environment], Any]
+    low: npt.ArrayLike | None = None
+    high: npt.ArrayLike | None = None
+    truth: bool = False
+    sectors: int | None = None
+
+
+@dataclass(frozen=True)
+class JointVelocities:
+    """Action on a trajectory controller: velocities, which are integrated to positions within the joint limits.
+
+    Attributes:
+        joints: names of the joints.
+        limit: greatest velocity [rad/s, m/s]; None for the velocity limits of the joints.
+    """
+
+    joints: tuple[str, ...]
+    limit: float | None = None
+
+
+ObservationSource = str | Observation | Callable[[Environment], Any]
+ActionTarget = Mapping[str, tuple[float, float]] | Sequence[str] | tuple[float, float] | JointVelocities | None
+"""Bounds by field or joint, names of joints, bounds of an effort, or None for the bounds of the world."""
+
+
+@dataclass(frozen=True)
+class EnvironmentSpec:
+    """Specification of an environment.
+
+    Attributes:
+        run: world with its seed, overrides and load options.
+        observation: one source, or sources by name.
+        action: one target, or targets with their bounds.
+        reward: reward of a step.
+        terminated: end of an episode by the task.
+        success: success of an episode, for `info["is_success"]`; None for a task without it.
+        randomise: spaces of the values drawn at each reset, by path of an override or by name of a variable.
+        on_reset: function of the environment, called at each reset before the first observation.
+        control_period: simulated time of a step [s].
+        time_limit: simulated time after which an episode is truncated [s]; None for no limit.
+        scaled_actions: actions are numbers from -1 to 1, which stand for the bounds of their targets.
+        sync: take a sample of each observed sensor at every step, so that no observation is old.
+        samples_all: sample every sensor at its rate; False samples only those that are observed or have a subscriber,
+            which is faster. Functions must not read other sensors then.
+    """
+
+    run: RunSpec
+    observation: ObservationSource | Mapping[str, ObservationSource]
+    action: str | Mapping[str, ActionTarget]
+    reward: Value = 0.0
+    terminated: Value = False
+    success: Value | None = None
+    randomise: Mapping[Any, object] = field(default_factory=dict)
+    on_reset: Callable[[Environment], None] | None = None
+    control_period: float = 0.1
+    time_limit: float | None = None
+    scaled_actions: bool = False
+    sync: bool = True
+    samples_all: bool = True
+
+
+class Problems:
+    """List of the problems of a specification, for one error that lists all of them."""
+
+    def __init__(self) -> None:
+        self._found: list[tuple[str, str]] = []
+
+    def add(self, error: InputError, name: str) -> None:
+        """Add an error of the part `name`; an error with the problems of several parts has their names already."""
+        text = str(error).removeprefix(error.code).strip()
+        self._found.append((f"{error.code} {name}: {text}" if name else str(error), error.code))
+
+    def raise_all(self) -> None:
+        """Raise an error with all problems; do nothing if there is none."""
+        if self._found:
+            raise InputError("\n".join(text for text, _ in self._found), self._found[0][1])
+
+
+def invalid(message: str, hint: str = "", code: str = INVALID) -> InputError:
+    """Return an error about the specification of an environment."""
+    return InputError(f"{code} {message}" + (f"\n    help: {hint}" if hint else ""), code)

@@ -1,0 +1,307 @@
+"""Environments for learning: spaces, determinism by seed, freshness of observations, actions, errors."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import simkit
+from simkit.errors import InputError
+from simkit.run_spec import RunSpec
+
+gymnasium = pytest.importorskip("gymnasium", reason="pip install 'simkit-robotics[experiments]'")
+
+import simkit.gym  # noqa: E402
+from simkit.gym import JointVelocities, Observation  # noqa: E402
+from simkit.testing.environments.turtlebot3_tasks import maze_world  # noqa: E402
+
+CART = """<sdf version="1.9"><world name="w"><physics type="ignored"><max_step_size>0.002</max_step_size></physics>
+<model name="wall"><static>true</static><pose>3 0 0 0 0 0</pose><link name="l">
+  <collision name="c"><geometry><box><size>0.2 4 2</size></box></geometry></collision></link></model>
+<model name="cart"><pose>0 0 0.5 0 0 0</pose>
+  <link name="rail"><inertial><mass>1</mass></inertial></link>
+  <joint name="fix" type="fixed"><parent>world</parent><child>rail</child></joint>
+  <link name="car"><inertial><mass>2</mass></inertial>
+    <sensor name="eye" type="lidar"><update_rate>4</update_rate><topic>eye</topic><lidar><scan>
+      <horizontal><samples>6</samples><min_angle>-0.2</min_angle><max_angle>0.2</max_angle></horizontal></scan>
+      <range><min>0.1</min><max>5</max></range><noise><type>gaussian</type><stddev>0.01</stddev></noise></lidar></sensor>
+  </link>
+  <joint name="slide" type="prismatic"><parent>rail</parent><child>car</child>
+    <axis><xyz>1 0 0</xyz><limit><lower>-2</lower><upper>2</upper><effort>8</effort></limit></axis></joint>
+</model></world></sdf>"""
+SLIDE = "cart::slide"
+
+
+def make(**options: Any) -> simkit.gym.SimulationEnv:
+    given: dict[str, Any] = {
+        "observation": {"eye": "/eye", "slide": SLIDE},
+        "action": SLIDE,
+        "reward": f"-abs(joint('{SLIDE}').position - 1)",
+        "terminated": f"joint('{SLIDE}').position > 1.5",
+        "time_limit": 1.0,
+    }
+    return simkit.gym.make(CART, **{**given, **options})
+
+
+def results(env: simkit.gym.SimulationEnv, seed: int | None = 7, steps: int = 3) -> list[Any]:
+    found = [env.reset(seed=seed)[0]]
+    for number in range(steps):
+        observation, reward, *_ = env.step([float(number)])
+        found += [observation, reward]
+    return found
+
+
+def same(one: Any, other: Any) -> bool:
+    """Compare observations, rewards and ends bit for bit."""
+    if isinstance(one, dict):
+        return one.keys() == other.keys() and all(same(one[name], other[name]) for name in one)
+    return np.asarray(one).tobytes() == np.asarray(other).tobytes()
+
+
+def test_the_checker_of_gymnasium_accepts_an_environment() -> None:
+    from gymnasium.utils.env_checker import check_env
+
+    with pytest.warns(
+        UserWarning, match="infinity|normalized"
+    ):  # a velocity has no bounds, and an effort is not scaled
+        check_env(make(), skip_render_check=True)
+
+
+@pytest.mark.filterwarnings("error")
+def test_the_checker_accepts_a_registered_environment_without_a_warning() -> None:
+    from gymnasium.utils.env_checker import check_env
+
+    check_env(gymnasium.make("simkit/TurtleBot3Goal-v0", disable_env_checker=True).unwrapped, skip_render_check=True)
+
+
+def test_the_same_seed_gives_the_same_bits_and_another_seed_other_noise() -> None:
+    env = make()
+    first, again, other = results(env), results(env), results(env, seed=8)
+    fresh = results(make())
+    for a, b, c in zip(first, again, fresh, strict=True):
+        assert same(a, b) and same(a, c)
+    assert not np.array_equal(first[0]["eye"], other[0]["eye"])
+
+
+def test_a_first_reset_without_a_seed_uses_the_seed_of_the_run() -> None:
+    run = RunSpec(CART, seed=5)
+    options = {"observation": "/eye", "action": SLIDE}
+    one, other = simkit.gym.make(run, **options), simkit.gym.make(CART, seed=5, **options)
+    assert np.array_equal(one.reset()[0], other.reset(seed=5)[0])
+
+
+def test_the_bounds_of_a_scan_are_the_ranges_of_the_sensor() -> None:
+    env = make(observation={"eye": "/eye", "near": Observation("/eye", sectors=2)})
+    eye, near = env.observation_space["eye"], env.observation_space["near"]
+    assert eye.shape == (6,) and np.all(eye.low == np.float32(0.1)) and np.all(eye.high == 5.0)
+    assert near.shape == (2,)
+    observation, _ = env.reset(seed=1)
+    assert np.array_equal(observation["near"], observation["eye"].reshape(2, 3).min(axis=1))
+
+
+def test_a_scan_is_as_new_as_the_step_with_sync_and_up_to_a_period_old_without() -> None:
+    def ages(sync: bool) -> list[float]:
+        env = make(observation=Observation("/eye"), sync=sync)
+        env.reset(seed=1)
+        found = []
+        for _ in range(4):
+            env.step([0.0])
+            stamp = env.sim.sensor("cart::car::eye").latest.header.stamp
+            found.append(round(env.sim.time - stamp.sec - stamp.nanosec * 1e-9, 9))
+        return found
+
+    assert ages(sync=True) == [0.0, 0.0, 0.0, 0.0]
+    assert ages(sync=False) == [0.198, 0.05, 0.15, 0.0]  # samples at 0.002, 0.25 and 0.5 s
+
+
+def test_sampling_only_observed_sensors_changes_no_observation() -> None:
+    options: dict[str, Any] = {"observation": {"truth": Observation("/eye", truth=True), "slide": SLIDE}}
+    every, observed = results(make(**options)), results(make(**options, samples_all=False))
+    assert all(map(same, every, observed))
+
+
+def test_an_effort_acts_during_the_whole_control_period() -> None:
+    env = make()
+    env.reset()
+    env.step([4.0])
+    assert env.sim.joint(SLIDE).velocity == pytest.approx(4.0 / 2.0 * 0.1, rel=1e-6)  # F/m·t
+    assert env.action.tolist() == [4.0]
+    env.step([100.0])
+    assert env.action.tolist() == [8.0]  # the effort limit
+
+
+def test_scaled_actions_stand_for_the_bounds() -> None:
+    env = make(scaled_actions=True)
+    assert env.action_space.low.tolist() == [-1.0] and env.action_space.high.tolist() == [1.0]
+    env.reset()
+    env.step([0.5])
+    assert env.sim.joint(SLIDE).velocity == pytest.approx(4.0 / 2.0 * 0.1, rel=1e-6)
+
+
+def test_an_episode_ends_by_its_task_or_by_its_time() -> None:
+    env = make(success=f"joint('{SLIDE}').position > 1.5")
+    env.reset()
+    ends = [env.step([0.0])[2:4] for _ in range(10)]
+    assert ends == [(False, False)] * 9 + [(False, True)]
+    env.reset()
+    env.sim.joint(SLIDE).set_position(1.6)
+    _, _, terminated, truncated, info = env.step([0.0])
+    assert terminated and not truncated and info["is_success"] is True
+
+
+def test_a_clone_continues_with_the_same_bits() -> None:
+    env = make(randomise={"cart::car.inertial.mass": {"uniform": [1.0, 3.0]}})
+    results(env)
+    other = env.clone()
+    assert other.sim is not env.sim and other.values == env.values
+    assert all(map(same, env.step([1.0])[:4], other.step([1.0])[:4]))
+    assert env.reset()[0]["eye"].tolist() == other.reset()[0]["eye"].tolist()
+
+
+def test_values_are_drawn_at_each_reset_and_can_be_given() -> None:
+    mass = "cart::car.inertial.mass"
+    env = make(
+        randomise={mass: {"uniform": [1.0, 3.0]}, "goal": {"choice": [0.25, 0.75]}},
+        reward=f"abs(joint('{SLIDE}').position - {{goal}})",
+        observation=SLIDE,
+    )
+    env.reset(seed=1)
+    first = dict(env.values)
+    env.reset()
+    assert env.values[mass] != first[mass] and 1.0 <= env.values[mass] <= 3.0
+    assert env.sim.link("cart::car").mass == env.values[mass]
+    env.reset(seed=1)
+    assert env.values == first
+    env.reset(options={"values": {"goal": 0.75, mass: 1.5}})
+    assert env.sim.link("cart::car").mass == 1.5
+    assert env.step([0.0])[1] == pytest.approx(0.75, abs=1e-3)
+
+
+def test_functions_see_the_truth_and_their_memory_is_empty_after_a_reset() -> None:
+    def reward(env: Any) -> float:
+        env.memory["count"] = env.memory.get("count", 0) + 1
+        return float(env.memory["count"])
+
+    env = make(reward=reward, observation=lambda env: env.sim.joint(SLIDE).position)
+    env.reset()
+    assert [env.step([0.0])[1] for _ in range(2)] == [1.0, 2.0]
+    env.reset()
+    assert env.step([0.0])[1] == 1.0
+
+
+def test_a_diverged_episode_is_truncated_and_the_next_one_works() -> None:
+    env = make()
+    env.reset(seed=1)
+    env.sim.mj_data.qvel[:] = math.nan
+    _, reward, terminated, truncated, info = env.step([0.0])
+    assert (reward, terminated, truncated) == (0.0, False, True) and "diverged" in info
+    assert np.isfinite(env.reset()[0]["slide"]).all()
+
+
+def test_a_vector_steps_like_single_environments_with_the_next_seeds() -> None:
+    options: dict[str, Any] = {"observation": "/eye", "action": SLIDE, "time_limit": 0.2}
+    vector = simkit.gym.make_vec(CART, num_envs=2, processes=False, **options)
+    single = [simkit.gym.make(CART, seed=number, **options) for number in range(2)]
+    first, _ = vector.reset()
+    assert np.array_equal(first, [env.reset()[0] for env in single])
+    actions = np.array([[1.0], [-1.0]], np.float32)
+    for _ in range(2):
+        found, _, _, truncated, _ = vector.step(actions)
+        assert np.array_equal(found, [env.step(action)[0] for env, action in zip(single, actions, strict=True)])
+    assert truncated.all()
+    begun = vector.step(actions)[0]  # the next episode, as Gymnasium's mode "next_step" says
+    assert np.array_equal(begun, [env.reset()[0] for env in single])
+    vector.close()
+
+
+def test_all_problems_are_in_one_error() -> None:
+    with pytest.raises(InputError) as caught:
+        make(observation={"a": "/eyes", "b": "pose('carr')"}, action={"cart::slid": None}, reward="1 +")
+    text = str(caught.value)
+    assert "SK-COND-006" in text and "/eye" in text
+    assert "SK-COND-005" in text and "SK-GYM-002 action 'cart::slid'" in text and "reward" in text
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "expected"),
+    [
+        ({"observatoin": "/eye"}, "SK-GYM-001", "did you mean 'observation'"),
+        ({"control_period": 0.001}, "SK-GYM-001", "a multiple of the step, 0.002 s"),
+        ({"observation": "/rosout"}, "SK-GYM-003", "/rosout"),
+        ({"observation": Observation(SLIDE, low=[0, 0, 0])}, "SK-GYM-001", "shape (2,)"),
+        ({"randomise": {"goal": {"uniform": [1, 0]}}}, "SK-GYM-001", "lower bound"),
+        ({"action": {SLIDE: (1.0, -1.0)}}, "SK-GYM-002", "the lower bound first"),
+        ({"render_mode": "human"}, "SK-GYM-001", "rgb_array"),
+    ],
+)
+def test_an_invalid_option_is_an_error_with_a_code(options: dict[str, Any], code: str, expected: str) -> None:
+    with pytest.raises(InputError, match=code) as caught:
+        make(**options)
+    assert expected in str(caught.value)
+
+
+def test_invalid_calls_are_errors_with_codes() -> None:
+    env = make()
+    with pytest.raises(InputError, match="SK-GYM-005"):
+        env.step([0.0])
+    env.reset()
+    with pytest.raises(InputError, match=r"SK-GYM-004.*cart::slide effort"):
+        env.step([0.0, 1.0])
+    with pytest.raises(InputError, match="SK-GYM-001.*mass"):
+        env.reset(options={"values": {"mass": 1.0}})
+    with pytest.raises(InputError, match="TurtleBot3Goal"):
+        simkit.gym.make("simkit/TurtleBot3Gaol-v0")
+
+
+def test_the_maze_has_walls_between_some_cells() -> None:
+    with simkit.load(maze_world()) as sim:
+        scan = sim.sensor("turtlebot3::base_scan::lds")
+        sim.run(0.3)
+        assert sim.model("maze").static and np.isfinite(scan.truth.ranges).mean() > 0.9
+
+
+@pytest.mark.slow
+def test_processes_give_the_results_of_single_environments() -> None:
+    vector = simkit.gym.make_vec("simkit/TurtleBot3Goal-v0", num_envs=2)
+    single = [simkit.gym.make("simkit/TurtleBot3Goal-v0", seed=number) for number in range(2)]
+    first, _ = vector.reset()
+    alone = [env.reset()[0] for env in single]
+    for _ in range(3):
+        assert all(np.array_equal(first[name], [one[name] for one in alone]) for name in first)
+        action = np.full((2, 2), 0.5, np.float32)
+        first = vector.step(action)[0]
+        alone = [env.step([0.5, 0.5])[0] for env in single]
+    vector.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["TurtleBot3Maze", "TiagoReach", "TiagoPick"])
+def test_registered_environments_pass_the_checker_and_repeat_by_seed(name: str) -> None:
+    from gymnasium.utils.env_checker import check_env
+
+    env = simkit.gym.make(f"simkit/{name}-v0")
+    check_env(env, skip_render_check=True)
+    action = env.action_space.sample()
+
+    def run() -> list[Any]:
+        env.reset(seed=3)
+        return [part for _ in range(5) for part in env.step(action)[:4]]
+
+    assert all(map(same, run(), run()))
+
+
+@pytest.mark.slow
+def test_joint_velocities_move_the_joints_of_a_controller() -> None:
+    env = simkit.gym.make(
+        "simkit/TiagoReach-v0",
+        action={"/arm_controller/joint_trajectory": JointVelocities(("arm_1_joint",), 0.5)},
+        scaled_actions=False,
+    )
+    env.reset(seed=1)
+    start = env.sim.joint("tiago::arm_1_joint").position
+    for _ in range(10):
+        env.step([0.5])
+    assert env.sim.joint("tiago::arm_1_joint").position - start == pytest.approx(0.5, abs=0.1)
