@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -57,16 +57,18 @@ class StaticTransforms(WorldPlugin):
         self.after_step()
 
     def reset(self) -> None:
-        self._known = ()
-        self.after_step()
+        self._known = tuple(self.sim.models)
+        # the compiled world keeps them, because resets come in thousands and each would compute the same transforms
+        self._publish(self.sim.engine.names.shared("static transforms", lambda: list(self._all())))
 
     def after_step(self) -> None:
         """Publish all transforms again if the models have changed."""
         names = tuple(self.sim.models)
-        if names == self._known:
-            return
-        self._known = names
-        found = list(self._all())
+        if names != self._known:
+            self._known = names
+            self._publish(list(self._all()))
+
+    def _publish(self, found: Sequence[tuple[str, str, Pose]]) -> None:
         if found:
             self._static.publish_later(partial(transforms, 0, *found))
 

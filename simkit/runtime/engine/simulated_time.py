@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Final
 
 from simkit.argument_checks import checked_integer, checked_number
@@ -22,6 +23,7 @@ def exact_fraction(value: float | int | str | Fraction) -> Fraction:
     return value if isinstance(value, Fraction) else Fraction(str(value))
 
 
+@lru_cache(maxsize=256)  # computing it takes 10 µs, and each reset asks for the rates of all tasks
 def exact_rate(rate: float) -> Fraction:
     """Return the intended rate [Hz]: the decimal number as written, or 1/3 for a float computed as 1/3."""
     simple = Fraction(rate).limit_denominator(_MAX_DENOMINATOR)
@@ -48,6 +50,8 @@ class SampleTiming:
 LONGEST_DURATION: Final = 2.0**31 - 1.0
 """Longest duration [s], 68 years: the largest time of a ROS message."""
 
+_MAX_GRIDS: Final = 256  # number of grids that a clock keeps, because a program may change rates all the time
+
 _USUAL_COUNT: Final = 1_000_000  # up to this number of steps, a count needs no further check
 
 
@@ -63,6 +67,7 @@ class Clock:
         self._step = exact_fraction(timestep)
         self._step_ns = self._step * 1_000_000_000
         self._whole_ns = self._step_ns.numerator if self._step_ns.denominator == 1 else 0
+        self._grids: dict[tuple[float, bool], TickGrid | None] = {}
 
     def time_ns(self, tick: int) -> int:
         """Return the time of a tick [ns], rounded half up if a step is not a whole number of nanoseconds."""
@@ -97,8 +102,12 @@ class Clock:
         """
         if rate <= 0:
             return None
-        period = 1 / (exact_rate(rate) * self._step)
-        return TickGrid(period, from_start) if period > 1 else None
+        if (rate, from_start) not in self._grids:
+            if len(self._grids) > _MAX_GRIDS:
+                self._grids.clear()
+            period = 1 / (exact_rate(rate) * self._step)
+            self._grids[rate, from_start] = TickGrid(period, from_start) if period > 1 else None
+        return self._grids[rate, from_start]
 
     def samples(self, timing: SampleTiming) -> TickGrid | ShiftedTickGrid | None:
         """Return the ticks at which a sensor samples; None for every step.
