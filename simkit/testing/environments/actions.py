@@ -73,6 +73,8 @@ class Actions:
         problems.raise_all()
         low, high = (np.array(ends) for ends in zip(*bounds, strict=True))
         self._middle, self._half = (high + low) / 2, (high - low) / 2
+        self._low: npt.NDArray[np.float64]
+        self._high: npt.NDArray[np.float64]
         self._low, self._high = (-np.ones(len(low)), np.ones(len(low))) if is_scaled else (low, high)
         self._is_scaled = is_scaled
         self.space = Box(self._low.astype(np.float32), self._high.astype(np.float32), dtype=np.float32)
@@ -179,14 +181,17 @@ class Actions:
             raise _wrong(
                 f"the world has no joint {name!r}", did_you_mean(name, [n.rpartition("::")[2] for n in joints])
             )
-        return found[0]
+        joint: Joint = found[0]
+        return joint
 
     def _message(self, topic: str, type_name: str, given: ActionTarget) -> tuple[list[str], list[Bounds], Send]:
         if not isinstance(given, Mapping):
             fields = "linear.x" if type_name in _TWISTS else "data"
             hint = 'write {"' + topic + '": {"' + fields + '": (-1.0, 1.0)}}'
             raise _wrong(f"a {type_name} needs the bounds of its fields", hint)
-        make, setters, lengths = builder_of(type_name).default, [], {}
+        make = builder_of(type_name).default
+        setters: list[Callable[[Any, float], None]] = []
+        lengths: dict[str, int] = {}
         sample = make()
         for path in given:
             setter, array, index = _setter(sample, str(path), type_name)

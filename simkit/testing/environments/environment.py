@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -46,7 +46,20 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         sim, values, memory, action, observation: as `specification.Environment` describes them.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 10}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 (Gymnasium's type)
+
+    sim: Simulation
+    _loaded_overrides: tuple[str, ...]
+    _steps: int
+    _first_tick: int
+    _last_tick: int | None
+    _observations: Observations
+    _actions: Actions
+    _reward: Callable[[], Any]
+    _terminated: Callable[[], Any]
+    _success: Callable[[], Any] | None
+    _expressions: dict[str, Callable[[], Any]]
+    _begun: tuple[Mapping[str, Any], dict[str, Any] | None] | None
 
     def __init__(
         self, spec: EnvironmentSpec, render_mode: str | None = None, size: tuple[int, int] = (480, 360)
@@ -60,7 +73,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         self.memory: dict[str, Any] = {}
         self._variables: dict[str, Any] = {}
         self._is_seeded = False
-        self._begun: tuple[dict[str, Any], Mapping[str, Any] | None] | None = None
+        self._begun = None
         self._sent: list[Any] = []
         self._draw(np.random.default_rng(spec.run.seed), {})
         self._open(self._overrides())
@@ -240,7 +253,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
     def _open(self, overrides: tuple[str, ...]) -> None:
         spec = self.spec_of_env
         run = replace(spec.run, overrides=overrides, plugins=copy.deepcopy(spec.run.plugins))
-        self.sim: Simulation = open_scenario(run)
+        self.sim = open_scenario(run)
         self._loaded_overrides = overrides
         self._steps = round(spec.control_period / self.sim.timestep)
         if self._steps < 1 or abs(self._steps * self.sim.timestep - spec.control_period) > 1e-9:
@@ -261,7 +274,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         spec, problems = self.spec_of_env, Problems()
         self._view_of_sim.close()
         self._view_of_sim = WorldView(self.sim)
-        self._expressions: dict[str, Callable[[], Any]] = {}
+        self._expressions = {}
         try:
             self._observations = Observations(self, spec.observation, spec.sync)
         except InputError as error:

@@ -120,7 +120,7 @@ def _reach_reward(env: Environment) -> float:
     memory = env.memory
     before, memory["distance"] = memory["distance"], _distance_to(env, memory["goal"])
     memory["reached"] = memory["distance"] < REACHED
-    return 10.0 * float(before - memory["distance"]) - 0.01 + 10.0 * memory["reached"]
+    return float(10.0 * (before - memory["distance"]) - 0.01 + 10.0 * memory["reached"])
 
 
 # ---------------------------------------------------------------------- pick
@@ -152,4 +152,4 @@ def _pick_reward(env: Environment) -> float:
     reward = 5.0 * (memory["distance"] - distance) + 50.0 * (height - memory["height"]) - 0.01
     memory["distance"], memory["height"] = distance, height
     memory["reached"], memory["lost"] = height > LIFTED, height < -_LOST
-    return float(reward) + 10.0 * memory["reached"] - 10.0 * memory["lost"]
+    return float(reward + 10.0 * memory["reached"] - 10.0 * memory["lost"])

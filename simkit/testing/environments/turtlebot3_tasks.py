@@ -107,7 +107,7 @@ def _reward(env: Environment) -> float:
     memory["distance"] = distance
     memory["reached"] = distance < GOAL_RADIUS
     memory["collided"] = bool(memory["touches"]())
-    return 4.0 * approach - 0.01 + 10.0 * memory["reached"] - 10.0 * memory["collided"]
+    return float(4.0 * approach - 0.01 + 10.0 * memory["reached"] - 10.0 * memory["collided"])
 
 
 # ---------------------------------------------------------------------- starts and goals
