@@ -180,6 +180,25 @@ def test_values_are_drawn_at_each_reset_and_can_be_given() -> None:
     assert env.step([0.0])[1] == pytest.approx(0.75, abs=1e-3)
 
 
+def test_an_episode_knows_no_message_and_no_history_of_the_last_one() -> None:
+    car = "cart::car"
+    env = make(observation={"eyes": "count('/eye')", "way": f"path_length('{car}')", "scan": "topic('/eye').ranges[0]"})
+    begin = env.reset(seed=1)[0]
+    for _ in range(5):
+        later = env.step([8.0])[0]
+    assert later["way"] > 0.1 and later["eyes"] > begin["eyes"]
+    assert same(env.reset(seed=1)[0], begin)
+
+
+def test_other_shapes_and_poses_load_the_world_again() -> None:
+    env = make(
+        randomise={"wall.pose": {"choice": ["2 0 0 0 0 0", "4 0 0 0 0 0"]}}, observation=Observation("/eye", truth=True)
+    )
+    for seed in range(4):
+        eye = env.reset(seed=seed)[0]
+        assert eye.min() == pytest.approx(float(env.values["wall.pose"].split()[0]) - 0.1, abs=0.01)
+
+
 def test_functions_see_the_truth_and_their_memory_is_empty_after_a_reset() -> None:
     def reward(env: Any) -> float:
         env.memory["count"] = env.memory.get("count", 0) + 1

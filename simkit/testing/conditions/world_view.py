@@ -292,6 +292,11 @@ class WorldView:
         for history in self._histories:
             self._open_history(history)
 
+    @property
+    def remembers(self) -> bool:
+        """True if expressions use messages, or values of the whole run, that a reset of the simulation does not end."""
+        return bool(self._latest_messages or self._counters or self._histories)
+
     def close(self) -> None:
         """End all subscriptions and observations."""
         for listener in self._listeners():

@@ -216,8 +216,8 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
             self.close()
             self._open(overrides)
             self.sim.reset(seed)
-        if self._uses_variables:
-            self._bind()
+        if self._uses_variables or self._view_of_sim.remembers:
+            self._bind()  # without messages, counts and histories of the last episode
         self._begin(seed)
 
     def _begin(self, seed: int) -> None:
