@@ -132,6 +132,10 @@ class Observations:
                 newest = sensor._sample
                 if newest is None or newest.time_ns != now:
                     sensor.sample(tick)
+                    newest = sensor._sample
+                if newest is not None and newest.held is not None and newest.time_ns == now:
+                    # measured in the present data, whose forward pass the next step needs anyway
+                    newest.raw, newest.held = sensor._capture_now(tick), None
         values = {name: bound.value() for name, bound in self._bound.items()}
         return next(iter(values.values())) if self._is_single else values
 
