@@ -324,3 +324,15 @@ def test_joint_velocities_move_the_joints_of_a_controller() -> None:
     for _ in range(10):
         env.step([0.5])
     assert env.sim.joint("tiago::arm_1_joint").position - start == pytest.approx(0.5, abs=0.1)
+
+
+def test_render_draws_the_world_from_outside() -> None:
+    action = {"/cmd_vel": {"linear.x": (0.0, 0.2)}}
+    options: dict[str, Any] = {"render_mode": "rgb_array", "size": (64, 48)}
+    env = simkit.gym.make("turtlebot3_empty", observation="turtlebot3", action=action, **options)
+    env.reset()
+    try:
+        image = env.render()
+    except simkit.RenderError as error:
+        pytest.skip(str(error))
+    assert image.shape == (48, 64, 3) and image.dtype == np.uint8 and image.std() > 1.0
