@@ -33,7 +33,8 @@ class _RunByDefault(TyperGroup):
 
 sweep = typer.Typer(
     cls=_RunByDefault,
-    help="Run a world with many parameters and seeds: simkit sweep SWEEP.yaml; report DIR; replay DIR RUN.",
+    help="Run a world with many parameters and seeds, and report the results.\n\n"
+    "simkit sweep SWEEP.yaml runs a sweep; simkit sweep report DIR writes a page of its results.",
     no_args_is_help=True,
 )
 
