@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import pickle
+import socket
 import tempfile
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
@@ -35,6 +36,7 @@ _MOST_TOGETHER: Final = 200
 _WAITING_PER_CORE: Final = 3  # batches for each core of the cluster, which hides the time of the network
 _RETRIES: Final = 3  # repetitions of a batch whose process or node has died
 _POLL: Final = 2.0  # [s]
+_CONNECT_SECONDS: Final = 5.0
 
 _runners: dict[str, RowRunner] = {}
 """Runner of the last sweep of a process of the cluster."""
@@ -87,6 +89,7 @@ class RayExecutor:
         self._was_connected = ray.is_initialized()
         environment = {"working_dir": str(folder)} if any(folder.iterdir()) else {}
         try:
+            _check_reachable(address)
             if not self._was_connected:
                 ray.init(address, logging_level="ERROR", log_to_driver=False, runtime_env=environment or None)
         except Exception as error:  # noqa: BLE001 - Ray raises errors of several kinds
@@ -145,6 +148,17 @@ class RayExecutor:
         for result in results:
             self._mean += 0.1 * (result.wall_time - self._mean)
             yield result
+
+
+def _check_reachable(address: str) -> None:
+    """Check that a server listens at an address; Ray itself would wait for minutes.
+
+    Raises:
+        OSError: no server answers.
+    """
+    host, colon, port = address.removeprefix("ray://").rpartition(":")
+    if colon and port.isdecimal():
+        socket.create_connection((host.strip("[]"), int(port)), timeout=_CONNECT_SECONDS).close()
 
 
 def _self_contained(spec: SweepSpec, folder: Path) -> SweepSpec:
