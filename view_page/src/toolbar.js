@@ -15,13 +15,13 @@ export function makeToolbar(app, bar) {
   const view = element('select', { id: 'viewpoint', title: 'Viewpoint', onchange: () => chooseView(app, view) });
   const time = element('span', { id: 'time' }), rtf = element('span', { id: 'rtf' });
   const link = element('span', { id: 'link', class: 'off' }, '● connecting'), frames = element('span', { id: 'frames' });
-  const world = element('strong', { id: 'world' });
-  bar.append(world, element('span', { class: 'group' }, play, step, count, reset), speed, time, rtf,
+  const world = element('strong', { id: 'world' }), seed = element('span', { id: 'seed', class: 'dim', title: 'Seed of all random streams' });
+  bar.append(world, seed, element('span', { class: 'group' }, play, step, count, reset), speed, time, rtf,
     element('span', { class: 'space' }), view, frames, link);
 
   app.on('scene', scene => {
     world.textContent = scene.world;
-    world.title = `seed ${scene.seed}`;
+    seed.textContent = `seed ${scene.seed}`;
     const cameras = scene.sensors.filter(isCamera);
     const options = [['', 'View …'], ['first', 'Robots'], ['all', 'Everything'], ['top', 'From above'], ...app.robots.slice(0, 40).map(robot => [`follow:${robot.name}`, `Follow ${robot.name}`]),
       ...cameras.slice(0, 40).map(sensor => [`through:${sensor.name}`, `Through ${sensor.name.split('::').at(-1)}`])];
