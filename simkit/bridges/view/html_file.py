@@ -8,7 +8,7 @@ import html
 import re
 from typing import Final
 
-from simkit.bridges.view.page_server import PAGE
+from simkit.bridges.view.page_server import page_file
 
 _POLICY: Final = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src blob: data:"
 _START: Final = """
@@ -36,15 +36,15 @@ def html_file(title: str, scene: bytes, recording: bytes) -> str:
         scene: packet `scene`.
         recording: packet `recording`.
     """
-    page = (PAGE / "index.html").read_text(encoding="utf-8")
+    page = page_file("index.html").decode()
     body = re.search(r"<body>(.*?)<script", page, re.DOTALL)
     assert body is not None
-    data = {"scene": scene, "recording": recording, "app": (PAGE / "app.js").read_bytes()}
+    data = {"scene": scene, "recording": recording, "app": page_file("app.js")}
     packed = {name: base64.b64encode(gzip.compress(found, 9, mtime=0)).decode() for name, found in data.items()}
     scripts = "\n".join(
         f'<script type="text/plain" id="simkit-{name}">{text}</script>' for name, text in packed.items()
     )
-    licences = html.escape((PAGE / "LICENSES.txt").read_text(encoding="utf-8")).replace("--", "- -")
+    licences = html.escape(page_file("LICENSES.txt").decode()).replace("--", "- -")
     return f"""<!doctype html>
 <html lang="en">
 <head>
@@ -52,7 +52,7 @@ def html_file(title: str, scene: bytes, recording: bytes) -> str:
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="{_POLICY}">
 <title>{html.escape(title)}</title>
-<style>{(PAGE / "app.css").read_text(encoding="utf-8")}</style>
+<style>{page_file("app.css").decode()}</style>
 <!-- {licences} -->
 </head>
 <body>{body[1]}

@@ -277,10 +277,15 @@ class PageServer:
         self.wants = found
 
 
+def page_file(name: str) -> bytes:
+    """Return a file of the page."""
+    return (PAGE / name).read_bytes()
+
+
 def _file(name: str) -> Response:
     kind = mimetypes.guess_type(name)[0] or "application/octet-stream"
     kind = {"app.js": "text/javascript; charset=utf-8", "index.html": "text/html; charset=utf-8"}.get(name, kind)
-    return _response(HTTPStatus.OK, (PAGE / name).read_bytes(), kind)
+    return _response(HTTPStatus.OK, page_file(name), kind)
 
 
 def _response(
