@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import struct
 from collections.abc import Mapping
 from typing import Any
@@ -30,7 +31,7 @@ def make_packet(head: Head, arrays: Arrays) -> bytes:
         padding = -len(raw) % _ALIGNED
         pieces += [raw, bytes(padding)]
         offset += len(raw) + padding
-    text = json.dumps(head | {"arrays": table}, separators=(",", ":")).encode()
+    text = json.dumps(_without_nan(head) | {"arrays": table}, allow_nan=False, separators=(",", ":")).encode()
     text += b" " * (-len(text) % _ALIGNED)
     return b"".join((struct.pack("<I", len(text)), text, *pieces))
 
@@ -44,6 +45,15 @@ def read_packet(data: bytes) -> tuple[Head, dict[str, npt.NDArray[Any]]]:
         count = int(np.prod(shape))
         arrays[name] = np.frombuffer(data, kind, count, begin + offset).reshape(shape)
     return head, arrays
+
+
+def _without_nan(value: Any) -> Any:
+    """Return a value of JSON with null for NaN and infinity, which browsers do not read."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {name: _without_nan(found) for name, found in value.items()}
+    return [_without_nan(found) for found in value] if isinstance(value, (list, tuple)) else value
 
 
 def _wire_type(dtype: np.dtype[Any]) -> np.dtype[Any]:

@@ -30,8 +30,8 @@ SCAN = "rover::base::scan"
 
 def test_a_packet_has_the_same_arrays_when_it_is_read() -> None:
     arrays = {"bytes": np.arange(5, dtype=np.uint8), "numbers": np.array([[1.5, -2.0]]), "ids": np.array([7, 8])}
-    head, found = read_packet(make_packet({"kind": "x", "text": "ä"}, arrays))
-    assert head == {"kind": "x", "text": "ä"}
+    head, found = read_packet(make_packet({"kind": "x", "text": "ä", "far": [float("inf")]}, arrays))
+    assert head == {"kind": "x", "text": "ä", "far": [None]}
     assert {name: (a.dtype.str, a.tolist()) for name, a in found.items()} == {
         "bytes": ("|u1", [0, 1, 2, 3, 4]),
         "numbers": ("<f4", [[1.5, -2.0]]),
