@@ -263,6 +263,7 @@ def test_the_scan_at_the_start_has_many_distances() -> None:
     assert np.ptp(seen) > 2.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot", ["burger", "waffle", "waffle_pi"])
 def test_the_drive_through_the_house_touches_nothing(robot: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Living room, kitchen, hall and home again: 0.15 m to spare around a waffle, 0.19 m from lidar to corner."""

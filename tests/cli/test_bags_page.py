@@ -13,6 +13,7 @@ PAGE = (Path(__file__).resolve().parents[2] / "docs" / "bags.md").read_text(enco
 STATE = re.compile(r"^state ([0-9a-f]{64})$", re.MULTILINE)
 
 
+@pytest.mark.slow
 def test_the_page_works_from_its_beginning_to_its_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, simkit_line: Any
 ) -> None:

@@ -12,6 +12,7 @@ import pytest
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "bundles.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_page_works_from_its_beginning_to_its_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, simkit_line: Any
 ) -> None:

@@ -103,6 +103,7 @@ def test_the_wall_time_limit_ends_a_paused_run(yard: Path) -> None:
     assert "FAILED  time > 1: was not evaluated" in result.stdout
 
 
+@pytest.mark.slow
 def test_a_plugin_that_never_comes_back_is_interrupted_and_named(tmp_path: Path) -> None:
     (tmp_path / "stuck.py").write_text(
         "import time\nimport simkit\n\n\nclass Stuck(simkit.WorldPlugin):\n    def load(self, sim, params):\n"

@@ -157,6 +157,7 @@ def test_a_goal_may_be_waited_for_for_ever(yard: Any, simkit_line: Any) -> None:
     assert json.loads(found.stdout)["status"] == "SUCCEEDED"
 
 
+@pytest.mark.slow
 def test_a_message_that_is_too_large_is_reported(yard: Any, simkit_line: Any) -> None:
     values = '{data: "' + "x" * (17 << 20) + '"}'
     told = simkit_line("topic", "pub", "--once", "-w", "0", "/big", "std_msgs/msg/String", values)

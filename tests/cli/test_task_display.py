@@ -39,6 +39,7 @@ def check_in_terminal(folder: Path, **environment: str) -> Terminal:
     return Terminal(sys.executable, "-m", "simkit", *words, cwd=folder, environment={"CI": "", **environment})
 
 
+@pytest.mark.slow
 def test_a_long_task_is_shown_and_removed(tmp_path: Path) -> None:
     with check_in_terminal(tmp_path) as terminal:
         terminal.wait_for(r"loading plugins, [12] s")

@@ -140,6 +140,7 @@ def test_a_cube_of_one_kilogram_carries_ten_tonnes(make, compiled, step):
     assert np.abs(c.data.qpos[7:9]).max() < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "masses", [(1.0, 1000.0) * 5, (1000.0, 1.0) * 5, [1000.0 ** (i / 9) for i in range(10)]],
     ids=["light_heavy", "heavy_light", "rising"],

@@ -366,6 +366,7 @@ def test_a_joint_between_two_static_links_is_reported(make):
 # ------------------------------------------------------------------ large models
 
 
+@pytest.mark.slow
 def test_long_chains_and_many_joints_are_built_within_seconds(make, compiled):
     long = [make.link(f"m::l{i}", pose=Pose((0.1 * i, 0, 0))) for i in range(300)]
     ties = tuple(joint(f"j{i}", "revolute", f"l{i}", f"l{i + 1}", Pose((0.1 * i, 0, 0)), Y) for i in range(299))

@@ -34,6 +34,7 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("TURTLEBOT3_MODEL", raising=False)
 
 
+@pytest.mark.slow
 def test_the_page_works_as_it_stands(tmp_path: Path) -> None:
     assert [kind for kind, _, _ in BLOCKS] == ["sh", "sh", "sh", "yaml", "sh", "python"]
     shown = re.search(r"^    (ok +circle: .*), bit for bit", PAGE, re.MULTILINE)

@@ -7,6 +7,7 @@ import shlex
 import shutil
 from pathlib import Path
 
+import pytest
 from typer.testing import CliRunner
 
 from simkit.cli import app
@@ -44,6 +45,7 @@ def test_the_program_prints_what_held(capsys):
     assert capsys.readouterr().out.startswith("time > 0.5 True was reached at t = 0.501 s")
 
 
+@pytest.mark.slow
 def test_the_exercise_is_graded_by_the_commands(tmp_path, monkeypatch):
     """With one short run in place of three of 20 s: what the runs of an exercise are is tested elsewhere."""
     monkeypatch.chdir(tmp_path)

@@ -21,6 +21,7 @@ LARGEST = 150_000  # bytes
 MOST_SECONDS = 10.0  # of processor time, for one; on an idle machine they take less than 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda p: p.stem)
 def test_an_example_draws_its_picture(
     script: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -94,6 +94,7 @@ def test_a_file_that_once_did_harm_does_none(path: Path, reader: Reader) -> None
     assert answer["outcome"] in FINE, answer.get("trace") or answer["outcome"]
 
 
+@pytest.mark.slow
 def test_mutated_files_are_loaded_or_refused(reader: Reader, tmp_path: Path) -> None:
     files = real_files(SUFFIXES, shared=False)
     for index in range(QUICK):
@@ -104,6 +105,7 @@ def test_mutated_files_are_loaded_or_refused(reader: Reader, tmp_path: Path) -> 
         assert answer["outcome"] in FINE, complaint(f"input{path.suffix}", content, answer, tmp_path)
 
 
+@pytest.mark.slow
 def test_whatever_files_name_may_be_broken(reader: Reader, tmp_path: Path) -> None:
     for index in range(QUICK):
         chance = random.Random(f"samples {index}")

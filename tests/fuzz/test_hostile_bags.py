@@ -76,6 +76,7 @@ def test_a_bag_that_is_not_damaged_is_read(name: str, reader: Reader, bags: dict
     assert (answer["outcome"], answer.get("code")) == (("loaded", None) if has_mcap else ("refused", "SK-BAG-004"))
 
 
+@pytest.mark.slow
 def test_damaged_bags_are_read_or_refused(reader: Reader, bags: dict[str, dict[str, bytes]], tmp_path: Path) -> None:
     assert not _problems(reader, bags, SOME, "bags", tmp_path)
 

@@ -39,6 +39,7 @@ def test_a_document_of_the_sweep_loads(name: str, reader: Reader) -> None:
     assert answer["outcome"] == "loaded", answer
 
 
+@pytest.mark.slow
 def test_odd_numbers_are_errors_or_clean_imports(reader: Reader, tmp_path) -> None:
     found: list[str] = []
     for number, place in enumerate(places()[::2]):

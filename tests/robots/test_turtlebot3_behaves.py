@@ -69,6 +69,7 @@ def test_it_drives_a_metre_straight_and_odometry_agrees(robot):
     assert odometry.latest.pose.pose.position.x - said_before == pytest.approx(moved.position[0], rel=5e-3)
 
 
+@pytest.mark.slow
 def test_ten_full_turns_agree_with_odometry_within_a_percent(robot):
     sim, model = robot
     wheels = [sim.joint(f"{model.name}::wheel_{side}_joint") for side in ("left", "right")]
@@ -80,6 +81,7 @@ def test_ten_full_turns_agree_with_odometry_within_a_percent(robot):
     assert said == pytest.approx(true, rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("world", ["ours", "course"])
 def test_a_pillar_stops_it(world):
     sim, name = open_world(world, 0.001)

@@ -59,6 +59,7 @@ def test_a_reset_repeats(kind: str) -> None:
         assert published_digests(sim) == first_run(kind)
 
 
+@pytest.mark.slow
 def test_another_process_gives_the_same_bits() -> None:
     script = Path(worlds.__file__)
     path = os.pathsep.join([str(ROOT), str(script.parent)])

@@ -165,6 +165,7 @@ class ParameterTable:
                 self._parameters[node] = kept
             else:
                 del self._parameters[node]
+                self._services.pop(node, None)  # closed with their plugin
 
     def get_state(self) -> ParameterState:
         """Return every parameter with its value."""

@@ -9,6 +9,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from simkit.bridges.live import endpoint_requests, requests
 from simkit.live import connect
 
@@ -21,6 +23,7 @@ def test_the_page_has_every_request() -> None:
     assert handlers == set(re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M))))
 
 
+@pytest.mark.slow
 def test_a_client_of_another_process_does_not_change_the_end_of_a_run(court_text: str, tmp_path: Path) -> None:
     world = tmp_path / "court.sdf"
     world.write_text(court_text, encoding="utf-8")

@@ -97,6 +97,7 @@ def test_an_extruded_outline_collides_exactly(make, compiled):
     assert not [d for d in said if "MESH" in d.code]
 
 
+@pytest.mark.slow
 @NEEDS_COACD
 def test_a_decomposition_has_the_same_bits_every_time(monkeypatch):
     monkeypatch.setenv("SIMKIT_CACHE_DIR", "/dev/null")

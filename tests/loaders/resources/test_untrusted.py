@@ -86,6 +86,7 @@ def errors(source: object, **options: object) -> list[str]:
 # ---------------------------------------------------------------------- paths that are not files
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["/dev/zero", "/dev/null", ".", "/proc/self/mem", "nothing.sdf", "", "x" * 5000, "a\nb.sdf"]
 )
@@ -265,6 +266,7 @@ def test_entities_are_refused_in_every_referenced_file(write, tmp_path, name):
         simkit.check(tmp_path / main)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix, root", [(".urdf", "robot"), (".xml", "mujoco"), (".xacro", "robot"), (".sdf", "sdf")])
 @pytest.mark.parametrize("shape", ["deep", "wide"])
 def test_a_million_nested_or_sibling_elements_are_handled_quickly(opened, write, suffix, root, shape):
@@ -273,6 +275,7 @@ def test_a_million_nested_or_sibling_elements_are_handled_quickly(opened, write,
     assert code == 2 and "SK-" in text
 
 
+@pytest.mark.slow
 def test_thousands_of_unknown_names_are_handled_quickly(write):
     links = "".join(f'<link name="link_{i}"/>' for i in range(6_000))
     frames = "".join(f'<frame name="f{i}" attached_to="lonk_{i}"/>' for i in range(6_000))
@@ -292,6 +295,7 @@ def png(width: int, height: int, rows: bytes) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("content", [PICTURE_MODEL.format("p.png"), '<link name="l">'
     '<collision name="c"><geometry><heightmap>'
     "<uri>p.png</uri></heightmap></geometry></collision></link>"], ids=["texture", "heightmap"])  # fmt: skip

@@ -50,11 +50,13 @@ def test_a_million_nested_elements_are_refused(load):
     assert codes(found) == ["SK-XML-002"]
 
 
+@pytest.mark.slow
 def test_the_number_of_warnings_about_unknown_siblings_is_limited(load):
     scene, found = load(model("".join(f"<x{i}/>" for i in range(200_000))))
     assert scene.model is not None and 500 <= len(found) <= 510
 
 
+@pytest.mark.slow
 def test_more_siblings_than_the_limit_are_refused(load):
     _, found = load(model('<frame name="f"/>' * 100_001))
     assert codes(found) == ["SK-XML-002"]
@@ -109,6 +111,7 @@ def test_circular_includes_through_links_are_an_error(load, write, tmp_path):
     assert codes(found) and all(code.startswith("SK-") for code in codes(found))
 
 
+@pytest.mark.slow
 def test_includes_that_double_at_every_level_are_limited(load, write, tmp_path):
     for i in range(30):
         inner = f"<include><uri>model://m{i + 1}</uri><name>{{}}</name></include>"

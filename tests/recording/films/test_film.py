@@ -110,6 +110,7 @@ def test_a_film_changes_no_bit_of_the_run(tmp_path: Path, renderer: None) -> Non
     assert ends[0] == ends[1]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
 def test_an_interrupted_run_leaves_a_whole_video(tmp_path: Path, renderer: None) -> None:
     av = pytest.importorskip("av", reason="pip install 'simkit-robotics[video]'")

@@ -199,6 +199,7 @@ def test_a_falling_cube_comes_to_rest_without_a_bounce(step: float) -> None:
         assert abs(speeds[-1]) < 1e-3
 
 
+@pytest.mark.slow
 def test_overlapping_cubes_separate_slowly_and_do_not_sink_into_the_ground() -> None:
     cube = "<box><size>1 1 1</size></box>"
     first, second = (body(n, cube, p, inertia=1 / 6) for n, p in (("a", "0 0 .5 0 0 0"), ("b", ".1 .1 .6 0 0 0")))

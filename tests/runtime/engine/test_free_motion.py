@@ -38,6 +38,7 @@ def step(model: mujoco.MjModel, data: mujoco.MjData, motion: FreeMotionIntegrato
         motion.correct(data)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("length", [0.1, 0.5])
 def test_a_falling_chain_of_fifty_links_keeps_its_energy(length: float) -> None:
     sim = simkit.load(chain(50, length))

@@ -194,6 +194,7 @@ def test_sensors_sampled_after_a_subscriber_has_moved_a_robot_measure_the_new_po
     assert run(source, change=change) != run(source)
 
 
+@pytest.mark.slow
 def test_rate_changes_spawns_and_removals_give_the_same_messages(ungrouped, by_numpy):
     def change(sim):
         sim.run(0.0503)

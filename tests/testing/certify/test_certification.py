@@ -61,6 +61,7 @@ def certified(folder: Path, body: str, names: str = "elsewhere", *, apart: bool 
     return certify(scenario, variations=ways, apart=apart)
 
 
+@pytest.mark.slow
 def test_a_deterministic_world_gives_the_same_bits_in_every_environment(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_text(WORLD.replace('<plugin filename="mine:Mine" name="mine"/>', ""))
     made = certify(RunSpec(world=str(tmp_path / "w.sdf"), duration=0.1), runs=6, jobs=2)
@@ -73,6 +74,7 @@ def test_a_deterministic_world_gives_the_same_bits_in_every_environment(tmp_path
     assert made.rows[2].streams == "" and made.rows[3].outcome.heard_from == 50
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "way", "tick", "how", "hint"),
     [

@@ -166,6 +166,7 @@ def test_a_run_that_fails_is_not_recorded(tmp_path: Path) -> None:
     assert not (tmp_path / "g").exists()
 
 
+@pytest.mark.slow
 def test_parallel_checks_give_the_same_results(golden: Path, tmp_path: Path) -> None:
     simkit("golden", "record", tmp_path / "ball.sdf", "--out", golden.parent / "other", "--duration", 0.1)
     code, said = simkit("golden", "check", golden.parent, "-n", 2)

@@ -135,6 +135,7 @@ def test_a_run_that_only_a_test_can_repeat_names_the_test(folder: Path) -> None:
     assert read_golden(goldens / "test_a_world").scenario.test == ""
 
 
+@pytest.mark.slow
 def test_a_repeated_run_passes_and_a_second_update_changes_no_byte(folder: Path) -> None:
     before = golden(folder)
     said = run(folder, "--simkit-update-golden", "-k", "not by_itself")
@@ -154,6 +155,7 @@ def test_eight_workers_write_the_same_golden_runs(folder: Path, tmp_path: Path) 
     assert golden(tmp_path) == golden(folder)
 
 
+@pytest.mark.slow
 def test_a_failure_shows_what_differs_and_why_and_writes_a_page(folder: Path) -> None:
     before = golden(folder)
     (folder / "puck.sdf").write_text(PUCK.replace("<mass>1<", "<mass>1.25<"))

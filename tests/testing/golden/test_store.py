@@ -124,6 +124,7 @@ def _written_but_killed(folder: Path, golden: RunRecord, at: int) -> int:
         os._exit(1)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="a process cannot be forked here")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_a_killed_write_leaves_the_old_or_the_new_golden_run(tmp_path: Path, record: RunRecord) -> None:

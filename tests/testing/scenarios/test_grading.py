@@ -95,6 +95,7 @@ def test_a_file_without_a_plugin_is_reported(folder):
     assert "SK-PLUGIN-008" in graded.outcomes[0].error and graded.points == 0.0
 
 
+@pytest.mark.slow
 def test_the_command_grades_several_and_writes_junit(folder):
     weak = folder / "weak.py"
     weak.write_text(PUSH.replace("BODY", "pass"))

@@ -76,6 +76,7 @@ def check_killed_sweep(folder: Path, count: int, kills: int) -> None:
     assert repeated <= kills * 2 * 64, repeated
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="it needs SIGKILL")
 def test_a_sweep_that_is_killed_equals_an_uninterrupted_one(tmp_path: Path) -> None:
     check_killed_sweep(tmp_path, 150, 1)

@@ -99,6 +99,7 @@ def test_a_diverged_run_is_a_row_and_the_next_run_is_sound() -> None:
     assert table["state_hash"][0] == table["state_hash"][2]
 
 
+@pytest.mark.slow
 def test_a_process_that_crashes_costs_one_run() -> None:
     table = simkit.sweep(BOX, seeds=8, duration=0.01, metrics={"m": crashing}, jobs=2)
     assert table["status"].tolist() == ["ok"] * 3 + ["error"] + ["ok"] * 4

@@ -59,6 +59,7 @@ def test_a_sweep_is_run_reported_and_replayed(folder: Path) -> None:
     assert json.loads(command("replay", "sweep_sweep", "7", "--json"))["differences"] == []
 
 
+@pytest.mark.slow
 def test_parts_of_a_sweep_make_one_table(folder: Path) -> None:
     command("sweep.yaml", "-o", "whole")
     assert "no table yet" in command("sweep.yaml", "-o", "parts", "--shard", "0/2")
@@ -104,6 +105,7 @@ def test_correlated_parameters_and_python_metrics_come_from_the_file(folder: Pat
     assert lines[0].startswith("run,seed,side,g,c,") and [line.split(",")[4] for line in lines[1:]] == ["8", "10"] * 2
 
 
+@pytest.mark.slow
 def test_a_search_continues_and_does_not_depend_on_the_number_of_processes(folder: Path) -> None:
     pytest.importorskip("optuna", reason="pip install 'simkit-robotics[search]'")
     search = ("sweep.yaml", "--optimise", "x", "--maximise")
