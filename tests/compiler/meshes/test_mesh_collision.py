@@ -133,6 +133,7 @@ def test_a_decomposition_that_breaks_down_is_a_warning(make, compiled, corner, m
     script = tmp_path / "broken.py"
     script.write_text("import os; os.abort()")
     monkeypatch.setattr(mesh_collision, "_SCRIPT", Path(script))
+    mesh_collision._memory.clear()
     monkeypatch.setattr(mesh_collision, "is_available", lambda: True)
     _, said = resting_height(make, compiled, Mesh(corner, "corner.obj", optimization="convex_decomposition"))
     assert "SK-MESH-014" in [d.code for d in said]
