@@ -143,7 +143,7 @@ class _GoalRun:
         elif handle.is_done and handle.status.name != "REJECTED":
             print_line(f"Result:\n    {_yaml_text(result)}")
             print_line(f"Goal finished with status: {handle.status.name}")
-            if handle.reason:
+            if handle.reason and handle.status.name != "SUCCEEDED":
                 print_line(f"Reason: {handle.reason}")
 
     def _on_feedback(self, message: object) -> None:

@@ -69,6 +69,13 @@ WORLDS: dict[str, str] = {
             "diff_drive", REAR + tags(wheel_diameter=0.2, max_wheel_torque=5, publish_odom="true", odometry_source=0)
         )
     ),
+    "GazeboRosKobuki": lab(
+        model=ros(
+            "kobuki",
+            tags(left_wheel_joint_name="rl_joint", right_wheel_joint_name="rr_joint", wheel_separation=0.4, torque=5)
+            + tags(wheel_diameter=0.2, velocity_command_timeout=0.05, publish_tf="true"),
+        )
+    ),
     "GazeboRosSkidSteerDrive": lab(
         model=ros(
             "skid_steer_drive",
