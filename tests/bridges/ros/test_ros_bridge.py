@@ -49,15 +49,16 @@ def test_a_late_node_receives_latched_messages_of_a_type_that_is_not_installed(
     simkit_run: SimkitRun, ros_node: RosNode
 ) -> None:
     with simkit_run("turtlebot3_world", "--rtf", "1"):
-        name, data = ros_node("""
+        names, data = ros_node("""
             from simkit.bridges.ros.opaque_types import message_class
 
             client = Client()
             found = client.hear("/tf_static", message_class("tf2_msgs/msg/TFMessage"), LATCHED, raw=True)
-            client.until(lambda: found)
-            tell([client.node.get_publishers_info_by_topic("/tf_static")[0].node_name, list(found[0])])
+            names = lambda: [end.node_name for end in client.node.get_publishers_info_by_topic("/tf_static")]
+            client.until(lambda: found and "simkit" in names())  # the name of a node arrives later than its topics
+            tell([names(), list(found[0])])
         """)
-    assert name == "simkit"
+    assert names == ["simkit"]
     transforms = msgs.deserialize(bytes(data), "tf2_msgs/msg/TFMessage").transforms
     assert "base_scan" in {t.child_frame_id for t in transforms}
 
