@@ -40,7 +40,7 @@ class ModelWriter:
     ) -> None:
         self.spec, self.record, self.world, self.diagnostics = world_geoms.spec, record, world, diagnostics
         step = float(self.spec.option.timestep)
-        ambient, has_rolling = world.surroundings.ambient, world.physics.is_bullet
+        ambient, has_rolling = world.surroundings.ambient, world.physics.engine == "bullet"
         self.geoms = GeomWriter(world_geoms, assets, record, step, diagnostics, ambient, has_rolling)
         self.joints = JointWriter(self.spec, record, step, diagnostics)
 

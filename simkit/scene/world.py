@@ -22,7 +22,7 @@ class Physics:
         max_contacts: maximum number of contacts of one pair of collisions; 20 if the file gives no value.
         sleep: true if bodies at rest may be left out of the physics until another body reaches them.
         contact_law: "simkit", or "mujoco" for MuJoCo's own contacts and integration.
-        is_bullet: true if the file chooses the engine Bullet, the only engine of Gazebo with rolling friction.
+        engine: bullet if the file chooses this engine, the only one of Gazebo with rolling friction; else None.
     """
 
     max_step_size: float = 0.001
@@ -31,7 +31,7 @@ class Physics:
     max_contacts: int = 20
     sleep: bool = True
     contact_law: str = "simkit"
-    is_bullet: bool = False
+    engine: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ def physics_element(world: SceneWorld) -> Params:
         changed_element("simkit:contact_law", world.physics.contact_law, "simkit"),
         *changed_elements(world.physics, "max_contacts"),
     ]
-    return element("physics", children, name="default", type="bullet" if world.physics.is_bullet else "ode")
+    return element("physics", children, name="default", type=world.physics.engine or "ode")
 
 
 def scene_element(world: SceneWorld) -> Params:

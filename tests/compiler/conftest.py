@@ -75,8 +75,8 @@ class Make:
         return cls.model("ground", link, static=True)
 
     @staticmethod
-    def world(*models: SceneModel, step: float = 0.001, is_bullet: bool = False, **more: Any) -> SceneWorld:
-        return SceneWorld(models=models, physics=Physics(max_step_size=step, is_bullet=is_bullet), **more)
+    def world(*models: SceneModel, step: float = 0.001, engine: str | None = None, **more: Any) -> SceneWorld:
+        return SceneWorld(models=models, physics=Physics(max_step_size=step, engine=engine), **more)
 
 
 @pytest.fixture

@@ -200,7 +200,7 @@ def test_a_torsional_patch_stops_a_spinning_body_evenly(make, compiled):
 def test_rolling_friction_slows_a_rolling_ball_evenly(make, compiled):
     """Of the torque μ N [m · N] and the friction at the ground: a = μ g / r / (1 + I / (m r²))."""
     ball = make.solid("ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=Surface(rolling=0.002), inertia=0.004)
-    c = compiled(make.ground(), ball, is_bullet=True)
+    c = compiled(make.ground(), ball, engine="bullet")
     mujoco.mj_step(c.model, c.data, 300)
     c.data.qvel[0], c.data.qvel[4] = 1.0, 10.0
     mujoco.mj_step(c.model, c.data, 1000)

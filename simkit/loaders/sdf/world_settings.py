@@ -38,7 +38,9 @@ def read_physics(world: Params) -> tuple[Physics, Vec3]:
     law = block.choice("contact_law", CONTACT_LAWS, "simkit")
     factor = max(0.0, _real_time_factor(block, step))
     is_bullet = block.attribute("type") == "bullet" or _names_bullet(world)
-    return Physics(step, factor, block.where, _contacts(block), contact_law=law, is_bullet=is_bullet), gravity
+    return Physics(
+        step, factor, block.where, _contacts(block), contact_law=law, engine="bullet" if is_bullet else None
+    ), gravity
 
 
 def _names_bullet(world: Params) -> bool:

@@ -71,4 +71,4 @@ def test_shininess_is_the_exponent_of_the_specular_highlight(load):
 def test_the_engine_bullet_survives_writing_and_reading(load, content, is_bullet):
     first, _ = load(f"<sdf version='1.9'><world name='w'>{content}</world></sdf>")
     again, _ = load(sdf_text(first, Diagnostics()))
-    assert [found.world.physics.is_bullet for found in (first, again)] == [is_bullet, is_bullet]
+    assert [found.world.physics.engine == "bullet" for found in (first, again)] == [is_bullet, is_bullet]
