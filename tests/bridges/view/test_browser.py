@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -86,6 +87,13 @@ class Session:
         """Wait until an expression of the page is true; `app` is its main object."""
         text = f"(() => {{ const app = window.simkitView; return {expression}; }})()"
         return self.page.wait_for_function(text, timeout=TIMEOUT).json_value()
+
+    def until_here(self, condition: Callable[[], bool]) -> None:
+        """Wait until the simulation fulfils a condition; a question to it passes in between."""
+        end = time.monotonic() + TIMEOUT / 1000
+        while not condition():
+            assert time.monotonic() < end
+            self.get("app.ask('travel')")
 
     def get(self, expression: str) -> Any:
         return self.page.evaluate(f"(() => {{ const app = window.simkitView; return {expression}; }})()")
@@ -172,8 +180,7 @@ def test_keys_and_the_pad_drive(session: Callable[..., Session]) -> None:
     found.until("document.getElementById('drive').hidden === false")
     found.page.locator("#canvas").press("w")
     found.until("document.getElementById('speeds').textContent.startsWith('0.0')")
-    found.get("app.ask('travel')")  # answered after the command was sent
-    assert sent.latest.linear.x > 0
+    found.until_here(lambda: sent.latest is not None and sent.latest.linear.x > 0)
     found.page.locator("#stop").click()
     pad = found.page.locator("#pad").bounding_box()
     middle = pad["x"] + pad["width"] / 2, pad["y"] + pad["height"] / 2
@@ -183,8 +190,7 @@ def test_keys_and_the_pad_drive(session: Callable[..., Session]) -> None:
     found.until("parseFloat(document.getElementById('speeds').textContent) > 0.5")
     found.page.mouse.up()
     found.until("parseFloat(document.getElementById('speeds').textContent) === 0")
-    found.get("app.ask('travel')")
-    assert sent.latest.linear.x == 0
+    found.until_here(lambda: sent.latest.linear.x == 0)
 
 
 def test_a_click_on_the_ground_sends_a_goal(session: Callable[..., Session]) -> None:
@@ -197,7 +203,7 @@ def test_a_click_on_the_ground_sends_a_goal(session: Callable[..., Session]) -> 
     x, y = found.get(f"(() => {{ const p = app.pickAt({place[0]}, {place[1]}).point; return [p.x, p.y]; }})()")
     found.page.mouse.click(*place)
     found.until("app.aiming === null")
-    found.get("app.ask('travel')")  # answered after the goal
+    found.until_here(lambda: goals.latest is not None)
     assert (goals.latest.pose.position.x, goals.latest.pose.position.y) == pytest.approx((x, y), abs=0.02)
 
 
