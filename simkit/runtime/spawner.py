@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from simkit.compiler.state_transfer import copy_fields_by_name, restore_compiled_fields
-from simkit.diagnostics import Diagnostic, Diagnostics
+from simkit.diagnostics import MOST_ERRORS, Diagnostic, Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
 from simkit.pose import Pose
 from simkit.runtime import sensor_attachment
@@ -314,7 +314,9 @@ class Spawner:
                 faults.meet(plugin, hook, error)
                 return
             call_plugin(plugin, "load", plugin.load, parent, plugin.params)
-        except Exception as error:  # noqa: BLE001 - a plugin may raise anything
+        except Exception as error:
+            if isinstance(error, LoadError) and len(error.diagnostics) >= MOST_ERRORS:
+                raise  # the parameters of the plugin have too many errors
             faults.meet(plugin, "load", error)
             return
         _check_hook_rates(plugin)

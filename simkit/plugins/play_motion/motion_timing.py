@@ -131,7 +131,8 @@ def smooth_velocities(points: Vector, gaps: Vector) -> Vector:
     w1 = (gaps[1:] + 2 * gaps[:-1])[:, None]
     goes_on = before * after > 0
     safe_before, safe_after = np.where(goes_on, before, 1.0), np.where(goes_on, after, 1.0)
-    velocities[1:-1] = np.where(goes_on, (w0 + w1) / (w0 / safe_before + w1 / safe_after), 0.0)
+    with np.errstate(over="ignore"):  # beside a slope near 0, the velocity is 0
+        velocities[1:-1] = np.where(goes_on, (w0 + w1) / (w0 / safe_before + w1 / safe_after), 0.0)
     return velocities
 
 

@@ -99,3 +99,8 @@ def test_velocities_of_the_file_are_kept_or_all_reduced() -> None:
 def test_an_approach_at_a_speed_near_zero_has_a_finite_duration() -> None:
     course = course_from(np.zeros(2), motion((0.1, 0.0), (0.2, 0.3), times=(1.0, 2.5)), LIMITS, Approach(1e-320))
     assert 2.0**31 < course.duration < 2.0**33
+
+
+def test_a_way_near_zero_beside_a_long_one_has_velocities_of_zero() -> None:
+    course = course_from(np.zeros(2), motion((1e-320, 0.0), (0.2, 0.3), times=(1.0, 2.5)), LIMITS, Approach(0.5))
+    assert np.isfinite(course.velocities).all() and course.velocities[1, 0] == 0.0

@@ -171,3 +171,11 @@ def test_diagnostics_of_a_model_spawned_during_the_load_are_reported(tmp_path: P
     robot.write_text(robot_of_ros_1(words), encoding="utf-8")
     with pytest.raises(LoadError, match="SK-CONTROL-002"):
         simkit.load("empty", spawn=[f"{robot}:0,0,0"])
+
+
+def test_more_errors_than_the_limit_in_a_parameter_file_are_errors_of_the_file(tmp_path: Path) -> None:
+    names = "[" + ", ".join(["0.5"] * 1200) + "]"
+    text = OF_ROS_1.replace("position_controllers/JointGroupPositionController", "TYPE").replace("[j1, j2]", names)
+    path = saved(tmp_path, text.replace("TYPE", "position_controllers/JointTrajectoryController"))
+    with pytest.raises(LoadError, match="SK-CONTROL-024"):
+        simkit.load(robot_of_ros_1(), params_files=[path])
