@@ -7,7 +7,7 @@ import json
 import time
 import urllib.request
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from typing import Any
 
 import numpy as np
@@ -70,13 +70,17 @@ class TestPage:
                 self.packets[head["kind"]] = head, arrays
 
     def until(self, condition: Callable[[], Any]) -> Any:
-        """Update the view and read until a condition holds; return its value."""
+        """Update the view and read until a condition holds; return its value.
+
+        A condition about a packet that has not arrived raises KeyError and does not hold.
+        """
         end = time.monotonic() + TIMEOUT
         while time.monotonic() < end:
             self._pump()
             self.read()
-            if found := condition():
-                return found
+            with suppress(KeyError):
+                if found := condition():
+                    return found
         raise AssertionError(f"nothing came; packets {list(self.packets)}, answers {self.answers}")
 
     def want(self, **streams: Any) -> None:
