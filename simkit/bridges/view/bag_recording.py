@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit import msgs
 from simkit.bridges.view import scene_packet
 from simkit.bridges.view.packet import Head, make_packet
-from simkit.pose import IDENTITY, Pose
+from simkit.msgs.message_types import Message
+from simkit.recording.bags.bag_motion import SCAN, BagMotion
 
 if TYPE_CHECKING:
+    from simkit.pose import Pose
     from simkit.recording.bags.reader import BagReader
-    from simkit.runtime import Link, Model, Simulation
+    from simkit.runtime import Simulation
 
 RATE: Final = 15.0
 """Number of states a second; the page interpolates."""
-_ODOMETRY, _JOINTS, _TRANSFORMS = "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
-_SCAN: Final = "sensor_msgs/msg/LaserScan"
-_NEAR: Final = 0.05  # [m] up to which the first odometry lies at the robot's pose in the world, so it is a world pose
 _MILLIMETRES: Final = 1000.0
 _FARTHEST: Final = 65.0  # [m]; ranges are 16-bit numbers of millimetres, and 0 is no hit
 
@@ -37,8 +34,8 @@ MARKER: Final = """<sdf version="1.9"><world name="{name}">
 """World for a bag whose world is unknown: level ground, and a mark for the robot."""
 
 
-class BagPoses:
-    """Poses of a bag's robots in a simulation that only draws them.
+class _Playback:
+    """Bag whose messages move the models of a simulation.
 
     Args:
         sim: simulation of the bag's world, or of `MARKER`.
@@ -47,37 +44,29 @@ class BagPoses:
 
     def __init__(self, sim: Simulation, bag: BagReader) -> None:
         self._sim, self._bag = sim, bag
-        self._topics = {topic.name: topic.type_name for topic in bag.topics}
-        self._has_odometry = _ODOMETRY in self._topics.values()
-        self._links = {
-            name.split("::")[-1]: link for name, link in self._tables("link") if not self._model(link).static
-        }
-        self._joints: dict[str, Any] = {n.split("::")[-1]: j for n, j in self._tables("joint") if j.dof == 1}
-        self._origins: dict[str, Pose] = {}
-        self._edges: dict[str, tuple[str, Pose]] = {}
+        topics = {topic.name: topic.type_name for topic in bag.topics}
+        self._scans = {name for name, type_name in topics.items() if type_name == SCAN}
+        self._motion = BagMotion(sim, topics)
         self._moving = scene_packet.moving_bodies(sim.mj_model)
         self._lidars: dict[str, _Lidar] = {}
 
-    def _model(self, link: Link) -> Model:
-        """Return the top-level model of a link."""
-        return self._sim.models[self._sim.engine.names.links[link.scoped].model]
-
-    def _tables(self, kind: str) -> Iterator[tuple[str, Any]]:
-        yield from self._sim.contents.handles.tables[kind].items()
-
     def packet(self) -> bytes:
         """Read the bag and return the packet."""
-        wanted = [n for n, kind in self._topics.items() if kind in (_ODOMETRY, _JOINTS, _TRANSFORMS, _SCAN)]
+        wanted = [*self._motion.topics, *sorted(self._scans)]
         times: list[float] = []
         states: list[npt.NDArray[Any]] = []
         begun = None
-        for message in self._bag.messages(wanted):
+        for message in self._bag.messages(wanted) if wanted else ():
             time = message.time_ns * 1e-9
             begun = time if begun is None else begun
             while time - begun >= len(times) / RATE:
                 times.append(len(times) / RATE)
                 states.append(scene_packet.poses(self._sim, self._moving))
-            self._take(message.topic, self._bag.decode(message), time - begun)
+            decoded = self._bag.decode(message)
+            if message.topic in self._scans:
+                self._take_scan(message.topic, decoded, time - begun)
+            else:
+                self._motion.take(message.topic, decoded)
         times.append(len(times) / RATE)
         states.append(scene_packet.poses(self._sim, self._moving))
         head: Head = {"kind": "recording", "name": self._bag.path.name, "begin": begun or 0.0, "lidars": []}
@@ -87,75 +76,24 @@ class BagPoses:
             arrays |= {f"lidar{number}.{name}": values for name, values in lidar.arrays().items()}
         return make_packet(head, arrays)
 
-    def _take(self, topic: str, message: Any, time: float) -> None:
-        kind = self._topics[topic]
-        if kind == _ODOMETRY:
-            self._place(message.child_frame_id, msgs.pose(message.pose.pose))
-        elif kind == _JOINTS:
-            for name, position in zip(message.name, message.position, strict=False):
-                joint = self._joints.get(name.split("/")[-1])
-                if joint is not None and np.isfinite(position):
-                    joint.set_position(float(position))
-        elif kind == _TRANSFORMS:
-            for transform in message.transforms:
-                self._take_transform(transform)
-        else:
-            self._lidars.setdefault(topic, _Lidar(message)).add(message, time, self._lidar_pose(topic, message))
-
-    def _take_transform(self, transform: Any) -> None:
-        child, parent, pose = transform.child_frame_id, transform.header.frame_id, msgs.pose(transform.transform)
-        self._edges[child] = parent, pose
-        if child in self._sim.models and not self._sim.models[child].static:
-            self._sim.models[child].set_pose(pose)
-        elif not self._has_odometry and parent.split("/")[-1] in ("odom", "map", "world"):
-            self._place(child, pose)
-
-    def _place(self, frame: str, pose: Pose) -> None:
-        """Place the robot whose link has the name of the frame; a bag's only frame moves the mark."""
-        link = self._links.get(frame.split("/")[-1]) or self._first_link()
-        if link is None:
-            return
-        if frame not in self._origins:
-            start = link.pose
-            is_world = np.linalg.norm(start.position[:2] - pose.position[:2]) < _NEAR
-            self._origins[frame] = IDENTITY if is_world else start
-        model = self._model(link)
-        model.set_pose(self._origins[frame] @ pose @ link.pose.inverse() @ model.pose)
-
-    def _first_link(self) -> Link | None:
-        return next(iter(self._links.values()), None)
-
-    def _lidar_pose(self, topic: str, message: Any) -> Pose:
-        """Return the pose of a scan's frame in the world: of the sensor, of a link, or along the transforms."""
-        for sensor in self._sim.contents.sensors.values():
-            if sensor.topic == topic:
-                pose: Pose = sensor.pose
-                return pose
-        frame, offset = message.header.frame_id, IDENTITY
-        for _ in range(len(self._edges) + 1):
-            link = self._links.get(frame.split("/")[-1])
-            if link is not None:
-                found: Pose = link.pose @ offset
-                return found
-            if frame in self._origins or frame not in self._edges:
-                break
-            parent, pose = self._edges[frame]
-            frame, offset = parent, pose @ offset
-        first = self._first_link()
-        return offset if first is None else first.pose @ offset
+    def _take_scan(self, topic: str, message: Message, time: float) -> None:
+        sensors = (s.pose for s in self._sim.contents.sensors.values() if s.topic == topic)
+        pose = next(sensors, None) or self._motion.frame_pose(message.header.frame_id)
+        if pose is not None:
+            self._lidars.setdefault(topic, _Lidar(message)).add(message, time, pose)
 
 
 class _Lidar:
     """Scans of one topic."""
 
-    def __init__(self, message: Any) -> None:
+    def __init__(self, message: Message) -> None:
         self.low, self.step = float(message.angle_min), float(message.angle_increment)
         self.count = len(message.ranges)
         self._times: list[float] = []
         self._poses: list[npt.NDArray[Any]] = []
         self._ranges: list[npt.NDArray[Any]] = []
 
-    def add(self, message: Any, time: float, pose: Pose) -> None:
+    def add(self, message: Message, time: float, pose: Pose) -> None:
         """Add a scan; one with another number of rays is left out."""
         ranges = np.asarray(message.ranges, dtype=np.float64)
         if len(ranges) != self.count:
@@ -172,6 +110,6 @@ class _Lidar:
 
 def make_recording(sim: Simulation, bag: BagReader) -> bytes:
     """Return the packet of a bag. The simulation of its world is used to compute poses, and never steps."""
-    found = BagPoses(sim, bag).packet()
+    found = _Playback(sim, bag).packet()
     sim.reset()
     return found

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -11,12 +12,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.errors import InputError
-from simkit.recording.films.bag_motion import BagMotion
+from simkit import msgs
+from simkit.errors import InputError, SimkitError
+from simkit.msgs.message_types import Message
+from simkit.recording.bags.bag_motion import SCAN, BagMotion
 from simkit.recording.pictures.camera import Camera
 from simkit.recording.pictures.frames import Look, Render, choose_camera, draw_frame
 from simkit.recording.pictures.overlay import Marks, Points
-from simkit.recording.pictures.subject import Subject, find_subject
+from simkit.recording.pictures.subject import Subject, find_subject, scan_points
 from simkit.recording.pictures.video_file import VIDEO_SUFFIXES, FrameFile, check_video_target, open_video
 from simkit.recording.run_picture import DrivenPath, marks_of
 
@@ -30,6 +33,7 @@ _AROUND: Final = np.array((4.0, 4.0, 1.0))  # what a following camera shows, in 
 _ROOM: Final = 20.0  # size of a room with a fixed camera, in sizes of the robots
 _LARGEST: Final = 4096  # [px]
 _FASTEST: Final = 120
+_GOAL: Final = "geometry_msgs/msg/PoseStamped"
 
 
 @dataclass(frozen=True)
@@ -167,6 +171,36 @@ class Film:
         return self._camera.moved(middle - self._anchor)
 
 
+class _BagMarks:
+    """Newest scans and goals of a bag.
+
+    Args:
+        types: type of each topic of the bag.
+
+    Attributes:
+        topics: topics with scans or goals.
+        scans: points of the newest scan by topic in the world frame [m], shape (n, 3).
+        goals: position of the newest goal by topic [m], shape (3,).
+    """
+
+    def __init__(self, types: Mapping[str, str]) -> None:
+        scans = [name for name, type_name in types.items() if type_name == SCAN]
+        goals = [name for name, type_name in types.items() if type_name == _GOAL and "goal" in name.rpartition("/")[2]]
+        self.topics = [*scans, *goals]
+        self.scans: dict[str, Points] = {}
+        self.goals: dict[str, Points] = {}
+
+    def take(self, topic: str, message: Message, motion: BagMotion) -> None:
+        """Store a scan or a goal; one with NaN or infinite values, or with an unknown frame, is left out."""
+        if topic not in self.topics:
+            return
+        with suppress(SimkitError):
+            if message.__msgtype__ == _GOAL:
+                self.goals[topic] = msgs.pose(message).position
+            elif (pose := motion.frame_pose(message.header.frame_id)) is not None:
+                self.scans[topic] = scan_points(message, pose)
+
+
 def film_bag(
     sim: Simulation,
     bag: BagReader,
@@ -188,7 +222,9 @@ def film_bag(
     Returns:
         Number of frames, and the names of the models that moved.
     """
-    motion = BagMotion(sim, {topic.name: topic.type_name for topic in bag.topics})
+    types = {topic.name: topic.type_name for topic in bag.topics}
+    motion, marks = BagMotion(sim, types), _BagMarks(types)
+    topics = [*motion.topics, *marks.topics]
     driven = DrivenPath(sim)
     film = Film(sim, options, render, driven)
     rate, begin = options.frame_rate, 0.0 if between[0] is None else between[0]
@@ -198,14 +234,16 @@ def film_bag(
     def draw_until(time: float) -> None:
         while (due := begin + film.count / float(rate)) < time and due <= end + 1e-9 and not is_over():
             title = f"{bag.path.name} · t = {due:.2f} s"
-            film.draw(Marks(title, driven.paths(), motion.scans, motion.goals))
+            film.draw(Marks(title, driven.paths(), marks.scans, marks.goals))
 
     try:
-        for message in bag.messages(motion.topics) if motion.topics else ():
+        for message in bag.messages(topics) if topics else ():
             draw_until((message.time_ns - bag.time_origin) * 1e-9)
             if is_over():
                 break
-            motion.take(message.topic, bag.decode(message))
+            decoded = bag.decode(message)
+            motion.take(message.topic, decoded)
+            marks.take(message.topic, decoded, motion)
             driven.sample()
         draw_until(math.inf)
     finally:
