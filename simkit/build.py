@@ -188,6 +188,7 @@ def load(
     simulation.control.write_sdf = _sdf_of
     simulation.control.resolve_world = lambda overrides: resolve_world(overrides, Diagnostics())
     simulation.control.file_arguments = file_scene.arguments
+    simulation.control.xacro_overrides = xacro_overrides(overrides)
     simulation._open_page = _open_page
     simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     options: LoadOptions = {

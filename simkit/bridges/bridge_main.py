@@ -1,4 +1,6 @@
-"""Start of the bridge process: `python -P bridge_main.py PROGRAM SETTINGS`, with a module and JSON.
+"""Start of the bridge process: `python -P bridge_main.py PROGRAM`, with a module.
+
+The settings are a line of JSON on standard input, because other users can read the command line of a process.
 
 The Python of ROS need not have simkit installed; the package is imported from the folder of this file.
 """
@@ -28,4 +30,4 @@ if __name__ == "__main__":
     if sys.version_info < _OLDEST:
         sys.exit(f"Python {sys.version.split()[0]} is too old for the bridge, which needs 3.11 or newer")
     _import_simkit()
-    sys.exit(importlib.import_module(sys.argv[1]).main(json.loads(sys.argv[2])))
+    sys.exit(importlib.import_module(sys.argv[1]).main(json.loads(sys.stdin.readline())))

@@ -87,8 +87,8 @@ class BridgeProcess:
         python, settings = self._python or sys.executable, {"socket": str(socket), **self._settings}
         try:
             self._process = process = subprocess.Popen(
-                [str(python), "-P", str(Path(__file__).parent / "bridge_main.py"), self._program, json.dumps(settings)],
-                stdin=subprocess.PIPE,  # nothing is written; the pipe closes when this process ends
+                [str(python), "-P", str(Path(__file__).parent / "bridge_main.py"), self._program],
+                stdin=subprocess.PIPE,  # settings, which may contain a token; the pipe closes when this process ends
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 env=self._environment,
@@ -96,6 +96,10 @@ class BridgeProcess:
             )
         except OSError as error:
             raise self.start_error(f"{python} cannot be started: {error.strerror}") from None
+        if process.stdin is not None:
+            with suppress(BrokenPipeError):  # its last words say why it has ended
+                process.stdin.write(json.dumps(settings).encode() + b"\n")
+                process.stdin.flush()
         for pipe, take in ((process.stdout, self._take_line), (process.stderr, self._errors.append)):
             threading.Thread(target=_read_lines, args=(pipe, take), daemon=True).start()
         end = time.monotonic() + _START_TIMEOUT

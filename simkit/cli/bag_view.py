@@ -33,7 +33,6 @@ def show_bag(
     """
     from simkit.bridges.view.bag_recording import MARKER, make_recording
     from simkit.bridges.view.html_file import html_file
-    from simkit.bridges.view.live_view import LiveView
     from simkit.bridges.view.scene_packet import make_scene_packet
     from simkit.build import load
     from simkit.recording.bags.reader import open_bag_to_read
@@ -52,8 +51,7 @@ def show_bag(
             print_line(f"wrote {html} ({html.stat().st_size / 1e6:.2f} MB)")
             return 0
         interrupts = stack.enter_context(Interrupts())
-        view = stack.enter_context(LiveView(sim, page.host, page.port, recording=recording))
-        page_options.show_address(view.address, opens=page.opens and view.is_local)
+        view = page_options.open_page(sim, page, stack, recording)
         while not interrupts.exit_code:
             view.update()
             time.sleep(_POLL)

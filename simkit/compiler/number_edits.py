@@ -257,8 +257,9 @@ def _plan_axes(compiled: Compiled, record: ModelRecord, old: SceneJoint, new: Sc
         return None
     if any(not _only_differs(a, b) for a, b in zip(old.axes, new.axes, strict=True)):
         return None
-    if not all(is_valid_axis(new, axis, Diagnostics()) for axis in new.axes):
-        return None
+    found = Diagnostics()
+    if not all(is_valid_axis(new, axis, found) for axis in new.axes) or list(found):
+        return None  # a new load reports the problems
     return [lambda: _write_axes(compiled, binding.joint_names, new)]
 
 

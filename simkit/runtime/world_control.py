@@ -194,6 +194,7 @@ class WorldControl:
             format.
         resolve_world: function that returns the world of the file with other overrides; set from outside.
         file_arguments: arguments of the xacro file of the world, with their values.
+        xacro_overrides: those of the arguments that overrides gave.
         loaded_world: world of the loaded state.
     """
 
@@ -209,6 +210,7 @@ class WorldControl:
         self.origin = GeographicOrigin(engine)
         self.loaded_world = engine.world
         self.file_arguments: Mapping[str, str] = {}
+        self.xacro_overrides: Mapping[str, str] = {}
 
     # ------------------------------------------------------------------ running
 

@@ -41,7 +41,10 @@ def apply_overrides(sim: Simulation, overrides: Overrides, seed: int | None = No
         InputError: an override has no such path, or an invalid value.
     """
     overrides = override_texts(overrides)
-    if sim.control.resolve_world is None or xacro_overrides(overrides).items() - sim.control.file_arguments.items():
+    if sim.control.resolve_world is None:
+        return False
+    arguments = xacro_overrides(overrides)
+    if arguments.items() - sim.control.file_arguments.items() or sim.control.xacro_overrides.keys() - arguments.keys():
         return False
     world = sim.control.resolve_world(tuple(overrides))
     changes = entity_changes(sim.control.loaded_world, world)

@@ -35,15 +35,16 @@ def override_texts(overrides: Overrides) -> Sequence[str]:
     """Return overrides as texts. Values may be numbers, truth values, texts, and lists of numbers."""
     if not isinstance(overrides, Mapping):
         return overrides
-    return tuple(f"{path}={_value_text(value)}" for path, value in overrides.items())
+    return tuple(f"{path}={value_text(value)}" for path, value in overrides.items())
 
 
-def _value_text(value: object) -> str:
+def value_text(value: object) -> str:
+    """Return a value as the text of an override; numbers keep all their bits."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str) or not hasattr(value, "__iter__"):
         return str(value)
-    return " ".join(str(part) for part in value)
+    return " ".join(map(value_text, value))
 
 
 def apply_overrides(scene: Scene, overrides: Sequence[str]) -> Scene:

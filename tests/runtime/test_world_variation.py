@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -94,3 +95,16 @@ def test_a_varied_world_keeps_its_numbers_after_a_spawn_and_a_reset() -> None:
         assert sim.link(f"{_ROBOT}::base_link").mass == 2.0
         assert sim.run_spec is not None
         assert sim.run_spec.overrides[0] == f"{_ROBOT}::base_link.mass=2"
+
+
+def test_a_world_without_a_former_xacro_override_is_loaded_anew(tmp_path: Path) -> None:
+    (tmp_path / "ball.urdf.xacro").write_text(
+        '<robot name="ball" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="m" default="2"/>'
+        '<link name="l">'
+        '<inertial><mass value="$(arg m)"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+        "</link></robot>"
+    )
+    with simkit.load(tmp_path / "ball.urdf.xacro", overrides=["xacro.m=5"]) as sim:
+        assert sim.link("ball::l").mass == 5.0
+        assert not apply_overrides(sim, {})
+        assert apply_overrides(sim, {"xacro.m": 5})

@@ -14,12 +14,12 @@ import numpy as np
 from simkit.bridges.view import scene_packet
 from simkit.bridges.view.driving import Driving
 from simkit.bridges.view.packet import make_packet
-from simkit.bridges.view.page_requests import RequestFailed, execute_request
+from simkit.bridges.view.page_requests import execute_request
 from simkit.bridges.view.page_server import PageRequest, PageServer
 from simkit.bridges.view.streams import Stream, make_stream
 from simkit.bridges.view.travel import Travel
 from simkit.bridges.web.access import is_loopback
-from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged, SubscriberError
+from simkit.errors import InputError, PluginError, SimulationDiverged, SubscriberError
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -81,7 +81,7 @@ class LiveView:
     @property
     def address(self) -> str:
         """Address of the page, with its token."""
-        host = "127.0.0.1" if self._host in ("", "0.0.0.0", "::") else self._host
+        host = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}.get(self._host, self._host)
         return f"http://{f'[{host}]' if ':' in host else host}:{self.server.port}/?token={self._token}"
 
     @property
@@ -152,7 +152,9 @@ class LiveView:
                     self._streams[name] = make_stream(self.sim, name)
                 stream = self._streams[name]
                 packet = None if stream is None else stream.packet(options)
-            except SimkitError as error:  # no renderer, or a message that is invalid: the run goes on without it
+            except (PluginError, SimulationDiverged, SubscriberError):
+                raise
+            except Exception as error:  # noqa: BLE001 - no renderer, or an odd message: the run goes on without it
                 self._streams[name] = None
                 packet = make_packet({"kind": name, "error": str(error)}, {})
             if packet is not None:
@@ -205,7 +207,7 @@ class LiveView:
         except (PluginError, SimulationDiverged, SubscriberError) as error:
             self.server.answer(request.client, {"id": number, "error": str(error), "code": error.code})
             raise  # the error ends the run, as it would for a caller in the process
-        except (RequestFailed, SimkitError, KeyError, ValueError, TypeError) as error:
+        except Exception as error:  # noqa: BLE001 - no request of a page ends the run
             text = str(error.args[0] if error.args else error)
             self.server.answer(request.client, {"id": number, "error": text, "code": getattr(error, "code", "")})
         else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     from simkit.bridges.view.page_server import PageRequest
     from simkit.bridges.view.travel import Travel
     from simkit.runtime import Simulation
+
+
+def _is_finite(value: object) -> bool:
+    """Check whether a value of a request is a finite number; JSON may have integers that no float can hold."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 class ViewHost(Protocol):
@@ -57,7 +62,7 @@ class Call:
     def number(self, name: str, default: float | None = None) -> float:
         """Return an argument that is a finite number."""
         value: Any = self._arguments.get(name, default)
-        if type(value) not in (int, float) or not math.isfinite(value):
+        if not _is_finite(value):
             raise RequestFailed(f"{name!r} must be a finite number, got {value!r:.80}")
         return float(value)
 
@@ -65,7 +70,7 @@ class Call:
         """Return an argument that is a list of finite numbers."""
         values: Any = self._arguments.get(name)
         is_valid = isinstance(values, list) and len(values) == count
-        if not is_valid or not all(type(v) in (int, float) and math.isfinite(v) for v in values):
+        if not is_valid or not all(map(_is_finite, values)):
             raise RequestFailed(f"{name!r} must be a list of {count} finite numbers, got {values!r:.80}")
         return [float(v) for v in values]
 

@@ -54,14 +54,12 @@ class PageClient:
         wants: streams that the page shows, with their options.
         slots: newest packet of each stream that was not sent yet.
         answers: answers and notifications that were not sent yet.
-        sent: number of bytes sent.
     """
 
     wants: Wants = field(default_factory=dict)
     slots: dict[str, bytes] = field(default_factory=dict)
     answers: list[str] = field(default_factory=list)
     is_due: asyncio.Event = field(default_factory=asyncio.Event)
-    sent: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,11 +123,6 @@ class PageServer:
         """Send an answer to one page, or a notification."""
         self._call(self._queue_answer, client, json.dumps(content, default=str))
 
-    def tell_all(self, content: Mapping[str, Any]) -> None:
-        """Send a notification to all pages."""
-        text = json.dumps(content, default=str)
-        self._call(self._queue_for_all, text)
-
     def close(self) -> None:
         """Disconnect all pages and end the thread."""
         self._call(self._end.set)
@@ -177,10 +170,6 @@ class PageServer:
             if stream in client.wants or stream in _FOR_ALL:
                 client.slots[stream] = packet
                 client.is_due.set()
-
-    def _queue_for_all(self, text: str) -> None:
-        for client in list(self._clients):
-            self._queue_answer(client, text)
 
     def _queue_answer(self, client: PageClient, text: str) -> None:
         client.answers.append(text)
@@ -239,7 +228,6 @@ class PageServer:
             answers, client.answers = client.answers, []
             slots, client.slots = client.slots, {}
             for data in (*answers, *slots.values()):
-                client.sent += len(data)
                 await socket.send(data)
 
     def _take(self, client: PageClient, text: str | bytes) -> None:

@@ -213,14 +213,17 @@ class CloudStream:
         usable = np.flatnonzero(np.isfinite(place).all(axis=1))
         usable = _thinned(usable)
         pose = self._frame(message.header.frame_id)
+        if pose is None:
+            text = f"the frame {message.header.frame_id!r:.80} is unknown"
+            return make_packet({"kind": f"cloud:{self._topic}", "error": text}, {})
         arrays = {"points": place[usable] @ pose.matrix.T + pose.position}
         if "rgb" in (points.dtype.names or ()):
             packed = np.ascontiguousarray(points["rgb"][usable]).view(np.uint32)
             arrays["colours"] = np.stack([packed >> 16, packed >> 8, packed], axis=1).astype(np.uint8)
         return make_packet({"kind": f"cloud:{self._topic}", "time": self._sim.time}, arrays)
 
-    def _frame(self, frame: str) -> Pose:
-        """Return the pose of a frame in the world: of an optical frame, a sensor, or a link."""
+    def _frame(self, frame: str) -> Pose | None:
+        """Return the pose of a frame in the world: of an optical frame, a sensor, or a link; None if it is unknown."""
         for sensor in self._sim.contents.sensors.values():
             optical = sensor.optical_frames()
             if frame in optical or frame == sensor.frame_id:
@@ -228,7 +231,10 @@ class CloudStream:
                 return pose
         links = self._sim.contents.handles.tables["link"]
         found = next((link for name, link in links.items() if name == frame or name.endswith(f"::{frame}")), None)
-        return found.pose if found is not None else self._sim.models[next(iter(self._sim.models))].pose
+        if found is None:
+            return IDENTITY if frame.strip("/") in ("world", "map") else None
+        link_pose: Pose = found.pose
+        return link_pose
 
     def close(self) -> None:
         self._subscription.close()

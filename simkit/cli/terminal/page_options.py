@@ -68,15 +68,21 @@ def page_options(port: int | None, host: str | None, *, no_open: bool) -> PageOp
     return PageOptions(port, host or _LOOPBACK, not no_open)
 
 
-def open_page(sim: Simulation, options: PageOptions, stack: ExitStack) -> LiveView:
+def open_page(sim: Simulation, options: PageOptions, stack: ExitStack, recording: bytes = b"") -> LiveView:
     """Start the live view, print its address alone on a line, and open a browser; the stack closes the view.
+
+    Args:
+        sim: simulation to show.
+        options: options of the page.
+        stack: stack that closes the view.
+        recording: packet of a recording that the page plays; empty for none.
 
     Raises:
         InputError: SK-WEB-006 the address cannot be used.
     """
     from simkit.bridges.view.live_view import LiveView
 
-    view = stack.enter_context(LiveView(sim, options.host, options.port))
+    view = stack.enter_context(LiveView(sim, options.host, options.port, recording=recording))
     show_address(view.address, opens=options.opens and view.is_local)
     if not view.is_local:
         text = "other machines reach the page; whoever has its address may drive, spawn and reset"

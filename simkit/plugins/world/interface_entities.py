@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 PACKAGE: Final = "simulation_interfaces"
 _KINDS: Final = ("model", "link", "light")
 _UNKNOWN, _ROBOT, _HUMAN, _DYNAMIC, _STATIC = 0, 2, 3, 4, 5
-_LONGEST_PATTERN: Final = 200
+_QUANTIFIERS: Final = re.compile(r"\\.|\[\^?\]?(?:\\.|[^]\\])*\]|\(\?|(\)?[*+?{])")
+_MOST_QUANTIFIERS: Final = 3  # more of them, or one after a group, may take minutes in a name of 30 letters
 _EMPTY, _BOX, _HULL, _SPHERE = range(4)
 
 
@@ -120,8 +121,10 @@ def entity_info(sim: Simulation, request: Any) -> dict[str, object]:
 def _selected(sim: Simulation, filters: Any) -> list[str]:
     if len(filters.tags.tags):
         raise Refusal(ResultCode.UNSUPPORTED, "entities have no tags")
-    if len(filters.filter) > _LONGEST_PATTERN:
-        raise Refusal(ResultCode.FAILED, f"the filter is longer than {_LONGEST_PATTERN} characters")
+    found = [token for token in _QUANTIFIERS.findall(filters.filter) if token]
+    if len(found) > _MOST_QUANTIFIERS or any(token.startswith(")") for token in found):
+        allowed = f"at most {_MOST_QUANTIFIERS} of * + ? {{}}, none of them after a group"
+        raise Refusal(ResultCode.FAILED, f"found the filter {filters.filter!r:.100}; expected {allowed}")
     try:
         pattern = re.compile(filters.filter)
     except re.error as error:

@@ -166,6 +166,10 @@ class SimulationInterfaces(WorldPlugin):
         sim.control.pausing.catch_up()
 
     def _begin_steps(self, goal: GoalHandle) -> None:
+        if self._goal is not None and not self._goal.is_done:
+            busy = Refusal(ResultCode.INCORRECT_STATE, "another goal is being executed")
+            goal.abort({"result": _result(busy)}, str(busy))
+            return
         steps = int(goal.request.steps)
         self._goal, self._first, self._last = goal, self.sim.tick, self.sim.tick + steps
         self.sim.communication.on_demand.look()

@@ -216,7 +216,7 @@ def film_bag(
         bag: bag with odometry or poses, joint states and scans.
         options: options of the film.
         render: function that draws a view of a simulation.
-        between: first and last time of the film, from the start of the bag [s]; None for its ends.
+        between: first and last time of the film, counted as in the bag's table [s]; None for its ends.
         is_over: function that returns True to end the film early.
 
     Returns:
@@ -227,7 +227,9 @@ def film_bag(
     topics = [*motion.topics, *marks.topics]
     driven = DrivenPath(sim)
     film = Film(sim, options, render, driven)
-    rate, begin = options.frame_rate, 0.0 if between[0] is None else between[0]
+    rate = options.frame_rate
+    first = math.floor((bag.start - bag.time_origin) * 1e-9 * float(rate)) / float(rate)  # on the grid of frames
+    begin = first if between[0] is None else between[0]
     end = (bag.end - bag.time_origin) * 1e-9
     end = end if between[1] is None else min(end, between[1])
 

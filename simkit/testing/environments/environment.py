@@ -13,6 +13,7 @@ import numpy as np
 from simkit.errors import InputError, SimulationDiverged
 from simkit.runtime import Simulation
 from simkit.runtime.world_variation import apply_overrides
+from simkit.scene.overrides import override_texts
 from simkit.sensors.cameras.rendering.overview_image import render_view
 from simkit.testing.conditions.binder import bind
 from simkit.testing.conditions.bound_expression import is_scalar
@@ -25,7 +26,7 @@ from simkit.testing.environments.observations import Observations, no_message
 from simkit.testing.environments.specification import EnvironmentSpec, Problems, Value, invalid
 from simkit.testing.scenarios.scenario_run import open_scenario
 from simkit.testing.sweeps.parameter_space import InvalidSpace, ParameterSpace, parameter_space
-from simkit.testing.sweeps.sweep_spec import fill_template, split_values, value_text
+from simkit.testing.sweeps.sweep_spec import fill_template, split_values
 
 _LONGEST_WAIT = 1.0  # [s] of simulated time for the first message of an observed topic
 
@@ -202,8 +203,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
 
     def _overrides(self) -> tuple[str, ...]:
         paths, _ = split_values(self.values)
-        added = tuple(f"{path}={value_text(value)}" for path, value in paths.items())
-        return (*self.spec_of_env.run.overrides, *added)
+        return (*self.spec_of_env.run.overrides, *override_texts(paths))
 
     def _apply_values(self, seed: int) -> None:
         """Reset the world with the present values."""

@@ -11,6 +11,7 @@ import gymnasium
 
 from simkit.diagnostics import did_you_mean
 from simkit.run_spec import FilePath, RunSpec
+from simkit.scene.overrides import override_texts
 from simkit.testing.environments.environment import SimulationEnv
 from simkit.testing.environments.specification import EnvironmentSpec, invalid
 from simkit.testing.environments.tiago_tasks import pick_spec, reach_spec
@@ -36,7 +37,7 @@ def environment_spec(world: FilePath | RunSpec, changes: Mapping[str, Any]) -> E
         InputError: SK-GYM-001 an argument is unknown or missing, or no environment has this id.
     """
     changes = dict(changes)
-    overrides, seed = tuple(changes.pop("overrides", ())), changes.pop("seed", None)
+    overrides, seed = tuple(override_texts(changes.pop("overrides", ()))), changes.pop("seed", None)
     for name in changes:
         if name not in _FIELDS:
             hint = did_you_mean(name, _FIELDS) or f"allowed: {', '.join(_FIELDS)}"

@@ -46,7 +46,7 @@ def optimise_sweep(
     maximise: bool = False,
     always_processes: bool = True,
 ) -> dict[str, Any]:
-    """Search the parameters of a sweep for the best value of a metric; failed runs count as the worst value.
+    """Search the parameters of a sweep for the best value of a metric; a trial with a failed run is not used.
 
     Each trial runs with each seed, and its value is the mean.
 
@@ -127,9 +127,16 @@ def _run_missing(
 
 
 def _mean(rows: list[dict[str, Any]], metric: str) -> float:
-    """Return the mean value of a metric; NaN if a run failed without a value."""
-    values = [row["metrics"].get(metric, math.nan) for row in rows]
-    return sum(map(float, values)) / len(values)
+    """Return the mean value of a metric; NaN if a run failed.
+
+    Raises:
+        InputError: SK-SWEEP-001 the value of the metric is no number.
+    """
+    values = [math.nan if row["exit_code"] else row["metrics"].get(metric, math.nan) for row in rows]
+    texts = [value for value in values if not isinstance(value, (bool, int, float))]
+    if texts:
+        raise InputError(f"{INVALID} metric {metric!r}: found {texts[0]!r:.60}; a search needs numbers", INVALID)
+    return sum(values) / len(values)
 
 
 class _Search:

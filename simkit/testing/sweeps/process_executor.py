@@ -65,7 +65,7 @@ class _Worker:
 
     def __init__(self, first: bytes, inbox: SimpleQueue[tuple[_Worker, bytes | None]]) -> None:
         self.waiting: deque[SweepTask] = deque()
-        self.is_ready = False
+        self.is_ready = self.is_late = False
         self.since = time.monotonic()
         self._output: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - `close` closes it
         self._process = subprocess.Popen(
@@ -150,7 +150,6 @@ class ProcessExecutor:
         self._inbox: SimpleQueue[tuple[_Worker, bytes | None]] = SimpleQueue()
         self._workers: list[_Worker] = []
         self._mean = _BATCH_SECONDS  # [s] running mean of the wall time of a run
-        self._late: set[int] = set()
 
     def __enter__(self) -> ProcessExecutor:
         return self
@@ -174,10 +173,10 @@ class ProcessExecutor:
                 is_over = self._refill(worker, source, again) or is_over
             if is_over and not again and not any(worker.waiting for worker in self._workers):
                 return
+            self._kill_late()
             try:
                 worker, content = self._inbox.get(timeout=_POLL)
             except Empty:
-                self._kill_late()
                 continue
             if worker not in self._workers:
                 continue
@@ -216,10 +215,11 @@ class ProcessExecutor:
         worker.kill()
         reason = worker.end_reason()
         if not worker.is_ready:
+            worker.close()
             raise InputError(f"{NOT_SENDABLE} a worker process could not read the sweep: {reason}", NOT_SENDABLE)
         if worker.waiting:
             result = RowResult(worker.waiting.popleft().row, exit_code=1, code=CRASHED, message=reason)
-            if id(worker) in self._late:
+            if worker.is_late:
                 result.exit_code, result.end = 5, "wall_timeout"
                 result.message = "the run did not stop at its wall-clock limit, so its process was killed"
             again.extend(worker.waiting)
@@ -229,5 +229,5 @@ class ProcessExecutor:
     def _kill_late(self) -> None:
         for worker in self._workers:
             if self._limit is not None and worker.waiting and time.monotonic() - worker.since > self._limit:
-                self._late.add(id(worker))
+                worker.is_late = True
                 worker.kill()

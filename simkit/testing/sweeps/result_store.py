@@ -117,12 +117,13 @@ class ResultStore:
         """Return the runs of a block that are not finished, and repair its log."""
         if self._is_complete(block):
             return []
-        return [run for run in self.runs_of(block) if run not in self._finished(block)]
+        finished = self._finished(block)
+        return [run for run in self.runs_of(block) if run not in finished]
 
     def finished_count(self) -> int:
         """Return the number of finished rows."""
         return sum(
-            len(self.runs_of(block)) if self._is_complete(block) else len(self._finished(block))
+            len(self.runs_of(block)) if self._is_complete(block) else len(self.block_rows(block))
             for block in self.blocks
         )
 
@@ -212,7 +213,7 @@ class ResultStore:
         if log_path.exists():
             found = {row["run"]: line for line in _whole_lines(log_path) if (row := _row_of(line)) is not None}
             write_atomically(self._path(block, "rows"), b"".join(found[run] + b"\n" for run in sorted(found)))
-            log_path.unlink()
+            log_path.unlink(missing_ok=True)
         self._open_rows.pop(block, None)
 
 

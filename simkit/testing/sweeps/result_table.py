@@ -14,8 +14,9 @@ from simkit.errors import InputError
 from simkit.input_file import read_failure, read_input_text
 from simkit.msgs.data_frames import DataFrame
 from simkit.run_spec import JsonObject
+from simkit.scene.overrides import value_text
 from simkit.testing.sweeps.result_store import ResultStore
-from simkit.testing.sweeps.sweep_spec import RESULT_COLUMNS, ROW_COLUMNS, value_text
+from simkit.testing.sweeps.sweep_spec import RESULT_COLUMNS, ROW_COLUMNS
 from simkit.writers.atomic_output import AtomicOutput
 
 
@@ -27,7 +28,7 @@ def table_columns(store: ResultStore) -> list[str]:
 
 def flat_row(row: JsonObject, columns: Sequence[str]) -> list[Any]:
     """Return the cells of a row; a parameter or metric that the row does not have is None."""
-    cells = {**row, **row["metrics"], **row["values"]}
+    cells = {name: row.get(name) for name in (*ROW_COLUMNS, *RESULT_COLUMNS)} | row["metrics"] | row["values"]
     found = [cells.get(name) for name in columns]
     return [value_text(cell) if isinstance(cell, list) else cell for cell in found]
 

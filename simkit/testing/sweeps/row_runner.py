@@ -18,7 +18,7 @@ from simkit.runtime import Simulation
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.runtime.world_variation import apply_overrides
 from simkit.scene.overrides import apply_overrides as apply_to_scene
-from simkit.scene.overrides import check_used
+from simkit.scene.overrides import check_used, value_text
 from simkit.testing.bundles import BundleRecorder
 from simkit.testing.bundles.bundle_writer import pack_load_failure, write_bundle
 from simkit.testing.bundles.manifest import CHECK, Failure, failure_from_error
@@ -26,7 +26,7 @@ from simkit.testing.conditions import Watch
 from simkit.testing.scenarios.scenario_run import ScenarioResult, open_scenario, run_scenario
 from simkit.testing.sweeps.design import SweepRow
 from simkit.testing.sweeps.metrics import RunMetrics
-from simkit.testing.sweeps.sweep_spec import SweepSpec, value_text
+from simkit.testing.sweeps.sweep_spec import SweepSpec
 
 _STATUS: Final = {0: "ok", 1: "error", 2: "invalid", 3: "diverged", 4: "plugin", 5: "failed"}
 CHECKS_FAILED: Final = "SK-SWEEP-006"

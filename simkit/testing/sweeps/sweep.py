@@ -239,9 +239,9 @@ def run_sweep(
                     store.close()
                 if cluster is None:
                     keep_runs(spec, store, executor)
-            if cluster is not None:  # the nodes of a cluster cannot write to the folder
-                with make_executor(spec, jobs, None, min_tasks=missing, always_processes=True) as local:
-                    keep_runs(spec, store, local)
+        if (not missing or cluster is not None) and runs_to_keep(spec, store):  # nodes cannot write to the folder
+            with make_executor(spec, jobs, None, min_tasks=missing, always_processes=True) as local:
+                keep_runs(spec, store, local)
         tables = write_tables(store) if writes_tables and store.finished_count() == store.count else ()
         failed = sum(row["exit_code"] != 0 for row in store.rows())
     wall = time.perf_counter() - begun
@@ -263,7 +263,6 @@ def description_of(spec: SweepSpec) -> dict[str, Any]:
         "metrics": list(spec.metrics),
         "expressions": {name: one for name, one in spec.metrics.items() if isinstance(one, str)},
         "sampling": design.sampling,
-        "dimensions": design.dimensions,
         "points": design.points,
         "combinations": design.combinations,
         "seeds": 1 if design.is_paired else len(design.seeds),
@@ -317,13 +316,18 @@ def make_executor(
     return ProcessExecutor(spec, jobs)
 
 
-def keep_runs(spec: SweepSpec, store: ResultStore, executor: Executor) -> None:
-    """Repeat the runs whose bundles are kept, and write their bundles and bags into the folder `runs`."""
+def runs_to_keep(spec: SweepSpec, store: ResultStore) -> list[int]:
+    """Return the numbers of the runs whose bundles are kept and not written yet."""
     folder = store.folder.absolute() / "runs"
     chosen = [row["run"] for row in store.rows() if spec.keep == "all" or row["exit_code"]]
     if isinstance(spec.keep, int):
         chosen = chosen[: spec.keep]
-    chosen = [run for run in chosen if not (folder / f"{run:06d}.zip").exists()]
+    return [run for run in chosen if not (folder / f"{run:06d}.zip").exists()]
+
+
+def keep_runs(spec: SweepSpec, store: ResultStore, executor: Executor) -> None:
+    """Repeat the runs whose bundles are kept, and write their bundles and bags into the folder `runs`."""
+    folder, chosen = store.folder.absolute() / "runs", runs_to_keep(spec, store)
     if not chosen:
         return
     folder.mkdir(exist_ok=True)

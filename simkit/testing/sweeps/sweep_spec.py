@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import os
@@ -13,6 +14,7 @@ from typing import Any, Final, Literal, cast
 from simkit.errors import InputError
 from simkit.input_file import read_input
 from simkit.run_spec import LoadOptions, RunSpec
+from simkit.scene.overrides import override_texts, value_text
 from simkit.testing.sweeps.design import Design, SweepRow
 
 Metric = str | Callable[[Any], Any]
@@ -53,6 +55,12 @@ class SweepSpec:
     bag_topics: tuple[str, ...] = ()
     is_warm: bool = True
 
+    def __post_init__(self) -> None:
+        is_count = isinstance(self.keep, int) and not isinstance(self.keep, bool) and self.keep >= 0
+        if not is_count and self.keep not in ("failed", "all"):
+            text = f"keep: found {self.keep!r:.60}; expected 'failed', 'all', or a number of failed runs"
+            raise InputError(f"{INVALID} {text}", INVALID)
+
     @property
     def columns(self) -> tuple[str, ...]:
         """Columns of the result table."""
@@ -77,8 +85,7 @@ class SweepSpec:
         spec = replace(self.run, seed=row.seed)
         if variables:
             spec = _substitute(spec, variables)
-        added = tuple(f"{path}={value_text(value)}" for path, value in paths.items())
-        return replace(spec, overrides=(*spec.overrides, *added))
+        return replace(spec, overrides=(*spec.overrides, *override_texts(paths)))
 
     def row_metrics(self, row: SweepRow) -> Mapping[str, Metric]:
         """Return the metrics of one run, with the values of variables."""
@@ -94,13 +101,6 @@ def split_values(values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, A
     """Return the values of paths, and the values of variables, whose names are identifiers."""
     paths = {name: value for name, value in values.items() if not name.isidentifier()}
     return paths, {name: value for name, value in values.items() if name.isidentifier()}
-
-
-def value_text(value: Any) -> str:
-    """Return a value as the text of an override; numbers keep all their bits."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    return " ".join(map(value_text, value)) if isinstance(value, (list, tuple)) else str(value)
 
 
 # ---------------------------------------------------------------------- variables
@@ -166,7 +166,7 @@ def plain_description(value: Any) -> Any:
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, Mapping):
-        return {str(key): plain_description(item) for key, item in value.items() if key not in _PLACES}
+        return {str(key): plain_description(item) for key, item in value.items() if key != "where"}
     if isinstance(value, range) and len(value) > 1000:
         return repr(value)
     if isinstance(value, (list, tuple, set, frozenset, range)):
@@ -176,6 +176,8 @@ def plain_description(value: Any) -> Any:
         return {"type": type(value).__name__, **own}
     if isinstance(value, Path):
         return str(value)
+    if isinstance(value, functools.partial):
+        return [plain_description(part) for part in (value.func, value.args, value.keywords)]
     name = getattr(value, "__qualname__", None)
     return f"{value.__module__}.{name}" if name else f"a {type(value).__qualname__}"
 

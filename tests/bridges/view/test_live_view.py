@@ -169,6 +169,7 @@ def test_goals_and_initial_poses_are_published_as_rviz_does(stage: Stage) -> Non
 
 
 NONSENSE: tuple[str | bytes, ...] = (
+    '{"do": "pace", "value": ' + "9" * 400 + "}",
     *("", "{", "[]", "null", '"x"', "{}", '{"do": 1}', '{"do": "fly"}', '{"do": "step", "count": -1}', "[" * 5000),
     *('{"do": "pace", "value": 0}', '{"do": "drive", "topic": "/none"}', '{"do": "pause", "value": "yes"}'),
     *('{"do": "joint", "name": "none", "value": 1}', '{"do": "want", "streams": {"none": 1}}', b"\x00\xff"),

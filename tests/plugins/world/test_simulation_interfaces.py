@@ -185,6 +185,24 @@ def test_a_pause_or_a_cancellation_ends_the_steps_of_a_served_run() -> None:
         assert second.status.name == "CANCELED" and sim.paused and 20 <= sim.tick <= 21
 
 
+def test_a_second_goal_does_not_disturb_the_steps_of_the_first() -> None:
+    with load() as sim, sim.control.pausing.served():
+        sim.paused = True
+        first = sim.send_goal("/simulate_steps", {"steps": 30})
+        sim.control.pausing.advance(10)
+        second = sim.send_goal("/simulate_steps", {"steps": 50})
+        sim.control.pausing.advance(100)
+        assert second.status.name == "ABORTED" and second.result.result.result == INCORRECT_STATE
+        assert first.status.name == "SUCCEEDED" and sim.tick == 30
+
+
+@pytest.mark.parametrize("pattern", ["(a+)+b", "a*a*a*a*b", "(?:a|a)*b"])
+def test_a_filter_that_may_take_minutes_is_refused(pattern: str) -> None:
+    with load() as sim:
+        assert result_of(sim, "/get_entities", {"filters": {"filter": pattern}}) == FAILED
+        assert result_of(sim, "/get_entities", {"filters": {"filter": r"^(?:box|a[+*()]|ar\+m)[a-z]*$"}}) == OK
+
+
 def test_a_reset_has_scopes() -> None:
     with load() as sim:
 
