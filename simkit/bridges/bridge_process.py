@@ -20,6 +20,7 @@ from simkit.errors import InputError
 
 _START_TIMEOUT: Final = 60.0  # [s]; the first import of rclpy on a slow disk takes several seconds
 _END_TIMEOUT: Final = 5.0  # [s] for passing on the last messages
+_LAST_LINES_TIMEOUT: Final = 0.5  # [s] for the lines of a process that has ended
 _POLL: Final = 0.02  # [s] between two looks at a bridge that starts
 
 
@@ -63,7 +64,8 @@ class BridgeProcess:
         self._title, self._codes, self._program, self._settings = title, codes, program, settings
         self._report, self._python, self._environment = report, python, environment
         self._process: subprocess.Popen[bytes] | None = None
-        self._lines: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
+        self._readers: list[threading.Thread] = []
+        self._lines: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         self._errors: deque[str] = deque(maxlen=20)
         self._last: dict[str, Any] = {}
         self._is_over = False
@@ -97,11 +99,12 @@ class BridgeProcess:
         except OSError as error:
             raise self.start_error(f"{python} cannot be started: {error.strerror}") from None
         if process.stdin is not None:
-            with suppress(BrokenPipeError):  # its last words say why it has ended
+            with suppress(OSError):  # its last words say why it has ended
                 process.stdin.write(json.dumps(settings).encode() + b"\n")
                 process.stdin.flush()
         for pipe, take in ((process.stdout, self._take_line), (process.stderr, self._errors.append)):
-            threading.Thread(target=_read_lines, args=(pipe, take), daemon=True).start()
+            self._readers.append(threading.Thread(target=_read_lines, args=(pipe, take), daemon=True))
+            self._readers[-1].start()
         end = time.monotonic() + _START_TIMEOUT
         while "ready" not in self._last:
             serve(_POLL)
@@ -109,7 +112,7 @@ class BridgeProcess:
             if is_interrupted():
                 return
             if process.poll() is not None:
-                self._report_notes(0.5)
+                self._report_last_notes()
                 reason = self._last.get("error") or (
                     self._errors[-1] if self._errors else f"exit code {process.poll()}"
                 )
@@ -162,7 +165,7 @@ class BridgeProcess:
         self._report_notes()
         if self._process is None or self._process.poll() is None:
             return self._process is not None
-        self._report_notes(0.5)
+        self._report_last_notes()
         return False
 
     def _end_reason(self) -> str:
@@ -175,7 +178,8 @@ class BridgeProcess:
     def _end(self) -> None:
         """Ask the process to end."""
         if self._process is not None and self._process.stdin is not None:
-            self._process.stdin.close()
+            with suppress(OSError):  # settings that the process has not read are written again
+                self._process.stdin.close()
 
     def _take_line(self, line: str) -> None:
         try:
@@ -185,18 +189,19 @@ class BridgeProcess:
         if isinstance(found, dict):
             self._lines.put(found)
 
-    def _report_notes(self, wait: float = 0.0) -> None:
-        """Process the lines that have arrived; wait at most some time [s] for the first."""
-        while True:
-            try:
-                found = self._lines.get(timeout=wait) if wait else self._lines.get_nowait()
-            except queue.Empty:
-                return
-            if found is None:
-                return
+    def _report_notes(self) -> None:
+        """Process the lines that have arrived."""
+        while not self._lines.empty():
+            found = self._lines.get()
             self._last.update(found)
             if "note" in found:
                 self._report(f"note {self._codes.note}: {found['note']}")
+
+    def _report_last_notes(self) -> None:
+        """Process all lines of a process that has ended."""
+        for reader in self._readers:
+            reader.join(_LAST_LINES_TIMEOUT)  # a child of the process may keep its pipes open
+        self._report_notes()
 
     def __enter__(self) -> Self:
         return self

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from simkit.bridges.ros.bridge_process import RosOptions
+from simkit.bridges.ros.bridge_process import RosBridge, RosOptions
 from simkit.bridges.ros.ros_names import parameter_node, ros_name
 from simkit.bridges.ros.ros_python import find_python
 from simkit.cli.terminal.ros_options import join_ros_arguments
@@ -23,6 +23,15 @@ def test_a_python_without_rclpy_is_an_error_with_the_reason_and_a_remedy() -> No
     assert found.returncode == 2
     assert "SK-ROS-002" in found.stderr and "No module named 'rclpy'" in found.stderr
     assert "pip install ros-jazzy-rclpy" in found.stderr
+
+
+def test_a_bridge_that_ends_before_it_reads_its_settings_is_an_error_with_its_exit_code(tmp_path: Path) -> None:
+    for _ in range(30):  # the process may end before, while or after the settings are written
+        with (
+            pytest.raises(InputError, match="SK-ROS-002 .* exit code 1"),
+            RosBridge(RosOptions(python=Path("/bin/false")), report=print) as bridge,
+        ):
+            bridge.start(tmp_path / "socket")
 
 
 def test_a_sourced_ros_names_its_python(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
