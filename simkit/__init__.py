@@ -30,13 +30,13 @@ if TYPE_CHECKING:
         SimkitError,
         SimulationDiverged,
     )
+    from simkit.experiments.sweeps.sweep import sweep
     from simkit.params import Params
     from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
     from simkit.pose import Pose
     from simkit.recording.export.data_frames import to_dataframe
     from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
-    from simkit.testing.sweeps.sweep import sweep
 
 
 __all__ = [
@@ -84,7 +84,7 @@ _MODULES = {
     "simkit.pose": ("Pose",),
     "simkit.recording.export.data_frames": ("to_dataframe",),
     "simkit.run_spec": ("RunSpec",),
-    "simkit.testing.sweeps.sweep": ("sweep",),
+    "simkit.experiments.sweeps.sweep": ("sweep",),
     "simkit.plugins.base": ("Plugin", "WorldPlugin", "ModelPlugin", "SensorPlugin", "VisualPlugin"),
 }
 _LAZY = {name: module for module, names in _MODULES.items() for name in names}

@@ -13,13 +13,13 @@ import importlib.util
 from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError
+from simkit.experiments.environments.specification import EnvironmentSpec, JointVelocities, Observation
 from simkit.run_spec import FilePath, RunSpec
-from simkit.testing.environments.specification import EnvironmentSpec, JointVelocities, Observation
 
 if TYPE_CHECKING:
     import gymnasium
 
-    from simkit.testing.environments.environment import SimulationEnv
+    from simkit.experiments.environments.environment import SimulationEnv
 
 __all__ = ["EnvironmentSpec", "JointVelocities", "Observation", "SimulationEnv", "make", "make_vec"]
 
@@ -38,7 +38,7 @@ def make(world: FilePath | RunSpec, **options: Any) -> SimulationEnv:
         LoadError: the world has errors.
     """
     _check_gymnasium("simkit.gym.make")
-    from simkit.testing.environments.make import make_env
+    from simkit.experiments.environments.make import make_env
 
     return make_env(world, **options)
 
@@ -61,7 +61,7 @@ def make_vec(
         InputError: SK-GYM-001 to SK-GYM-003 an option is invalid; SK-INPUT-004 Gymnasium is not installed.
     """
     _check_gymnasium("simkit.gym.make_vec")
-    from simkit.testing.environments.make import make_vector_env
+    from simkit.experiments.environments.make import make_vector_env
 
     return make_vector_env(world, num_envs, processes=processes, autoreset=autoreset, **options)
 
@@ -75,7 +75,7 @@ def _check_gymnasium(user: str) -> None:
 def _register() -> None:
     """Register the ids, so that `gymnasium.make` finds them after `import simkit.gym`."""
     if importlib.util.find_spec("gymnasium") is not None:
-        from simkit.testing.environments.make import register_ids
+        from simkit.experiments.environments.make import register_ids
 
         register_ids()
 
@@ -83,7 +83,7 @@ def _register() -> None:
 def __getattr__(name: str) -> Any:
     if name == "SimulationEnv":  # imported lazily: it needs Gymnasium
         _check_gymnasium("simkit.gym.SimulationEnv")
-        from simkit.testing.environments.environment import SimulationEnv
+        from simkit.experiments.environments.environment import SimulationEnv
 
         return SimulationEnv
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

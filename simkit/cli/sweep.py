@@ -17,8 +17,8 @@ from simkit.cli.terminal.output import print_status, stdout_console
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
-    from simkit.testing.sweeps.sweep import SweepOutcome
-    from simkit.testing.sweeps.sweep_spec import Keep, SweepSpec
+    from simkit.experiments.sweeps.sweep import SweepOutcome
+    from simkit.experiments.sweeps.sweep_spec import Keep, SweepSpec
 
 
 class _RunByDefault(TyperGroup):
@@ -75,8 +75,8 @@ def run(
 
     A failed run is a row of the table. After an interruption, the same command makes only the missing runs.
     """
-    from simkit.testing.sweeps.sweep import run_sweep
-    from simkit.testing.sweeps.sweep_file import read_sweep
+    from simkit.experiments.sweeps.sweep import run_sweep
+    from simkit.experiments.sweeps.sweep_file import read_sweep
 
     spec = read_sweep(file)
     spec = replace(spec, is_warm=not cold, keep=spec.keep if keep is None else _kept(keep))
@@ -123,7 +123,7 @@ def _search(
     maximise: bool,
     quiet: bool,
 ) -> int:
-    from simkit.testing.sweeps.optimisation import optimise_sweep
+    from simkit.experiments.sweeps.optimisation import optimise_sweep
 
     best = optimise_sweep(spec, folder, metric, trials, jobs=jobs, cluster=cluster, maximise=maximise)
     add_to_report(folder=str(folder), best=best)
@@ -162,7 +162,7 @@ def report(
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
     """Write a page with histograms, scatter plots, sensitivities and the worst runs of a sweep."""
-    from simkit.testing.sweeps.report import write_report
+    from simkit.experiments.sweeps.report import write_report
 
     path = write_report(folder, output or folder / "report.html")
     add_to_report(report=str(path))
@@ -176,8 +176,8 @@ def table(
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
     """Write the tables of the runs that are finished, also of an unfinished sweep."""
-    from simkit.testing.sweeps.result_store import ResultStore
-    from simkit.testing.sweeps.result_table import write_tables
+    from simkit.experiments.sweeps.result_store import ResultStore
+    from simkit.experiments.sweeps.result_table import write_tables
 
     store = ResultStore(folder)
     store.open()
@@ -197,7 +197,7 @@ def replay(
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> int:
     """Repeat one run of a sweep and compare its end with the table. Exit code 5 if it differs."""
-    from simkit.testing.sweeps.repetition import repeat_run
+    from simkit.experiments.sweeps.repetition import repeat_run
 
     repeated = repeat_run(folder, number, file, bundle)
     add_to_report(**repeated.as_dict())

@@ -8,8 +8,8 @@ print(table)
 
 from __future__ import annotations
 
-from simkit.testing.sweeps.result_table import read_table
-from simkit.testing.sweeps.sweep import run_sweep, sweep
-from simkit.testing.sweeps.sweep_spec import SweepSpec
+from simkit.experiments.sweeps.result_table import read_table
+from simkit.experiments.sweeps.sweep import run_sweep, sweep
+from simkit.experiments.sweeps.sweep_spec import SweepSpec
 
 __all__ = ["SweepSpec", "read_table", "run_sweep", "sweep"]

@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from simkit.errors import InputError
+from simkit.experiments.sweeps.result_store import ResultStore
+from simkit.experiments.sweeps.sweep_spec import RESULT_COLUMNS, ROW_COLUMNS
 from simkit.input_file import read_failure, read_input_text
 from simkit.msgs.data_frames import DataFrame
 from simkit.run_spec import JsonObject
 from simkit.scene.overrides import value_text
-from simkit.testing.sweeps.result_store import ResultStore
-from simkit.testing.sweeps.sweep_spec import RESULT_COLUMNS, ROW_COLUMNS
 from simkit.writers.atomic_output import AtomicOutput
 
 

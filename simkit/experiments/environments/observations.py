@@ -10,12 +10,8 @@ import numpy as np
 from gymnasium.spaces import Box
 
 from simkit.errors import InputError
-from simkit.msgs.topic_names import absolute_name
-from simkit.testing.conditions.binder import bind
-from simkit.testing.conditions.parser import parse
-from simkit.testing.conditions.syntax_tree import UndecidedValue
-from simkit.testing.environments.message_arrays import Array, Bounds, Conversion, conversion_of
-from simkit.testing.environments.specification import (
+from simkit.experiments.environments.message_arrays import Array, Bounds, Conversion, conversion_of
+from simkit.experiments.environments.specification import (
     NO_MESSAGE,
     Environment,
     Observation,
@@ -23,6 +19,10 @@ from simkit.testing.environments.specification import (
     Problems,
     invalid,
 )
+from simkit.msgs.topic_names import absolute_name
+from simkit.testing.conditions.binder import bind
+from simkit.testing.conditions.parser import parse
+from simkit.testing.conditions.syntax_tree import UndecidedValue
 
 _INF = np.inf
 

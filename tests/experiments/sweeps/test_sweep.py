@@ -11,13 +11,13 @@ from sweep_worlds import BOX, SLOPE, crashing, height
 
 import simkit
 from simkit import InputError, RunSpec
+from simkit.experiments.sweeps.design import Design
+from simkit.experiments.sweeps.parameter_space import parameter_space
+from simkit.experiments.sweeps.row_runner import RowRunner
+from simkit.experiments.sweeps.sweep_spec import SweepSpec
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.bundles import replay
 from simkit.testing.scenarios.scenario_run import open_scenario
-from simkit.testing.sweeps.design import Design
-from simkit.testing.sweeps.parameter_space import parameter_space
-from simkit.testing.sweeps.row_runner import RowRunner
-from simkit.testing.sweeps.sweep_spec import SweepSpec
 
 GRAVITY = RunSpec(BOX, duration=0.2, overrides=("world.gravity=0 0 {g}",))
 

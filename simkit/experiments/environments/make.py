@@ -10,13 +10,13 @@ from typing import Any, Final, Literal
 import gymnasium
 
 from simkit.diagnostics import did_you_mean
+from simkit.experiments.environments.environment import SimulationEnv
+from simkit.experiments.environments.specification import EnvironmentSpec, invalid
+from simkit.experiments.environments.tiago_tasks import pick_spec, reach_spec
+from simkit.experiments.environments.turtlebot3_tasks import goal_spec, maze_spec
+from simkit.experiments.sweeps.sweep_spec import spec_of_world
 from simkit.run_spec import FilePath, RunSpec
 from simkit.scene.overrides import override_texts
-from simkit.testing.environments.environment import SimulationEnv
-from simkit.testing.environments.specification import EnvironmentSpec, invalid
-from simkit.testing.environments.tiago_tasks import pick_spec, reach_spec
-from simkit.testing.environments.turtlebot3_tasks import goal_spec, maze_spec
-from simkit.testing.sweeps.sweep_spec import spec_of_world
 
 IDS: Final[Mapping[str, Callable[[], EnvironmentSpec]]] = {
     "simkit/TurtleBot3Goal-v0": goal_spec,

@@ -17,19 +17,19 @@ from typing import Any, Final
 from simkit import progress
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.testing.sweeps.design import Design, SweepRow
-from simkit.testing.sweeps.executor import Executor, SweepTask
-from simkit.testing.sweeps.parameter_space import ParameterSpace
-from simkit.testing.sweeps.result_store import ResultStore
-from simkit.testing.sweeps.result_table import write_tables
-from simkit.testing.sweeps.sweep import (
+from simkit.experiments.sweeps.design import Design, SweepRow
+from simkit.experiments.sweeps.executor import Executor, SweepTask
+from simkit.experiments.sweeps.parameter_space import ParameterSpace
+from simkit.experiments.sweeps.result_store import ResultStore
+from simkit.experiments.sweeps.result_table import write_tables
+from simkit.experiments.sweeps.sweep import (
     check_sweep,
     description_of,
     keep_runs,
     locked_folder,
     make_executor,
 )
-from simkit.testing.sweeps.sweep_spec import INVALID, SweepSpec, name_problems, raise_problems
+from simkit.experiments.sweeps.sweep_spec import INVALID, SweepSpec, name_problems, raise_problems
 
 _TOGETHER: Final = 8
 """Number of points that are asked for together; more would use fewer results for each point."""

@@ -15,18 +15,15 @@ from typing import Any, Final, cast
 from simkit import progress
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.msgs.data_frames import DataFrame
-from simkit.run_spec import FilePath, RunSpec
-from simkit.sensors.cameras.rendering.render_thread import usable_cores
-from simkit.testing.sweeps.design import SAMPLINGS, Design, Sampling, SweepRow
-from simkit.testing.sweeps.executor import Executor, SerialExecutor, SweepTask
-from simkit.testing.sweeps.parameter_space import InvalidSpace, ParameterSpace, parameter_space, plain_value
-from simkit.testing.sweeps.process_executor import ProcessExecutor
-from simkit.testing.sweeps.ray_executor import RayExecutor
-from simkit.testing.sweeps.result_store import ResultStore
-from simkit.testing.sweeps.result_table import read_parameters, read_table, write_tables
-from simkit.testing.sweeps.row_runner import check_runs, parameter_problems
-from simkit.testing.sweeps.sweep_spec import (
+from simkit.experiments.sweeps.design import SAMPLINGS, Design, Sampling, SweepRow
+from simkit.experiments.sweeps.executor import Executor, SerialExecutor, SweepTask
+from simkit.experiments.sweeps.parameter_space import InvalidSpace, ParameterSpace, parameter_space, plain_value
+from simkit.experiments.sweeps.process_executor import ProcessExecutor
+from simkit.experiments.sweeps.ray_executor import RayExecutor
+from simkit.experiments.sweeps.result_store import ResultStore
+from simkit.experiments.sweeps.result_table import read_parameters, read_table, write_tables
+from simkit.experiments.sweeps.row_runner import check_runs, parameter_problems
+from simkit.experiments.sweeps.sweep_spec import (
     INVALID,
     UNKNOWN_PARAMETER,
     Keep,
@@ -37,6 +34,9 @@ from simkit.testing.sweeps.sweep_spec import (
     sequence_of_seeds,
     spec_of_world,
 )
+from simkit.msgs.data_frames import DataFrame
+from simkit.run_spec import FilePath, RunSpec
+from simkit.sensors.cameras.rendering.render_thread import usable_cores
 
 Parameters = Mapping[Any, Any] | Sequence[Mapping[str, Any]] | FilePath
 """Spaces by parameter, a list of values by parameter for each run, or a CSV file with such a list."""

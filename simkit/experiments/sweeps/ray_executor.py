@@ -22,12 +22,12 @@ from typing import Any, Final, cast
 
 from simkit.build import describe
 from simkit.errors import InputError
+from simkit.experiments.sweeps.executor import SweepTask, run_task
+from simkit.experiments.sweeps.metrics import FileMetric
+from simkit.experiments.sweeps.process_executor import pickled_spec
+from simkit.experiments.sweeps.row_runner import CRASHED, RowResult, RowRunner
+from simkit.experiments.sweeps.sweep_spec import SweepSpec
 from simkit.run_spec import LoadOptions, SourceOptions
-from simkit.testing.sweeps.executor import SweepTask, run_task
-from simkit.testing.sweeps.metrics import FileMetric
-from simkit.testing.sweeps.process_executor import pickled_spec
-from simkit.testing.sweeps.row_runner import CRASHED, RowResult, RowRunner
-from simkit.testing.sweeps.sweep_spec import SweepSpec
 from simkit.writers.vendored_folder import vendor
 
 NO_CLUSTER: Final = "SK-SWEEP-011"

@@ -12,12 +12,12 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit.experiments.sweeps.result_store import ResultStore
+from simkit.experiments.sweeps.result_table import column_kinds, flat_row, table_columns
+from simkit.experiments.sweeps.sensitivity import Numbers, Sensitivity, sensitivities
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.recording.charts.series import Series
 from simkit.run_spec import JsonObject
-from simkit.testing.sweeps.result_store import ResultStore
-from simkit.testing.sweeps.result_table import column_kinds, flat_row, table_columns
-from simkit.testing.sweeps.sensitivity import Numbers, Sensitivity, sensitivities
 from simkit.writers.atomic_output import write_atomically
 
 _TEMPLATE: Final = Path(__file__).with_name("report.html.j2")

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any, Final, Literal, cast
 
 from simkit.errors import InputError
+from simkit.experiments.sweeps.design import Design, SweepRow
 from simkit.input_file import read_input
 from simkit.run_spec import LoadOptions, RunSpec
 from simkit.scene.overrides import override_texts, value_text
-from simkit.testing.sweeps.design import Design, SweepRow
 
 Metric = str | Callable[[Any], Any]
 """Expression of the condition language, or a Python function of the simulation."""

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit.experiments.environments.specification import Environment, EnvironmentSpec, Observation
 from simkit.pose import Pose
 from simkit.run_spec import RunSpec
-from simkit.testing.environments.specification import Environment, EnvironmentSpec, Observation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

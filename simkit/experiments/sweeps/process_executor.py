@@ -19,10 +19,10 @@ from queue import Empty, SimpleQueue
 from typing import IO, Any, Final
 
 from simkit.errors import InputError
-from simkit.testing.sweeps.executor import SweepTask
-from simkit.testing.sweeps.row_runner import CRASHED, RowResult
-from simkit.testing.sweeps.sweep_spec import SweepSpec
-from simkit.testing.sweeps.worker import receive_message, send_message
+from simkit.experiments.sweeps.executor import SweepTask
+from simkit.experiments.sweeps.row_runner import CRASHED, RowResult
+from simkit.experiments.sweeps.sweep_spec import SweepSpec
+from simkit.experiments.sweeps.worker import receive_message, send_message
 
 NOT_SENDABLE: Final = "SK-SWEEP-009"
 _MOST_WAITING: Final = 64  # tasks that a worker has received and not ended
@@ -69,7 +69,7 @@ class _Worker:
         self.since = time.monotonic()
         self._output: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - `close` closes it
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "simkit.testing.sweeps.worker"],
+            [sys.executable, "-P", "-m", "simkit.experiments.sweeps.worker"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._output,

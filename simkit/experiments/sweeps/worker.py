@@ -17,8 +17,8 @@ from queue import SimpleQueue
 from typing import IO, Any, Final
 
 from simkit.child_process import exit_immediately
-from simkit.testing.sweeps.executor import run_task
-from simkit.testing.sweeps.row_runner import RowRunner
+from simkit.experiments.sweeps.executor import run_task
+from simkit.experiments.sweeps.row_runner import RowRunner
 
 _LENGTH: Final = struct.Struct("<Q")
 

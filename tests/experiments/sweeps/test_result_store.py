@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from simkit.errors import InputError
-from simkit.testing.sweeps.result_store import ResultStore, block_size
+from simkit.experiments.sweeps.result_store import ResultStore, block_size
 
 
 def row(run: int) -> dict[str, object]:

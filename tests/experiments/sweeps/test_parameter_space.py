@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from simkit.testing.sweeps.design import Design
-from simkit.testing.sweeps.parameter_space import InvalidSpace, parameter_space
+from simkit.experiments.sweeps.design import Design
+from simkit.experiments.sweeps.parameter_space import InvalidSpace, parameter_space
 
 
 def sample(description: Any, names: Any = "x", count: int = 4000) -> np.ndarray[Any, Any]:

@@ -14,9 +14,15 @@ from gymnasium.spaces import Box
 from simkit import msgs
 from simkit.diagnostics import did_you_mean, shorten
 from simkit.errors import InputError
+from simkit.experiments.environments.specification import (
+    INVALID_ACTION,
+    ActionTarget,
+    JointVelocities,
+    Problems,
+    invalid,
+)
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.topic_names import absolute_name
-from simkit.testing.environments.specification import INVALID_ACTION, ActionTarget, JointVelocities, Problems, invalid
 
 if TYPE_CHECKING:
     from simkit.runtime import Joint, Simulation

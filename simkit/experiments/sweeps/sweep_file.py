@@ -8,13 +8,13 @@ from typing import Any, Final, cast
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
+from simkit.experiments.sweeps.design import SAMPLINGS
+from simkit.experiments.sweeps.metrics import FileMetric
+from simkit.experiments.sweeps.sweep import make_design
+from simkit.experiments.sweeps.sweep_spec import Keep, Metric, SweepSpec, sequence_of_seeds
 from simkit.testing.conditions.parser import parse
 from simkit.testing.scenarios.scenario_file import parse_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader
-from simkit.testing.sweeps.design import SAMPLINGS
-from simkit.testing.sweeps.metrics import FileMetric
-from simkit.testing.sweeps.sweep import make_design
-from simkit.testing.sweeps.sweep_spec import Keep, Metric, SweepSpec, sequence_of_seeds
 
 SWEEP_KEYS: Final = (
     "parameters",

@@ -12,6 +12,9 @@ from typing import Any, Final
 
 from simkit.build import read_scene
 from simkit.errors import InputError, SimkitError
+from simkit.experiments.sweeps.design import SweepRow
+from simkit.experiments.sweeps.metrics import RunMetrics
+from simkit.experiments.sweeps.sweep_spec import SweepSpec
 from simkit.recording.bags.recorder import Recorder
 from simkit.run_spec import RunSpec
 from simkit.runtime import Simulation
@@ -24,9 +27,6 @@ from simkit.testing.bundles.bundle_writer import pack_load_failure, write_bundle
 from simkit.testing.bundles.manifest import CHECK, Failure, failure_from_error
 from simkit.testing.conditions import Watch
 from simkit.testing.scenarios.scenario_run import ScenarioResult, open_scenario, run_scenario
-from simkit.testing.sweeps.design import SweepRow
-from simkit.testing.sweeps.metrics import RunMetrics
-from simkit.testing.sweeps.sweep_spec import SweepSpec
 
 _STATUS: Final = {0: "ok", 1: "error", 2: "invalid", 3: "diverged", 4: "plugin", 5: "failed"}
 CHECKS_FAILED: Final = "SK-SWEEP-006"

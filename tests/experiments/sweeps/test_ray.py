@@ -12,13 +12,13 @@ import pytest
 from sweep_worlds import BOX
 
 from simkit import RunSpec
-from simkit.testing.sweeps.design import Design
-from simkit.testing.sweeps.metrics import FileMetric
-from simkit.testing.sweeps.parameter_space import parameter_space
-from simkit.testing.sweeps.result_store import ResultStore
-from simkit.testing.sweeps.result_table import read_table
-from simkit.testing.sweeps.sweep import run_sweep
-from simkit.testing.sweeps.sweep_spec import SweepSpec
+from simkit.experiments.sweeps.design import Design
+from simkit.experiments.sweeps.metrics import FileMetric
+from simkit.experiments.sweeps.parameter_space import parameter_space
+from simkit.experiments.sweeps.result_store import ResultStore
+from simkit.experiments.sweeps.result_table import read_table
+from simkit.experiments.sweeps.sweep import run_sweep
+from simkit.experiments.sweeps.sweep_spec import SweepSpec
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 

@@ -11,6 +11,11 @@ import gymnasium
 import numpy as np
 
 from simkit.errors import InputError, SimulationDiverged
+from simkit.experiments.environments.actions import Actions
+from simkit.experiments.environments.observations import Observations, no_message
+from simkit.experiments.environments.specification import EnvironmentSpec, Problems, Value, invalid
+from simkit.experiments.sweeps.parameter_space import InvalidSpace, ParameterSpace, parameter_space
+from simkit.experiments.sweeps.sweep_spec import fill_template, split_values
 from simkit.runtime import Simulation
 from simkit.runtime.world_variation import apply_overrides
 from simkit.scene.overrides import override_texts
@@ -21,12 +26,7 @@ from simkit.testing.conditions.parser import parse
 from simkit.testing.conditions.syntax_tree import UndecidedValue, expression_error
 from simkit.testing.conditions.value_types import TEXT
 from simkit.testing.conditions.world_view import WorldView
-from simkit.testing.environments.actions import Actions
-from simkit.testing.environments.observations import Observations, no_message
-from simkit.testing.environments.specification import EnvironmentSpec, Problems, Value, invalid
 from simkit.testing.scenarios.scenario_run import open_scenario
-from simkit.testing.sweeps.parameter_space import InvalidSpace, ParameterSpace, parameter_space
-from simkit.testing.sweeps.sweep_spec import fill_template, split_values
 
 _LONGEST_WAIT = 1.0  # [s] of simulated time for the first message of an observed topic
 

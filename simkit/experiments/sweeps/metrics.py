@@ -13,13 +13,13 @@ from typing import Any, Final
 
 from simkit.diagnostics import did_you_mean, shorten
 from simkit.errors import InputError, SimkitError
+from simkit.experiments.sweeps.sweep_spec import Metric
 from simkit.runtime import Simulation
 from simkit.testing.conditions.binder import bind, number_hint
 from simkit.testing.conditions.bound_expression import BoundNode, is_scalar
 from simkit.testing.conditions.parser import parse
 from simkit.testing.conditions.syntax_tree import UndecidedValue, expression_error
 from simkit.testing.conditions.world_view import WorldView
-from simkit.testing.sweeps.sweep_spec import Metric
 
 METRIC_FAILED: Final = "SK-SWEEP-004"
 

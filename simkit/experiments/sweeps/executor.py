@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from simkit.testing.sweeps.design import SweepRow
-from simkit.testing.sweeps.row_runner import RowResult, RowRunner
-from simkit.testing.sweeps.sweep_spec import SweepSpec
+from simkit.experiments.sweeps.design import SweepRow
+from simkit.experiments.sweeps.row_runner import RowResult, RowRunner
+from simkit.experiments.sweeps.sweep_spec import SweepSpec
 
 
 @dataclass(frozen=True)

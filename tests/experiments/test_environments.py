@@ -15,8 +15,8 @@ from simkit.run_spec import RunSpec
 gymnasium = pytest.importorskip("gymnasium", reason="pip install 'simkit-robotics[experiments]'")
 
 import simkit.gym  # noqa: E402
+from simkit.experiments.environments.turtlebot3_tasks import maze_world  # noqa: E402
 from simkit.gym import JointVelocities, Observation  # noqa: E402
-from simkit.testing.environments.turtlebot3_tasks import maze_world  # noqa: E402
 
 CART = """<sdf version="1.9"><world name="w"><physics type="ignored"><max_step_size>0.002</max_step_size></physics>
 <model name="wall"><static>true</static><pose>3 0 0 0 0 0</pose><link name="l">

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit.experiments.environments.specification import Environment, EnvironmentSpec, JointVelocities, Observation
 from simkit.run_spec import RunSpec
-from simkit.testing.environments.specification import Environment, EnvironmentSpec, JointVelocities, Observation
 
 if TYPE_CHECKING:
     from simkit.pose import Pose, Vector

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from simkit.errors import InputError
-from simkit.testing.sweeps.result_store import NO_SWEEP, OTHER_SWEEP, ResultStore
-from simkit.testing.sweeps.row_runner import RowResult, RowRunner
-from simkit.testing.sweeps.sweep_file import read_sweep
+from simkit.experiments.sweeps.result_store import NO_SWEEP, OTHER_SWEEP, ResultStore
+from simkit.experiments.sweeps.row_runner import RowResult, RowRunner
+from simkit.experiments.sweeps.sweep_file import read_sweep
 
 _COMPARED = ("exit_code", "end", "code", "time", "steps", "state_hash")
 

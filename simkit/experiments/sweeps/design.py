@@ -11,7 +11,7 @@ from typing import Any, Final, Literal
 import numpy as np
 import numpy.typing as npt
 
-from simkit.testing.sweeps.parameter_space import ParameterSpace
+from simkit.experiments.sweeps.parameter_space import ParameterSpace
 
 Points = npt.NDArray[np.float64]
 
