@@ -47,6 +47,29 @@ FIVE = "".join(tags(left_joint=n) for n in ("fl_joint", "rl_joint")) + "".join(
     tags(right_joint=n) for n in ("fr_joint", "rr_joint")
 )
 DENSITY = tags(uniform_fluid_density=40)
+ROTORS = {"r0": ("0.3 0.3 0.3", 1), "r1": ("-0.3 0.3 0.3", -1), "r2": ("-0.3 -0.3 0.3", 1), "r3": ("0.3 -0.3 0.3", -1)}
+MOTORS = "".join(
+    f'<link name="{name}"><pose>{place} 0 0 0</pose>{LIGHT}</link><joint name="{name}_joint" type="continuous">'
+    f"<parent>base</parent><child>{name}</child><axis><xyz>0 0 1</xyz></axis></joint>"
+    + gz(
+        "multicopter-motor-model",
+        tags(robotNamespace="car", jointName=f"{name}_joint", linkName=name, motorNumber=i, motorConstant=1e-3)
+        + tags(turningDirection="ccw" if way > 0 else "cw", rotorDragCoefficient=0.01),
+        "MulticopterMotorModel",
+    )
+    for i, (name, (place, way)) in enumerate(ROTORS.items())
+)
+ROTOR = "<rotor>{}</rotor>"
+CONFIGURATION = "".join(
+    ROTOR.format(tags(jointName=f"{name}_joint", forceConstant=1e-3, momentConstant=0.1, direction=way))
+    for name, (_, way) in ROTORS.items()
+)
+FLIGHT = gz(
+    "multicopter-control",
+    tags(robotNamespace="car", comLinkName="base", velocityGain="1 1 1", attitudeGain="1 1 1", angularRateGain="1 1 1")
+    + tags(rotorConfiguration=CONFIGURATION, linearVelocityNoiseStdDev="0.1 0.1 0.1"),
+    "MulticopterVelocityControl",
+)
 COUNTER = """
 class Counter:
     def configure(self, entity, sdf, ecm, event_mgr):
@@ -223,6 +246,12 @@ WORLDS: dict[str, str] = {
     "LiftDragPlugin": lab(
         model=plugin("libLiftDragPlugin.so", WING)
         + gz("velocity-control", tags(initial_linear="3 0 1"), "VelocityControl")
+    ),
+    "MulticopterMotorModel": lab(model=MOTORS),
+    "MulticopterVelocityControl": lab(model=MOTORS + FLIGHT),
+    "Thruster": lab(model=gz("thruster", tags(joint_name="rl_joint", velocity_control="true"), "Thruster")),
+    "Hydrodynamics": lab(
+        model=gz("hydrodynamics", tags(link_name="base", xU=-5, xDotU=-3, default_current="1 0 0"), "Hydrodynamics")
     ),
     "Buoyancy": lab(world=gz("buoyancy", DENSITY, "Buoyancy")),
     "BuoyancyPlugin": lab(model=plugin("libBuoyancyPlugin.so", tags(fluid_density=40))),

@@ -1,0 +1,171 @@
+"""Forces of water on a vehicle: `gz::sim::systems::Hydrodynamics`.
+
+The equations are those of T. I. Fossen, "Handbook of Marine Craft Hydrodynamics and Motion Control" (2011), in the axes
+of the link, for its velocity ν = (u, v, w, p, q, r) through the water:
+
+    wrench = -M·dν/dt - C(ν)·ν + (linear terms)·ν + (quadratic terms)
+
+M is the added mass, whose elements the file gives with the opposite sign (`<xDotU>` is negative), and C(ν) its Coriolis
+and centripetal matrix (theorem 6.2). Elements of the file have the names of SNAME (1950): `xU` is the force along x for
+a velocity along x, `xUabsU` the force for u·|u|, `nVR` the torque about z for v·r.
+
+The added mass acts through the acceleration of the last step. Applied as it is, this diverges when the added mass is
+larger than the mass of the link. Therefore the acceleration is smoothed by the factor m / (m + added mass) in each
+axis. A body in open water then accelerates as one with the mass m + added mass, from the second step on.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from simkit.msgs.topic_names import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import listens
+from simkit.plugins.find_entities import find_named_link
+from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
+from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3, without_effect
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.msgs import Vector3
+    from simkit.runtime import Model
+    from simkit.scene import SceneModel
+
+VECTOR: Final = "geometry_msgs/msg/Vector3"
+_FORCES, _SPEEDS = "xyzkmn", "UVWPQR"
+_COEFFICIENT: Final = re.compile(rf"([{_FORCES}])(?:(Dot)([{_SPEEDS}])|([{_SPEEDS}])(?:(abs)?([{_SPEEDS}]))?)")
+_MOST: Final = 1e12
+
+
+class HydrodynamicsOptions(Options):
+    """Options of `Hydrodynamics`; terms that couple different axes, such as `yR` or `nVabsR`, may be given, too."""
+
+    link_name: str = text(None, required=True)
+    namespace: str = text()
+    default_current: tuple[float, float, float] = vector3(unit="m/s")
+    disable_coriolis: bool = boolean()
+    disable_added_mass: bool = boolean()
+    density: bool = without_effect(element="water_density")
+    old_density: bool = without_effect(element="waterDensity")
+    added_x: float = number(0.0, "kg", element="xDotU")
+    added_y: float = number(0.0, "kg", element="yDotV")
+    added_z: float = number(0.0, "kg", element="zDotW")
+    added_roll: float = number(0.0, "kg·m²", element="kDotP")
+    added_pitch: float = number(0.0, "kg·m²", element="mDotQ")
+    added_yaw: float = number(0.0, "kg·m²", element="nDotR")
+    linear_x: float = number(0.0, "N·s/m", element="xU")
+    linear_y: float = number(0.0, "N·s/m", element="yV")
+    linear_z: float = number(0.0, "N·s/m", element="zW")
+    linear_roll: float = number(0.0, "N·m·s", element="kP")
+    linear_pitch: float = number(0.0, "N·m·s", element="mQ")
+    linear_yaw: float = number(0.0, "N·m·s", element="nR")
+    quadratic_x: float = number(0.0, "N·s²/m²", element="xUabsU")
+    quadratic_y: float = number(0.0, "N·s²/m²", element="yVabsV")
+    quadratic_z: float = number(0.0, "N·s²/m²", element="zWabsW")
+    quadratic_roll: float = number(0.0, "N·m·s²", element="kPabsP")
+    quadratic_pitch: float = number(0.0, "N·m·s²", element="mQabsQ")
+    quadratic_yaw: float = number(0.0, "N·m·s²", element="nRabsR")
+
+
+class Hydrodynamics(ModelPlugin):
+    """Applies added mass, Coriolis forces and damping of water to a link, relative to a current.
+
+    The current [m/s] is `<default_current>` until a `Vector3` arrives on `/ocean_current`, or on
+    `/model/<namespace>/ocean_current` with `<namespace>`.
+    """
+
+    endpoints = (listens("/ocean_current", VECTOR),)
+    options = OptionsOf(HydrodynamicsOptions)
+    filenames = ("gz-sim-hydrodynamics-system",)
+    names = ("gz::sim::systems::Hydrodynamics",)
+    reads_at_load = ("inertial",)  # the smoothing follows from the mass
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        options = self.options.read_all()
+        self._link = find_named_link(scene, "link_name", params)
+        self._added, self._linear = np.zeros((6, 6)), np.zeros((6, 6))
+        self._signed, self._absolute = np.zeros((6, 6, 6)), np.zeros((6, 6, 6))
+        self._read_coefficients(params, bool(builder.world.gazebo_quirks))
+        if options.disable_added_mass:
+            self._applied_mass = np.zeros((6, 6))
+        else:
+            self._applied_mass = self._added
+        link = next((link for link in scene.all_links() if link.scoped == self._link), None)
+        own = np.ones(6) if link is None else np.array([link.inertial.mass] * 3 + [*link.inertial.inertia[:3]])
+        self._smoothing = own / (own + np.maximum(np.diag(self._applied_mass), 0.0))
+
+    def _read_coefficients(self, params: Params, as_gazebo_8: bool) -> None:
+        """Read all coefficients that the file has."""
+        for child in params.children:
+            found = _COEFFICIENT.fullmatch(child.name)
+            if found is None:
+                continue
+            row, dot, column, first, is_absolute, second = found.groups()
+            value = params.number(child.name, 0.0, minimum=-_MOST, maximum=_MOST)
+            i = _FORCES.index(row)
+            if dot:
+                self._added[i, _SPEEDS.index(column)] = -value
+            elif second is None:
+                self._linear[i, _SPEEDS.index(first)] = value
+            else:
+                j, k = _SPEEDS.index(first), _SPEEDS.index(second)
+                is_drag = i == j == k and not is_absolute and not as_gazebo_8
+                if is_drag and value:
+                    message = f"<{child.name}> is read as <{row}{first}abs{first}>, as in Gazebo before version 8"
+                    hint = "a force that does not change its direction with the velocity is no drag"
+                    child.warning("SK-PLUGIN-117", message, hint)
+                (self._absolute if is_absolute or is_drag else self._signed)[i, j, k] += value
+
+    def load(self, parent: Model, params: Params) -> None:
+        options = self.options
+        self._links = PushedLinks(self.sim, (self._link,))
+        self._current = np.array(options.default_current)
+        self._last: Vector | None = None  # velocity of the last step
+        self._acceleration = np.zeros(6)
+        own = f"/model/{options.namespace}" if options.namespace else ""
+        self.listen(valid_topic(f"{own}/ocean_current"), VECTOR, self._on_current)
+
+    def _on_current(self, message: Vector3) -> None:
+        current = float(message.x), float(message.y), float(message.z)
+        if all(map(math.isfinite, current)):
+            self._current = np.array(current)
+        else:
+            self._once.not_finite()
+
+    def before_step(self) -> None:
+        """Apply the wrench of the water for the next step."""
+        if not self._links.is_current:
+            self._links = PushedLinks(self.sim, (self._link,))
+        if not len(self._links):
+            return
+        data = moving_data(self.sim)
+        body = self._links.ids[0]
+        axes: Vector = data.xmat[body].reshape(3, 3)
+        relative = self._links.velocities(data)[0] - self._current
+        velocity = np.concatenate((relative @ axes, data.cvel[body, :3] @ axes))
+        wrench = self._wrench(velocity)
+        force, torque = axes @ wrench[:3], axes @ wrench[3:]
+        arm = data.xpos[body] - data.xipos[body]
+        self._links.push(data, force[None], (torque + np.cross(arm, force))[None])
+
+    def _wrench(self, velocity: Vector) -> Vector:
+        """Return force [N] and torque [N·m] at the link's origin, in its axes, and store the velocity."""
+        if self._last is not None:
+            measured = (velocity - self._last) / self.period
+            self._acceleration += self._smoothing * (measured - self._acceleration)
+        self._last = velocity
+        wrench = self._linear @ velocity - self._applied_mass @ self._acceleration
+        wrench += self._absolute @ np.abs(velocity) @ velocity + self._signed @ velocity @ velocity
+        if not self.options.disable_coriolis:
+            momentum = self._added @ velocity
+            linear, angular = velocity[:3], velocity[3:]
+            wrench[:3] += np.cross(momentum[:3], angular)
+            wrench[3:] += np.cross(momentum[:3], linear) + np.cross(momentum[3:], angular)
+        found: Vector = wrench
+        return found

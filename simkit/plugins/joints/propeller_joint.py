@@ -1,0 +1,48 @@
+"""Joint of a rotor or propeller that reaches a commanded speed within a step."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from simkit.plugins.joints.joint_axis import JointAxis
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneJoint, SceneLink
+
+
+class PropellerJoint:
+    """Joint that turns a light propeller at a commanded speed.
+
+    The effort is J · Δω / step plus the load that acted in the last step. J is the propeller's own inertia: an armature
+    as of other driven joints would turn the vehicle when the propeller changes its speed.
+
+    Args:
+        axis: axis of the joint.
+        inertia: inertia of the propeller about the axis, from `inertia_about` [kg·m²].
+        step: physics step [s].
+    """
+
+    def __init__(self, axis: JointAxis, inertia: float, step: float) -> None:
+        self.axis = axis
+        self._rate = inertia / step
+        self._last: tuple[float, float] | None = None  # velocity [rad/s] and effort [N·m] of the last step
+
+    def turn(self, target: float) -> None:
+        """Push the joint so that its next velocity is `target` [rad/s], within its effort limit."""
+        velocity, limit = self.axis.velocity, self.axis.effort_limit
+        load = 0.0 if self._last is None else self._last[1] - self._rate * (velocity - self._last[0])
+        effort = max(-limit, min(limit, self._rate * (target - velocity) + load))
+        self._last = velocity, effort
+        self.axis.push(effort)
+
+
+def inertia_about(link: SceneLink, joint: SceneJoint) -> float:
+    """Return the inertia of a link about the first axis of a joint [kg·m²]."""
+    into_link = link.pose_world.inverse()
+    axis = into_link.rotate(joint.axes[0].xyz_world)
+    arm = np.cross(axis, np.subtract(link.inertial.com, into_link.transform(joint.pose_world.position)))
+    xx, yy, zz, xy, xz, yz = link.inertial.inertia
+    tensor = np.array(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+    return float(axis @ tensor @ axis + link.inertial.mass * (arm @ arm))
