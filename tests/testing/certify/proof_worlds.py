@@ -247,6 +247,12 @@ WORLDS: dict[str, str] = {
         model=plugin("libLiftDragPlugin.so", WING)
         + gz("velocity-control", tags(initial_linear="3 0 1"), "VelocityControl")
     ),
+    "HectorImu": lab(model=plugin("libhector_gazebo_ros_imu.so", tags(accelDrift=0.1, rateGaussianNoise=0.1))),
+    "HectorGps": lab(model=plugin("libhector_gazebo_ros_gps.so", tags(drift="1 1 1", updateRate=100))),
+    "HectorMagnetic": lab(model=plugin("libhector_gazebo_ros_magnetic.so", tags(drift="0.1 0.1 0.1"))),
+    "HectorSonar": sensed(
+        "ray", plugin("libhector_gazebo_ros_sonar.so", tags(gaussianNoise=0.01, updateRate=50, topicName="front"))
+    ),
     "MulticopterMotorModel": lab(model=MOTORS),
     "MulticopterVelocityControl": lab(model=MOTORS + FLIGHT),
     "Thruster": lab(model=gz("thruster", tags(joint_name="rl_joint", velocity_control="true"), "Thruster")),

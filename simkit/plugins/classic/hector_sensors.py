@@ -1,0 +1,388 @@
+"""Sensors of hector_gazebo_plugins: `libhector_gazebo_ros_imu.so`, `…_gps.so`, `…_magnetic.so` and `…_sonar.so`.
+
+The error of each axis is offset + drift + white noise. The drift d is a first-order Gauss-Markov process with the
+standard deviation `…Drift` and the correlation frequency `…DriftFrequency` f: between two instants with the distance
+dt, d changes to d · exp(-f·dt), plus noise that keeps the standard deviation. It starts at zero. (The sources integrate
+the same process by Euler's method, and add its noise once per step of any length, so that the drift depends on the
+update rate.)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.params import LARGEST, Params
+from simkit.plugins.base import ModelPlugin, SensorPlugin
+from simkit.plugins.endpoints import offers, publishes
+from simkit.plugins.find_entities import find_named_link
+from simkit.plugins.options import Options, OptionsOf, boolean, integer, number, text, vector3, without_effect
+from simkit.plugins.publish_on_demand import count_instants
+from simkit.pose import Vector, quat_multiply
+from simkit.scene import SphericalCoordinates
+from simkit.sensors.environment.geodesy import WorldOnPlanet
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
+    from simkit.runtime.engine.random_streams import RandomStream
+    from simkit.scene import SceneModel
+    from simkit.sensors.rays.lidar import Lidar
+
+IMU: Final = "sensor_msgs/msg/Imu"
+FIX: Final = "sensor_msgs/msg/NavSatFix"
+FIELD: Final = "sensor_msgs/msg/MagneticField"
+VECTOR: Final = "geometry_msgs/msg/Vector3Stamped"
+
+_ULTRASOUND: Final = 0  # value of sensor_msgs/Range
+_HOUR: Final = 3600.0  # [s]
+_BIG: Final = 1e100
+_G: Final = 9.8065  # [m/s²], as in the sources
+
+
+class HectorOptions(Options):
+    """Options of all sensors of hector_gazebo_plugins on a model."""
+
+    body: str = text(element="bodyName")
+    frame: str = text(element="frameId")
+    update_rate: float = number(0.0, "Hz", element="updateRate", minimum=0)
+    always_on: bool = without_effect(element="alwaysOn")
+    seed: bool = without_effect(element="randomEngineSeed")
+
+
+class HectorError:
+    """Error of a measurement with several axes.
+
+    Args:
+        params: parameters of the plugin.
+        prefix: start of the names of the elements, such as `accel`; may be empty.
+        size: number of axes.
+        stream: random stream of 2 · `size` numbers.
+
+    Attributes:
+        noise: standard deviation of the white noise, shape (size,).
+        present: error at the last instant, shape (size,).
+    """
+
+    def __init__(self, params: Params, prefix: str, size: int, stream: RandomStream) -> None:
+        self._stream, self._size = stream, size
+        names = [f"{prefix}{name}" if prefix else name[0].lower() + name[1:] for name in _FIELDS]
+        values = [_axes(params, name, size, default) for name, default in zip(names, (0, 0, 1 / _HOUR, 0), strict=True)]
+        self._offset, self._deviation, self._frequency, self.noise = values
+        self._drift = np.zeros(size)
+        self.present = np.zeros(size)
+
+    def add_offset(self, values: Sequence[float]) -> None:
+        """Set the offsets of axes for which the file gives none."""
+        self._offset = np.where(self._offset == 0, values, self._offset)
+
+    def advance(self, index: int, dt: float) -> Vector:
+        """Return the error at the next instant.
+
+        Args:
+            index: number of the instant.
+            dt: time since the last instant [s].
+        """
+        drawn = self._stream.normal(index)
+        left = np.exp(-self._frequency * dt)
+        self._drift = left * self._drift + self._deviation * np.sqrt(1 - left**2) * drawn[: self._size]
+        self.present = self._offset + self._drift + self.noise * drawn[self._size :]
+        return self.present
+
+    def restart(self, drift: Vector | float = 0.0) -> None:
+        """Set the drift."""
+        self._drift = np.zeros(self._size) + drift
+
+
+_FIELDS: Final = ("Offset", "Drift", "DriftFrequency", "GaussianNoise")
+
+
+def _axes(params: Params, name: str, size: int, default: float) -> Vector:
+    """Return the numbers of an element, one for each axis; a single number is that of all axes."""
+    child = params.child(name)
+    if size > 1 and child is not None and len(child.value.split()) == size:
+        return np.array(params.vector(name, size, (default,) * size))
+    return np.full(size, params.number(name, default, minimum=-LARGEST, maximum=LARGEST))
+
+
+class HectorSensor(ModelPlugin):
+    """Base class of the sensors on a link; the link is `<bodyName>`, or the model's canonical link.
+
+    Attributes:
+        rate: rate without `<updateRate>` [Hz]; 0 for every step.
+    """
+
+    options = OptionsOf(HectorOptions)
+    rate: float = 0.0
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        options = self.options.read_all()
+        self._body = find_named_link(scene, "bodyName", params) if params.has("bodyName") else scene.canonical_link
+        self._frame = options.frame.strip("/") or self._body.rsplit("::", 1)[-1]
+        self.after_step_rate = options.update_rate if params.has("updateRate") else self.rate
+
+    def load(self, parent: Model, params: Params) -> None:
+        self._link = self.sim.link(self._body)
+        self._last_ns = self.sim.time_ns
+
+    def error(self, prefix: str, size: int = 3) -> HectorError:
+        """Return the error model of a measurement; called in `load`."""
+        return HectorError(self.params, prefix, size, self.random(prefix or "error", 2 * size))
+
+    def instant(self) -> tuple[int, float]:
+        """Return the number of the present instant, and the time since the last one [s]."""
+        dt, self._last_ns = (self.sim.time_ns - self._last_ns) * 1e-9, self.sim.time_ns
+        return count_instants(self, self.after_step_rate or 0.0), dt
+
+
+class HectorImuOptions(HectorOptions):
+    """Options of `HectorImu`, beside `accel…`, `rate…` and `heading…` with Offset, Drift and so on."""
+
+    topic: str = text("imu", element="topicName")
+    service: str = text(element="serviceName")
+    gaussian_noise: float = number(0.0, "m/s², rad/s", element="gaussianNoise", minimum=0, maximum=_BIG)
+    rpy_offset: tuple[float, float, float] = vector3(unit="rad", element="rpyOffset")
+
+
+class HectorImu(HectorSensor):
+    """Publishes an IMU at a link on `<topicName>` (`imu`), with errors of acceleration, turning rate and heading.
+
+    The errors are `<accelOffset>`, `<accelDrift>`, `<accelDriftFrequency>`, `<accelGaussianNoise>` and the same with
+    `rate` and `heading`, in m/s², rad/s and rad. The orientation has the errors of the measured vertical and of the
+    heading. The service `<serviceName>` (`<topic>/calibrate`) sets the drift of the turning rate to zero.
+    """
+
+    endpoints = (
+        publishes("imu", IMU, named_by=("topicName",)),
+        offers("imu/calibrate", "std_srvs/srv/Empty", named_by=("serviceName",)),
+    )
+    options = OptionsOf(HectorImuOptions)
+    filenames = ("libhector_gazebo_ros_imu.so",)
+
+    def load(self, parent: Model, params: Params) -> None:
+        super().load(parent, params)
+        options = self.options
+        self._acceleration, self._rate, self._heading = (
+            self.error("accel"),
+            self.error("rate"),
+            self.error("heading", 1),
+        )
+        if options.gaussian_noise:
+            self._acceleration.noise = self._rate.noise = np.full(3, options.gaussian_noise)
+        roll, pitch, yaw = options.rpy_offset
+        self._acceleration.add_offset((pitch * _G, -roll * _G, 0.0))
+        self._heading.add_offset((yaw,))
+        self._out = self.advertise(options.topic, IMU)
+        self.offer(options.service or f"{options.topic}/calibrate", "std_srvs/srv/Empty", self._calibrate)
+
+    def _calibrate(self, _: object) -> None:
+        self._rate.restart()
+
+    def after_step(self) -> None:
+        index, dt = self.instant()
+        errors = self._acceleration.advance(index, dt), self._rate.advance(index, dt), self._heading.advance(index, dt)
+        if self._out.wanted:
+            self._out.publish(self._message(*errors))
+
+    def _message(self, acceleration_error: Vector, rate_error: Vector, heading_error: Vector) -> object:
+        link, axes = self._link, self._link.pose.matrix
+        gravity = self.sim.mj_model.opt.gravity @ axes
+        acceleration = link.linear_acceleration @ axes - gravity + acceleration_error
+        rate = link.angular_velocity @ axes + rate_error
+        turn = float(heading_error[0])
+        attitude = quat_multiply((math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2)), link.pose.quaternion)
+        w, x, y, z = quat_multiply(attitude, _tilt(gravity, acceleration_error)).tolist()
+        noise = self._acceleration.noise**2
+        own = float(gravity @ gravity)
+        spread = (noise[0] / own, noise[1] / own) if own > 0 else (-1.0, -1.0)
+        return msgs.make(
+            IMU,
+            header=msgs.header(self.sim.time_ns, self._frame),
+            orientation={"x": x, "y": y, "z": z, "w": w},
+            orientation_covariance=np.diag([*spread, float(self._heading.noise[0]) ** 2]).reshape(9),
+            angular_velocity=_vector(rate),
+            angular_velocity_covariance=np.diag(self._rate.noise**2).reshape(9),
+            linear_acceleration=_vector(acceleration),
+            linear_acceleration_covariance=np.diag(noise).reshape(9),
+        )
+
+
+class HectorGpsOptions(HectorOptions):
+    """Options of `HectorGps`, beside `Offset`, `Drift` and so on of the position and `velocity…` of the velocity."""
+
+    topic: str = text("fix", element="topicName")
+    velocity_topic: str = text("fix_velocity", element="velocityTopicName")
+    latitude: float = number(0.0, "degree", element="referenceLatitude", minimum=-90, maximum=90)
+    longitude: float = number(0.0, "degree", element="referenceLongitude", minimum=-360, maximum=360)
+    heading: float = number(0.0, "degree", element="referenceHeading", minimum=-360, maximum=360)
+    altitude: float = number(0.0, "m", element="referenceAltitude", minimum=-1e6, maximum=1e6)
+    status: int = integer(0, minimum=-1, maximum=2)
+    service: int = integer(1, minimum=0, maximum=15)
+
+
+class HectorGps(HectorSensor):
+    """Publishes the fix of a link on `<topicName>` (`fix`) and its velocity on `<velocityTopicName>` (`fix_velocity`).
+
+    The world's origin is at `<referenceLatitude>`, `<referenceLongitude>` [degrees] and `<referenceAltitude>` [m], with
+    the x axis `<referenceHeading>` degrees clockwise from north; without them the world's `<spherical_coordinates>`
+    count. The velocity points north, west and up. The errors of position [m] and velocity [m/s] are `<offset>`,
+    `<drift>`, `<driftFrequency>`, `<gaussianNoise>`, and the same with `velocity`; the error of the velocity also
+    changes the position.
+    """
+
+    endpoints = (
+        publishes("fix", FIX, named_by=("topicName",)),
+        publishes("fix_velocity", VECTOR, named_by=("velocityTopicName",)),
+    )
+    options = OptionsOf(HectorGpsOptions)
+    filenames = ("libhector_gazebo_ros_gps.so",)
+    rate = 4.0
+
+    def load(self, parent: Model, params: Params) -> None:
+        super().load(parent, params)
+        options = self.options
+        own = self.sim.world.spherical_coordinates or SphericalCoordinates()
+        has = params.has
+        self._place = replace(
+            own,
+            latitude=math.radians(options.latitude) if has("referenceLatitude") else own.latitude,
+            longitude=math.radians(options.longitude) if has("referenceLongitude") else own.longitude,
+            heading=math.pi / 2 - math.radians(options.heading) if has("referenceHeading") else own.heading,
+            elevation=options.altitude if has("referenceAltitude") else own.elevation,
+        )
+        self._planet = WorldOnPlanet(self._place)
+        self._position, self._velocity = self.error(""), self.error("velocity")
+        self._walk = np.zeros(3)
+        self._fix, self._speed = self.advertise(options.topic, FIX), self.advertise(options.velocity_topic, VECTOR)
+
+    def after_step(self) -> None:
+        index, dt = self.instant()
+        velocity_error = self._velocity.advance(index, dt)
+        self._walk = self._walk + velocity_error * dt
+        position_error = self._position.advance(index, dt) + self._walk
+        options, header = self.options, msgs.header(self.sim.time_ns, self._frame)
+        if self._fix.wanted:
+            latitude, longitude, height = self._planet.geodetic(self._link.pose.position + position_error)
+            self._fix.publish(
+                msgs.make(
+                    FIX,
+                    header=header,
+                    status={"status": options.status, "service": options.service},
+                    latitude=math.degrees(latitude),
+                    longitude=math.degrees(longitude),
+                    altitude=height,
+                )
+            )
+        if self._speed.wanted:
+            x, y, z = (self._link.linear_velocity + velocity_error).tolist()
+            sine, cosine = math.sin(self._place.heading), math.cos(self._place.heading)
+            north, west = sine * x + cosine * y, -cosine * x + sine * y
+            self._speed.publish(msgs.make(VECTOR, header=header, vector={"x": north, "y": west, "z": z}))
+
+
+class HectorMagneticOptions(HectorOptions):
+    """Options of `HectorMagnetic`, beside `Offset`, `Drift` and so on of the field."""
+
+    topic: str = text("magnetic", element="topicName")
+    magnitude: float = number(1.0, minimum=0, maximum=_BIG)
+    heading: float = number(0.0, "degree", element="referenceHeading", minimum=-360, maximum=360)
+    declination: float = number(0.0, "degree", minimum=-360, maximum=360)
+    inclination: float = number(60.0, "degree", minimum=-90, maximum=90)
+    as_field: bool = boolean(element="useMagneticFieldMsgs")
+
+
+class HectorMagnetic(HectorSensor):
+    """Publishes a magnetic field in the axes of a link on `<topicName>` (`magnetic`).
+
+    The field has the `<magnitude>`, and points `<inclination>` degrees down and `<declination>` degrees east of north.
+    The x axis of the world points `<referenceHeading>` degrees clockwise from north; without it the heading of the
+    world's `<spherical_coordinates>` counts. The message is a `Vector3Stamped`, or with `<useMagneticFieldMsgs>` a
+    `MagneticField`.
+    """
+
+    endpoints = (
+        publishes("magnetic", VECTOR, named_by=("topicName",)),
+        publishes("magnetic", FIELD, named_by=("topicName",)),
+    )
+    options = OptionsOf(HectorMagneticOptions)
+    filenames = ("libhector_gazebo_ros_magnetic.so",)
+
+    def load(self, parent: Model, params: Params) -> None:
+        super().load(parent, params)
+        options, place = self.options, self.sim.world.spherical_coordinates
+        own = math.pi / 2 - (0.0 if place is None else place.heading)
+        heading = math.radians(options.heading) if params.has("referenceHeading") else own
+        turn, down = heading - math.radians(options.declination), math.radians(options.inclination)
+        across = math.cos(down)
+        field = np.array((across * math.cos(turn), across * math.sin(turn), -math.sin(down)))
+        self._field = options.magnitude * field
+        self._error = self.error("")
+        self._out = self.advertise(options.topic, FIELD if options.as_field else VECTOR)
+
+    def after_step(self) -> None:
+        index, dt = self.instant()
+        error = self._error.advance(index, dt)
+        if not self._out.wanted:
+            return
+        header, field = (
+            msgs.header(self.sim.time_ns, self._frame),
+            _vector(self._field @ self._link.pose.matrix + error),
+        )
+        if self.options.as_field:
+            self._out.publish(msgs.make(FIELD, header=header, magnetic_field=field))
+        else:
+            self._out.publish(msgs.make(VECTOR, header=header, vector=field))
+
+
+class HectorSonarOptions(Options):
+    """Options of `HectorSonar`."""
+
+    topic: str = text("sonar", element="topicName")
+    frame: str = text("sonar_link", element="frameId")
+    gaussian_noise: float = number(0.0, "m", element="gaussianNoise", minimum=0, maximum=1e6)
+    update_rate: float = number(10.0, "Hz", element="updateRate", minimum=0)
+
+
+class HectorSonar(SensorPlugin):
+    """Publishes the nearest ray of its sensor as a `Range` on `<topicName>` (`sonar`), at most at `<updateRate>` Hz.
+
+    `<gaussianNoise>` is the standard deviation [m] of noise on the range.
+    """
+
+    endpoints = (publishes("sonar", "sensor_msgs/msg/Range", named_by=("topicName",)),)
+    options = OptionsOf(HectorSonarOptions)
+    filenames = ("libhector_gazebo_ros_sonar.so",)
+
+    def load(self, parent: Lidar, params: Params) -> None:
+        options = self.options.read_all()
+        if not hasattr(parent, "range_noise"):
+            self.refuse(parent, "ray")
+            return
+        parent.frame_id, parent.radiation = options.frame.strip("/"), _ULTRASOUND
+        if options.gaussian_noise > 0:
+            parent.add_range_noise(options.gaussian_noise)
+        if 0 < options.update_rate < (parent.update_rate or math.inf):
+            parent.set_rate(options.update_rate)
+        parent.publish_on({"range": self.ros.topic(options.topic)})
+
+
+def _vector(values: Vector) -> dict[str, float]:
+    x, y, z = values.tolist()
+    return {"x": x, "y": y, "z": z}
+
+
+def _tilt(gravity: Vector, error: Vector) -> Vector:
+    """Return the rotation from the direction of gravity to that of a measured gravity, as a quaternion (w, x, y, z)."""
+    measured = gravity + error
+    scale = float(np.linalg.norm(gravity) * np.linalg.norm(measured))
+    if scale == 0.0 or not error.any():
+        return np.array((1.0, 0.0, 0.0, 0.0))
+    half = np.array((scale + float(gravity @ measured), *np.cross(gravity, measured)))
+    length = float(np.linalg.norm(half))
+    found: Vector = half / length if length > 0 else np.array((0.0, 1.0, 0.0, 0.0))
+    return found
