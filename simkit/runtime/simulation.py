@@ -14,6 +14,7 @@ from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
 from simkit.runtime.communication.script_graph import ScriptGraph
 from simkit.runtime.communication.topic_bus import TopicBus
+from simkit.runtime.contact.collision_contacts import Contact, list_contacts
 from simkit.runtime.engine.engine import Engine
 from simkit.runtime.engine.engine_state import InProcess
 from simkit.runtime.engine.plugin_faults import add_driver_hints
@@ -284,6 +285,12 @@ class Simulation(ScriptGraph, InProcess):
     def visual(self, name: str) -> Visual:
         """Return a visual by scoped name; a KeyError suggests the closest name."""
         return self.contents.open_handles.find_visual(name)
+
+    def contacts(self, model: Model | str | None = None) -> list[Contact]:
+        """Return the contacts of a model, also with itself, or of all; a KeyError suggests the closest name."""
+        given = model if model is None or isinstance(model, str) else model.scoped
+        name = None if given is None else self.model(given).scoped
+        return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), name)
 
     def spawn(self, source: object, name: str | None = None, pose: Pose | None = None) -> Model:
         """Add a model during the run; everything else keeps its state and its handles.

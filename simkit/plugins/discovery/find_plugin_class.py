@@ -98,4 +98,4 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
 
 def _core(name: str) -> str:
     """Return a normalised name without prefix and suffix that many names share, to compare two names."""
-    return re.sub(r"^(gazebo_ros_|gz-sim-|gz::sim::systems::)|-system$", "", name) or name
+    return re.sub(r"^(gazebo_ros_|gazebo_|gz-sim-|gz::sim::systems::)|-system$", "", name) or name

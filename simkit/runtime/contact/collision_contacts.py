@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
+
+from simkit.pose import Vector
 
 if TYPE_CHECKING:
     from simkit.compiler import Compiled
@@ -109,3 +111,44 @@ def find_contacts(model: mujoco.MjModel, data: mujoco.MjData, selected: Bools) -
         return None
     frames = contact.frame[rows].reshape(-1, 3, 3)
     return CollisionContacts(pairs[rows], contact.pos[rows], frames, depths, wrenches)
+
+
+class Contact(NamedTuple):
+    """Contact point of two collisions.
+
+    Attributes:
+        first, second: scoped names of the collisions.
+        position: position half way between the two surfaces [m], world frame, shape (3,).
+        normal: unit vector from the first to the second collision, world frame, shape (3,).
+        force: force on the second collision [N], world frame, shape (3,).
+    """
+
+    first: str
+    second: str
+    position: Vector
+    normal: Vector
+    force: Vector
+
+
+def list_contacts(compiled: Compiled, data: mujoco.MjData, model: str | None) -> list[Contact]:
+    """Return the contacts in the engine's order.
+
+    Args:
+        compiled: compiled model.
+        data: MuJoCo's data with a complete forward pass.
+        model: scoped name of a model; only contacts of its collisions are listed. None for all contacts.
+    """
+    table = collision_table(compiled)
+    if model is None:
+        selected = np.append(np.ones(compiled.model.ngeom, bool), False)
+    else:
+        selected = table.mask([name for name in table.names if name.startswith(f"{model}::")])
+    found = find_contacts(compiled.model, data, selected)
+    if found is None:
+        return []
+    return [
+        Contact(table.names[first], table.names[second], position, axes[0], wrench[:3] @ axes)
+        for (first, second), position, axes, wrench in zip(
+            table.of_geom[found.geoms].tolist(), found.positions, found.frames, found.wrenches, strict=True
+        )
+    ]

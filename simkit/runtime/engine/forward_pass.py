@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+
 import mujoco
 import numpy as np
 
@@ -39,6 +41,20 @@ class ForwardPass(PhysicsState):
         if self.stage:
             self._forward()
         return self.data
+
+    def awake_data(self) -> mujoco.MjData:
+        """Return data with a complete forward pass in which sleeping bodies have contacts, too; the state stays."""
+        data = self.fresh()
+        if not (data.tree_asleep >= 0).any():
+            return data
+        awake = copy.copy(data)
+        awake.tree_asleep[:] = -1
+        options = self.model.opt
+        flags = options.enableflags
+        options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        mujoco.mj_forward(self.model, awake)
+        options.enableflags = flags
+        return awake
 
     def fresh_velocities(self) -> bool:
         """Compute everything except accelerations for the state at this tick; the next step continues from there.

@@ -47,6 +47,7 @@ FIVE = "".join(tags(left_joint=n) for n in ("fl_joint", "rl_joint")) + "".join(
     tags(right_joint=n) for n in ("fr_joint", "rr_joint")
 )
 DENSITY = tags(uniform_fluid_density=40)
+MIMIC = tags(joint="door", mimicJoint="door_0", multiplier=0.5)
 ROTORS = {"r0": ("0.3 0.3 0.3", 1), "r1": ("-0.3 0.3 0.3", -1), "r2": ("-0.3 -0.3 0.3", 1), "r3": ("0.3 -0.3 0.3", -1)}
 MOTORS = "".join(
     f'<link name="{name}"><pose>{place} 0 0 0</pose>{LIGHT}</link><joint name="{name}_joint" type="continuous">'
@@ -253,6 +254,11 @@ WORLDS: dict[str, str] = {
     "HectorSonar": sensed(
         "ray", plugin("libhector_gazebo_ros_sonar.so", tags(gaussianNoise=0.01, updateRate=50, topicName="front"))
     ),
+    "MimicJoint": lab(model=plugin("libroboticsgroup_gazebo_mimic_joint_plugin.so", MIMIC)),
+    "GraspFix": lab(
+        world=BALL,
+        model=plugin("libgazebo_grasp_fix.so", tags(palm_link="base", gripper_link="leaf", update_rate=200)),
+    ),
     "MulticopterMotorModel": lab(model=MOTORS),
     "MulticopterVelocityControl": lab(model=MOTORS + FLIGHT),
     "Thruster": lab(model=gz("thruster", tags(joint_name="rl_joint", velocity_control="true"), "Thruster")),
@@ -416,6 +422,8 @@ class Idle:
 
 
 IDLE: dict[str, Idle] = {
+    "MimicJoint": Idle("couples joints, when the world is loaded"),
+    "GraspFix": Idle("attaches nothing here; its test lifts a cube"),
     "BuiltInSystem": Idle("stands for what simkit does anyway"),
     "MagnetometerSystem": Idle("tells sensors how they measure, when the world is loaded"),
     "SensorsSystem": Idle("sets colours of the sky, when the world is loaded"),
