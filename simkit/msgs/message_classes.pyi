@@ -1722,6 +1722,38 @@ class GPSStatus:
     SOURCE_ACCEL: ClassVar[int] = 64
     __msgtype__: ClassVar[str]
 
+# irobot_create_msgs
+
+@dataclass
+class HazardDetection:
+    """`irobot_create_msgs/msg/HazardDetection`"""
+    header: Header
+    type: int
+    BACKUP_LIMIT: ClassVar[int] = 0
+    BUMP: ClassVar[int] = 1
+    CLIFF: ClassVar[int] = 2
+    STALL: ClassVar[int] = 3
+    WHEEL_DROP: ClassVar[int] = 4
+    OBJECT_PROXIMITY: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IrIntensity:
+    """`irobot_create_msgs/msg/IrIntensity`"""
+    header: Header
+    value: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Mouse:
+    """`irobot_create_msgs/msg/Mouse`"""
+    header: Header
+    integrated_x: float
+    integrated_y: float
+    frame_id: int
+    last_squal: int
+    __msgtype__: ClassVar[str]
+
 # lifecycle_msgs
 
 @dataclass

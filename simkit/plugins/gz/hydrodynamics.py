@@ -102,6 +102,7 @@ class Hydrodynamics(ModelPlugin):
 
     def _read_coefficients(self, params: Params, as_gazebo_8: bool) -> None:
         """Read all coefficients that the file has."""
+        drags: list[str] = []
         for child in params.children:
             found = _COEFFICIENT.fullmatch(child.name)
             if found is None:
@@ -117,10 +118,13 @@ class Hydrodynamics(ModelPlugin):
                 j, k = _SPEEDS.index(first), _SPEEDS.index(second)
                 is_drag = i == j == k and not is_absolute and not as_gazebo_8
                 if is_drag and value:
-                    message = f"<{child.name}> is read as <{row}{first}abs{first}>, as in Gazebo before version 8"
-                    hint = "a force that does not change its direction with the velocity is no drag"
-                    child.warning("SK-PLUGIN-117", message, hint)
+                    drags.append(child.name)
                 (self._absolute if is_absolute or is_drag else self._signed)[i, j, k] += value
+        if drags:
+            listed = ", ".join(f"<{name}>" for name in drags)
+            message = f"{listed}: read as factors of v·|v|, such as <xUabsU>, as in Gazebo before version 8"
+            hint = "rename them: a force that does not change its direction with the velocity is no drag"
+            params.warning("SK-PLUGIN-117", message, hint)
 
     def load(self, parent: Model, params: Params) -> None:
         options = self.options

@@ -47,6 +47,7 @@ FIVE = "".join(tags(left_joint=n) for n in ("fl_joint", "rl_joint")) + "".join(
     tags(right_joint=n) for n in ("fr_joint", "rr_joint")
 )
 DENSITY = tags(uniform_fluid_density=40)
+CREATE = plugin("libgazebo_ros_create_{}.so")
 MIMIC = tags(joint="door", mimicJoint="door_0", multiplier=0.5)
 ROTORS = {"r0": ("0.3 0.3 0.3", 1), "r1": ("-0.3 0.3 0.3", -1), "r2": ("-0.3 -0.3 0.3", 1), "r3": ("0.3 -0.3 0.3", -1)}
 MOTORS = "".join(
@@ -253,6 +254,18 @@ WORLDS: dict[str, str] = {
     "HectorMagnetic": lab(model=plugin("libhector_gazebo_ros_magnetic.so", tags(drift="0.1 0.1 0.1"))),
     "HectorSonar": sensed(
         "ray", plugin("libhector_gazebo_ros_sonar.so", tags(gaussianNoise=0.01, updateRate=50, topicName="front"))
+    ),
+    "CreateBumper": lab(world=PAD.replace("</contact>", "</contact>" + CREATE.format("bumper")) + "</model>"),
+    "CreateCliffSensor": sensed("ray", CREATE.format("cliff_sensor")),
+    "CreateIrIntensity": sensed("ray", CREATE.format("ir_intensity_sensor")),
+    "CreateImu": sensed("imu", CREATE.format("imu")),
+    "CreateWheelDrop": lab(
+        model=plugin("libgazebo_ros_create_wheel_drop.so", tags(joint_name="door", detection_threshold=0.01))
+        + gz("joint-controller", tags(joint_name="door", initial_velocity=1), "JointController")
+    ),
+    "CreateOpticalMouse": lab(
+        model=plugin("libgazebo_ros_create_optical_mouse.so", tags(link="base"))
+        + gz("velocity-control", tags(initial_linear="1 0 0"), "VelocityControl")
     ),
     "MimicJoint": lab(model=plugin("libroboticsgroup_gazebo_mimic_joint_plugin.so", MIMIC)),
     "GraspFix": lab(
