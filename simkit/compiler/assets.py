@@ -133,13 +133,21 @@ class Assets:
         """Check by its name whether a material has a texture."""
         return material.endswith("#textured")
 
-    def heights(self, rows: npt.NDArray[np.float64], size: tuple[float, float, float]) -> str:
-        """Add a height field over `size` (x, y, highest); rows are ordered from -y to +y, values are from 0 to 1."""
-        name = "heights#" + _digest(rows, size)
+    def heights(
+        self, rows: npt.NDArray[np.float64], size: tuple[float, float, float], base: float | None = None
+    ) -> str:
+        """Add a height field and return its name.
+
+        Args:
+            rows: heights from 0 to 1, ordered from -y to +y.
+            size: extent along x and y, and greatest height [m].
+            base: thickness below the lowest point [m]; None for a twentieth of the height, at least 0.1.
+        """
+        name = "heights#" + _digest(rows, size, *(() if base is None else (base,)))
         if self._is_new("hfield", name):
             field = self.spec.add_hfield(name=name)
             field.nrow, field.ncol = rows.shape
-            field.size = (size[0] / 2, size[1] / 2, max(size[2], 1e-6), max(0.1, 0.05 * size[2]))
+            field.size = (size[0] / 2, size[1] / 2, max(size[2], 1e-6), base or max(0.1, 0.05 * size[2]))
             field.userdata = np.ascontiguousarray(rows, np.float32).reshape(-1)
         return name
 

@@ -16,6 +16,7 @@ from simkit.compiler.contact_friction import contact_properties
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
 from simkit.compiler.meshes.companion_files import Pixels
 from simkit.compiler.meshes.convex_decomposition import convex_bodies, convex_hull
+from simkit.compiler.meshes.height_tiles import HeightTile
 from simkit.compiler.meshes.mesh_part import Colour, MeshFileError, MeshPart, has_area, join_parts
 from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
 from simkit.compiler.meshes.surface_patches import TRIANGLES_FROM
@@ -181,11 +182,24 @@ class GeomWriter:
         settings = solid if bodies.is_exact else {**solid, "group": COLLISION_CONTACT}
         for name in self.assets.convex_bodies(bodies):
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
+        for tile in bodies.tiles:
+            self._tile(parent, owner, collision.pose_link, tile, settings)
         if not bodies.is_exact:
             drawn: GeomSettings = {"contype": 0, "conaffinity": 0, "group": COLLISION_RAY}
             is_shared = len(parts) == 1 and len(faces) > TRIANGLES_FROM  # with the visual of the same file
             name = self.assets.part(parts[0], False) if is_shared else self.assets.surface(vertices, faces)
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **drawn)
+
+    def _tile(self, parent: GeomParent, owner: GeomOwner, pose: Pose, tile: HeightTile, settings: GeomSettings) -> None:
+        """Add one height field of a large surface."""
+        rows, columns = tile.heights.shape
+        extent = tile.cell * (columns - 1, rows - 1)
+        high, quaternion = float(tile.heights.max()), np.zeros(4)
+        mujoco.mju_mat2Quat(quaternion, tile.axes.reshape(9))
+        at = pose @ Pose(tile.origin + tile.axes[:, :2] @ (0.5 * extent), quaternion)
+        size = (float(extent[0]), float(extent[1]), high)
+        name = self.assets.heights(tile.heights / max(high, 1e-12), size, tile.base)
+        self._add(parent, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
 
     def _wheel(
         self, parent: GeomParent, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, solid: GeomSettings

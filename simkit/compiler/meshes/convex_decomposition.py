@@ -33,6 +33,7 @@ from simkit.compiler.meshes.convex_pieces import (
     piece_hulls,
     surface_prisms,
 )
+from simkit.compiler.meshes.height_tiles import HeightTile
 from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.meshes.surface_patches import is_large, large_surface_pieces
@@ -127,7 +128,7 @@ LARGEST_ERROR: Final = 0.005
 """Largest error [m] of the contacts of a large static mesh that is not reported as a warning."""
 
 _REPORTS: Final = (
-    5  # version of the texts of the findings, which are cached with the bodies: raise it with every change of a text
+    6  # version of the bodies and of the texts of their findings, which are cached: raise it with every change
 )
 _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
 _KEPT: Final = 128
@@ -145,11 +146,13 @@ class ConvexBodies:
         shapes: vertices, shape (n, 3) [m], and faces of each body; no faces if MuJoCo has to compute them.
         is_exact: True if rays can use the bodies; else rays need a copy of the mesh itself.
         findings: diagnostics about the conversion.
+        tiles: height fields that collide beside the bodies.
     """
 
     shapes: tuple[tuple[Floats, Ints], ...]
     is_exact: bool = True
     findings: tuple[CollisionFinding, ...] = ()
+    tiles: tuple[HeightTile, ...] = ()
 
 
 def convex_bodies(
@@ -227,8 +230,9 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
 
 def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
     findings: list[CollisionFinding] = []
+    tiles: list[HeightTile] = []
     if is_large(vertices, faces):
-        pieces, error = large_surface_pieces(vertices, faces)
+        pieces, tiles, error = large_surface_pieces(vertices, faces)
         kind = f"{sum(not p.exact for p in pieces)} patches of"
         shapes = tuple((p.points, np.zeros((0, 3), np.int32)) for p in pieces)
         if error > LARGEST_ERROR:
@@ -241,9 +245,10 @@ def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
         kind = f"{sum(not p.exact for p in pieces)} prisms on"
         shapes = _hulls([p.points for p in pieces])
     closed = sum(p.exact for p in pieces)
-    text = f"is not convex: it collides as {closed} convex pieces and {kind} its surface"
+    fields = f", and {len(tiles)} height fields" if tiles else ""
+    text = f"is not convex: it collides as {closed} convex pieces and {kind} its surface{fields}"
     findings.append(("note", "SK-MESH-006", text, ""))
-    return ConvexBodies(shapes, False, tuple(findings))
+    return ConvexBodies(shapes, False, tuple(findings), tuple(tiles))
 
 
 def _surface_plates(vertices: Floats, faces: Ints) -> ConvexBodies:
@@ -311,7 +316,13 @@ def _load(key: str) -> ConvexBodies | None:
         vertices, faces = np.split(arrays["vertices"], cuts[0]), np.split(arrays["faces"], cuts[1])
         shapes = tuple(zip(vertices, faces, strict=True)) if len(arrays["vertex_counts"]) else ()
         findings = tuple((str(a), str(b), str(c), str(d)) for a, b, c, d in header["findings"])
-        return ConvexBodies(shapes, bool(header["is_exact"]), findings)
+        cuts = [np.cumsum(arrays["tile_sizes"].prod(axis=1))[:-1]]
+        heights = np.split(arrays["tile_heights"], cuts[0]) if len(arrays["tile_sizes"]) else []
+        tiles = tuple(
+            HeightTile(numbers[:3], numbers[3:12].reshape(3, 3), numbers[12:14], rows.reshape(size), float(numbers[14]))
+            for numbers, rows, size in zip(arrays["tiles"], heights, arrays["tile_sizes"], strict=True)
+        )
+        return ConvexBodies(shapes, bool(header["is_exact"]), findings, tiles)
     except Exception:  # noqa: BLE001 -- after any error with a foreign file, the bodies are computed again
         return None
 
@@ -323,6 +334,9 @@ def _store(key: str, bodies: ConvexBodies) -> ConvexBodies:
         "faces": np.concatenate([f for _, f in shapes]) if shapes else np.zeros((0, 3), np.int32),
         "vertex_counts": np.array([len(v) for v, _ in shapes], np.int64),
         "face_counts": np.array([len(f) for _, f in shapes], np.int64),
+        "tiles": np.array([(*t.origin, *t.axes.flat, *t.cell, t.base) for t in bodies.tiles]).reshape(-1, 15),
+        "tile_sizes": np.array([t.heights.shape for t in bodies.tiles], np.int64).reshape(-1, 2),
+        "tile_heights": np.concatenate([np.zeros(0), *(t.heights.reshape(-1) for t in bodies.tiles)]),
     }
     has_failed = any(code == "SK-MESH-014" for _, code, _, _ in bodies.findings)
     if not has_failed:  # a failed decomposition is tried again the next time

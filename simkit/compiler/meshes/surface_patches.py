@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from simkit.compiler.meshes.convex_pieces import ConvexPiece, is_convex, layer_depths, prism_count
+from simkit.compiler.meshes.convex_pieces import ConvexPiece, closed_convex_parts, layer_depths, prism_count
+from simkit.compiler.meshes.height_tiles import HeightTile, height_tiles
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 
 TRIANGLES_FROM: Final = 4000
@@ -23,8 +24,6 @@ _COUNTED_MOST: Final = 10_000
 """Number of triangles up to which a mesh with fewer prisms than `TRIANGLES_FROM` is divided into prisms too."""
 
 _PIECES_MOST, _TRIANGLES_PER_PIECE = 2500, 8
-_CLOSED_MOST: Final = 8000
-"""Largest number of closed convex parts of a mesh that are pieces of their own."""
 
 TOLERANCE: Final = 1e-4
 """Error of a patch, relative to the size of the mesh, below which it is not cut."""
@@ -84,70 +83,40 @@ def is_large(vertices: Floats, faces: Ints) -> bool:
     return prism_count(vertices, faces) > TRIANGLES_FROM
 
 
-def large_surface_pieces(vertices: Floats, faces: Ints) -> tuple[list[ConvexPiece], float]:
-    """Return convex pieces that cover the surface of a large static mesh, and their largest error [m].
+class LargeSurface(NamedTuple):
+    """Bodies that cover the surface of a large static mesh.
 
-    Closed convex parts are pieces of their own. All other triangles are divided into patches.
+    Attributes:
+        pieces: convex pieces.
+        tiles: height fields of regular grids.
+        error: largest distance between a body and the surface [m].
+    """
+
+    pieces: list[ConvexPiece]
+    tiles: list[HeightTile]
+    error: float
+
+
+def large_surface_pieces(vertices: Floats, faces: Ints) -> LargeSurface:
+    """Return the bodies of a large static mesh.
+
+    Closed convex parts are pieces of their own. Regular grids are height fields. All other triangles are divided into
+    patches.
     """
     vertices = np.asarray(vertices, float)
-    closed, rest = _closed_convex_parts(vertices, faces)
+    closed, rest = closed_convex_parts(vertices, faces)
     pieces = [ConvexPiece(points, True) for points in closed]
     if not len(rest):
-        return pieces, 0.0
+        return LargeSurface(pieces, [], 0.0)
+    tiles, is_left = height_tiles(vertices, faces, vertices[rest], LEAST_TOLERANCE)
+    if not is_left.any():
+        return LargeSurface(pieces, tiles, LEAST_TOLERANCE)
+    rest = rest[is_left]
+    corners = vertices[rest]
+    depths, _ = layer_depths(vertices, faces, corners)
     most = min(_PIECES_MOST, len(rest) // _TRIANGLES_PER_PIECE)
-    patches, error = _nearly_convex_patches(vertices[rest], layer_depths(vertices, faces, rest), most)
-    return [*pieces, *(ConvexPiece(points, False) for points in patches)], error
-
-
-def _closed_convex_parts(vertices: Floats, faces: Ints) -> tuple[list[Floats], Ints]:
-    """Return the points of each closed convex part that is no cavity, and the faces of all other parts."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    n = len(vertices)
-    row, column = faces[:, [0, 1]].reshape(-1), faces[:, [1, 2]].reshape(-1)
-    graph = coo_matrix((np.ones(len(row), bool), (row, column)), shape=(n, n))
-    count, label = connected_components(graph, directed=False)
-    of_face = label[faces[:, 0]]
-    order = np.argsort(of_face, kind="stable")
-    parts = np.split(order, np.flatnonzero(np.diff(of_face[order])) + 1)
-    corners = vertices[faces]
-    volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
-    inverted = np.bincount(of_face, volumes, count)[[of_face[p[0]] for p in parts]] < 0.0
-    low = np.array([corners[p].min(axis=(0, 1)) for p in parts])
-    high = np.array([corners[p].max(axis=(0, 1)) for p in parts])
-    closed: list[Floats] = []
-    rest: list[Ints] = []
-    for i, part in enumerate(parts):
-        hollow = inverted & (low > low[i]).all(axis=1) & (high < high[i]).all(axis=1) if inverted.any() else inverted
-        used, inverse = np.unique(faces[part], return_inverse=True)
-        local = np.asarray(inverse).reshape(-1, 3)
-        if (
-            len(closed) < _CLOSED_MOST
-            and not inverted[i]
-            and not hollow.any()
-            and _is_closed_convex(vertices[used], local.astype(np.int32))
-        ):
-            closed.append(vertices[used])
-        else:
-            rest.append(faces[part])
-    return closed, np.concatenate(rest) if rest else faces[:0]
-
-
-def _is_closed_convex(vertices: Floats, faces: Ints) -> bool:
-    """Check whether a part is closed and convex. For few faces, arrays are 20 times as fast as a mesh of trimesh."""
-    if len(faces) > _MOST_TRIANGLES:
-        return is_convex(vertices, faces)
-    edges = np.concatenate([faces[:, (0, 1)], faces[:, (1, 2)], faces[:, (2, 0)]]).astype(np.int64)
-    ahead, back = edges[:, 0] * len(vertices) + edges[:, 1], edges[:, 1] * len(vertices) + edges[:, 0]
-    ahead, back = np.sort(ahead), np.sort(back)
-    if not np.array_equal(ahead, back) or (ahead[1:] == ahead[:-1]).any():
-        return False
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
-    lengths = np.linalg.norm(normals, axis=1)
-    over = vertices @ normals.T - np.einsum("ij,ij->i", a, normals)
-    return bool((over <= 1e-4 * float(np.ptp(vertices, axis=0).max()) * lengths).all())
+    patches, error = _nearly_convex_patches(corners, depths, most)
+    return LargeSurface([*pieces, *(ConvexPiece(points, False) for points in patches)], tiles, error)
 
 
 def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[list[Floats], float]:
