@@ -1,6 +1,10 @@
 """Loading beside bare MuJoCo, which reads and compiles the same model from MJCF text.
 
 python benchmarks/loading.py [WORLD [RESOURCE_PATH ...]]
+python benchmarks/loading.py --table MANIFEST
+
+With `--table`: first loads in new processes, without and with simkit's cache, of each world of a corpus and of simkit's
+own worlds. The manifest is a table whose columns `kind`, `path` and `roots` name the files and their resource folders.
 
 Without a world: a thousand boxes, a mesh of 90,000 triangles, and gz-sim's 3003 shapes where they lie beside the
 checkout. A first load of each is not counted: it imports what is needed and converts meshes, which later loads find in
@@ -9,7 +13,10 @@ the cache.
 
 from __future__ import annotations
 
+import csv
+import os
 import statistics
+import subprocess
 import sys
 import tempfile
 import time
@@ -75,7 +82,48 @@ def terrain(folder: Path, cells: int = 212) -> str:
     return str(world)
 
 
+FIRST_LOAD = """import sys, time, simkit
+try:
+    start = time.process_time(); sim = simkit.load(sys.argv[1], resource_paths=sys.argv[2:])
+    print(time.process_time() - start, sim.mj_model.ngeom)
+except simkit.LoadError: pass"""
+
+
+def first_load(world: str, paths: list[str], cache: str) -> tuple[float, str] | None:
+    """CPU time [s] of a load in a new process and number of shapes; None if the world is refused."""
+    root = str(Path(__file__).resolve().parents[1])
+    environment = {**os.environ, "SIMKIT_CACHE_DIR": cache, "PYTHONPATH": root}
+    command = [sys.executable, "-c", FIRST_LOAD, world, *paths]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    seconds, *rest = done.stdout.split() or ("",)
+    return (float(seconds), rest[0]) if seconds else None
+
+
+def table(manifest: Path) -> None:
+    """Print the loads without and with the cache, the slowest first."""
+    with manifest.open(newline="") as stream:
+        listed = [row for row in csv.DictReader(stream, delimiter="\t") if row["kind"] == "sdf-world"]
+    folder = manifest.parent
+    sources = [(str(folder / r["path"]), [str(folder / p) for p in r["roots"].split(":")]) for r in listed]
+    sources += [(file.stem, []) for file in sorted((Path(__file__).parents[1] / "worlds").glob("*.sdf"))]
+    found, refused = [], []
+    for world, paths in sources:
+        with tempfile.TemporaryDirectory() as cache:
+            loads = [first_load(world, paths, cache) for _ in range(2)]
+        if loads[0] is None or loads[1] is None:
+            refused.append(Path(world).name)
+        else:
+            found.append((loads[0][0], loads[1][0], loads[1][1], Path(world).name))
+    print("| world | shapes | first load [s] | later load [s] |\n|---|---|---|---|")
+    for cold, cached, shapes, name in sorted(found, reverse=True):
+        print(f"| {name} | {shapes} | {cold:.2f} | {cached:.2f} |")
+    print(f"{len(found)} worlds; {len(refused)} refused: {' '.join(refused)}")
+
+
 def main() -> None:
+    if sys.argv[1:2] == ["--table"]:
+        table(Path(sys.argv[2]))
+        return
     if len(sys.argv) > 1:
         print(sys.argv[1], loading(sys.argv[1], sys.argv[2:]))
         return

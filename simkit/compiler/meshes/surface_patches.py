@@ -14,6 +14,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simkit.compiler.meshes.convex_pieces import ConvexPiece, closed_convex_parts, layer_depths, prism_count
+from simkit.compiler.meshes.flat_areas import dividing_line, flat_areas
 from simkit.compiler.meshes.height_tiles import HeightTile, height_tiles
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 
@@ -137,7 +138,10 @@ def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[
     coarse = 10.0 * tolerance
     axis = np.abs(normals).argmax(axis=1)
     side = 2 * axis + (normals[np.arange(len(axis)), axis] < 0.0)
-    waiting = [_Patch(corners[side == k], normals[side == k], depths[side == k]) for k in range(6) if (side == k).any()]
+    areas = flat_areas(corners, normals)
+    side[np.concatenate([np.zeros(0, int), *areas])] = -1
+    groups = [*areas, *(np.flatnonzero(side == k) for k in range(6))]
+    waiting = [_Patch(corners[group], normals[group], depths[group]) for group in groups if len(group)]
     heap: list[tuple[float, int, _Patch]] = []
     done: list[_Patch] = []
     count = 0
@@ -194,7 +198,10 @@ def _measure(patches: list[_Patch], tolerance: float) -> None:
         # between its corners, a triangle may be further below the piece than at its corners
         _measure_hull(patch, ups[i], middles[of].reshape(-1, 3), float(covered[i]), tolerance)
         if patch.error > tolerance and patch.cut is None:
-            patch.cut = _between_layers(levels[of], ups[i]) or _best_cut(patch, ups[i], areas[of])
+            is_flat = heights[i] <= tolerance
+            patch.cut = (dividing_line(patch.corners, ups[i]) if is_flat else _between_layers(levels[of], ups[i])) or (
+                _best_cut(patch, ups[i], areas[of])
+            )
 
 
 def _measure_hull(patch: _Patch, up: Floats, middles: Floats, covered: float, tolerance: float) -> None:

@@ -1,0 +1,119 @@
+"""Flat areas of a surface, such as walls and floors, and the lines that divide them into convex areas."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from simkit.compiler.meshes.mesh_part import Floats, Indices
+
+_TRIANGLES_FROM: Final = 8
+"""Number of triangles in one plane from which they are divided along their own outline."""
+
+_ANGLE: Final = 1e-4
+"""Difference between the normals of triangles in one plane."""
+
+_LINES: Final = 10
+"""Number of lines that are compared, the longest sides of the outline."""
+
+_HIGHEST_FACTOR: Final = 1e-3
+"""Least distance of a line from the ends of the area, relative to its size."""
+
+
+def flat_areas(corners: Floats, normals: Floats) -> list[Indices]:
+    """Return the triangles of each connected area in one plane; the triangles that are left are not in the result.
+
+    Args:
+        corners: corners of the triangles [m], shape (n, 3, 3).
+        normals: unit normals, shape (n, 3).
+    """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    offsets = np.einsum("ij,ij->i", corners[:, 0], normals)
+    plane = np.column_stack([np.rint(normals / _ANGLE), np.rint(offsets / (_ANGLE * size))])
+    point = np.rint(corners.reshape(-1, 3) / (1e-6 * size))
+    planes, points = _numbers(plane), _numbers(np.column_stack([np.repeat(plane, 3, axis=0), point]))
+    counts = np.bincount(planes)
+    chosen = np.flatnonzero(counts[planes] >= _TRIANGLES_FROM)
+    if not len(chosen):
+        return []
+    ends = points.reshape(-1, 3)[chosen]
+    row, column = ends[:, (0, 1)].reshape(-1), ends[:, (1, 2)].reshape(-1)
+    count = int(points.max()) + 1
+    graph = coo_matrix((np.ones(len(row), bool), (row, column)), shape=(count, count))
+    _, label = connected_components(graph, directed=False)
+    of_area = label[ends[:, 0]]
+    order = np.argsort(of_area, kind="stable")
+    areas = np.split(chosen[order], np.flatnonzero(np.diff(of_area[order])) + 1)
+    return [area for area in areas if len(area) >= _TRIANGLES_FROM]
+
+
+def _numbers(rows: Floats) -> Indices:
+    """Return a number for each row, equal for equal rows; `np.unique` of rows is ten times as slow."""
+    order = np.lexsort(rows.T)
+    numbers = np.empty(len(rows), np.int64)
+    numbers[order] = np.cumsum(np.append(False, (rows[order][1:] != rows[order][:-1]).any(axis=1)))
+    return numbers
+
+
+def dividing_line(corners: Floats, up: Floats) -> tuple[Floats, float] | None:
+    """Return the plane along a side of the outline of a flat area whose parts have the least hulls; None without one.
+
+    Args:
+        corners: corners of the triangles [m], shape (n, 3, 3).
+        up: unit normal of the area.
+    """
+    u = np.cross(up, np.eye(3)[int(np.abs(up).argmin())])
+    u /= np.linalg.norm(u)
+    v = np.cross(up, u)
+    flat = np.stack([corners @ u, corners @ v], axis=-1)
+    size = float(np.ptp(flat.reshape(-1, 2), axis=0).max())
+    lines = _outline_lines(flat, size)
+    middles, best, least = flat.mean(axis=1), None, np.inf
+    for direction, offset in lines:
+        across = np.array((-direction[1], direction[0]))
+        distances = flat @ across - offset
+        if distances.max() < _HIGHEST_FACTOR * size or distances.min() > -_HIGHEST_FACTOR * size:
+            continue
+        is_above = middles @ across > offset
+        total = _hull_area(flat[is_above]) + _hull_area(flat[~is_above])
+        if total < least * (1.0 - 1e-6):
+            best, least = (across[0] * u + across[1] * v, float(offset)), total
+    return best
+
+
+def _outline_lines(flat: Floats, size: float) -> list[tuple[Floats, float]]:
+    """Return direction and offset of the longest lines of an outline: of edges that only one triangle has."""
+    start, end = flat.reshape(-1, 2), flat[:, (1, 2, 0)].reshape(-1, 2)
+    ends = np.rint(np.concatenate([start, end], axis=1) / (1e-6 * size))
+    is_swapped = (ends[:, 0] > ends[:, 2]) | ((ends[:, 0] == ends[:, 2]) & (ends[:, 1] > ends[:, 3]))
+    numbers = _numbers(np.where(is_swapped[:, None], ends[:, (2, 3, 0, 1)], ends))
+    is_single = np.bincount(numbers)[numbers] == 1
+    along = (end - start)[is_single]
+    lengths = np.linalg.norm(along, axis=1)
+    along, first, lengths = along[lengths > 0.0], start[is_single][lengths > 0.0], lengths[lengths > 0.0]
+    if not len(along):
+        return []
+    along /= lengths[:, None]
+    along *= np.where((along[:, 0] < -_ANGLE) | ((np.abs(along[:, 0]) <= _ANGLE) & (along[:, 1] < 0.0)), -1.0, 1.0)[
+        :, None
+    ]
+    offsets = first[:, 1] * along[:, 0] - first[:, 0] * along[:, 1]
+    lines = _numbers(np.column_stack([np.rint(along / 1e-3), np.rint(offsets / (1e-3 * size))]))
+    totals = np.bincount(lines, lengths)
+    longest = np.argsort(-totals, kind="stable")[:_LINES]
+    found = [int(np.flatnonzero(lines == line)[0]) for line in longest]
+    return [(along[k], float(offsets[k])) for k in found]
+
+
+def _hull_area(flat: Floats) -> float:
+    """Return the area of the hull of triangles in a plane [m²]; 0 for none."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return float(ConvexHull(flat.reshape(-1, 2)).volume)
+    except (QhullError, ValueError):
+        return 0.0
