@@ -17,6 +17,7 @@ from typing import Any, Final, NamedTuple, Protocol
 
 from simkit.argument_checks import check_text
 from simkit.errors import SimkitError
+from simkit.in_process import InProcess
 from simkit.msgs.topic_names import absolute_name
 
 _PRIMARY: Final = ("unknown", "unconfigured", "inactive", "active", "finalized")
@@ -89,7 +90,7 @@ class LifecycleHost(Protocol):
         """Open a topic for publishing."""
 
 
-class LifecycleNode:
+class LifecycleNode(InProcess):
     """Node with the services and the states of a ROS 2 lifecycle node.
 
     A transition calls `on_configure`, `on_activate`, `on_deactivate`, `on_cleanup` or `on_shutdown` with the label of
@@ -226,9 +227,6 @@ class LifecycleNode:
 
     def __repr__(self) -> str:
         return f"<LifecycleNode {self.node!r}: {self.state}>"
-
-    def __deepcopy__(self, memo: dict[int, object]) -> LifecycleNode:
-        return self
 
 
 def state(number: int) -> dict[str, object]:

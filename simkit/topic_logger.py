@@ -5,6 +5,8 @@ from __future__ import annotations
 import logging
 from typing import Protocol
 
+from simkit.in_process import InProcess
+
 
 class LogSink(Protocol):
     """Topic of log messages.
@@ -20,7 +22,7 @@ class LogSink(Protocol):
         """Publish a message; `owner` is its plugin or the name of its node."""
 
 
-class TopicLogger(logging.Logger):
+class TopicLogger(InProcess, logging.Logger):
     """Logger of a plugin, a controller or a simulation, whose messages also go to `/rosout`.
 
     It passes messages to the registered Python logger of the same name, so levels and handlers of that logger apply.
@@ -56,6 +58,3 @@ class TopicLogger(logging.Logger):
         found = vars(sim).get("communication", sim)
         topic: LogSink | None = vars(found).get("log_topic")
         return topic
-
-    def __deepcopy__(self, memo: dict[int, object]) -> TopicLogger:
-        return self

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from simkit.errors import MessageError
 from simkit.msgs.definition_parser import BASE, NAME, PARTS, SEQUENCE, FieldNode
-from simkit.msgs.message_types import Message, type_of, type_store
+from simkit.msgs.message_types import Message, make_picklable, type_of, type_store
 
 Fields = list[tuple[str, Any]]
 _EVENT_INFO: Final = "service_msgs/msg/ServiceEventInfo"
@@ -34,6 +34,7 @@ def derived_type(name: str) -> type[Message]:
             if kind == NAME:
                 (derived_type if is_derived(content) else type_of)(content)
         type_store().register({name: ([], fields)})
+        make_picklable(type_store().types[name], derived_type)
     return type_of(name)
 
 

@@ -9,7 +9,7 @@ not on constants. A service or action is several message types, which `---` sepa
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs import own_interfaces
 from simkit.msgs.definition_parser import PARTS, MessageDefinition, interface_of
-from simkit.msgs.message_repr import with_readable_text
+from simkit.msgs.message_repr import attribute_names, with_readable_text
 from simkit.msgs.shipped_interfaces import (
     PACKAGES_WITH_LONG_NAMES,
     definition_files,
@@ -97,6 +97,26 @@ def _register(type_name: str) -> None:
     fields: Any = found.fields
     type_store().register({type_name: (constants, fields)})
     with_readable_text([type_store().types[type_name]])
+    make_picklable(type_store().types[type_name])
+
+
+def make_picklable(cls: type[Any], find: Callable[[str], type[Any]] | None = None) -> None:
+    """Let messages of a registered class be pickled; another process registers the class by its type name.
+
+    Args:
+        cls: class that rosbags generated; no module has it.
+        find: function of a module that returns the class of a type name; None for `type_of`.
+    """
+
+    def reduce(message: Any) -> tuple[Any, ...]:
+        values = tuple(getattr(message, name) for name in attribute_names(message))
+        return _new_message, (find or type_of, message.__msgtype__, values)
+
+    cls.__reduce__ = reduce  # type: ignore[assignment]  # as above
+
+
+def _new_message(find: Callable[[str], type[Any]], type_name: str, values: tuple[Any, ...]) -> Any:
+    return find(type_name)(*values)
 
 
 class _SpecialNumber(float):

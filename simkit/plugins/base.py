@@ -348,9 +348,9 @@ class Plugin(abc.ABC):
         message = f"{message}; snapshots and reset do not change it: {error}"
         self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.where, "override get_state and set_state")
 
-    def _remember_loaded(self) -> None:
-        """Report attributes that cannot be copied; called after `load`, not only at the first snapshot."""
-        self.get_state()
+    def _remember_loaded(self) -> dict[str, Any]:
+        """Return the state after `load`, and report attributes that cannot be copied."""
+        return self.get_state()
 
     def __repr__(self) -> str:
         name = f"{self.scoped}::{self.name}" if self.scoped else self.name

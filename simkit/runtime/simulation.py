@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from simkit.argument_checks import check_function, checked_integer
 from simkit.errors import InputError, SimulationDiverged
+from simkit.in_process import InProcess
 from simkit.pose import Pose, Vector
 from simkit.run_spec import PluginErrorPolicy, RunSpec
 from simkit.runtime.communication.communication import Communication
@@ -16,7 +18,6 @@ from simkit.runtime.communication.script_graph import ScriptGraph
 from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.contact.collision_contacts import Contact, list_contacts
 from simkit.runtime.engine.engine import Engine
-from simkit.runtime.engine.engine_state import InProcess
 from simkit.runtime.engine.plugin_faults import add_driver_hints
 from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.snapshot import Snapshot, Stateful
@@ -26,6 +27,7 @@ from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.link import Link
 from simkit.runtime.handles.model import Model
 from simkit.runtime.handles.visual import Visual
+from simkit.runtime.portable_snapshot import PortableSnapshot, pack_snapshot, unpack_snapshot
 from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker
 from simkit.runtime.world_contents import WorldContents
 from simkit.runtime.world_control import WorldControl
@@ -89,8 +91,9 @@ class Simulation(ScriptGraph, InProcess):
         self.communication = Communication(bus, self.engine)
         self.engine.faults.interfaces = self.communication
         self.contents = WorldContents(self, self.engine, self.communication, self._stateful, load_model, make_parts)
-        state = self._loaded_state
-        self.control = WorldControl(self.engine, bus, self.contents.handles, self._advance, state)
+        self._snapshots = self.contents.spawner.snapshots
+        self._snapshots.pack = partial(pack_snapshot, self)
+        self.control = WorldControl(self.engine, bus, self.contents.handles, self._advance, self._loaded_state)
         self.contents.spawner.adopt(structure)
         self.contents.spawner.start(list(structure.parts.values()), diagnostics)
         self.engine.reschedule()
@@ -209,23 +212,27 @@ class Simulation(ScriptGraph, InProcess):
         Use this snapshot only after the step.
         """
         self.engine.check_open()
-        snapshots = self.contents.spawner.snapshots
         if not self.engine.is_stepping:
-            return snapshots.take()
-        snapshot, keep = snapshots.defer()
+            return self._snapshots.take()
+        snapshot, keep = self._snapshots.defer()
         self.engine.loop.defer(keep)
         return snapshot
 
     @journaled
-    def restore(self, snapshot: Snapshot) -> None:
+    def restore(self, snapshot: Snapshot | PortableSnapshot) -> None:
         """Restore a snapshot of this simulation, earlier or later; spawns and removals since then are undone.
+
+        Args:
+            snapshot: result of `snapshot()`, or a pickled snapshot of a simulation with an equal `run_spec`.
 
         Raises:
             ValueError: the snapshot belongs to another simulation, or its step has not ended.
         """
         engine = self.engine
         engine.check_open()
-        self.contents.spawner.snapshots.check(snapshot)
+        if isinstance(snapshot, PortableSnapshot):
+            snapshot = unpack_snapshot(self, snapshot)
+        self._snapshots.check(snapshot)
         engine.loop.drop_deferred()
         if snapshot.seed != engine.streams.seed:
             self.communication.bus.settle()
@@ -233,7 +240,7 @@ class Simulation(ScriptGraph, InProcess):
         self._restore(snapshot)
 
     def _restore(self, snapshot: Snapshot) -> None:
-        self.contents.spawner.snapshots.restore(snapshot)
+        self._snapshots.restore(snapshot)
         self.engine.loop.halt()  # `simkit run` then computes its target again
         self.engine.reschedule()
         self.contents.spawner.forget_gone()

@@ -18,6 +18,7 @@ from simkit.runtime.engine.entity_structure import (
     FROM_SPAWN,
     AttachedPlugin,
     AttachedSensor,
+    AttachedState,
     SensorsAndPlugins,
     WorldStructure,
     bodies_kept_awake,
@@ -57,6 +58,7 @@ class Spawner:
     Attributes:
         load_model: function that reads a model to spawn.
         loaded_plugins: present plugins, and plugins that a snapshot or a reset may bring back.
+        first_states: state of each plugin after its `load`, by the identity of the plugin.
         snapshots: functions that take and restore the state of the simulation.
     """
 
@@ -78,12 +80,13 @@ class Spawner:
         self._reported: list[Diagnostic] = []
         self._structures: list[weakref.ref[WorldStructure]] = []
         self.loaded_plugins: list[AttachedPlugin] = []
+        self.first_states: dict[int, AttachedState] = {}
 
     def spawn(self, requests: Sequence[SpawnRequest]) -> list[str]:
         """Add models, compiled once for all of them; return their names. A failure undoes all changes."""
         old = self._engine.structure
         before, builder, found = self.snapshots.take(), old.builder.copy(), Diagnostics()
-        models, parts, names = dict(old.models), dict(old.parts), []
+        models, parts, names, scenes = dict(old.models), dict(old.parts), [], []
         for source, name, pose in requests:
             if isinstance(source, SceneModel):
                 scene = source  # a copy of a present model
@@ -92,7 +95,9 @@ class Spawner:
             builder.add_model(scene)
             models[scene.name], parts[scene.name] = scene, self._make(scene, builder, found)
             names.append(scene.name)
-        self.switch(replace(self._recompiled(builder), models=models, parts=parts))
+            scenes.append((scene, None, None))
+        changes = old.changed("spawn", scenes)
+        self.switch(replace(self._recompiled(builder), models=models, parts=parts, changes=changes))
         self._start_or_restore([parts[name] for name in names], found, before)
         return names
 
@@ -119,7 +124,8 @@ class Spawner:
             raise LoadError(tuple(found))
         present = old.parts[top]
         joined = SensorsAndPlugins([*present.sensors, *parts.sensors], [*present.plugins, *parts.plugins])
-        self.switch(replace(self._recompiled(builder), parts={**old.parts, top: joined}))
+        changes = old.changed("add_sensor", name, sensor)
+        self.switch(replace(self._recompiled(builder), parts={**old.parts, top: joined}, changes=changes))
         self._start_or_restore([parts], found, before)
         return scoped
 
@@ -169,7 +175,8 @@ class Spawner:
         builder.remove_model(name)
         models = {k: v for k, v in old.models.items() if k != name}
         parts = {k: v for k, v in old.parts.items() if k != name}
-        self.switch(replace(self._recompiled(builder), models=models, movable=old.movable - {name}, parts=parts))
+        movable, changes = old.movable - {name}, old.changes_without(name)
+        self.switch(replace(self._recompiled(builder), models=models, movable=movable, parts=parts, changes=changes))
 
     def forget_gone(self) -> None:
         """Close the plugins that no restore can bring back.
@@ -195,6 +202,8 @@ class Spawner:
         structures = [structure for kept in self._structures if (structure := kept()) is not None]
         present = {id(p) for structure in structures for p in structure.all_plugins()}
         removed = [plugin for plugin in self.loaded_plugins if id(plugin) not in present]
+        for plugin in removed:
+            self.first_states.pop(id(plugin), None)
         self.loaded_plugins = [plugin for plugin in self.loaded_plugins if id(plugin) in present]
         sensors = {s for structure in structures for s in structure.all_sensors()}
         owners = [*removed, *(self._attached - sensors)]
@@ -219,7 +228,8 @@ class Spawner:
         builder.add_model(old.models[name], movable=True)
         for sensor in old.parts[name].sensors:
             sensor.build(builder)
-        self.switch(replace(self._recompiled(builder), movable=old.movable | {name}))
+        changes = old.changed("make_movable", name)
+        self.switch(replace(self._recompiled(builder), movable=old.movable | {name}, changes=changes))
         for light in self._handles.tables["light"].values():
             if light.scene.link.startswith(f"{name}::"):
                 light.draw()  # the light has moved from the world's body to its link's body
@@ -229,6 +239,13 @@ class Spawner:
         """Add an open weld between two links."""
         builder = self._engine.structure.builder.copy()
         builder.add_weld(name, parent_link, child_link, active=False)
+        changes = self._engine.structure.changed("add_weld", name, parent_link, child_link)
+        self.switch(replace(self._recompiled(builder), changes=changes))
+
+    def reserve_memory(self, size: int) -> None:
+        """Compile again with memory for contacts [bytes]; a removed model has left more than the present ones need."""
+        builder = self._engine.structure.builder.copy()
+        builder.spec.memory = size
         self.switch(self._recompiled(builder))
 
     def _recompiled(self, builder: SpecBuilder) -> WorldStructure:
@@ -321,7 +338,7 @@ class Spawner:
             return
         _check_hook_rates(plugin)
         try:
-            call_plugin(plugin, "get_state", plugin._remember_loaded)
+            self.first_states[id(plugin)] = call_plugin(plugin, "get_state", plugin._remember_loaded)
         except Exception as error:  # noqa: BLE001 - as above
             faults.meet(plugin, "get_state", error)
 

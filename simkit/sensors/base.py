@@ -250,6 +250,13 @@ class Sensor(Sampler):
         self._offset_position: Vector = self._offset.position
         self._offset_rotation: Vector = self._offset.matrix
 
+    def measure_pending(self, state: Any) -> None:
+        """Make the readings of the samples of a state from `get_state`, so that the state can be pickled."""
+        for sample in (state[2], *(sample for _, sample in state[3])):
+            if sample is not None:
+                self._finish_sample(sample)
+                sample.work = None
+
     def close(self) -> None:
         """Release the resources of the kind; called when the simulation closes."""
 

@@ -9,10 +9,10 @@ from typing import ClassVar, Self
 
 import mujoco
 
+from simkit.in_process import InProcess
 from simkit.msgs.message_types import Message
 from simkit.runtime import Publisher, Simulation
 from simkit.runtime.communication.subscription import LazyMessage, PendingWork
-from simkit.runtime.engine.engine_state import InProcess
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
 from simkit.sensors.noise_keeper import NoiseKeeper

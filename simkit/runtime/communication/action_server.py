@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from simkit.argument_checks import check_function
 from simkit.errors import ActionError, InputError, PluginError, SimkitError, SubscriberError, callback_name
+from simkit.in_process import InProcess
 from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import absolute_name
@@ -33,7 +34,7 @@ GoalCallback = Callable[["GoalHandle"], None]
 CancelCallback = Callable[["GoalHandle"], bool | None]
 
 
-class GoalHandle:
+class GoalHandle(InProcess):
     """Goal, as seen by the client that sent it and by the plugin that executes it.
 
     Attributes:
@@ -156,11 +157,8 @@ class GoalHandle:
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.id} of {self._action.name!r}: {self.status.name}>"
 
-    def __deepcopy__(self, memo: dict[int, object]) -> GoalHandle:
-        return self
 
-
-class Action:
+class Action(InProcess):
     """Action of a plugin.
 
     Attributes:
@@ -241,9 +239,6 @@ class Action:
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name!r} {self.type_name}>"
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Action:
-        return self
 
 
 def _succeeding(on_goal: Callable[[GoalHandle], Message]) -> GoalCallback:

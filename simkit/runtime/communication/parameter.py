@@ -10,6 +10,7 @@ import numpy as np
 
 from simkit.argument_checks import check_text, checked_number, shown
 from simkit.errors import ParameterError
+from simkit.in_process import InProcess
 from simkit.msgs.topic_names import absolute_name
 
 ParameterValue = bool | int | float | str | tuple[float, ...]
@@ -19,7 +20,7 @@ _INTEGER_LIMIT = 2**63  # ROS has integers of 64 bits
 _TYPE_NAMES = {bool: "a boolean", int: "an integer", float: "a number", str: "text", tuple: "numbers"}
 
 
-class Parameter(Generic[T]):
+class Parameter(InProcess, Generic[T]):
     """Value that may change while the simulation runs.
 
     Attributes:
@@ -105,9 +106,6 @@ class Parameter(Generic[T]):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name!r} of {self.node!r}: {self.value!r}>"
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Parameter[T]:
-        return self
 
 
 AnyParameter = Parameter[Any]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 
 from simkit import msgs
+from simkit.in_process import InProcess
 from simkit.msgs.message_arguments import checked_message
 from simkit.runtime.communication.journal import JournalKeeper
 from simkit.runtime.communication.subscription import Callback, LazyMessage, Message, PendingWork
@@ -42,7 +43,7 @@ class TopicSides(NamedTuple):
     publishers: list[Publisher]
 
 
-class Publisher:
+class Publisher(InProcess):
     """Publisher of a topic; `wanted` is true while the topic has subscribers.
 
     Attributes:
@@ -185,9 +186,6 @@ class Publisher:
         heard = f"{self.subscribers} subscriber{'' if self.subscribers == 1 else 's'}"
         return f"<Publisher {self.topic!r} {self.type_name}, {heard}>"
 
-    def __deepcopy__(self, memo: dict[int, object]) -> Publisher:
-        return self
-
 
 class ExternalPublisher(Publisher):
     """Publisher that belongs to no plugin or sensor; its messages are external inputs."""
@@ -227,7 +225,7 @@ class ExternalPublisher(Publisher):
         return None
 
 
-class Listener:
+class Listener(InProcess):
     """Command input; its callback is called between two steps."""
 
     __slots__ = ("_bus", "active", "callback", "owner", "topic", "types")
@@ -242,6 +240,3 @@ class Listener:
 
     def __repr__(self) -> str:
         return f"<Listener {self.topic!r} {' or '.join(self.types)}>"
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Listener:
-        return self

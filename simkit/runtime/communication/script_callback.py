@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.argument_checks import check_function
 from simkit.errors import InputError, SimkitError, SubscriberError, callback_name
+from simkit.in_process import InProcess
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus
 
 
-class ScriptCallback:
+class ScriptCallback(InProcess):
     """Function of a script that simkit calls with a message, a goal or a value.
 
     A journal records the calls that the function makes into the simulation, and its result. A replay therefore needs no
@@ -67,6 +68,3 @@ class ScriptCallback:
             reason = str(error) if isinstance(error, InputError) else repr(error)
             now = self._bus.failures.now()
             raise SubscriberError(self._name, callback_name(self.function), now, reason, self._kind) from error
-
-    def __deepcopy__(self, memo: dict[int, object]) -> ScriptCallback:
-        return self

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 from simkit.errors import ServiceError
+from simkit.in_process import InProcess
 from simkit.msgs.message_arguments import checked_message
 from simkit.runtime.communication.subscription import Message
 
@@ -47,7 +48,7 @@ class ServiceCloser(Protocol):
         """Remove a service permanently."""
 
 
-class Service:
+class Service(InProcess):
     """One service.
 
     Attributes:
@@ -92,11 +93,8 @@ class Service:
     def __repr__(self) -> str:
         return f"<Service {self.name!r} {self.type_name}>"
 
-    def __deepcopy__(self, memo: dict[int, object]) -> Service:
-        return self
 
-
-class ServiceCall:
+class ServiceCall(InProcess):
     """Call of a service whose response comes later.
 
     Attributes:
@@ -122,6 +120,3 @@ class ServiceCall:
     def __repr__(self) -> str:
         state = "waits" if not self.is_done else "failed" if self.error is not None else "done"
         return f"<ServiceCall {self.id} of {self.service.name!r}: {state}>"
-
-    def __deepcopy__(self, memo: dict[int, object]) -> ServiceCall:
-        return self

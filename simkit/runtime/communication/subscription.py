@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any, Final, Literal, Protocol
 
 from simkit import msgs
+from simkit.in_process import InProcess
 from simkit.msgs.cdr_template import PACKERS
 from simkit.msgs.data_frames import DataFrame, to_dataframe
 from simkit.runtime.communication.journal import JournalKeeper
@@ -138,7 +139,7 @@ class TopicReaders:
         return max((reader.keeps for reader in self.readers), default=0)
 
 
-class Subscription:
+class Subscription(InProcess):
     """Received messages of a topic.
 
     Attributes:
@@ -210,9 +211,6 @@ class Subscription:
         self._bus.gather(self.topic)
         count = len(self._messages)
         return f"<{type(self).__name__} {self.topic!r}, {count} message{'' if count == 1 else 's'}>"
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Subscription:
-        return self
 
 
 class StreamSubscription(Subscription):

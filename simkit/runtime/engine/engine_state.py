@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, NoReturn, Self
+from typing import TYPE_CHECKING
 
-from simkit.errors import ArgumentTypeError, InputError
+from simkit.errors import InputError
 from simkit.runtime.engine.physics_step import Physics
 
 if TYPE_CHECKING:
@@ -20,17 +19,6 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.simulated_time import Clock
     from simkit.scene import SceneWorld
-
-
-class InProcess:
-    """Base class of objects that belong to one process: deep copies share them, and they cannot be pickled."""
-
-    def __deepcopy__(self, memo: Mapping[int, object]) -> Self:
-        return self
-
-    def __reduce__(self) -> NoReturn:
-        reason = f"a {type(self).__name__} cannot be pickled, because it holds memory of MuJoCo in this process"
-        raise ArgumentTypeError(f"{reason}; pickle a simkit.RunSpec (`sim.run_spec`) and load it in the other process")
 
 
 class EngineState:

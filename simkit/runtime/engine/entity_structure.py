@@ -77,6 +77,9 @@ class AttachedSensor(Protocol):
     def take_held(self) -> None:
         """Measure all pending samples, before the model changes."""
 
+    def measure_pending(self, state: AttachedState) -> None:
+        """Measure the samples of a state from `get_state` that are not measured yet."""
+
     def reset(self) -> None:
         """Reset the sensor to its initial state."""
 
@@ -139,8 +142,11 @@ class AttachedPlugin(Protocol):
 
     def _setup(self, sim: Any, source: ScenePlugin | None = None) -> None: ...
 
-    def _remember_loaded(self) -> None: ...
+    def _remember_loaded(self) -> AttachedState: ...
 
+
+StructureChange = tuple[str, tuple[Any, ...]]
+"""Name and arguments of a function of the spawner that changed the structure: "spawn", "remove", …"""
 
 ParentFinder = Callable[[Any], Any]
 """Function that returns a plugin's parent (a simulation, a handle, a sensor) once the handles of a simulation exist."""
@@ -168,6 +174,7 @@ class WorldStructure:
         models: top-level models by name, in order.
         movable: names of the static models that were made movable.
         parts: sensors and plugins by the name of their top-level model; those of the world under the empty name.
+        changes: changes since the load, in order; another simulation repeats them to restore a pickled snapshot.
     """
 
     builder: SpecBuilder
@@ -175,9 +182,28 @@ class WorldStructure:
     models: Mapping[str, SceneModel]
     movable: frozenset[str]
     parts: Mapping[str, SensorsAndPlugins]
+    changes: tuple[StructureChange, ...] = ()
 
     def all_sensors(self) -> list[AttachedSensor]:
         return [s for p in self.parts.values() for s in p.sensors]
+
+    def changed(self, name: str, *arguments: object) -> tuple[StructureChange, ...]:
+        """Return the changes with a further one."""
+        return (*self.changes, (name, arguments))
+
+    def changes_without(self, model: str) -> tuple[StructureChange, ...]:
+        """Return the changes with the removal of a model; the changes of a spawned model are left out."""
+        kept: list[StructureChange] = []
+        is_spawned = False
+        for name, arguments in self.changes:
+            if name == "spawn":
+                requests = [request for request in arguments[0] if request[0].name != model]
+                is_spawned |= len(requests) < len(arguments[0])
+                if requests:
+                    kept.append((name, (requests,)))
+            elif not (is_spawned and any(str(one).split("::")[0] == model for one in arguments)):
+                kept.append((name, arguments))
+        return tuple(kept) if is_spawned else self.changed("remove", model)
 
     def all_plugins(self) -> list[AttachedPlugin]:
         """Return every plugin in the order in which plugins are loaded and called."""

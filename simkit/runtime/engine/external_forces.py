@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from simkit.in_process import InProcess
 from simkit.scene import SceneWorld
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ class PersistentWrenches:
 Velocity = tuple[float, float, float]
 
 
-class Wind:
+class Wind(InProcess):
     """Velocity of the air: the world's `<wind>`, or the wind of a plugin. A handle.
 
     Attributes:
@@ -76,6 +77,3 @@ class Wind:
     def at(self, tick: int) -> Velocity:
         """Return the velocity of the air [m/s, world frame] during the step that follows a tick."""
         return self._steady if self.source is None else self.source(tick)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Wind:
-        return self

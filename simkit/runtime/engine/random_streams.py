@@ -8,6 +8,8 @@ import weakref
 import numpy as np
 import numpy.typing as npt
 
+from simkit.in_process import InProcess
+
 Values = npt.NDArray[np.float64]
 _BLOCK_VALUES = 8192
 
@@ -18,7 +20,7 @@ def _stream_key(seed: int, scoped: str, channel: str) -> npt.NDArray[np.uint64]:
     return np.asarray(np.random.SeedSequence(entropy).generate_state(2, np.uint64), dtype=np.uint64)
 
 
-class RandomStream:
+class RandomStream(InProcess):
     """Random numbers for the samples of one channel.
 
     Samples are drawn in blocks, each from its own counter. Any index can be drawn without the previous ones, while
@@ -65,9 +67,6 @@ class RandomStream:
             self._uniform_block = block
         values: Values = self._uniforms[row]
         return values
-
-    def __deepcopy__(self, memo: dict[int, object]) -> RandomStream:
-        return self
 
 
 class RandomStreams:

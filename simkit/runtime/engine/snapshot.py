@@ -6,7 +6,7 @@ import copy
 import hashlib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NoReturn, Protocol
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol
 
 import mujoco
 import numpy as np
@@ -15,7 +15,7 @@ import numpy.typing as npt
 from simkit.argument_checks import wrong_type
 from simkit.compiler.state_transfer import restore_compiled_fields
 from simkit.errors import ArgumentValueError
-from simkit.runtime.engine.engine_state import InProcess
+from simkit.in_process import InProcess
 from simkit.runtime.engine.physics_state import STALE, StepWindow
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ class Snapshot(InProcess):
         structure: structure of the world.
         owner: simulation of the snapshot.
         variant: number of changes of the world by other overrides before the snapshot.
+        pack: function that returns the snapshot for another process.
     """
 
     tick: int
@@ -55,6 +56,7 @@ class Snapshot(InProcess):
     seed: int = 0
     owner: object = None
     variant: int = 0
+    pack: Callable[[Snapshot], object] | None = None
 
     @property
     def is_complete(self) -> bool:
@@ -63,6 +65,12 @@ class Snapshot(InProcess):
 
     def __repr__(self) -> str:
         return f"<Snapshot at tick {self.tick}>" if self.is_complete else "<Snapshot of a step that has not ended>"
+
+    def __reduce__(self) -> Any:
+        if not self.is_complete or self.pack is None:
+            message = "the snapshot was requested in a step that has not ended; pickle it after that step"
+            raise ArgumentValueError(message)
+        return self.pack(self).__reduce__()
 
     def __getattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"a snapshot has no {name!r} before the end of the step in which it was requested")
@@ -100,6 +108,7 @@ class Snapshots:
 
     Attributes:
         variant: number of changes of the world by other overrides.
+        pack: function that returns a snapshot for another process; set from outside.
     """
 
     def __init__(
@@ -112,6 +121,7 @@ class Snapshots:
     ) -> None:
         self._owner, self._engine, self._parts, self._commands = owner, engine, parts, commands
         self._adopt = adopt
+        self.pack: Callable[[Snapshot], object] | None = None
         self.variant = 0
 
     def defer(self) -> tuple[Snapshot, Callable[[], None]]:
@@ -159,6 +169,7 @@ class Snapshots:
             seed=engine.streams.seed,
             owner=self._owner,
             variant=self.variant,
+            pack=self.pack,
         )
 
     def restore(self, snapshot: Snapshot, *, with_inbox: bool = True) -> None:

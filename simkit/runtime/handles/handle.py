@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 from simkit.argument_checks import check_kind
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.runtime.engine.engine_state import InProcess
+from simkit.in_process import InProcess
 
 if TYPE_CHECKING:
     from simkit.runtime.handles.entity_handles import EntityHandles

@@ -38,6 +38,10 @@ class NoisyCameraReading:
             self._colours = self._noise.on_colours(self._picture.colours, self._index)
         return self._colours
 
+    def __getstate__(self) -> dict[str, object]:
+        """Return the drawn colours; the noise belongs to the camera of a process."""
+        return {"_picture": None, "_noise": None, "_index": self._index, "_colours": self.colours}
+
 
 _WORDS = 1 << 16
 _LONGEST = 1e30  # [m] limit of the noise of a 32-bit depth

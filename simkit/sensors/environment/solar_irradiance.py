@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler import Compiled
+from simkit.in_process import InProcess
 from simkit.params import LARGEST, Params, number_or_nan
 from simkit.pose import Vector, quat_from_rpy, quat_multiply
 from simkit.runtime.handles.light import Light, LightState
@@ -149,7 +150,7 @@ def report_unused_options(params: Params, options: SolarOptions, light: Light) -
         params.diagnostics.warning("SK-SENSOR-083", message, params.block(name).where)
 
 
-class SolarView:
+class SolarView(InProcess):
     """View of a light from a point on a link.
 
     Args:
@@ -205,9 +206,6 @@ class SolarView:
         if self.options.irradiance is not None:
             return self.options.irradiance
         return STANDARD_IRRADIANCE if state.irradiance is None else state.irradiance
-
-    def __deepcopy__(self, memo: dict[int, object]) -> SolarView:
-        return self
 
 
 # ---------------------------------------------------------------------- directions

@@ -153,6 +153,13 @@ def _unpickle_message(name: str, values: dict[str, object]) -> Message:
     return message
 
 
+def __getattr__(name: str) -> type[Message]:
+    try:  # pickle looks for the generated classes here
+        return MESSAGE_CLASSES[name]
+    except KeyError:
+        raise AttributeError(name) from None
+
+
 def _is_empty(value: object) -> bool:
     return value is None or value in (0, "", b"", []) or (isinstance(value, Message) and not value.ListFields())
 
