@@ -38,9 +38,19 @@ class NoisyCameraReading:
             self._colours = self._noise.on_colours(self._picture.colours, self._index)
         return self._colours
 
-    def __getstate__(self) -> dict[str, object]:
-        """Return the drawn colours; the noise belongs to the camera of a process."""
-        return {"_picture": None, "_noise": None, "_index": self._index, "_colours": self.colours}
+    def __reduce__(self) -> tuple[object, ...]:
+        depths, true_depths = (getattr(self, name, None) for name in ("depths", "true_depths"))
+        picture = self._picture.colours
+        return DrawnReading, (self.colours if picture.size else picture, depths, true_depths)
+
+
+@dataclass(frozen=True)
+class DrawnReading:
+    """Reading whose noise is drawn already, as a pickled snapshot has it; depths are None for a plain camera."""
+
+    colours: npt.NDArray[np.uint8]
+    depths: npt.NDArray[np.float32] | None
+    true_depths: npt.NDArray[np.float32] | None
 
 
 _WORDS = 1 << 16
