@@ -182,11 +182,12 @@ def load(
         return InstanceMaker(builder, diagnostics, allowed).model_parts(model)
 
     movable = frozenset(m.name for m in world.models if m.moved_by is not None)
+
     structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
     with progress.task("loading plugins"):
         simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.control.write_sdf = _sdf_of
-    simulation.control.resolve_world = lambda overrides: resolve_world(overrides, Diagnostics())
+    simulation.control.resolve_world = resolve_world
     simulation.control.file_arguments = file_scene.arguments
     simulation.control.xacro_overrides = xacro_overrides(overrides)
     simulation._open_page = _open_page

@@ -59,14 +59,15 @@ def run(
         str | None, option("Runs whose bundles (and bags) are kept; default: 10 failed ones.", "failed|all|N")
     ] = None,
     shard: Annotated[
-        str, option("Make only part I of N, numbered from 0; other calls make the others in the same folder.", "I/N")
-    ] = "0/1",
+        str | None,
+        option("Make only part I of N, numbered from 0; other calls make the others in the same folder.", "I/N"),
+    ] = None,
     cluster: Annotated[str | None, option("Ray cluster; auto for a running one.", "ray://HOST:PORT|auto")] = None,
     cold: Annotated[bool, Option("--cold", help="Load the world again for every run.")] = False,
     optimise: Annotated[
         str | None, option("Search the parameters for the smallest (or largest) value of this metric.", "METRIC")
     ] = None,
-    trials: Annotated[int, option("Number of runs of a search.", "N", min=1)] = 100,
+    trials: Annotated[int | None, option("Number of trials of a search; default: 100.", "N", min=1)] = None,
     maximise: Annotated[bool, Option("--maximise", help="Search for the largest value.")] = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print nothing but errors.")] = False,
@@ -78,18 +79,46 @@ def run(
     from simkit.experiments.sweeps.sweep import run_sweep
     from simkit.experiments.sweeps.sweep_file import read_sweep
 
+    _check_combination(optimise=optimise, trials=trials, maximise=maximise, shard=shard, cluster=cluster, jobs=jobs)
+    part = _shard(shard or "0/1")
     spec = read_sweep(file)
     spec = replace(spec, is_warm=not cold, keep=spec.keep if keep is None else _kept(keep))
     folder = output or Path(f"{file.stem}_sweep")
     if optimise is not None:
-        return _search(spec, folder, optimise, trials, jobs, cluster, maximise=maximise, quiet=quiet)
+        return _search(spec, folder, optimise, trials or 100, jobs, cluster, maximise=maximise, quiet=quiet)
     try:
-        outcome = run_sweep(spec, folder, jobs=jobs, cluster=cluster, always_processes=True, shard=_shard(shard))
+        outcome = run_sweep(spec, folder, jobs=jobs, cluster=cluster, always_processes=True, shard=part)
     except KeyboardInterrupt:
         print_status(f"the finished runs are stored; the same command continues in {folder}")
         raise
     _print_outcome(outcome, folder, quiet=quiet)
     return 0
+
+
+def _check_combination(
+    *,
+    optimise: str | None,
+    trials: int | None,
+    maximise: bool,
+    shard: str | None,
+    cluster: str | None,
+    jobs: int | None,
+) -> None:
+    """Raise an error that lists the options which would have no effect.
+
+    Raises:
+        InputError: SK-CLI-018 an option needs or excludes another one.
+    """
+    problems = []
+    if optimise is None:
+        given = {"--trials": trials is not None, "--maximise": maximise}
+        problems += [f"{name} needs --optimise METRIC" for name, is_given in given.items() if is_given]
+    elif shard is not None:
+        problems.append("--optimise excludes --shard: a trial depends on earlier ones; use --jobs or --cluster")
+    if cluster is not None and jobs is not None:
+        problems.append("--cluster excludes --jobs: the cluster uses all of its processor cores")
+    if problems:
+        raise InputError("\n".join(f"SK-CLI-018 {one}" for one in problems), "SK-CLI-018")
 
 
 def _print_outcome(outcome: SweepOutcome, folder: Path, *, quiet: bool) -> None:

@@ -226,7 +226,10 @@ def _plan_surface(
         return None
     if has_directional_friction(old.surface) or has_directional_friction(new.surface):
         return None
-    contact = surface_numbers(compiled, new.surface)
+    found = Diagnostics()
+    contact = surface_numbers(compiled, new.surface, found)
+    if list(found):
+        return None  # a new load reports the problems
     geoms = [n for n, o in record.geoms.items() if o.scoped == new.scoped and not o.is_visual]
     model, spec = compiled.model, compiled.builder.spec
 
@@ -243,9 +246,11 @@ def _plan_surface(
     return [write]
 
 
-def surface_numbers(compiled: Compiled, surface: Surface) -> dict[str, Any]:
+def surface_numbers(compiled: Compiled, surface: Surface, diagnostics: Diagnostics | None = None) -> dict[str, Any]:
     """Return the contact properties of a rigid surface as the compiler writes them."""
-    return contact_properties(surface, float(compiled.model.opt.timestep), 0.0, Diagnostics())._asdict()
+    timestep = float(compiled.model.opt.timestep)
+    found = Diagnostics() if diagnostics is None else diagnostics  # an empty collection counts as False
+    return contact_properties(surface, timestep, 0.0, found)._asdict()
 
 
 # ---------------------------------------------------------------------- joints

@@ -19,6 +19,7 @@ from simkit.runtime.engine.physics_state import STALE
 from simkit.runtime.model_copy import present_world
 
 if TYPE_CHECKING:
+    from simkit.diagnostics import Diagnostics
     from simkit.runtime.communication.command_queue import CommandQueue
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
@@ -199,7 +200,7 @@ class WorldControl:
     """
 
     write_sdf: Callable[[SceneWorld], str] | None = None
-    resolve_world: Callable[[Sequence[str]], SceneWorld] | None = None
+    resolve_world: Callable[[Sequence[str], Diagnostics], SceneWorld] | None = None
 
     def __init__(
         self, engine: Engine, bus: TopicBus, handles: EntityHandles, advance: Advance, loaded: Callable[[], Snapshot]

@@ -12,6 +12,7 @@ import mujoco
 from simkit.compiler.name_map import NameMap
 from simkit.compiler.number_edits import plan_number_edits, replace_scenes
 from simkit.compiler.spec_builder import Compiled
+from simkit.diagnostics import Diagnostics
 from simkit.scene.differences import EntityChange, entity_changes
 from simkit.scene.overrides import Overrides, override_texts, xacro_overrides
 
@@ -46,7 +47,11 @@ def apply_overrides(sim: Simulation, overrides: Overrides, seed: int | None = No
     arguments = xacro_overrides(overrides)
     if arguments.items() - sim.control.file_arguments.items() or sim.control.xacro_overrides.keys() - arguments.keys():
         return False
-    world = sim.control.resolve_world(tuple(overrides))
+    found = Diagnostics()
+    world = sim.control.resolve_world(tuple(overrides), found)
+    is_strict = sim.run_spec is not None and sim.run_spec.options.get("strict", False)
+    if found.has_errors or (is_strict and any(item.severity == "warning" for item in found)):
+        return False  # a new load reports the problems
     changes = entity_changes(sim.control.loaded_world, world)
     if changes is None or any(_is_read(sim.engine, change) for change in changes):
         return False

@@ -14,7 +14,6 @@ from typing import Any, Protocol
 
 from simkit.experiments.sweeps.design import SweepRow
 from simkit.experiments.sweeps.row_runner import RowResult, RowRunner
-from simkit.experiments.sweeps.sweep_spec import SweepSpec
 
 
 @dataclass(frozen=True)
@@ -50,11 +49,11 @@ class SerialExecutor:
     """Executor in the present process; functions need not be importable, and a debugger works.
 
     Args:
-        spec: sweep.
+        runner: runner of the sweep, perhaps with a loaded world.
     """
 
-    def __init__(self, spec: SweepSpec) -> None:
-        self._runner = RowRunner(spec)
+    def __init__(self, runner: RowRunner) -> None:
+        self._runner = runner
 
     def stream(self, tasks: Iterable[SweepTask]) -> Iterator[RowResult]:
         """Run tasks one after another."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import inspect
 import math
 from collections.abc import Callable, Generator, Mapping
@@ -14,6 +15,7 @@ from typing import Any, Final
 from simkit.diagnostics import did_you_mean, shorten
 from simkit.errors import InputError, SimkitError
 from simkit.experiments.sweeps.sweep_spec import Metric
+from simkit.input_file import read_input
 from simkit.runtime import Simulation
 from simkit.testing.conditions.binder import bind, number_hint
 from simkit.testing.conditions.bound_expression import BoundNode, is_scalar
@@ -21,6 +23,7 @@ from simkit.testing.conditions.parser import parse
 from simkit.testing.conditions.syntax_tree import UndecidedValue, expression_error
 from simkit.testing.conditions.world_view import WorldView
 
+_LARGEST_FILE: Final = 64 << 20  # [bytes]
 METRIC_FAILED: Final = "SK-SWEEP-004"
 
 
@@ -176,17 +179,27 @@ def _no_function(text: str, reason: str) -> InputError:
     return InputError(f"SK-SWEEP-005 cannot use the function {text!r}: {reason}", "SK-SWEEP-005")
 
 
+def _content_hash(function: Callable[[Any], Any]) -> str:
+    """Return a hash of the file that a function is from; empty if it has no Python file."""
+    file = inspect.getsourcefile(inspect.unwrap(function)) if hasattr(function, "__code__") else None
+    return "" if file is None else hashlib.sha256(read_input(Path(file), _LARGEST_FILE)).hexdigest()
+
+
 class FileMetric:
     """Metric whose function is in a file; it can be sent to other processes, which read the file there.
 
     Args:
         text: `file.py:function` or `package.module:function`.
         folder: folder that relative paths start from.
+
+    Attributes:
+        content_hash: hash of the file's content, so that a stored sweep is not continued with another function.
     """
 
     def __init__(self, text: str, folder: Path) -> None:
         self.__qualname__, self._folder = text, folder
         self.function = metric_function(text, folder)
+        self.content_hash = _content_hash(self.function)
         self.__wrapped__ = self.function  # tells `inspect` whether it is a generator function
 
     def __call__(self, sim: Simulation) -> Any:

@@ -7,6 +7,7 @@ stored values are reported again, and Optuna, with the same seed, asks for the s
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,14 +20,14 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.experiments.sweeps.design import Design, SweepRow
 from simkit.experiments.sweeps.executor import Executor, SweepTask
+from simkit.experiments.sweeps.folder_lock import locked_blocks, make_folder
 from simkit.experiments.sweeps.parameter_space import ParameterSpace
-from simkit.experiments.sweeps.result_store import ResultStore
+from simkit.experiments.sweeps.result_store import OTHER_SWEEP, ResultStore
 from simkit.experiments.sweeps.result_table import write_tables
 from simkit.experiments.sweeps.sweep import (
     check_sweep,
     description_of,
     keep_runs,
-    locked_folder,
     make_executor,
 )
 from simkit.experiments.sweeps.sweep_spec import INVALID, SweepSpec, name_problems, raise_problems
@@ -72,13 +73,14 @@ def optimise_sweep(
     seeds = spec.design.seeds
     search = _Search(optuna, spec, maximise)
     store = ResultStore(folder)
-    with locked_folder(folder, (0, 1)):
-        fingerprint = f"{spec.fingerprint()} {'max' if maximise else 'min'} {metric}"
-        store.begin(fingerprint, trials * len(seeds), {**description_of(spec), "search": metric})
-        check_sweep(spec)
+    make_folder(folder)
+    fingerprint = f"{spec.fingerprint()} {'max' if maximise else 'min'} {metric}"
+    store.begin(fingerprint, trials * len(seeds), {**description_of(spec), "search": metric})
+    with locked_blocks(folder, store.blocks):
+        runner = check_sweep(spec)
         finished = {row["run"]: row for row in store.rows()}
         most = min(_TOGETHER, trials) * len(seeds)
-        with make_executor(spec, jobs, cluster, min_tasks=most, always_processes=always_processes) as executor:
+        with make_executor(spec, jobs, cluster, most, runner, always_processes=always_processes) as executor:
             with progress.task("searching", trials) as task:
                 for first in range(0, trials, _TOGETHER):
                     asked = [search.ask() for _ in range(first, min(first + _TOGETHER, trials))]
@@ -93,7 +95,7 @@ def optimise_sweep(
                         search.tell(trial, _mean(own, metric))
                         task.advance(search.best_text())
             store.close()
-            keep_runs(replace(spec, design=_stored_design(spec.design, store)), store, executor)
+            keep_runs(replace(spec, design=_stored_design(spec.design, store)), store, store.blocks, executor)
         write_tables(store)
     return search.best(metric, len(seeds))
 
@@ -119,6 +121,11 @@ def _check_search(spec: SweepSpec, metric: str) -> None:
 def _run_missing(
     executor: Executor, store: ResultStore, rows: Mapping[int, SweepRow], finished: dict[int, dict[str, Any]]
 ) -> None:
+    for run, row in rows.items():
+        if run in finished and finished[run]["values"] != json.loads(json.dumps(row.values)):
+            text = f"{OTHER_SWEEP} {store.folder} has other values of run {run} than this search proposes"
+            help_ = "install the version of Optuna that began it, or name another folder with -o"
+            raise InputError(f"{text}\n    help: {help_}", OTHER_SWEEP)
     tasks = (SweepTask(row) for run, row in rows.items() if run not in finished)
     for result in executor.stream(tasks):
         row = result.plain()

@@ -204,7 +204,7 @@ def _failed_checks(outcome: ScenarioResult) -> str:
     return "; ".join(lines or ["the run was stopped at its wall-clock limit"])[:_LONGEST_MESSAGE]
 
 
-def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> None:
+def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> tuple[RowRunner, SweepRow]:
     """Check the parameters and metrics of a sweep on its world before the first run.
 
     A parameter whose path exists but whose value is out of range in some rows is no error here: these rows fail.
@@ -212,6 +212,9 @@ def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> None:
     Args:
         spec: sweep.
         rows: some of its rows, with different values.
+
+    Returns:
+        Runner with a loaded world, and the row of this world.
 
     Raises:
         InputError: SK-SWEEP-002 a parameter cannot be set with any of the values; an expression has an error; the world
@@ -227,9 +230,11 @@ def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> None:
                 failures.append(error)
             else:
                 _check_expressions(spec, row, sim)
-                return
-    finally:
+                return runner, row
+    except BaseException:
         runner.close()
+        raise
+    runner.close()
     raise failures[0]
 
 
@@ -249,11 +254,11 @@ def _check_expressions(spec: SweepSpec, row: SweepRow, sim: Simulation) -> None:
         raise InputError("\n".join(map(str, problems)), problems[0].code)
 
 
-def parameter_problems(spec: SweepSpec, rows: Sequence[SweepRow]) -> Mapping[str, InputError]:
-    """Return the error of each parameter that no row can set, by the parameter's name."""
+def parameter_problems(spec: SweepSpec, rows: Sequence[SweepRow], names: Sequence[str]) -> Mapping[str, InputError]:
+    """Return the error of each of several parameters that no row can set, by the parameter's name."""
     scene, _ = read_scene(spec.run.source, **spec.run.source_options())
     found: dict[str, InputError] = {}
-    for name in spec.design.names:
+    for name in names:
         if name.isidentifier():
             continue
         for row in rows:

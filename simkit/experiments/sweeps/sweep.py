@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import tempfile
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,12 +17,13 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.experiments.sweeps.design import SAMPLINGS, Design, Sampling, SweepRow
 from simkit.experiments.sweeps.executor import Executor, SerialExecutor, SweepTask
+from simkit.experiments.sweeps.folder_lock import locked_blocks, make_folder
 from simkit.experiments.sweeps.parameter_space import InvalidSpace, ParameterSpace, parameter_space, plain_value
 from simkit.experiments.sweeps.process_executor import ProcessExecutor
 from simkit.experiments.sweeps.ray_executor import RayExecutor
 from simkit.experiments.sweeps.result_store import ResultStore
 from simkit.experiments.sweeps.result_table import read_parameters, read_table, write_tables
-from simkit.experiments.sweeps.row_runner import check_runs, parameter_problems
+from simkit.experiments.sweeps.row_runner import RowRunner, check_runs, parameter_problems
 from simkit.experiments.sweeps.sweep_spec import (
     INVALID,
     UNKNOWN_PARAMETER,
@@ -215,20 +216,21 @@ def run_sweep(
     """
     names = name_problems(spec)
     if names:
-        raise_problems(names + path_problems(spec, checked_rows(spec.design)))
+        raise_problems(names + path_problems(spec, checked_rows(spec.design), spec.design.names))
     store = ResultStore(folder)
     begun = time.perf_counter()
-    with locked_folder(folder, shard):
-        store.begin(spec.fingerprint(), spec.design.count, description_of(spec))
-        blocks = [block for block in store.blocks if block % shard[1] == shard[0]]
+    make_folder(folder)
+    store.begin(spec.fingerprint(), spec.design.count, description_of(spec))
+    blocks = [block for block in store.blocks if block % shard[1] == shard[0]]
+    with locked_blocks(folder, blocks):
         total = sum(len(store.runs_of(block)) for block in blocks)
         missing = sum(len(store.missing(block)) for block in blocks)
         simulated = 0.0
         if missing:
-            check_sweep(spec)
+            runner = check_sweep(spec)
             runs = (run for block in blocks for run in store.missing(block))
             tasks = (SweepTask(spec.design.row(run)) for run in runs)
-            with make_executor(spec, jobs, cluster, min_tasks=missing, always_processes=always_processes) as executor:
+            with make_executor(spec, jobs, cluster, missing, runner, always_processes=always_processes) as executor:
                 try:
                     with progress.task("running the sweep", missing) as task:
                         for result in executor.stream(tasks):
@@ -238,10 +240,10 @@ def run_sweep(
                 finally:
                     store.close()
                 if cluster is None:
-                    keep_runs(spec, store, executor)
-        if (not missing or cluster is not None) and runs_to_keep(spec, store):  # nodes cannot write to the folder
-            with make_executor(spec, jobs, None, min_tasks=missing, always_processes=True) as local:
-                keep_runs(spec, store, local)
+                    keep_runs(spec, store, blocks, executor)
+        if (not missing or cluster is not None) and runs_to_keep(spec, store, blocks):
+            with make_executor(spec, jobs, None, missing, always_processes=True) as local:  # nodes cannot write here
+                keep_runs(spec, store, blocks, local)
         tables = write_tables(store) if writes_tables and store.finished_count() == store.count else ()
         failed = sum(row["exit_code"] != 0 for row in store.rows())
     wall = time.perf_counter() - begun
@@ -271,25 +273,33 @@ def description_of(spec: SweepSpec) -> dict[str, Any]:
     }
 
 
-def check_sweep(spec: SweepSpec) -> None:
+def check_sweep(spec: SweepSpec) -> RowRunner:
     """Check parameters, conditions and metrics on the world, so that a mistake does not fail every run.
+
+    Returns:
+        Runner with a loaded world, so that a sweep in this process does not read the world again.
 
     Raises:
         InputError: all problems; see `check_runs`.
     """
     rows = checked_rows(spec.design)
     with progress.task("checking the sweep"):
-        raise_problems(path_problems(spec, rows))
-        check_runs(spec, rows)
+        try:
+            runner, loaded = check_runs(spec, rows)
+        except InputError:
+            raise_problems(path_problems(spec, rows, spec.design.names))
+            raise
+        raise_problems(path_problems(spec, rows, [name for name in spec.design.names if name not in loaded.values]))
+    return runner
 
 
-def path_problems(spec: SweepSpec, rows: Sequence[SweepRow]) -> list[str]:
-    """Return a message for each parameter that no row can set."""
-    if spec.run.spawn or spec.run.overrides or spec.run.change_world is not None:
+def path_problems(spec: SweepSpec, rows: Sequence[SweepRow], names: Sequence[str]) -> list[str]:
+    """Return a message for each of several parameters that no row can set."""
+    if not names or spec.run.spawn or spec.run.overrides or spec.run.change_world is not None:
         return []  # the world's file alone does not have all entities; the first run shows the problem
     return [
         f"{UNKNOWN_PARAMETER} the parameter {name!r} cannot be set: {str(error).partition(': ')[2]}"
-        for name, error in parameter_problems(spec, rows).items()
+        for name, error in parameter_problems(spec, rows, names).items()
     ]
 
 
@@ -301,10 +311,18 @@ def checked_rows(design: Design) -> list[SweepRow]:
 
 
 def make_executor(
-    spec: SweepSpec, jobs: int | None, cluster: str | None, *, min_tasks: int, always_processes: bool
+    spec: SweepSpec,
+    jobs: int | None,
+    cluster: str | None,
+    min_tasks: int,
+    runner: RowRunner | None = None,
+    *,
+    always_processes: bool,
 ) -> Executor:
-    """Return the executor for a number of processes or a cluster."""
+    """Return the executor for a number of processes or a cluster; only that of the present process uses a runner."""
     if cluster is not None:
+        if runner is not None:
+            runner.close()
         return RayExecutor(spec, cluster)
     if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
         raise InputError(f"{INVALID} jobs: found {jobs!r}; expected a whole number of at least 1", INVALID)
@@ -312,46 +330,28 @@ def make_executor(
         jobs = usable_cores()
     jobs = min(jobs, min_tasks)
     if jobs == 1 and not always_processes:
-        return SerialExecutor(spec)
+        return SerialExecutor(runner or RowRunner(spec))
+    if runner is not None:
+        runner.close()
     return ProcessExecutor(spec, jobs)
 
 
-def runs_to_keep(spec: SweepSpec, store: ResultStore) -> list[int]:
-    """Return the numbers of the runs whose bundles are kept and not written yet."""
+def runs_to_keep(spec: SweepSpec, store: ResultStore, blocks: Iterable[int]) -> list[int]:
+    """Return the numbers of the runs in some blocks whose bundles are kept and not written yet."""
     folder = store.folder.absolute() / "runs"
-    chosen = [row["run"] for row in store.rows() if spec.keep == "all" or row["exit_code"]]
+    rows = (row for block in blocks for row in store.block_rows(block))
+    chosen = [row["run"] for row in rows if spec.keep == "all" or row["exit_code"]]
     if isinstance(spec.keep, int):
         chosen = chosen[: spec.keep]
     return [run for run in chosen if not (folder / f"{run:06d}.zip").exists()]
 
 
-def keep_runs(spec: SweepSpec, store: ResultStore, executor: Executor) -> None:
-    """Repeat the runs whose bundles are kept, and write their bundles and bags into the folder `runs`."""
-    folder, chosen = store.folder.absolute() / "runs", runs_to_keep(spec, store)
+def keep_runs(spec: SweepSpec, store: ResultStore, blocks: Iterable[int], executor: Executor) -> None:
+    """Repeat the runs of some blocks whose bundles are kept, and write them with their bags into the folder `runs`."""
+    folder, chosen = store.folder.absolute() / "runs", runs_to_keep(spec, store, blocks)
     if not chosen:
         return
     folder.mkdir(exist_ok=True)
     with progress.task("keeping runs", len(chosen)) as task:
         for result in executor.stream(SweepTask(spec.design.row(run), folder / f"{run:06d}.zip") for run in chosen):
             task.advance(f"run {result.row.run}")
-
-
-@contextmanager
-def locked_folder(folder: Path, shard: tuple[int, int]) -> Iterator[None]:
-    """Allow one process at a time to write a part of a sweep; the system releases the lock of a killed process."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        file = (folder / f".lock-{shard[0]}-{shard[1]}").open("w")
-    except OSError as error:
-        raise InputError(f"SK-CLI-016 cannot write to {folder}: {error.strerror or error}", "SK-CLI-016") from None
-    with file:
-        try:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except ImportError:
-            pass
-        except OSError:
-            text = f"SK-SWEEP-010 another process runs the sweep in {folder}"
-            raise InputError(f"{text}\n    help: wait for its end, or name another folder", "SK-SWEEP-010") from None
-        yield

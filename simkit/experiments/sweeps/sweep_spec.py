@@ -9,6 +9,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
+from types import CodeType, FunctionType, MethodType
 from typing import Any, Final, Literal, cast
 
 from simkit.errors import InputError
@@ -178,8 +179,48 @@ def plain_description(value: Any) -> Any:
         return str(value)
     if isinstance(value, functools.partial):
         return [plain_description(part) for part in (value.func, value.args, value.keywords)]
+    if hasattr(value, "tolist"):  # an array or a number of NumPy
+        return value.tolist()
+    if isinstance(value, MethodType):
+        return [plain_description(value.__func__), plain_description(value.__self__)]
     name = getattr(value, "__qualname__", None)
-    return f"{value.__module__}.{name}" if name else f"a {type(value).__qualname__}"
+    if isinstance(value, FunctionType):
+        cells = [_cell_content(cell) for cell in value.__closure__ or ()]
+        own = _code_hash(value.__code__), plain_description([value.__defaults__, *cells])
+        return [f"{value.__module__}.{name}", *own]
+    if name:
+        return f"{value.__module__}.{name} {getattr(value, 'content_hash', '')}".strip()
+    return _object_description(value)
+
+
+def _object_description(value: Any) -> Any:
+    """Return the class of an object with the code of its methods, and its attributes; MuJoCo's objects have none."""
+    kind = type(value)
+    methods = [_code_hash(one.__code__) for _, one in sorted(vars(kind).items()) if isinstance(one, FunctionType)]
+    attributes = {name: one for name, one in getattr(value, "__dict__", {}).items() if not name.startswith("__")}
+    if kind.__module__.startswith("simkit."):
+        methods = []
+    try:
+        return [f"a {kind.__module__}.{kind.__qualname__}", methods, plain_description(attributes)]
+    except RecursionError:  # objects that refer to each other
+        return [f"a {kind.__module__}.{kind.__qualname__}", methods]
+
+
+def _constant_text(value: object) -> str:
+    return repr(sorted(map(repr, value))) if isinstance(value, frozenset) else repr(value)
+
+
+def _cell_content(cell: Any) -> Any:
+    try:
+        return None if isinstance(cell.cell_contents, FunctionType) else cell.cell_contents
+    except ValueError:  # a variable without a value
+        return None
+
+
+def _code_hash(code: CodeType) -> str:
+    """Return a hash of a function's code that does not depend on its file and lines."""
+    inner = [_code_hash(one) if isinstance(one, CodeType) else _constant_text(one) for one in code.co_consts]
+    return hashlib.sha256(repr((code.co_code, inner, code.co_names)).encode()).hexdigest()[:16]
 
 
 def _world_hash(run: RunSpec) -> str:

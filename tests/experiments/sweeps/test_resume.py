@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections import Counter
 from contextlib import suppress
 from pathlib import Path
@@ -31,11 +30,12 @@ def prepare(folder: Path, count: int) -> None:
     (folder / "sweep.yaml").write_text(SWEEP.replace("COUNT", str(count)), encoding="utf-8")
 
 
-def start(folder: Path, output: str, jobs: int) -> subprocess.Popen[bytes]:
+def start(folder: Path, output: str, jobs: int, kill_size: int = sys.maxsize) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "simkit", "sweep", "sweep.yaml", "-o", output, "--jobs", str(jobs)]
     environment = {
         **os.environ,
         "SWEEP_TEST_LOG": str(folder / f"{output}.log"),
+        "SWEEP_TEST_KILL_SIZE": str(kill_size),
         "PYTHONPATH": os.pathsep.join(sys.path),
     }
     return subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -56,13 +56,13 @@ def check_killed_sweep(folder: Path, count: int, kills: int) -> None:
     output, _ = whole.communicate()
     assert whole.returncode == 0, output
     for kill in range(kills):
-        process = start(folder, "killed", 1 + kill % 2)
-        target = (kill + 1) * count // (kills + 2)
-        while finished_rows(folder / "killed") < target and process.poll() is None:
-            time.sleep(0.005)
-        process.send_signal(signal.SIGKILL)
+        whole_log = (
+            (folder / "whole.log").stat().st_size
+        )  # the number of runs that are begun decides the time of the kill
+        process = start(folder, "killed", 1 + kill % 2, (kill + 1) * whole_log // (kills + 2))
         process.communicate()
-        assert count > finished_rows(folder / "killed") >= target
+        assert process.returncode == -signal.SIGKILL
+        assert finished_rows(folder / "killed") < count
     stored = finished_rows(folder / "killed")
     last = start(folder, "killed", 2)
     output, _ = last.communicate()
