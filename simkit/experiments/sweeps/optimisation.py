@@ -121,8 +121,8 @@ def _check_search(spec: SweepSpec, metric: str) -> None:
 def _run_missing(
     executor: Executor, store: ResultStore, rows: Mapping[int, SweepRow], finished: dict[int, dict[str, Any]]
 ) -> None:
-    for run, row in rows.items():
-        if run in finished and finished[run]["values"] != json.loads(json.dumps(row.values)):
+    for run, proposed in rows.items():
+        if run in finished and finished[run]["values"] != json.loads(json.dumps(proposed.values)):
             text = f"{OTHER_SWEEP} {store.folder} has other values of run {run} than this search proposes"
             help_ = "install the version of Optuna that began it, or name another folder with -o"
             raise InputError(f"{text}\n    help: {help_}", OTHER_SWEEP)

@@ -186,8 +186,8 @@ def plain_description(value: Any) -> Any:
     name = getattr(value, "__qualname__", None)
     if isinstance(value, FunctionType):
         cells = [_cell_content(cell) for cell in value.__closure__ or ()]
-        own = _code_hash(value.__code__), plain_description([value.__defaults__, *cells])
-        return [f"{value.__module__}.{name}", *own]
+        bound = plain_description([value.__defaults__, *cells])
+        return [f"{value.__module__}.{name}", _code_hash(value.__code__), bound]
     if name:
         return f"{value.__module__}.{name} {getattr(value, 'content_hash', '')}".strip()
     return _object_description(value)
