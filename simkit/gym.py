@@ -13,7 +13,7 @@ import importlib.util
 from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError
-from simkit.experiments.environments.specification import EnvironmentSpec, JointVelocities, Observation
+from simkit.experiments.environments.specification import Batched, EnvironmentSpec, JointVelocities, Observation
 from simkit.run_spec import FilePath, RunSpec
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from simkit.experiments.environments.environment import SimulationEnv
 
-__all__ = ["EnvironmentSpec", "JointVelocities", "Observation", "SimulationEnv", "make", "make_vec"]
+__all__ = ["Batched", "EnvironmentSpec", "JointVelocities", "Observation", "SimulationEnv", "make", "make_vec"]
 
 
 def make(world: FilePath | RunSpec, **options: Any) -> SimulationEnv:
@@ -44,17 +44,29 @@ def make(world: FilePath | RunSpec, **options: Any) -> SimulationEnv:
 
 
 def make_vec(
-    world: FilePath | RunSpec, *, num_envs: int, processes: bool = True, autoreset: Any = "next_step", **options: Any
+    world: FilePath | RunSpec,
+    *,
+    num_envs: int,
+    batch: bool | None = None,
+    processes: bool | None = None,
+    autoreset: Any = "next_step",
+    threads: int = 0,
+    **options: Any,
 ) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
     """Return several environments of a world that step together.
 
-    Environment k has the results of `make` with the seed of the specification plus k.
+    Environment k has the results of `make` with the seed of the specification plus k. `docs/learning.md` lists the
+    parts of worlds and specifications that MuJoCo's batch can step, all environments in one call. If another part
+    occurs, each environment has a process, and the attribute `not_batched` says why.
 
     Args:
         world: world, run specification or registered id.
         num_envs: number of environments.
-        processes: run each environment in a process of its own, with shared memory for observations.
+        batch: True for a batch or an error; False for no batch; None for a batch where the parts allow it.
+        processes: True runs each environment in a process of its own, with shared memory for observations. False runs
+            all of them in the present process, one after another. None for a batch, or else processes.
         autoreset: start of the next episode: "next_step", "same_step" or "disabled", as Gymnasium defines these words.
+        threads: number of threads of a batch; 0 for all processors.
         options: options of `make`.
 
     Raises:
@@ -63,7 +75,9 @@ def make_vec(
     _check_gymnasium("simkit.gym.make_vec")
     from simkit.experiments.environments.make import make_vector_env
 
-    return make_vector_env(world, num_envs, processes=processes, autoreset=autoreset, **options)
+    return make_vector_env(
+        world, num_envs, batch=batch, processes=processes, autoreset=autoreset, threads=threads, **options
+    )
 
 
 def _check_gymnasium(user: str) -> None:

@@ -78,10 +78,11 @@ def _joint_states_packer(names: tuple[str, ...]) -> Callable[..., bytes]:
     return CdrTemplate(message, ("header.stamp.sec", "header.stamp.nanosec", *fields)).packer()
 
 
-class _JointStates(ModelPlugin):
+class JointStates(ModelPlugin):
     """Base class of plugins that publish joint states after a step; a subclass chooses the joints and the topic."""
 
     _joints: list[str]
+    _handles: list[Joint]
     _topic: str
 
     def load(self, parent: Model, params: Params) -> None:
@@ -102,7 +103,7 @@ class GazeboRosJointStatePublisherOptions(Options):
     update_rate: float = number(100.0, "Hz", minimum=0.0)
 
 
-class GazeboRosJointStatePublisher(_JointStates):
+class GazeboRosJointStatePublisher(JointStates):
     """Publishes the states of the listed joints, in that order, on `joint_states` (Gazebo Classic).
 
     ROS 1 lists the joints in `<jointName>`, separated by commas.
@@ -131,7 +132,7 @@ class JointStatePublisherOptions(Options):
     update_rate: float = number(0.0, "Hz", minimum=0)
 
 
-class JointStatePublisher(_JointStates):
+class JointStatePublisher(JointStates):
     """Publishes the states of the listed joints, or of all joints of the model (gz).
 
     The topic is `/world/<world>/model/<model>/joint_state`.

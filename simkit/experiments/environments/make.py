@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from functools import partial
@@ -10,6 +11,8 @@ from typing import Any, Final, Literal
 import gymnasium
 
 from simkit.diagnostics import did_you_mean
+from simkit.experiments.environments.array_bindings import CannotBatchError
+from simkit.experiments.environments.batch_environment import BatchVectorEnv
 from simkit.experiments.environments.environment import SimulationEnv
 from simkit.experiments.environments.specification import EnvironmentSpec, invalid
 from simkit.experiments.environments.tiago_tasks import pick_spec, reach_spec
@@ -25,6 +28,8 @@ IDS: Final[Mapping[str, Callable[[], EnvironmentSpec]]] = {
     "simkit/TiagoPick-v0": pick_spec,
 }
 """Functions of the registered environments by id."""
+
+_LOG: Final = logging.getLogger("simkit.gym")
 
 Autoreset = Literal["next_step", "same_step", "disabled"]
 _FIELDS: Final = tuple(one.name for one in fields(EnvironmentSpec) if one.name != "run")
@@ -72,25 +77,43 @@ def make_vector_env(
     world: FilePath | RunSpec,
     num_envs: int,
     *,
-    processes: bool = True,
+    batch: bool | None = None,
+    processes: bool | None = None,
     autoreset: Autoreset = "next_step",
+    threads: int = 0,
     **changes: Any,
 ) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
     """Return several environments that step together; see `simkit.gym.make_vec`."""
-    if not isinstance(num_envs, int) or num_envs < 1:
+    if isinstance(num_envs, bool) or not isinstance(num_envs, int) or num_envs < 1:
         raise invalid(f"num_envs: found {num_envs!r}; expected a whole number of at least 1")
+    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 0:
+        raise invalid(f"threads: found {threads!r}; expected a whole number of at least 0")
+    if batch and processes is not None:
+        raise invalid("batch=True and processes exclude each other")
     modes = {mode.name.lower(): mode for mode in gymnasium.vector.AutoresetMode}
     if autoreset not in modes:
         raise invalid(f"autoreset: found {autoreset!r}; expected one of {', '.join(modes)}")
     options = {name: changes.pop(name) for name in ("render_mode", "size") if name in changes}
-    spec = environment_spec(world, changes)
+    spec, reason = environment_spec(world, changes), ""
+    if batch or (batch is None and processes is None):
+        try:
+            return BatchVectorEnv(spec, num_envs, modes[autoreset], options.get("render_mode"), threads)
+        except CannotBatchError as error:
+            reason = str(error)
+            if batch:
+                raise invalid(f"the environments cannot step as a batch: {reason}", "leave out batch=True") from None
+            _LOG.info("make_vec uses a process for each environment: %s", reason)
     makers = [
         partial(SimulationEnv, replace(spec, run=replace(spec.run, seed=spec.run.seed + number)), **options)
         for number in range(num_envs)
     ]
-    if processes:
-        return gymnasium.vector.AsyncVectorEnv(makers, shared_memory=True, autoreset_mode=modes[autoreset])
-    return gymnasium.vector.SyncVectorEnv(makers, autoreset_mode=modes[autoreset])
+    vector: Any
+    if processes is None or processes:
+        vector = gymnasium.vector.AsyncVectorEnv(makers, shared_memory=True, autoreset_mode=modes[autoreset])
+    else:
+        vector = gymnasium.vector.SyncVectorEnv(makers, autoreset_mode=modes[autoreset])
+    vector.not_batched = reason
+    return vector  # type: ignore[no-any-return]
 
 
 def register_ids() -> None:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from simkit.experiments.environments.array_view import ArrayView
     from simkit.runtime import Simulation
     from simkit.testing.conditions.world_view import WorldView
 
@@ -55,6 +56,22 @@ class Environment(Protocol):
 
     def with_variables(self, text: str) -> str:
         """Return a text in which each `{name}` of a variable is replaced by its value."""
+
+
+@dataclass(frozen=True)
+class Batched:
+    """Function of one environment, with the same function of all environments of a batch.
+
+    Attributes:
+        of_one: function of an environment.
+        of_all: function of an `ArrayView`, whose arrays have the environment as their first axis.
+    """
+
+    of_one: Callable[[Environment], Any]
+    of_all: Callable[[ArrayView], Any]
+
+    def __call__(self, env: Environment) -> Any:
+        return self.of_one(env)
 
 
 Value = str | float | bool | Callable[[Environment], Any]

@@ -10,16 +10,21 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from simkit.experiments.environments.specification import Environment, EnvironmentSpec, Observation
+from simkit.experiments.environments.specification import Batched, Environment, EnvironmentSpec, Observation
 from simkit.pose import Pose
 from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from simkit.experiments.environments.array_view import ArrayView
+
     Point = tuple[float, float]
 
 ROBOT: Final = "turtlebot3"
+FAST_CONTACTS: Final = ("physics.contact_law=mujoco",)
+"""Override for MuJoCo's own contacts, which all environments of a batch can compute in one call."""
+
 GOAL_RADIUS: Final = 0.25  # [m]
 SECTORS: Final = 36
 FARTHEST: Final = 6.0  # [m]; upper limit of the observed distance
@@ -45,28 +50,28 @@ _MAZE: Final = (
 
 def goal_spec() -> EnvironmentSpec:
     """Return the environment `simkit/TurtleBot3Goal-v0`."""
-    return _spec(RunSpec("turtlebot3_world"), _place_among_pillars, 40.0)
+    return _spec(RunSpec("turtlebot3_world", overrides=FAST_CONTACTS), _place_among_pillars, 40.0)
 
 
 def maze_spec() -> EnvironmentSpec:
     """Return the environment `simkit/TurtleBot3Maze-v0`."""
-    return _spec(RunSpec(maze_world(), name="turtlebot3_maze"), _place_in_maze, 90.0)
+    return _spec(RunSpec(maze_world(), name="turtlebot3_maze", overrides=FAST_CONTACTS), _place_in_maze, 90.0)
 
 
 def _spec(run: RunSpec, on_reset: Callable[[Environment], None], time_limit: float) -> EnvironmentSpec:
     farthest = FARTHEST
     observation = {
         "scan": Observation("/scan", sectors=SECTORS),
-        "goal": Observation(observe_goal, low=(0.0, -1.0, -1.0), high=(farthest, 1.0, 1.0)),
-        "velocity": Observation(_observe_velocity, low=(-1.0, -4.0), high=(1.0, 4.0)),
+        "goal": Observation(Batched(observe_goal, _observe_goals), low=(0.0, -1.0, -1.0), high=(farthest, 1.0, 1.0)),
+        "velocity": Observation(Batched(_observe_velocity, _observe_velocities), low=(-1.0, -4.0), high=(1.0, 4.0)),
     }
     return EnvironmentSpec(
         run,
         observation,
         {"/cmd_vel": {"linear.x": (0.0, 0.26), "angular.z": (-1.5, 1.5)}},
-        reward=_reward,
-        terminated=lambda env: env.memory["reached"] or env.memory["collided"],
-        success=lambda env: env.memory["reached"],
+        reward=Batched(_reward, _rewards),
+        terminated=Batched(_has_ended, _have_ended),
+        success=Batched(_has_reached, _has_reached),
         on_reset=on_reset,
         control_period=0.1,
         time_limit=time_limit,
@@ -108,6 +113,42 @@ def _reward(env: Environment) -> float:
     memory["reached"] = distance < GOAL_RADIUS
     memory["collided"] = bool(memory["touches"]())
     return float(4.0 * approach - 0.01 + 10.0 * memory["reached"] - 10.0 * memory["collided"])
+
+
+def _has_reached(env: Environment | ArrayView) -> Any:
+    return env.memory["reached"]
+
+
+def _has_ended(env: Environment) -> bool:
+    return bool(env.memory["reached"] or env.memory["collided"])
+
+
+# ---------------------------------------------------------------------- the same for all environments of a batch
+
+
+def _observe_goals(view: ArrayView) -> Any:
+    x, y = (view.memory["goal"] - view.position(ROBOT)[:, :2]).T
+    bearing = np.arctan2(y, x) - view.yaw(ROBOT)
+    return np.stack((np.minimum(np.hypot(x, y), FARTHEST), np.cos(bearing), np.sin(bearing)), axis=1)
+
+
+def _observe_velocities(view: ArrayView) -> Any:
+    link = f"{ROBOT}::base_footprint"
+    yaw, velocity = view.yaw(link), view.linear_velocity(link)
+    forward = velocity[:, 0] * np.cos(yaw) + velocity[:, 1] * np.sin(yaw)
+    return np.stack((forward, view.angular_velocity(link)[:, 2]), axis=1)
+
+
+def _rewards(view: ArrayView) -> Any:
+    memory = view.memory
+    distance = np.hypot(*(view.position(ROBOT)[:, :2] - memory["goal"]).T)
+    approach, memory["distance"] = memory["distance"] - distance, distance
+    memory["reached"], memory["collided"] = distance < GOAL_RADIUS, view.contact(ROBOT)
+    return 4.0 * approach - 0.01 + 10.0 * memory["reached"] - 10.0 * memory["collided"]
+
+
+def _have_ended(view: ArrayView) -> Any:
+    return view.memory["reached"] | view.memory["collided"]
 
 
 # ---------------------------------------------------------------------- starts and goals

@@ -78,7 +78,7 @@ class TriangleScene:
         """Find the first triangle on each ray.
 
         Args:
-            origin: origin of the rays [m], shape (3,).
+            origin: common origin of the rays [m], shape (3,), or the origin of each, shape (n, 3).
             directions: unit vectors, shape (n, 3).
             start: distance from the origin at which the rays start [m].
             limit: distance beyond which hits may be omitted [m], shape (n,).
@@ -103,12 +103,17 @@ class TriangleScene:
         hit_directions = directions.take(hits, 0)
         normals = planes[:, :3]
         slope = np.einsum("ij,ij->i", normals, hit_directions)
-        height = planes[:, 3] - np.einsum("ij,j->i", normals, local_origin)
+        if local_origin.ndim == 1:
+            height = planes[:, 3] - np.einsum("ij,j->i", normals, local_origin)
+        else:
+            local_origin = local_origin.take(hits, 0)
+            height = planes[:, 3] - np.einsum("ij,ij->i", normals, local_origin)
         with np.errstate(divide="ignore", invalid="ignore"):
             distances = height / slope
         flat = np.flatnonzero(np.abs(slope) < _FLAT)
         if len(flat):
-            distances[flat] = self._clamp_grazing(distances[flat], local_origin, hit_directions[flat], triangles[flat])
+            at = local_origin if local_origin.ndim == 1 else local_origin[flat, None]
+            distances[flat] = self._clamp_grazing(distances[flat], at, hit_directions[flat], triangles[flat])
         np.maximum(distances, start, out=distances)
         return hits, distances, triangles
 

@@ -43,7 +43,7 @@ class ContactQuery:
         self._bind()
         data = self._sim.engine.physics.fresh()
         sleepers = self._sleepers(data)
-        return self._at_rest(len(sleepers)) if sleepers else self._among(data)
+        return self._at_rest(len(sleepers)) if sleepers else self.among(data)
 
     def force(self) -> float:
         """Return the sum of the normal forces [N]."""
@@ -53,7 +53,7 @@ class ContactQuery:
         physics = self._sim.engine.physics
         data = physics.data_of(physics.hold()) if self._sleepers(physics.fresh()) else physics.fresh()
         wrench, total = np.empty(6), 0.0
-        for number, _, _ in self._among(data):
+        for number, _, _ in self.among(data):
             mujoco.mj_contactForce(physics.model, data, number, wrench)
             total += float(wrench[0])
         return total
@@ -67,6 +67,11 @@ class ContactQuery:
             pairs[f"{one} touches {two}"] = None
         listed = list(pairs)
         return ", ".join(listed[:3]) + (f" and {len(listed) - 3} more" if len(listed) > 3 else "")
+
+    def masks(self) -> tuple[list[bool], list[bool]]:
+        """Return which geoms belong to the first and to the second entity; the last item is for no geom."""
+        self._bind()
+        return self._mine, self._others
 
     # ------------------------------------------------------------------ selection
 
@@ -96,7 +101,8 @@ class ContactQuery:
         trees = np.unique(model.body_treeid[model.geom_bodyid[np.flatnonzero(geoms)]])
         return [int(tree) for tree in trees if tree >= 0]
 
-    def _among(self, data: Any) -> tuple[tuple[int, int, int], ...]:
+    def among(self, data: Any) -> tuple[tuple[int, int, int], ...]:
+        """Return the contacts of data of the present model, as `now` does."""
         if not data.ncon:
             return ()
         contact = data.contact
@@ -145,7 +151,7 @@ class ContactQuery:
         sim = self._sim
         is_all = sleepers == len(self._trees)
         if not (is_all and sim.tick - 1 <= self._asleep_at <= sim.tick):
-            self._asleep = self._among(sim.engine.physics.data_of(sim.engine.physics.hold()))
+            self._asleep = self.among(sim.engine.physics.data_of(sim.engine.physics.hold()))
         self._asleep_at = sim.tick if is_all else -1
         return self._asleep
 

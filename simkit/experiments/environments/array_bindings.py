@@ -1,0 +1,337 @@
+"""Observations and actions of a batch, and the reasons why a world cannot be stepped as a batch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.experiments.environments.array_view import ArrayView
+from simkit.experiments.environments.drive_arrays import DiffDriveArrays
+from simkit.experiments.environments.sensor_arrays import ImuArrays, ScanArrays, sensor_obstacle
+from simkit.experiments.environments.specification import Batched, Observation
+from simkit.msgs.topic_names import absolute_name
+from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive
+from simkit.plugins.joint_states import JointStates
+from simkit.runtime import Simulation
+from simkit.sensors.inertial.imu import Imu
+
+if TYPE_CHECKING:
+    from simkit.experiments.environments.environment import SimulationEnv
+    from simkit.experiments.environments.specification import EnvironmentSpec, Value
+
+Floats = npt.NDArray[np.float64]
+Ids = npt.NDArray[np.intp]
+Read = Callable[[Ids], Any]
+
+PUBLISHERS: Final = frozenset(
+    [
+        "ClassicServices",
+        "ClockPublisher",
+        "GazeboRosCamera",
+        "GazeboRosImuSensor",
+        "GazeboRosJointStatePublisher",
+        "GazeboRosP3D",
+        "GazeboRosRaySensor",
+        "JointStatePublisher",
+        "OdometryPublisher",
+        "PosePublisher",
+        "SimulationInterfaces",
+        "SolarSensor",
+        "StaticTransforms",
+        "WorldServices",
+        "WorldStats",
+    ]
+)
+"""Classes of plugins that only publish, or only wait for requests."""
+
+_TWISTS: Final = frozenset(("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"))
+_HOOKS: Final = ("before_step", "after_step")
+
+
+class CannotBatchError(Exception):
+    """Reason why a part of an environment cannot be computed as arrays."""
+
+
+# ---------------------------------------------------------------------- the world
+
+
+def world_obstacles(sim: Simulation) -> list[str]:
+    """Return why the steps of a world cannot be made in one call for all environments; empty if they can."""
+    physics, found = sim.engine.physics, []
+    if physics.law._is_on or physics.fast_bodies._can_be_fast or physics.free_motion is not None:
+        found.append(
+            "simkit's contact law needs Python at each step; overrides=['physics.contact_law=mujoco'] selects MuJoCo's"
+        )
+    if physics.shaper is not None:
+        found.append("contacts with directional friction, slip or a moving surface")
+    if physics.sleep.watches or physics.sleep.counts:
+        found.append("bodies that may sleep")
+    if physics.persistent_wrenches.any():
+        found.append("persistent wrenches")
+    for plugin in sim.engine.structure.all_plugins():
+        name = type(plugin).__name__
+        if isinstance(plugin, GazeboRosDiffDrive):
+            obstacle = DiffDriveArrays.obstacle(plugin)
+            if obstacle:
+                found.append(f"{obstacle} of plugin {name}")
+        elif not (name in PUBLISHERS and type(plugin).__module__.startswith("simkit.plugins.")):
+            acts = (
+                any(map(plugin.has_hook, _HOOKS))
+                or hasattr(plugin, "move_scenery")
+                or getattr(plugin, "is_gz_system", False)
+            )
+            if acts or not type(plugin).__module__.startswith("simkit."):
+                found.append(f"plugin {name}")
+    return found
+
+
+def spec_obstacles(spec: EnvironmentSpec, render_mode: str | None) -> list[str]:
+    """Return which options of an environment need separate environments; empty if none does."""
+    found = []
+    if render_mode is not None:
+        found.append("render_mode")
+    if not spec.sync:
+        found.append("sync=False")
+    return found
+
+
+# ---------------------------------------------------------------------- values of functions
+
+
+def array_value(value: Value | None, view: ArrayView, name: str) -> Callable[[], Any]:
+    """Return the function that returns a reward or an end of all environments."""
+    if isinstance(value, Batched):
+        return lambda: value.of_all(view)
+    if isinstance(value, (bool, int, float)) or value is None:
+        return lambda: np.full(view.count, value or 0.0)
+    what = f"the expression {value!r}" if isinstance(value, str) else "a Python function of one environment"
+    raise CannotBatchError(f"{name} is {what}; simkit.gym.Batched has a function for arrays")
+
+
+# ---------------------------------------------------------------------- observations
+
+
+class SampledRows:
+    """Values that a plugin samples at its own rate, in all environments.
+
+    Args:
+        read: function that returns the present values of some environments.
+        grid: ticks at which the plugin samples; None for every step.
+        bound: observation of the environment that resets all others.
+        count: number of environments.
+    """
+
+    def __init__(self, read: Callable[[Ids], Floats], grid: Any, bound: Any, count: int) -> None:
+        self._read, self.grid, self._bound = read, grid, bound
+        self.values = np.zeros((count, *np.shape(bound._read())))
+
+    def take(self, row: int) -> None:
+        self.values[row] = self._bound._read()
+
+    def sample(self, ids: Ids) -> None:
+        self.values[ids] = self._read(ids)
+
+
+class ObservationArrays:
+    """One observation of all environments.
+
+    Args:
+        bound: observation of the environment that resets all others.
+        read: function that returns the values before they are limited to the space.
+    """
+
+    def __init__(self, bound: Any, read: Read) -> None:
+        self._bound, self._read = bound, read
+
+    def values(self, ids: Ids) -> npt.NDArray[Any]:
+        """Return the present values of all environments within the space."""
+        found, bound = np.asarray(self._read(ids)), self._bound
+        if bound._given.sectors is not None:
+            count = bound._given.sectors
+            found = np.minimum.reduceat(found, np.arange(count) * found.shape[1] // count, axis=1)
+        with np.errstate(invalid="ignore"):
+            values: npt.NDArray[Any] = found.astype(bound.space.dtype).reshape(-1, *bound.space.shape)
+        if bound._limits is not None:
+            np.maximum(values, bound._limits[0], out=values)
+            np.minimum(values, bound._limits[1], out=values)
+        return values
+
+
+class Sources:
+    """Sources of observations as arrays.
+
+    Attributes:
+        sensors: sensors with their samples.
+        sampled: values that plugins sample at their own rates.
+        needs_acceleration: True if a source reads accelerations.
+    """
+
+    def __init__(self, env: SimulationEnv, view: ArrayView, batch: Any, drives: list[DiffDriveArrays]) -> None:
+        self._env, self._view, self._batch, self._drives = env, view, batch, drives
+        self.sensors: list[ScanArrays | ImuArrays] = []
+        self.sampled: list[SampledRows] = []
+        self.needs_acceleration = False
+
+    def bind(self, given: Observation, bound: Any) -> Read:
+        """Return the function that reads a source in all environments.
+
+        Raises:
+            CannotBatchError: the source needs Python for each environment.
+        """
+        source, view, sim = given.source, self._view, self._env.sim
+        if isinstance(source, Batched):
+            return lambda _: source.of_all(view)
+        if not isinstance(source, str):
+            raise CannotBatchError("a Python function of one environment; simkit.gym.Batched has one for arrays")
+        tables = sim.contents.handles.tables
+        if source in tables["sensor"]:
+            return self._sensor(tables["sensor"][source], given)
+        if source in tables["joint"]:
+            joint = tables["joint"][source]
+            if joint.dof != 1:
+                raise CannotBatchError(f"joint {source!r} has {joint.dof} degrees of freedom")
+            return lambda _: np.stack((view.joint_position(source), view.joint_velocity(source)), axis=1)
+        if source in tables["model"] or source in tables["link"]:
+            return self._pose(source)
+        if source.startswith("/") and " " not in source:
+            return self._topic(absolute_name(source), given, bound)
+        raise CannotBatchError(f"the expression {source!r}; simkit.gym.Batched has a function for arrays")
+
+    def _pose(self, name: str) -> Read:
+        view = self._view
+        try:
+            view.place(name)
+        except (KeyError, AttributeError):
+            raise CannotBatchError(f"the pose of the static model {name!r}") from None
+        return lambda _: np.hstack((view.position(name), view.quaternion(name)))
+
+    def _sensor(self, sensor: Any, given: Observation) -> Read:
+        obstacle = sensor_obstacle(sensor)
+        product = next(iter(sensor._topics))
+        if not obstacle and product not in ("scan", "imu"):
+            obstacle = f"message {product!r} of sensor {sensor.scoped!r}"
+        if obstacle:
+            raise CannotBatchError(obstacle)
+        if isinstance(sensor, Imu):
+            self.needs_acceleration = True
+            imu = ImuArrays(sensor, self._view, self._batch.bind("qacc"), given.truth)
+            self.sensors.append(imu)
+            return imu.read
+        scan = ScanArrays(sensor, self._view, self._batch.nthread, given.truth)
+        self.sensors.append(scan)
+        limits = float(sensor.options.range_min), float(sensor.options.range_max)
+        return lambda ids: np.clip(scan.read(ids).astype(np.float32), *limits)
+
+    def _topic(self, topic: str, given: Observation, bound: Any) -> Read:
+        for sensor in self._env.sim.contents.sensors.values():
+            if sensor.topic == topic:
+                return self._sensor(sensor, given)
+        for drive in self._drives:
+            publisher = drive.plugin._outputs._odom
+            if publisher is not None and publisher.topic == topic:
+                return self._sample(self._odometry(drive), drive.grid, bound)
+        for plugin in self._env.sim.engine.structure.all_plugins():
+            if isinstance(plugin, JointStates) and plugin.ros.topic(plugin._topic) == topic:
+                grid = self._env.sim.engine.clock.grid(plugin.after_step_rate or 0.0)
+                return self._sample(self._joint_states(plugin), grid, bound)
+        raise CannotBatchError(f"topic {topic}")
+
+    def _sample(self, read: Callable[[Ids], Floats], grid: Any, bound: Any) -> Read:
+        rows = SampledRows(read, grid, bound, self._view.count)
+        self.sampled.append(rows)
+        return lambda _: rows.values
+
+    def _odometry(self, drive: DiffDriveArrays) -> Callable[[Ids], Floats]:
+        """Return the function that reads x, y, yaw, forward speed, speed to the left and turning rate."""
+        view, plugin = self._view, drive.plugin
+        if plugin.options.from_encoders:
+
+            def read(ids: Ids) -> Floats:
+                found = drive.odometry[ids]
+                found[:, 2] = np.arctan2(np.sin(found[:, 2]), np.cos(found[:, 2]))
+                return found
+
+            return read
+        motion = plugin._true
+        name, link = motion._frame.scoped, motion._link.scoped
+        arm = np.array(motion._arm)
+
+        def read_truth(ids: Ids) -> Floats:
+            position, quaternion = view.position(name)[ids], view.quaternion(name)[ids]
+            linear = _rotate_back(quaternion, view.linear_velocity(link)[ids])
+            spin = _rotate_back(quaternion, view.angular_velocity(link)[ids])
+            linear = linear + np.cross(spin, arm)
+            w, x, y, z = quaternion.T
+            yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+            return np.column_stack((position[:, 0], position[:, 1], yaw, linear[:, 0], linear[:, 1], spin[:, 2]))
+
+        return read_truth
+
+    def _joint_states(self, plugin: JointStates) -> Callable[[Ids], Floats]:
+        view, joints = self._view, plugin._handles
+        if any(joint.dof != 1 for joint in joints):
+            raise CannotBatchError("joint states of joints with several degrees of freedom")
+        places, dofs = (np.array([getattr(j, name) for j in joints], np.intp) for name in ("_one_qpos", "_one_dof"))
+        return lambda ids: np.hstack((view.qpos[np.ix_(ids, places)], view.qvel[np.ix_(ids, dofs)]))
+
+
+def _rotate_back(quaternions: Floats, vectors: Floats) -> Floats:
+    """Rotate vectors by the inverses of unit quaternions w, x, y, z."""
+    w, v = quaternions[:, :1], -quaternions[:, 1:]
+    twice = 2.0 * np.cross(v, vectors)
+    found: Floats = vectors + w * twice + np.cross(v, twice)
+    return found
+
+
+# ---------------------------------------------------------------------- actions
+
+
+class ActionArrays:
+    """Actions of all environments.
+
+    Args:
+        env: environment that resets all others.
+        view: state of all environments.
+        applied: forces on degrees of freedom, one row for each environment.
+        drives: drives of the world.
+    """
+
+    def __init__(self, env: SimulationEnv, view: ArrayView, applied: Floats, drives: list[DiffDriveArrays]) -> None:
+        self._applied, self._view = applied, view
+        self._twists: list[tuple[DiffDriveArrays, int, int]] = []
+        self._efforts: list[tuple[int, int, float]] = []
+        action = env.spec_of_env.action
+        targets: Mapping[str, Any] = {action: None} if isinstance(action, str) else action
+        first = 0
+        for target, given in targets.items():
+            joint = env.sim.contents.handles.tables["joint"].get(target)
+            if joint is not None:
+                self._efforts.append((first, joint._one_dof, joint._effort_limit.item(0)))
+                first += 1
+            else:
+                self._bind_topic(env, target, given, drives, first)
+                first += len(given)
+
+    def _bind_topic(
+        self, env: SimulationEnv, target: str, given: Any, drives: list[DiffDriveArrays], first: int
+    ) -> None:
+        topic = absolute_name(target)
+        types = env.sim.communication.bus.types_of(topic)
+        for drive in drives:
+            if drive.plugin.ros.topic(drive.plugin.options.command_topic) == topic and types[0] in _TWISTS:
+                paths = [str(path).removeprefix("twist.") for path in given]
+                columns = [first + paths.index(path) if path in paths else -1 for path in ("linear.x", "angular.z")]
+                self._twists.append((drive, columns[0], columns[1]))
+                return
+        raise CannotBatchError(f"action {target!r}: only twists of differential drives and efforts of joints")
+
+    def send(self, ids: Ids, numbers: Floats) -> None:
+        """Send the actions of some environments, which act until the next call."""
+        numbers = np.hstack((numbers, np.zeros((len(numbers), 1))))  # the last column is for fields without an action
+        for drive, forward, turn in self._twists:
+            drive.command[ids, 0], drive.command[ids, 1] = numbers[:, forward], numbers[:, turn]
+        for column, dof, limit in self._efforts:
+            self._applied[ids, dof] = np.clip(numbers[:, column], -limit, limit)

@@ -1,0 +1,196 @@
+"""Engines of all environments of a batch, stepped in one call from tick to tick at which a part is due."""
+
+from __future__ import annotations
+
+import copy
+import math
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+from mujoco.batch import Batch, SimulationError
+
+from simkit.experiments.environments.array_bindings import SampledRows
+from simkit.experiments.environments.array_view import ArrayView
+from simkit.experiments.environments.drive_arrays import DiffDriveArrays, ServoArrays
+from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive
+from simkit.runtime import Simulation
+from simkit.runtime.engine.physics_state import BAD_ACCELERATION, BAD_POSITION, BAD_VELOCITY, divergence
+from simkit.runtime.engine.simulated_time import TickGrid
+from simkit.runtime.engine.step_tasks import _LIMIT_RATE, _NO_LIMIT
+from simkit.runtime.engine.velocity_limits import limit_velocities
+
+Ids = npt.NDArray[np.intp]
+_STATE: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
+_BAD: Final = [BAD_POSITION, BAD_VELOCITY, BAD_ACCELERATION]
+_VELOCITIES, _ACCELERATIONS = int(mujoco.mjtStage.mjSTAGE_VEL), int(mujoco.mjtStage.mjSTAGE_ACC)
+
+
+class BatchPhysics:
+    """Engines, servos and drives of all environments.
+
+    Args:
+        sim: simulation of the environment that resets all others.
+        count: number of environments.
+        threads: number of threads; 0 for all processors.
+
+    Attributes:
+        batch: MuJoCo's batch.
+        view: state of all environments.
+        drives: differential drives.
+        applied: forces on degrees of freedom, shape (count, nv).
+        tick: present tick of each environment.
+    """
+
+    def __init__(self, sim: Simulation, count: int, threads: int) -> None:
+        self._sim, self._models = sim, [sim.mj_model] * count
+        # bodies that may sleep need engine data of their own
+        self.batch: Any = Batch(sim.mj_model, count, threads, persistent=True)
+        self.view = ArrayView(sim, self.batch, self.state_of)
+        self.applied = self.batch.bind("qfrc_applied")
+        self.tick = np.zeros(count, np.int64)
+        self.failed = np.zeros(count, np.bool_)
+        self._scratch: Any = None
+        self._servos = ServoArrays(sim, self.view, count)
+        self._has_servos = sim.engine.velocity_servos.are_there
+        plugins = [p for p in sim.engine.structure.all_plugins() if isinstance(p, GazeboRosDiffDrive)]
+        self.drives = [DiffDriveArrays(plugin, self._servos, self.view, count) for plugin in plugins]
+        self._compute_limits()
+
+    def _compute_limits(self) -> None:
+        joints = [joint for joint in self._sim.contents.handles.tables["joint"].values() if joint.mj_dofs]
+        limited = [joint for joint in joints if joint.least_velocity_limit < _NO_LIMIT]
+        self._limited = np.array([dof for joint in limited for dof in joint.mj_dofs], dtype=np.intp)
+        self._limits = np.array([joint.axis_velocity_limit(i) for joint in limited for i in range(len(joint.mj_dofs))])
+        self._limit_grid = self._sim.engine.clock.grid(_LIMIT_RATE, from_start=True)
+
+    # ------------------------------------------------------------------ one environment
+
+    def take(self, row: int) -> None:
+        """Copy the state of the simulation to one environment."""
+        physics, batch = self._sim.engine.physics, self.batch
+        mujoco.mj_getState(physics.model, physics.data, batch.state[row], _STATE)
+        batch.warning[row] = 0
+        self.failed[row] = False
+        self.tick[row] = physics.tick
+        if self._has_servos:
+            self._servos.take(row)
+        for drive in self.drives:
+            drive.take(row)
+
+    def take_model(self, row: int) -> None:
+        """Copy the numbers of the simulation's model to one environment."""
+        self._models[row] = copy.copy(self._sim.mj_model)
+
+    def use_models(self) -> None:
+        """Use the copied models from now on."""
+        self.batch.set_models(self._models)
+
+    def state_of(self, row: int) -> tuple[mujoco.MjModel, mujoco.MjData]:
+        """Return model and data of one environment; the data have its state, but no forward pass."""
+        model = self._models[row]
+        if self._scratch is None:
+            self._scratch = mujoco.MjData(model)
+        mujoco.mj_setState(model, self._scratch, np.ascontiguousarray(self.batch.state[row]), _STATE)
+        return model, self._scratch
+
+    def divergence(self, row: int) -> str:
+        """Return the text of the error of a diverged environment."""
+        message = self.batch.error(row)
+        if message:
+            return str(message)
+        data = self.batch.get_data(row)
+        return str(divergence(self._models[row], data, self._sim.engine.clock, int(self.tick[row])))
+
+    @property
+    def diverged(self) -> npt.NDArray[np.bool_]:
+        """True for each environment in which the engine met NaN or infinite numbers since its reset."""
+        found: npt.NDArray[np.bool_] = (self.batch.warning[:, _BAD, 1] > 0).any(axis=1)
+        unbound = ~(np.abs(self.view.qpos) < 1e10).all(axis=1) | ~(np.abs(self.view.qvel) < 1e10).all(axis=1)
+        found |= unbound | self.failed
+        return found
+
+    # ------------------------------------------------------------------ steps
+
+    def advance(self, ids: Ids, steps: int, sampled: list[SampledRows], *, with_accelerations: bool) -> None:
+        """Make `steps` steps of some environments, with everything that is due on the way."""
+        for group in self._groups(ids):
+            first = int(self.tick[group[0]])
+            tick, last = first, first + steps
+            rows = None if len(group) == len(self.tick) else group
+            while tick < last:
+                self._before(group, tick, tick - first)
+                stop = min([last, *(self._next(grid, tick) for grid in self._grids(sampled))])
+                stage = _ACCELERATIONS if stop == last and with_accelerations else _VELOCITIES
+                try:
+                    self.batch.step(rows, stop - tick, stage)
+                except SimulationError as error:
+                    self.failed[error.ids] = True
+                tick = stop
+                self._after(group, tick, sampled)
+            self.tick[group] += steps
+
+    def _groups(self, ids: Ids) -> list[Ids]:
+        """Divide environments into groups at which the same parts are due at the same steps."""
+        ticks = self.tick[ids]
+        cycle = 1
+        for grid in self._grids([]):
+            cycle = math.lcm(cycle, grid.cycle) if isinstance(grid, TickGrid) else cycle
+        phases = np.where(ticks > 0, ticks % cycle, -1)
+        return [ids[phases == phase] for phase in np.unique(phases)]
+
+    def _grids(self, sampled: list[SampledRows]) -> list[Any]:
+        servos = [self._servos.grid] if self._has_servos else []
+        limits = [self._limit_grid] if len(self._limited) else []
+        return [*servos, *limits, *(drive.grid for drive in self.drives), *(one.grid for one in sampled)]
+
+    @staticmethod
+    def _next(grid: TickGrid | None, tick: int) -> int:
+        return tick + 1 if grid is None else grid.next(tick)
+
+    @classmethod
+    def _is_due(cls, grid: TickGrid | None, tick: int) -> bool:
+        return grid is None or (tick > 0 and grid.next(tick - 1) == tick)
+
+    def _before(self, ids: Ids, tick: int, passed: int) -> None:
+        ticks = self.tick[ids] + passed
+        if self._has_servos and self._is_due(self._servos.grid, tick):
+            self._servos.correct(ids, ticks)
+        for drive in self.drives:
+            if self._is_due(drive.grid, tick):
+                drive.before_step(ids, ticks)
+
+    def _after(self, ids: Ids, tick: int, sampled: list[SampledRows]) -> None:
+        if len(self._limited) and self._is_due(self._limit_grid, tick):
+            self._limit(ids)
+        for drive in self.drives:
+            if drive.plugin.options.from_encoders and self._is_due(drive.grid, tick):
+                drive.after_step(ids)
+        for one in sampled:
+            if self._is_due(one.grid, tick):
+                one.sample(ids)
+
+    def _limit(self, ids: Ids) -> None:
+        """Enforce the velocity limits of joints, which few environments exceed."""
+        velocities = self.view.qvel[np.ix_(ids, self._limited)]
+        for row in ids[(np.abs(velocities) > self._limits).any(axis=1) & np.isfinite(velocities).all(axis=1)].tolist():
+            model, data = self.state_of(row)
+            limit_velocities(_OneState(model, data), self._limited, self._limits)  # type: ignore[arg-type]
+            self.view.qvel[row] = data.qvel
+
+
+class _OneState:
+    """State of one environment, for functions that correct velocities."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        self.model, self.data = model, data
+
+    def fresh_velocities(self) -> bool:
+        """Compute the mass matrix and the velocities."""
+        mujoco.mj_fwdPosition(self.model, self.data)
+        mujoco.mj_fwdVelocity(self.model, self.data)
+        return True
+
+    def changed_body(self, _stage: int, _body: int) -> None:
+        """Do nothing, because no result of this state is kept."""
