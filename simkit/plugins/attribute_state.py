@@ -10,9 +10,27 @@ _PLAIN: Final = frozenset({bool, bytes, float, int, str, type(None)})
 """Types whose values cannot change, so that a copy is the value itself; `deepcopy` takes 0.3 µs for each."""
 
 
+class AttributeState(dict[str, Any]):
+    """Copied attributes by name, which `restore_attributes` copies again at each restore.
+
+    Attributes:
+        constant: names of the attributes whose copies are the values themselves; empty before the first restore.
+        is_divided: True once `constant` is known.
+    """
+
+    is_divided = False
+    constant: frozenset[str] = frozenset()
+
+    def divide(self, owner: object) -> None:
+        """Find the constant attributes, which need no copy at later restores."""
+        memo: dict[int, object] = {id(owner): owner}
+        found = [key for key, value in self.items() if type(value) in _PLAIN or copy.deepcopy(value, memo) is value]
+        self.constant, self.is_divided = frozenset(found), True
+
+
 def copy_attributes(
     owner: object, left_out: Collection[str], report: Callable[[str, Exception], None]
-) -> dict[str, Any]:
+) -> AttributeState:
     """Return a copy of every attribute of an object; references to the object itself are not copied.
 
     Args:
@@ -23,11 +41,11 @@ def copy_attributes(
     own = {key: value for key, value in vars(owner).items() if key not in left_out}
     memo: dict[int, object] = {id(owner): owner}
     try:
-        return copy.deepcopy(own, memo)
+        return AttributeState(copy.deepcopy(own, memo))
     except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
         pass
     memo = {id(owner): owner}
-    state, uncopied = {}, set()
+    state, uncopied = AttributeState(), set()
     for key, value in own.items():
         try:
             state[key] = copy.deepcopy(value, memo)
@@ -44,8 +62,13 @@ def restore_attributes(owner: object, left_out: Collection[str], state: Mapping[
     kept = {*left_out, *state, *vars(owner).get("_uncopied", ())}
     for key in [key for key in vars(owner) if key not in kept]:
         delattr(owner, key)
-    plain = {key: value for key, value in state.items() if type(value) in _PLAIN}
-    vars(owner).update(plain)
-    if len(plain) < len(state):
-        rest = {key: value for key, value in state.items() if key not in plain}
+    if isinstance(state, AttributeState):
+        if not state.is_divided:
+            state.divide(owner)
+        constant: Collection[str] = state.constant
+    else:
+        constant = [key for key, value in state.items() if type(value) in _PLAIN]
+    vars(owner).update(state)
+    if len(constant) < len(state):
+        rest = {key: value for key, value in state.items() if key not in constant}
         vars(owner).update(copy.deepcopy(rest, {id(owner): owner}))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from typing import Any
 
 import numpy as np
@@ -254,6 +255,12 @@ def test_all_problems_are_in_one_error() -> None:
         ({"randomise": {"goal": {"uniform": [1, 0]}}}, "SK-GYM-001", "lower bound"),
         ({"action": {SLIDE: (1.0, -1.0)}}, "SK-GYM-002", "the lower bound first"),
         ({"render_mode": "human"}, "SK-GYM-001", "rgb_array"),
+        ({"action": None}, "SK-GYM-001", "targets with their bounds"),
+        ({"control_period": math.nan, "time_limit": -1}, "SK-GYM-001", "time_limit: found -1"),
+        ({"reward": [1.0]}, "SK-GYM-001", "a function of the environment"),
+        ({"sync": "no", "on_reset": 1, "randomise": []}, "SK-GYM-001", "on_reset: found 1"),
+        ({"seed": 1.5}, "SK-GYM-001", "a whole number"),
+        ({"size": (0, 5)}, "SK-GYM-001", "width and height"),
     ],
 )
 def test_an_invalid_option_is_an_error_with_a_code(options: dict[str, Any], code: str, expected: str) -> None:
@@ -263,16 +270,46 @@ def test_an_invalid_option_is_an_error_with_a_code(options: dict[str, Any], code
 
 
 def test_invalid_calls_are_errors_with_codes() -> None:
-    env = make()
-    with pytest.raises(InputError, match="SK-GYM-005"):
+    env = make(time_limit=0.1)
+    with pytest.raises(InputError, match="SK-GYM-005.*before reset"):
         env.step([0.0])
     env.reset()
-    with pytest.raises(InputError, match=r"SK-GYM-004.*cart::slide effort"):
-        env.step([0.0, 1.0])
-    with pytest.raises(InputError, match="SK-GYM-001.*mass"):
-        env.reset(options={"values": {"mass": 1.0}})
+    for action in ([0.0, 1.0], [math.nan], "left", None, 0.0):
+        with pytest.raises(InputError, match=r"SK-GYM-004.*cart::slide effort"):
+            env.step(action)
+    for call in ({"options": {"values": {"mass": 1.0}}}, {"options": 3}, {"seed": -1}, {"seed": "a"}):
+        with pytest.raises(InputError, match="SK-GYM-001 reset: found"):
+            env.reset(**call)
+    env.step([0.0])
+    with pytest.raises(InputError, match="SK-GYM-005.*after the end"):
+        env.step([0.0])
+    env.close()
+    env.close()
+    for use in (env.reset, env.clone, lambda: env.step([0.0])):
+        with pytest.raises(InputError, match="SK-GYM-005 the environment is closed"):
+            use()
     with pytest.raises(InputError, match="TurtleBot3Goal"):
         simkit.gym.make("simkit/TurtleBot3Gaol-v0")
+    with pytest.raises(InputError, match="SK-GYM-001 world: found 3"):
+        simkit.gym.make(3)  # type: ignore[arg-type]
+
+
+def test_a_field_that_a_message_does_not_have_is_an_error_with_the_closest_field() -> None:
+    for field, closest in (("linear.w", "linear"), ("angular", "angular.x")):
+        with pytest.raises(InputError, match=f"SK-GYM-002.*{field}") as caught:
+            simkit.gym.make("turtlebot3_empty", observation="/scan", action={"/cmd_vel": {field: (0, 1)}})
+        assert closest in str(caught.value)
+
+
+def test_the_specifications_of_an_environment_can_be_pickled_and_written_as_json() -> None:
+    env = gymnasium.make("simkit/TurtleBot3Goal-v0")
+    again = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json()))
+    own = simkit.gym.SimulationEnv(pickle.loads(pickle.dumps(env.unwrapped.spec_of_env)))
+    assert same(env.reset(seed=3)[0], own.reset(seed=3)[0]) and same(own.observation, again.reset(seed=3)[0])
+    with pytest.raises(TypeError, match="pickle env.spec_of_env"):
+        pickle.dumps(own)
+    envs = gymnasium.make_vec("simkit/TurtleBot3Goal-v0", num_envs=1, vectorization_mode="vector_entry_point")
+    assert same(envs.reset(seed=3)[0]["scan"][0], own.observation["scan"])
 
 
 def test_the_maze_has_walls_between_some_cells() -> None:

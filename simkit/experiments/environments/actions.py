@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -94,10 +95,14 @@ class Actions:
         Raises:
             InputError: SK-GYM-004 the action has another shape, or a number is NaN.
         """
-        values = np.asarray(action, dtype=np.float64)
+        try:
+            values = np.asarray(action, dtype=np.float64)
+        except (TypeError, ValueError):
+            values = np.empty(0)
         if values.shape != self._low.shape or values.sum() != values.sum():
             names = ", ".join(self.names)
-            raise invalid(f"found the action {shorten(repr(action), 60)}; expected {names}", code="SK-GYM-004")
+            text = f"found the action {shorten(repr(action), 60)}; expected the shape {self._low.shape} with {names}"
+            raise invalid(text, "limit NaN and other invalid numbers before step", "SK-GYM-004")
         values = np.minimum(np.maximum(values, self._low), self._high)
         numbers: list[float] = (self._middle + self._half * values if self._is_scaled else values).tolist()
         self._efforts.clear()
@@ -192,8 +197,8 @@ class Actions:
 
     def _message(self, topic: str, type_name: str, given: ActionTarget) -> tuple[list[str], list[Bounds], Send]:
         if not isinstance(given, Mapping):
-            fields = "linear.x" if type_name in _TWISTS else "data"
-            hint = 'write {"' + topic + '": {"' + fields + '": (-1.0, 1.0)}}'
+            field = (_number_fields(builder_of(type_name).default()) or ["data[0]"])[0]
+            hint = 'write {"' + topic + '": {"' + field + '": (-1.0, 1.0)}}'
             raise _wrong(f"a {type_name} needs the bounds of its fields", hint)
         make = builder_of(type_name).default
         setters: list[Callable[[Any, float], None]] = []
@@ -266,6 +271,22 @@ def _owner(message: Any, path: str) -> tuple[Any, str]:
     return message, name
 
 
+def _number_fields(message: Any, before: str = "") -> list[str]:
+    """Return the paths of the numbers of a message; arrays of numbers have the index 0."""
+    found: list[str] = []
+    for one in fields(message):
+        value, path = getattr(message, one.name), before + one.name
+        if one.name in ("header", "stamp"):
+            continue
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            found.append(path)
+        elif isinstance(value, np.ndarray):
+            found.append(f"{path}[0]")
+        elif is_dataclass(value):
+            found += _number_fields(value, path + ".")
+    return found
+
+
 def _setter(sample: Any, path: str, type_name: str) -> tuple[Callable[[Any, float], None], str, int]:
     """Return the function that sets a field, and the path and the index of an array's item."""
     if not _FIELD.fullmatch(path):
@@ -275,7 +296,9 @@ def _setter(sample: Any, path: str, type_name: str) -> tuple[Callable[[Any, floa
         owner, name = _owner(sample, plain)
         found = getattr(owner, name)
     except AttributeError:
-        raise _wrong(f"a {type_name} has no field {plain!r}") from None
+        known = _number_fields(sample)
+        hint = did_you_mean(plain, [one.partition("[")[0] for one in known]) or f"available: {', '.join(known)}"
+        raise _wrong(f"a {type_name} has no field {plain!r}", hint) from None
     if item:
         if not isinstance(found, np.ndarray):
             raise _wrong(f"the field {plain!r} of a {type_name} is no list of numbers")
@@ -287,7 +310,8 @@ def _setter(sample: Any, path: str, type_name: str) -> tuple[Callable[[Any, floa
 
         return set_item, plain, index
     if not isinstance(found, (int, float)) or isinstance(found, bool):
-        raise _wrong(f"the field {path!r} of a {type_name} is no number")
+        hint = f"available: {', '.join(_number_fields(sample))}"
+        raise _wrong(f"the field {path!r} of a {type_name} is no number", hint)
     convert = type(found)
 
     def set_field(message: Any, number: float) -> None:

@@ -142,6 +142,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         Returns:
             First observations and infos.
         """
+        self._env._check_open()
         options = dict(options or {})
         mask = np.asarray(options.pop("reset_mask", np.ones(self.num_envs, np.bool_)))
         if mask.shape != (self.num_envs,) or mask.dtype != np.bool_ or not mask.any():
@@ -212,6 +213,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
 
         Environments that have ended begin their next episode, as the autoreset mode says.
         """
+        self._env._check_open()
         if not self._has_begun.all():
             raise invalid("step was called before reset", "call reset first", _ENDED)
         values = self._checked(actions)

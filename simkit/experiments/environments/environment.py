@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import copy
+from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NoReturn
 
 import gymnasium
 import numpy as np
 
-from simkit.errors import InputError, SimulationDiverged
+from simkit.diagnostics import shorten
+from simkit.errors import ArgumentTypeError, InputError, SimulationDiverged
 from simkit.experiments.environments.actions import Actions
 from simkit.experiments.environments.observations import Observations, no_message
 from simkit.experiments.environments.specification import EnvironmentSpec, Problems, Value, invalid
@@ -67,7 +69,10 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
     ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise invalid(f"render_mode: found {render_mode!r}; expected 'rgb_array' or None")
-        self.spec_of_env, self.render_mode, self._size = spec, render_mode, size
+        if not (isinstance(size, (tuple, list)) and len(size) == 2 and all(type(n) is int and n > 0 for n in size)):
+            raise invalid(f"size: found {size!r}; expected width and height of the images, such as (480, 360)")
+        self.spec_of_env, self.render_mode, self._size = spec, render_mode, (size[0], size[1])
+        self._is_closed = self._has_ended = False
         self.metadata = {**self.metadata, "render_fps": max(1, round(1.0 / spec.control_period))}
         self._spaces = _parameter_spaces(spec.randomise)
         self.values: dict[str, Any] = {}
@@ -75,7 +80,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         self._variables: dict[str, Any] = {}
         self._is_seeded = False
         self._begun = None
-        self._sent: list[Any] = []
+        self._sent = array("d")  # eight bytes for each number of an action of the episode, for `clone`
         self._draw(np.random.default_rng(spec.run.seed), {})
         self._open(self._overrides())
         self._begin(spec.run.seed)
@@ -94,15 +99,18 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         Returns:
             First observation and info.
         """
+        self._check_open()
+        if seed is not None and (isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0):
+            raise invalid(f"reset: found the seed {seed!r}; expected a whole number of at least 0, or None")
+        given = self._checked_values(options)
         if seed is None and not self._is_seeded:
             seed = self.spec_of_env.run.seed
-        super().reset(seed=seed)
+        super().reset(seed=None if seed is None else int(seed))
         self._is_seeded = True
-        given = dict((options or {}).get("values", {}))
-        self._check_values(given, options)
         self._begun = self.np_random.bit_generator.state, options
         self._draw(self.np_random, given)
         self._apply_values(int(self.np_random.integers(1 << 31)))
+        self._has_ended = False
         return self.observation, self._info()
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
@@ -110,17 +118,21 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
 
         A simulation that diverges truncates the episode; the info then has the text of the error as "diverged".
         """
-        if self._begun is None:
-            raise invalid("step was called before reset", "call reset first", "SK-GYM-005")
+        if self._begun is None or self._has_ended or self._is_closed:
+            self._check_open()
+            problem = "after the end of the episode" if self._has_ended else "before reset"
+            raise invalid(f"step was called {problem}", "call reset first", "SK-GYM-005")
         self.action = self._actions.send(action)
-        self._sent.append(self.action)
+        self._sent.extend(self.action)
         try:
             self.sim.step(self._steps)
             self.observation = self._observations.read()
         except SimulationDiverged as error:
+            self._has_ended = True
             return self.observation, 0.0, False, True, {"time": self.sim.time, "diverged": str(error)}
         reward, is_over = float(self._reward()), bool(self._terminated())
         is_late = self._last_tick is not None and self.sim.tick >= self._last_tick
+        self._has_ended = is_over or is_late
         return self.observation, reward, is_over, is_late and not is_over, self._info()
 
     def render(self) -> Any:
@@ -130,7 +142,19 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         return render_view(self.sim, *self._size)
 
     def close(self) -> None:
-        """Close the world."""
+        """Close the world; a second call has no effect."""
+        self._is_closed = True
+        self._close_world()
+
+    def __reduce__(self) -> NoReturn:
+        reason = "an environment cannot be pickled, because it holds a simulation of this process"
+        raise ArgumentTypeError(f"{reason}; pickle env.spec_of_env and make simkit.gym.SimulationEnv of it")
+
+    def _check_open(self) -> None:
+        if self._is_closed:
+            raise invalid("the environment is closed", "make it again with simkit.gym.make", "SK-GYM-005")
+
+    def _close_world(self) -> None:
         if "sim" in vars(self):
             self._view_of_sim.close()
             self.sim.close()
@@ -142,6 +166,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
 
         The copy loads its own world and repeats the episode so far.
         """
+        self._check_open()
         other = SimulationEnv(self.spec_of_env, self.render_mode, self._size)
         if self._begun is None:
             return other
@@ -150,7 +175,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         other.np_random = np.random.Generator(type(self.np_random.bit_generator)())
         other.np_random.bit_generator.state = copy.deepcopy(state)
         other.reset(options=dict(options) if options else None)
-        for action in self._sent:
+        for action in np.array(self._sent).reshape(-1, len(self._actions.names)):
             other.step(action)
         other.np_random.bit_generator.state = self.np_random.bit_generator.state
         return other
@@ -184,12 +209,19 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
 
     # ------------------------------------------------------------------ episodes
 
-    def _check_values(self, given: Mapping[str, Any], options: Mapping[str, Any] | None) -> None:
+    def _checked_values(self, options: object) -> dict[str, Any]:
+        """Return the values that the options of `reset` set."""
+        given = options.get("values", {}) if isinstance(options, Mapping) else {}
+        if not isinstance(given, Mapping) or not isinstance(options, (Mapping, type(None))):
+            raise invalid(
+                f'reset: found the options {shorten(repr(options), 60)}; expected {{"values": {{name: value}}}}'
+            )
         unknown = [name for name in given if name not in self.values]
         unknown += [f"options[{name!r}]" for name in options or {} if name != "values"]
         if unknown:
             known = ", ".join(self.values) or "none"
             raise invalid(f"reset: found {', '.join(map(str, unknown))}; the values of this environment are: {known}")
+        return dict(given)
 
     def _draw(self, random: np.random.Generator, given: Mapping[str, Any]) -> None:
         drawn: dict[str, Any] = {}
@@ -207,23 +239,24 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
 
     def _apply_values(self, seed: int) -> None:
         """Reset the world with the present values."""
-        overrides = self._overrides()
+        overrides, is_bound = self._overrides(), False
         if overrides == self._loaded_overrides:
             self.sim.reset(seed)
         elif apply_overrides(self.sim, overrides, seed):
             self._loaded_overrides = overrides
         else:
-            self.close()
+            self._close_world()
             self._open(overrides)
             self.sim.reset(seed)
-        if self._uses_variables or self._view_of_sim.remembers:
+            is_bound = True
+        if not is_bound and (self._uses_variables or self._view_of_sim.remembers):
             self._bind()  # without messages, counts and histories of the last episode
         self._begin(seed)
 
     def _begin(self, seed: int) -> None:
         """Begin the episode at the present state: call `on_reset` and make the first observation."""
         spec = self.spec_of_env
-        self.memory, self._sent = {}, []
+        self.memory, self._sent = {}, array("d")
         self._actions.clear()
         self.action = np.zeros(len(self._actions.names))
         if spec.on_reset is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from functools import partial
@@ -10,7 +11,7 @@ from typing import Any, Final, Literal
 
 import gymnasium
 
-from simkit.diagnostics import did_you_mean
+from simkit.diagnostics import did_you_mean, shorten
 from simkit.experiments.environments.array_bindings import CannotBatchError
 from simkit.experiments.environments.batch_environment import BatchVectorEnv
 from simkit.experiments.environments.environment import SimulationEnv
@@ -43,9 +44,14 @@ def environment_spec(world: FilePath | RunSpec, changes: Mapping[str, Any]) -> E
     """
     changes = dict(changes)
     overrides, seed = tuple(override_texts(changes.pop("overrides", ()))), changes.pop("seed", None)
+    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
+        raise invalid(f"seed: found {seed!r}; expected a whole number")
+    if not isinstance(world, (str, os.PathLike, RunSpec)):
+        raise invalid(f"world: found {shorten(repr(world), 60)}; expected a world, a RunSpec or a registered id")
     for name in changes:
         if name not in _FIELDS:
-            hint = did_you_mean(name, _FIELDS) or f"allowed: {', '.join(_FIELDS)}"
+            allowed = [*_FIELDS, "overrides", "seed", "render_mode", "size"]
+            hint = did_you_mean(name, allowed) or f"allowed: {', '.join(allowed)}"
             raise invalid(f"found the argument {name!r}; {hint}")
     if isinstance(world, str) and world.startswith("simkit/"):
         if world not in IDS:
@@ -88,6 +94,9 @@ def make_vector_env(
         raise invalid(f"num_envs: found {num_envs!r}; expected a whole number of at least 1")
     if isinstance(threads, bool) or not isinstance(threads, int) or threads < 0:
         raise invalid(f"threads: found {threads!r}; expected a whole number of at least 0")
+    for name, flag in (("batch", batch), ("processes", processes)):
+        if flag not in (None, True, False):
+            raise invalid(f"{name}: found {flag!r}; expected True, False or None")
     if batch and processes is not None:
         raise invalid("batch=True and processes exclude each other")
     modes = {mode.name.lower(): mode for mode in gymnasium.vector.AutoresetMode}
@@ -120,4 +129,9 @@ def register_ids() -> None:
     """Register the environments, so that `gymnasium.make` finds them too."""
     for name in IDS:
         if name not in gymnasium.registry:
-            gymnasium.register(name, entry_point=partial(make_env, name))
+            gymnasium.register(
+                name,
+                entry_point=f"{__name__}:{make_env.__name__}",
+                vector_entry_point=f"{__name__}:{make_vector_env.__name__}",
+                kwargs={"world": name},
+            )

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
+from simkit.diagnostics import shorten
 from simkit.errors import InputError
 from simkit.run_spec import RunSpec
 
@@ -115,6 +117,38 @@ ActionTarget = Mapping[str, tuple[float, float]] | Sequence[str] | tuple[float, 
 """Bounds by field or joint, names of joints, bounds of an effort, or None for the bounds of the world."""
 
 
+def _is_positive(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0.0 < value < math.inf
+
+
+def _is_value(value: object) -> bool:
+    return isinstance(value, (bool, int, float, str)) or callable(value)
+
+
+def _is_flag(value: object) -> bool:
+    return isinstance(value, bool)
+
+
+_VALUE: Final = "a number, an expression, or a function of the environment"
+_CHECKS: Final[Mapping[str, tuple[str, Callable[[Any], bool]]]] = {
+    "action": (
+        'a joint, or targets with their bounds, such as {"/cmd_vel": {"linear.x": (0.0, 0.2)}}',
+        lambda value: isinstance(value, (str, Mapping)),
+    ),
+    "reward": (_VALUE, _is_value),
+    "terminated": (_VALUE, _is_value),
+    "success": (f"{_VALUE}, or None", lambda value: value is None or _is_value(value)),
+    "randomise": ("spaces by path or name of a variable", lambda value: isinstance(value, Mapping)),
+    "on_reset": ("a function of the environment, or None", lambda value: value is None or callable(value)),
+    "control_period": ("a positive number of seconds", _is_positive),
+    "time_limit": ("a positive number of seconds, or None", lambda value: value is None or _is_positive(value)),
+    "scaled_actions": ("True or False", _is_flag),
+    "sync": ("True or False", _is_flag),
+    "samples_all": ("True or False", _is_flag),
+}
+"""Expected values of options, and their checks."""
+
+
 @dataclass(frozen=True)
 class EnvironmentSpec:
     """Specification of an environment.
@@ -149,6 +183,19 @@ class EnvironmentSpec:
     scaled_actions: bool = False
     sync: bool = True
     samples_all: bool = True
+
+    def __post_init__(self) -> None:
+        """Check the types of all options.
+
+        Raises:
+            InputError: SK-GYM-001 options are invalid; the message lists all of them.
+        """
+        problems = Problems()
+        for name, (expected, is_valid) in _CHECKS.items():
+            value = getattr(self, name)
+            if not is_valid(value):
+                problems.add(invalid(f"found {shorten(repr(value), 60)}; expected {expected}"), name)
+        problems.raise_all()
 
 
 class Problems:
