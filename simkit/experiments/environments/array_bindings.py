@@ -61,7 +61,7 @@ class CannotBatchError(Exception):
 def world_obstacles(sim: Simulation) -> list[str]:
     """Return why the steps of a world cannot be made in one call for all environments; empty if they can."""
     physics, found = sim.engine.physics, []
-    if physics.law._is_on or physics.fast_bodies._can_be_fast or physics.free_motion is not None:
+    if physics.law.is_on or physics.fast_bodies.can_be_fast or physics.free_motion is not None:
         found.append(
             "simkit's contact law needs Python at each step; overrides=['physics.contact_law=mujoco'] selects MuJoCo's"
         )

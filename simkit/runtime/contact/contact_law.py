@@ -91,6 +91,9 @@ class ContactLaw:
 
     Args:
         model: MuJoCo's model.
+
+    Attributes:
+        is_on: True if something can collide, and the world does not use the engine's own contacts.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -111,7 +114,7 @@ class ContactLaw:
         free = np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE)
         free = free[np.isin(model.body_treeid[model.jnt_bodyid[free]], self._colliding)]
         self._free = (model.jnt_dofadr[free][:, None] + np.arange(3)).reshape(-1).astype(np.intp)
-        self._is_on = collides.sum() > 1 and not has_engine_contacts(model)
+        self.is_on = collides.sum() > 1 and not has_engine_contacts(model)
 
     @property
     def changes_contacts(self) -> bool:
@@ -126,7 +129,7 @@ class ContactLaw:
         Args:
             data: MuJoCo's data with positions and velocities up to date.
         """
-        if not self._is_on:
+        if not self.is_on:
             return False
         if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._needs_correction(data))):
             return True
@@ -148,7 +151,7 @@ class ContactLaw:
         Returns:
             True if a contact was corrected.
         """
-        if not (data.ncon and self._is_on):
+        if not (data.ncon and self.is_on):
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             return False
         found, carried = None, self._carried.find(data)

@@ -81,6 +81,7 @@ class FastBodyDetector:
     Attributes:
         closing: remaining approach speed [m/s] of each geom after it is stopped; the last item is for no geom. A body
             that is stopped before a wall thus still reaches it.
+        can_be_fast: False if no body can ever need speculative contacts.
         on_approach: function that receives the approaches that speculative contacts cannot stop; it may change no
             state.
     """
@@ -129,13 +130,13 @@ class FastBodyDetector:
         self._rooted = weights * np.sqrt(counts[trees]) if nv else weights
         self._terms = np.empty(nv)
         self._starts = model.tree_dofadr.astype(np.intp)
-        self._can_be_fast = bool(len(self._moving)) and bool(weights.any()) and not has_engine_contacts(model)
+        self.can_be_fast = bool(len(self._moving)) and bool(weights.any()) and not has_engine_contacts(model)
 
     # ------------------------------------------------------------------ check of a window
 
     def wants(self, data: mujoco.MjData) -> bool:
         """Check whether the next window needs speculative contacts, from `qpos`, `qvel` and mocap poses alone."""
-        if not self._can_be_fast:
+        if not self.can_be_fast:
             return False
         if data is not self._data:  # the same object at every check; its arrays keep their addresses
             self._data, self._velocities_now = data, data.qvel

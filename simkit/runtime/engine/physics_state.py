@@ -80,6 +80,7 @@ _INTEGRATORS = {
     int(mujoco.mjtIntegrator.mjINT_EULER): mujoco.mj_Euler,
     int(mujoco.mjtIntegrator.mjINT_RK4): lambda model, data: mujoco.mj_RungeKutta(model, data, 4),
 }
+_NEVER = 1 << 62  # tick
 _MIN_PUSH = 0.2  # [m/s²] least acceleration of wheel rims, by a change of controls, that starts a check of the contacts
 _LEVER = 0.1  # [m] assumed radius of a body on a hinge
 
@@ -191,6 +192,8 @@ class PhysicsState:
         is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         self.free_motion = FreeMotionIntegrator.of(model) if is_implicit and not has_engine_contacts(model) else None
         self._analysed, self._is_analysed = _step_fields(model), True
+        # without contacts that the law may change, no step has to check anything
+        self._is_plain = not (self.law.is_on or self.fast_bodies.can_be_fast)
 
     def renew_pushes(self) -> None:
         """Compute again which accelerations the controls cause, because masses or gains have changed."""
@@ -206,6 +209,7 @@ class PhysicsState:
             on_approach = self.fast_bodies.on_approach
             self._analyse()
             self.fast_bodies.on_approach = on_approach
+        self._until = self._fast_until = _NEVER if self._is_plain else -1
 
     # ------------------------------------------------------------------ writing
 
@@ -216,6 +220,8 @@ class PhysicsState:
         self._held = None
         self._accelerations_tick = -1
         self.sleep.rests = False
+        if self._is_plain:
+            return
         if stage > CONTROL:
             self._until = self._fast_until = -1  # the step method was chosen for the previous velocities
         elif not self._probes:
@@ -266,6 +272,7 @@ class PhysicsState:
         self.sleep.wake_all()
         self._reader_data, self._is_analysed = None, False
         self.changed(STALE)
+        self._until = self._fast_until = -1  # the analysis comes before the next step
 
     def changed_lights(self) -> None:
         """Update moved lights in the data.
@@ -311,6 +318,11 @@ class PhysicsState:
     @window.setter
     def window(self, value: StepWindow) -> None:
         self._uses_law, self._until, self._is_fast, self._fast_until, self._probes, probed = value
+        if self._is_plain:
+            self._uses_law = self._is_fast = self._probes = False
+            self._until = self._fast_until = _NEVER
+        elif self._until >= _NEVER:
+            self._until = self._fast_until = -1  # the state is from before collisions were enabled
         self._probed = np.array(probed) if len(probed) == self.model.nu else self.data.ctrl.copy()
         set_speculative(self.model, self._is_fast)
 

@@ -204,7 +204,7 @@ def test_slow_bodies_have_the_same_bits_as_without_the_detector() -> None:
     runs = []
     for looks in (True, False):
         sim = simkit.load(text)
-        sim.engine.physics.fast_bodies._can_be_fast = looks
+        sim.engine.physics.fast_bodies.can_be_fast = looks
         sim.model("b").set_velocity((8, 0, 0), (3, 2, 1))
         sim.run(0.2)
         runs.append((sim.mj_data.qpos.tobytes(), sim.mj_data.qvel.tobytes()))
