@@ -13,10 +13,11 @@ from simkit.cli.run_loop import Interrupts
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import compile_pattern
 from simkit.cli.terminal.options import argument, option
-from simkit.cli.terminal.output import absolute_name, is_hidden, print_json, print_note, report_errors_quietly
+from simkit.cli.terminal.output import absolute_name, print_json, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.msgs.topic_names import is_hidden
 
 if TYPE_CHECKING:
     from simkit.cli.terminal.topic_sources import LiveFeed, ReceivedMessage, TopicEntry

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,7 +15,6 @@ from simkit.cli.terminal.frame_tree import receive_transforms
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     JsonObject,
-    is_hidden,
     print_diagnostics,
     print_json,
     print_line,
@@ -28,13 +27,7 @@ from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
     from simkit.msgs.transform_tree import TransformTree
-    from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
 
-_OWN_NODES = frozenset(
-    {"/ClassicServices", "/ClockPublisher", "/SimulationInterfaces", "/WorldServices", "/WorldStats"}
-)
-_OWN_TOPICS = frozenset({"/clock", "/parameter_events", "/rosout"})
-_LISTED = 4  # services and actions in the box of a node
 _FRAMES_AFTER = 0.2  # [s] of simulated time in which a world sends its transforms
 _COLLECTION_TIME = 1.0  # [s] of wall time for the transforms of a running simulation
 
@@ -58,6 +51,7 @@ def graph(
 ) -> None:
     """Draw the nodes and topics, or the frames, of a world or a running simulation."""
     from simkit.live import simulations
+    from simkit.recording.graphs.graph_contents import frame_graph, node_graph
     from simkit.recording.graphs.graph_svg import graph_svg
 
     if output.suffix.lower() != ".svg":
@@ -118,57 +112,3 @@ def _of_world(
             sim.run(_FRAMES_AFTER)
             return {}, frames
         return node_list(sim, ()), frames
-
-
-def node_graph(nodes: Mapping[str, JsonObject], *, hidden: bool) -> tuple[list[GraphBox], list[GraphEdge]]:
-    """Return the graph of nodes and topics.
-
-    Args:
-        nodes: nodes with their publishers, subscribers, services and actions, as a simulation describes them.
-        hidden: True includes hidden names and the nodes of simkit itself.
-    """
-    from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
-
-    def shown(names: Mapping[str, list[str]]) -> dict[str, list[str]]:
-        return {n: t for n, t in names.items() if hidden or not (is_hidden(n) or n in _OWN_TOPICS)}
-
-    boxes: dict[str, GraphBox] = {}
-    edges: dict[tuple[str, str], GraphEdge] = {}
-    types: dict[str, str] = {}
-    for name, node in nodes.items():
-        if not hidden and (name in _OWN_NODES or is_hidden(name)):
-            continue
-        publishes, subscribes = shown(node["publishers"]), shown(node["subscribers"])
-        actions, services = shown(node["actions"]), shown(node["services"])
-        if not (publishes or subscribes or actions or services):
-            continue
-        space, _, last = name.rpartition("/")
-        lines = [*_listed("action", actions), *_listed("service", services)]
-        boxes[f"node {name}"] = GraphBox(f"node {name}", "node", last, lines, space)
-        for topic, found in (*publishes.items(), *subscribes.items()):
-            types.setdefault(topic, found[0].replace("/msg/", "/") if found else "")
-        for topic in publishes:
-            edges[name, topic] = GraphEdge(f"node {name}", f"topic {topic}")
-        for topic in subscribes:
-            edges[topic, name] = GraphEdge(f"topic {topic}", f"node {name}")
-    for topic, type_name in sorted(types.items()):
-        boxes[f"topic {topic}"] = GraphBox(f"topic {topic}", "topic", topic, [type_name] if type_name else [])
-    return list(boxes.values()), list(edges.values())
-
-
-def _listed(kind: str, names: Iterable[str]) -> list[str]:
-    """Return a line for each of the first names, and one for the number of the others."""
-    found = sorted(names)
-    lines = [f"{kind} {name}" for name in found[:_LISTED]]
-    more = len(found) - _LISTED
-    return lines + ([f"and {more} more {kind}{'s' if more > 1 else ''}"] if more > 0 else [])
-
-
-def frame_graph(frames: TransformTree) -> tuple[list[GraphBox], list[GraphEdge]]:
-    """Return the tree of frames; dashed edges are static transforms."""
-    from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
-
-    parents = frames.frames()
-    boxes = [GraphBox(name, "frame", name) for name in parents]
-    edges = [GraphEdge(parent, child, frames.is_static(child)) for child, parent in sorted(parents.items()) if parent]
-    return boxes, edges

@@ -11,7 +11,6 @@ from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, live_command
 from simkit.cli.terminal.output import (
     absolute_name,
-    is_hidden,
     not_found_error,
     print_json,
     print_line,
@@ -20,6 +19,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import GET_STATE, connect_to_simulation, connection_name, lifecycle_node_names
 from simkit.errors import InputError
+from simkit.msgs.topic_names import is_hidden
 
 if TYPE_CHECKING:
     from simkit.live import Client

@@ -12,13 +12,13 @@ from simkit.cli.terminal.options import argument, live_command
 from simkit.cli.terminal.output import (
     JsonObject,
     absolute_name,
-    is_hidden,
     not_found_error,
     print_json,
     print_line,
     print_names,
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name, node_names
+from simkit.msgs.topic_names import is_hidden
 
 node = typer.Typer(help="List the nodes of a running simulation.", no_args_is_help=True)
 Hidden = Annotated[bool, Option("--all", "-a", "--include-hidden", help="Include hidden names.")]

@@ -20,13 +20,13 @@ from simkit.cli.terminal.message_arguments import (
 from simkit.cli.terminal.options import argument, live_command, option
 from simkit.cli.terminal.output import (
     absolute_name,
-    is_hidden,
     print_json,
     print_line,
     print_names,
     print_names_and_types,
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_type
+from simkit.msgs.topic_names import is_hidden
 
 if TYPE_CHECKING:
     from simkit.live import Client

@@ -11,12 +11,13 @@ from typer import Option
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import is_same_type
 from simkit.cli.terminal.options import argument, live_command
-from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_name, print_names
+from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_name, print_names
 from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, find_topic, open_source
 from simkit.cli.topic_echo import echo
 from simkit.cli.topic_pub import pub
 from simkit.cli.topic_rates import bw, delay, hz
 from simkit.errors import MessageError
+from simkit.msgs.topic_names import is_hidden
 
 topic = typer.Typer(help="Inspect and publish topics of a simulation or a bag.", no_args_is_help=True)
 

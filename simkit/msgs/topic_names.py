@@ -14,6 +14,11 @@ def absolute_name(topic: str) -> str:
     return topic if topic.startswith("/") else "/" + topic
 
 
+def is_hidden(name: str) -> bool:
+    """Check whether a part of a name begins with `_`. ROS 2 leaves such names out of lists."""
+    return any(part.startswith("_") for part in name.split("/"))
+
+
 def valid_topic(name: str) -> str:
     """Convert a name to an absolute topic as gz-transport does.
 

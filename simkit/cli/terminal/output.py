@@ -321,8 +321,3 @@ def not_found_error(
 def absolute_name(name: str) -> str:
     """Add a leading slash to a name, unless it has one."""
     return name if name.startswith("/") else f"/{name}"
-
-
-def is_hidden(name: str) -> bool:
-    """Check whether a part of a name begins with `_`. ROS 2 leaves such names out of lists."""
-    return any(part.startswith("_") for part in name.split("/"))

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from simkit.cli.terminal.output import absolute_name, is_hidden, not_found_error, print_note
+from simkit.cli.terminal.output import absolute_name, not_found_error, print_note
 from simkit.errors import InputError, MessageError
 from simkit.msgs.message_types import Message
+from simkit.msgs.topic_names import is_hidden
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
