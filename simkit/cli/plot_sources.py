@@ -179,8 +179,8 @@ def _curves(
     fields: Sequence[str], topics: Mapping[str, str], store_of: Callable[[str], Typestore], where: str
 ) -> tuple[list[Curve], list[int]]:
     """Return the curves of fields, and the number of curves of each field."""
+    from simkit.msgs.field_units import unit_of
     from simkit.recording.charts.fields import curves_of
-    from simkit.testing.golden.compare.units import unit_of
 
     if not fields:
         names = list(topics)

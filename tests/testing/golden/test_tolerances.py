@@ -6,9 +6,10 @@ import math
 
 import pytest
 
+from simkit.msgs.field_units import unit_of
 from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.tolerances import allowed_text, default_tolerance, storage_step, tolerance_of
-from simkit.testing.golden.compare.units import item_name, period_of, quantity_text, time_text, unit_of
+from simkit.testing.golden.compare.units import item_name, period_of, quantity_text, time_text
 
 FIELDS = [
     ("sensor_msgs/msg/LaserScan", "ranges", "m", "rays"),

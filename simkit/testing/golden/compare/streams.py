@@ -10,12 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import shorten
+from simkit.msgs.field_units import unit_of
 from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Difference, DifferenceKind
 from simkit.testing.golden.compare.number_columns import compare_column, compare_orientation, quaternion_paths
 from simkit.testing.golden.compare.pictures import compare_pictures
 from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, tolerance_of
-from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text, unit_of, value_text
+from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text, value_text
 from simkit.testing.run_record.noise_statistics import NoiseStatistics, StatisticDifference, statistic_differences
 from simkit.testing.run_record.record import Column, Stream
 
@@ -40,9 +41,8 @@ def compare_times(golden: Stream, run: Stream, timestep: float, is_exact: bool) 
     allowed = 0 if is_exact or any(rates) else shift_allowed(timestep)
     apart = np.flatnonzero(np.abs(a[:both] - b[:both]) > allowed)
     same = int(apart[0]) if apart.size else both
-    if same == len(a) == len(b):
-        return same, None
-    if not is_exact and rates[0] is None and abs(len(a) - len(b)) <= max(1.0, _EVENTS * len(a)):
+    is_near = not is_exact and rates[0] is None and abs(len(a) - len(b)) <= max(1.0, _EVENTS * len(a))
+    if same == len(a) == len(b) or is_near:
         return same, None
     return same, _first_time_difference(golden, run, same, rates)
 

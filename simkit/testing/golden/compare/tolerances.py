@@ -13,9 +13,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.msgs.field_units import plain_path, unit_of
 from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Difference
-from simkit.testing.golden.compare.units import is_colour, plain_path, quantity_text, unit_of
+from simkit.testing.golden.compare.units import is_colour, quantity_text
 from simkit.testing.run_record.record import Array, Column, Stream
 
 _STEPS_PER_TOLERANCE = 8  # stored numbers are rounded to an eighth of the tolerance

@@ -4,46 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-import tomllib
-from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 from typing import Final
 
-_INDEX = re.compile(r"\[[^\]]*\]|\.\d+(?=\.|$)")
+from simkit.msgs.field_units import TABLES, first_match, plain_path, unit_of
 
-_TABLES = tomllib.loads(Path(__file__).with_name("field_units.toml").read_text(encoding="utf-8"))
 _SMALL: Final = {"m": ("mm", 1e3), "m/s": ("mm/s", 1e3), "s": ("ms", 1e3), "T": ("µT", 1e6), "V": ("mV", 1e3)}
 _SMALLER: Final = {"m": ("µm", 1e6), "T": ("nT", 1e9), "s": ("µs", 1e6)}
-
-
-def plain_path(field: str) -> str:
-    """Remove indices and names in brackets from a path: `transforms[base].transform` gives `transforms.transform`."""
-    return _INDEX.sub("", field)
-
-
-@cache
-def unit_of(type_name: str, field: str) -> str:
-    """Return the SI unit of a field; empty for a number without a unit.
-
-    Orientations are compared as angles, so their unit is rad. The position of a joint is in rad or m; the message does
-    not state which.
-
-    Args:
-        type_name: ROS type of the message.
-        field: Path of the field within the message; indices are ignored.
-    """
-    by_field = ([".*", of_field, unit] for of_field, unit in _TABLES["by_field"])
-    return _first_match([*_TABLES["by_type"], *by_field], type_name, field, "")
-
-
-def _first_match(rows: Sequence[Sequence[str]], type_name: str, field: str, otherwise: str) -> str:
-    """Return the last column of the first row whose expressions match the type and the field."""
-    path = plain_path(field)
-    for of_type, of_field, found in rows:
-        if re.fullmatch(of_type, type_name) and re.fullmatch(of_field, path):
-            return found
-    return otherwise
 
 
 def period_of(type_name: str, field: str) -> float:
@@ -76,7 +43,7 @@ def joint_unit(unit: str, position: str) -> str:
 @cache
 def item_name(type_name: str, field: str) -> str:
     """Return the name of an array's values: rays, points, pixels, joints, contacts, or values."""
-    return _first_match(_TABLES["item_names"], type_name, field, "values")
+    return first_match(TABLES["item_names"], type_name, field, "values")
 
 
 def quantity_text(value: float, unit: str, signed: bool = True, error: float = 0.0) -> str:

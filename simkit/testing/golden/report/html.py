@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import shorten
+from simkit.msgs.field_units import unit_of
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.testing.golden.compare.difference import Cause, Comparison, Verdict
 from simkit.testing.golden.compare.tolerances import allowed_text as tolerance_text
 from simkit.testing.golden.compare.tolerances import tolerance_of
-from simkit.testing.golden.compare.units import unit_of
 from simkit.testing.golden.report.difference_plot import (
     ImageFigure,
     ImageRow,
