@@ -7,6 +7,7 @@ import hashlib
 import queue
 import secrets
 import time
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,9 +15,10 @@ import numpy as np
 from simkit.bridges.view import scene_packet
 from simkit.bridges.view.driving import Driving
 from simkit.bridges.view.packet import make_packet
+from simkit.bridges.view.page_calls import PageCalls
 from simkit.bridges.view.page_requests import execute_request
 from simkit.bridges.view.page_server import PageRequest, PageServer
-from simkit.bridges.view.streams import Stream, make_stream
+from simkit.bridges.view.streams import Stream, StreamMaker, make_stream
 from simkit.bridges.view.travel import Travel
 from simkit.bridges.web.access import is_loopback
 from simkit.errors import InputError, PluginError, SimulationDiverged, SubscriberError
@@ -46,11 +48,12 @@ class LiveView:
         port: port; 0 for a free one.
         token: token of the address; a random one by default.
         recording: packet with a recording, which pages play instead of the simulation's states.
+        streams: makers of streams that replace those of the simulation, by the first part of their names.
 
     Attributes:
         travel: paths that the models have driven.
         driving: robots that the pages drive; the run sends its commands when they are due.
-
+        calls: calls of services and goals of actions that pages have sent.
         is_held: True after a page has requested a pause, until a page resumes.
 
     Raises:
@@ -58,11 +61,17 @@ class LiveView:
     """
 
     def __init__(
-        self, sim: Simulation, host: str = "127.0.0.1", port: int = 0, token: str = "", recording: bytes = b""
+        self,
+        sim: Simulation,
+        host: str = "127.0.0.1",
+        port: int = 0,
+        token: str = "",
+        recording: bytes = b"",
+        streams: Mapping[str, StreamMaker] | None = None,
     ) -> None:
         self.sim, self._host, self._token = sim, host, token or secrets.token_urlsafe(16)
         self.revision, self.is_held = 0, False
-        self.travel, self.driving = Travel(sim), Driving(sim)
+        self.travel, self.driving, self.calls = Travel(sim), Driving(sim), PageCalls(sim)
         try:
             self.server = PageServer(host, port, self._token)
         except OSError as error:
@@ -72,6 +81,7 @@ class LiveView:
         if recording:
             self.server.set_recording(compress_packet(recording))
         self._streams: dict[str, Stream | None] = {}
+        self._own_streams: dict[str, StreamMaker] = {"calls": lambda _: self.calls, **(streams or {})}
         self._last = self._looked = 0.0
         self._sent: tuple[object, ...] = ()
         self._pace = (time.perf_counter(), sim.time)
@@ -140,6 +150,15 @@ class LiveView:
         }
         self.server.send("state", make_packet(head, {"poses": poses}))
 
+    def stream(self, name: str) -> Stream | None:
+        """Return an open stream; None if no page shows it."""
+        return self._streams.get(name)
+
+    def _make_stream(self, name: str) -> Stream | None:
+        kind, _, argument = name.partition(":")
+        maker = self._own_streams.get(kind)
+        return make_stream(self.sim, name) if maker is None else maker(argument)
+
     def _send_streams(self) -> None:
         wants = self.server.wants
         for name in [name for name in self._streams if name not in wants]:
@@ -149,7 +168,7 @@ class LiveView:
         for name, options in wants.items():
             try:
                 if name not in self._streams:
-                    self._streams[name] = make_stream(self.sim, name)
+                    self._streams[name] = self._make_stream(name)
                 stream = self._streams[name]
                 packet = None if stream is None else stream.packet(options)
             except (PluginError, SimulationDiverged, SubscriberError):

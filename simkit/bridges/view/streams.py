@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.bridges.view.packet import make_packet
+from simkit.bridges.view.panel_streams import PANEL_STREAMS
 from simkit.errors import SimkitError
 from simkit.pose import IDENTITY
 
@@ -39,6 +40,10 @@ class Stream(Protocol):
     def close(self) -> None:
         """End the stream, because no page shows it any more or the structure has changed."""
         ...
+
+
+StreamMaker = Callable[[str], Stream]
+"""Function that returns the source of a stream; its argument is the name of the stream after the colon."""
 
 
 class LidarStream:
@@ -247,6 +252,7 @@ STREAMS: Final[dict[str, Callable[[Simulation, str], Stream]]] = {
     "joints": JointStream,
     "image": ImageStream,
     "cloud": CloudStream,
+    **PANEL_STREAMS,
 }
 """Streams by the first part of their name; the part after a colon is the second argument."""
 

@@ -100,9 +100,9 @@ class TestPage:
 class Stage:
     """Simulation with a live view."""
 
-    def __init__(self, stack: ExitStack) -> None:
+    def __init__(self, stack: ExitStack, world: str = YARD) -> None:
         self._stack = stack
-        self.sim = stack.enter_context(simkit.load(YARD))
+        self.sim = stack.enter_context(simkit.load(world))
         self.view = stack.enter_context(LiveView(self.sim))
 
     def page(self) -> TestPage:

@@ -1,0 +1,113 @@
+"""Calls of services and goals of actions that pages have sent, with their progress."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.bridges.view.packet import make_packet
+from simkit.msgs.message_text import TextStyle, message_to_yaml
+from simkit.runtime.communication.service_call import ServiceCall
+
+if TYPE_CHECKING:
+    from simkit.msgs.message_types import Message
+    from simkit.runtime import Simulation
+    from simkit.runtime.communication.action_server import GoalHandle
+
+_PERIOD: Final = 0.15  # [s] of wall time between two packets
+_MOST_KEPT: Final = 50  # calls and goals that have ended
+_MOST_OPEN: Final = 200  # goals and calls that have not ended
+_STYLE: Final = TextStyle(truncate=64)
+_LONGEST: Final = 20_000  # characters of a message
+
+
+class PageCalls:
+    """Goals, and calls that another process answers; also the stream `calls` that shows them.
+
+    The progress is read between two steps. No callback of a page runs within a step.
+
+    Args:
+        sim: simulation with the services and actions.
+    """
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._entries: dict[int, GoalHandle | ServiceCall] = {}
+        self._texts: dict[int, tuple[object, str]] = {}
+        self._number, self._due, self._sent = 0, 0.0, b""
+
+    @property
+    def is_full(self) -> bool:
+        """True if too many goals and calls have not ended."""
+        return sum(not _is_done(self._sim, found) for found in self._entries.values()) >= _MOST_OPEN
+
+    def add(self, entry: GoalHandle | ServiceCall) -> int:
+        """Add a goal or a call and return its number."""
+        self._number += 1
+        self._entries[self._number] = entry
+        ended = [number for number, found in self._entries.items() if _is_done(self._sim, found)]
+        for number in ended[: max(0, len(ended) - _MOST_KEPT)]:
+            del self._entries[number]
+            self._texts.pop(number, None)
+        return self._number
+
+    def goal(self, number: int) -> GoalHandle | None:
+        """Return a goal; None if there is no such goal."""
+        found = self._entries.get(number)
+        return None if isinstance(found, ServiceCall) else found
+
+    def packet(self, options: Sequence[Any]) -> bytes | None:
+        """Return a packet with all goals and calls; None if nothing has changed."""
+        now = time.perf_counter()
+        if now < self._due:
+            return None
+        self._due = now + _PERIOD
+        packet = make_packet({"kind": "calls", "calls": [self._row(n, e) for n, e in self._entries.items()]}, {})
+        if packet == self._sent:
+            return None
+        self._sent = packet
+        return packet
+
+    def close(self) -> None:
+        """Send everything again when the next page asks."""
+        self._sent = b""
+
+    def _row(self, number: int, entry: GoalHandle | ServiceCall) -> dict[str, Any]:
+        is_done = _is_done(self._sim, entry)
+        if isinstance(entry, ServiceCall):
+            status = "WAITING" if not is_done else "FAILED" if entry.error is not None else "DONE"
+            row = {"kind": "service", "name": entry.service.name, "reason": str(entry.error or "")}
+            return {**row, "id": number, "status": status, "done": is_done, "text": self._text(number, entry.response)}
+        is_undone = is_done and not entry.is_done
+        message = entry.result if entry.is_done else entry.feedback
+        return {
+            "kind": "goal",
+            "id": number,
+            "name": entry._action.name,
+            "status": "UNDONE" if is_undone else entry.status.name,
+            "done": is_done,
+            "reason": "a reset or a restore has undone the goal" if is_undone else entry.reason,
+            "is_result": entry.is_done,
+            "text": self._text(number, message),
+        }
+
+    def _text(self, number: int, message: Message) -> str:
+        """Return the text of a message, which is made once."""
+        found = self._texts.get(number)
+        if found is None or found[0] is not message:
+            found = self._texts[number] = message, shown_message(message)
+        return found[1]
+
+
+def _is_done(sim: Simulation, entry: GoalHandle | ServiceCall) -> bool:
+    """Check whether an entry has ended; also a goal that a reset has undone."""
+    return entry.is_done or not (isinstance(entry, ServiceCall) or sim.communication.actions.knows(entry))
+
+
+def shown_message(message: Message) -> str:
+    """Return a message as `ros2 topic echo` prints it, with long arrays truncated."""
+    if message is None:
+        return ""
+    text = message_to_yaml(message, _STYLE)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}\n…"
