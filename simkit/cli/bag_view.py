@@ -31,6 +31,7 @@ def show_bag(
         InputError: the bag cannot be read, or the file cannot be written.
         LoadError: the world has errors.
     """
+    from simkit.bridges.view.bag_panels import BagPanels
     from simkit.bridges.view.bag_recording import MARKER, make_recording
     from simkit.bridges.view.html_file import html_file
     from simkit.bridges.view.scene_packet import make_scene_packet
@@ -44,14 +45,14 @@ def show_bag(
         if world is None:
             print_status("note: a bag does not name its world; --world WORLD shows the robot and its surroundings")
         sim = stack.enter_context(load(MARKER.format(name="bag")) if world is None else load(world, **loading))
-        recording = make_recording(sim, bag)
+        recording, panels = make_recording(sim, bag), BagPanels(bag, sim)
         if html is not None:
             scene = make_scene_packet(sim, 1, {"seed": sim.seed, "recording": True})
-            write_atomically(html, html_file(f"{path.name} – simkit", scene, recording).encode())
+            write_atomically(html, html_file(f"{path.name} – simkit", scene, recording, panels.file_packet()).encode())
             print_line(f"wrote {html} ({html.stat().st_size / 1e6:.2f} MB)")
             return 0
         interrupts = stack.enter_context(Interrupts())
-        view = page_options.open_page(sim, page, stack, recording)
+        view = page_options.open_page(sim, page, stack, recording, panels.streams)
         while not interrupts.exit_code:
             view.update()
             time.sleep(_POLL)

@@ -20,6 +20,7 @@ const unpack = id => {
 window.simkitFile = {
   scene: await (await unpack('simkit-scene')).arrayBuffer(),
   recording: await (await unpack('simkit-recording')).arrayBuffer(),
+  series: await (await unpack('simkit-series')).arrayBuffer(),
 };
 const script = document.createElement('script');
 script.type = 'module';
@@ -28,18 +29,19 @@ document.body.append(script);
 """
 
 
-def html_file(title: str, scene: bytes, recording: bytes) -> str:
+def html_file(title: str, scene: bytes, recording: bytes, series: bytes = b"") -> str:
     """Return the text of the file.
 
     Args:
         title: title of the page.
         scene: packet `scene`.
         recording: packet `recording`.
+        series: packet with the numbers of topics; empty for none.
     """
     page = page_file("index.html").decode()
     body = re.search(r"<body>(.*?)<script", page, re.DOTALL)
     assert body is not None
-    data = {"scene": scene, "recording": recording, "app": page_file("app.js")}
+    data = {"scene": scene, "recording": recording, "series": series, "app": page_file("app.js")}
     packed = {name: base64.b64encode(gzip.compress(found, 9, mtime=0)).decode() for name, found in data.items()}
     scripts = "\n".join(
         f'<script type="text/plain" id="simkit-{name}">{text}</script>' for name, text in packed.items()

@@ -8,7 +8,7 @@ from typing import Final
 from simkit.bridges.view.message_form import describe_form
 from simkit.bridges.view.page_call import Call, RequestFailed
 from simkit.bridges.view.page_calls import shown_message
-from simkit.bridges.view.topic_streams import LogStream
+from simkit.bridges.view.topic_streams import LogEntries
 from simkit.bridges.web.json_messages import message_from_json, message_to_json
 from simkit.msgs.topic_names import absolute_name
 
@@ -77,7 +77,7 @@ def _set_parameter(call: Call) -> None:
 def _log(call: Call) -> object:
     """Return the log messages after the number `after`, while the page shows the stream `log`."""
     after, stream = call.number("after", 0), call.view.stream("log")
-    return stream.entries(int(after)) if isinstance(stream, LogStream) else []
+    return stream.entries(int(after)) if isinstance(stream, LogEntries) else []
 
 
 PANEL_REQUESTS: Final[dict[str, Callable[[Call], object]]] = {

@@ -108,11 +108,26 @@ def parameters_stream(sim: Simulation, _: str) -> ChangeStream:
     return ChangeStream("parameters", 0.5, lambda: {"nodes": parameter_list(sim)})
 
 
-class LogStream:
+class LogEntries:
+    """Newest log messages, each with its number.
+
+    Attributes:
+        kept: messages for the page.
+    """
+
+    def __init__(self) -> None:
+        self.kept = deque[dict[str, Any]](maxlen=KEPT_LOG_MESSAGES)
+
+    def entries(self, after: int) -> list[dict[str, Any]]:
+        """Return the oldest kept messages after a number."""
+        return [entry for entry in self.kept if entry["number"] > after][:_MOST_ENTRIES]
+
+
+class LogStream(LogEntries):
     """Number of the newest message of `/rosout`; `log`. A page asks for the messages with the request `log`."""
 
     def __init__(self, sim: Simulation, _: str) -> None:
-        self._entries = deque[dict[str, Any]](maxlen=KEPT_LOG_MESSAGES)
+        super().__init__()
         self._count, self._source = 0, time.monotonic_ns()
         self._stream = ChangeStream("log", _QUICK, lambda: {"last": self._count, "source": self._source})
         self.packet = self._stream.packet
@@ -120,11 +135,7 @@ class LogStream:
 
     def _take(self, message: Message) -> None:
         self._count += 1
-        self._entries.append(log_entry(message) | {"number": self._count})
-
-    def entries(self, after: int) -> list[dict[str, Any]]:
-        """Return the oldest kept messages after a number."""
-        return [entry for entry in self._entries if entry["number"] > after][:_MOST_ENTRIES]
+        self.kept.append(log_entry(message) | {"number": self._count})
 
     def close(self) -> None:
         self._tap.close()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sys
+from collections.abc import Mapping
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Final, Protocol
@@ -17,6 +18,7 @@ from simkit.cli.terminal.output import print_status
 
 if TYPE_CHECKING:
     from simkit.bridges.view.live_view import LiveView
+    from simkit.bridges.view.streams import StreamMaker
     from simkit.runtime import Simulation
 
 PORT: Final = re.compile(r"\d+")
@@ -68,7 +70,13 @@ def page_options(port: int | None, host: str | None, *, no_open: bool) -> PageOp
     return PageOptions(port, host or _LOOPBACK, not no_open)
 
 
-def open_page(sim: Simulation, options: PageOptions, stack: ExitStack, recording: bytes = b"") -> LiveView:
+def open_page(
+    sim: Simulation,
+    options: PageOptions,
+    stack: ExitStack,
+    recording: bytes = b"",
+    streams: Mapping[str, StreamMaker] | None = None,
+) -> LiveView:
     """Start the live view, print its address alone on a line, and open a browser; the stack closes the view.
 
     Args:
@@ -76,13 +84,14 @@ def open_page(sim: Simulation, options: PageOptions, stack: ExitStack, recording
         options: options of the page.
         stack: stack that closes the view.
         recording: packet of a recording that the page plays; empty for none.
+        streams: makers of the recording's streams.
 
     Raises:
         InputError: SK-WEB-006 the address cannot be used.
     """
     from simkit.bridges.view.live_view import LiveView
 
-    view = stack.enter_context(LiveView(sim, options.host, options.port, recording=recording))
+    view = stack.enter_context(LiveView(sim, options.host, options.port, recording=recording, streams=streams))
     show_address(view.address, opens=options.opens and view.is_local)
     if not view.is_local:
         text = "other machines reach the page; whoever has its address may drive, spawn and reset"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +13,12 @@ import pytest
 
 import simkit
 from simkit import msgs
+from simkit.bridges.view.bag_panels import BagPanels
 from simkit.bridges.view.message_form import describe_form
 from simkit.bridges.view.packet import read_packet
 from simkit.bridges.view.series_stream import SeriesStream, field_paths, series_packet
+from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording.bags.recorder import Recorder
 from simkit.runtime.engine.snapshot import state_hash
 from tests.bridges.view.conftest import YARD, Stage, TestPage
 from tests.bridges.view.test_live_view import ODOMETRY
@@ -350,3 +354,30 @@ def test_panels_change_no_bit_of_a_run(moving: Stage, pages: int) -> None:
         moving.view._last = 0.0  # so that each of these steps is sent
         moving.view.update()
     assert state_hash(moving.sim) == expected
+
+
+# ---------------------------------------------------------------------- bags
+
+
+def test_a_bag_has_its_topics_and_numbers_and_log(tmp_path: Path) -> None:
+    with simkit.load(MOVING) as sim, Recorder(sim, tmp_path / "drive.mcap", topics=["*", "/rosout"]):
+        sim.publish("/cmd_vel", {"linear": {"x": 0.5}})
+        sim.engine.log.warning("it moves")
+        sim.run(2.0)
+    with open_bag_to_read(tmp_path / "drive.mcap") as bag, simkit.load(MOVING) as sim:
+        panels = BagPanels(bag, sim)
+        head, _ = read_packet(panels.topics_packet())
+        rows = {row["name"]: row for row in head["topics"]}
+        assert rows["/odom"]["rate"] == pytest.approx(50.0, rel=0.03) and head["recorded"]
+        series = panels.streams["series"]("/odom")
+        options = [{"fields": ["pose.pose.position.x", "nothing"]}]
+        head, arrays = read_packet(series.packet(options))
+        assert series.packet(options) is None
+        assert len(arrays["times"]) == rows["/odom"]["count"] and head["errors"].keys() == {"nothing"}
+        travelled = arrays["values"][-1, 0] - arrays["values"][0, 0]
+        assert travelled == pytest.approx(0.5 * (arrays["times"][-1] - arrays["times"][0]), abs=0.02)
+        assert [e["text"] for e in panels.streams["log"]("").entries(0)][-1] == "it moves"
+        _, packets = read_packet(panels.file_packet())
+        assert {"topics", "/odom", "/scan"} <= packets.keys()
+        paths = [curve["path"] for curve in read_packet(packets["/odom"].tobytes())[0]["curves"]]
+        assert "pose.pose.orientation.yaw" in paths and "pose.covariance[0]" not in paths
