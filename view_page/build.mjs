@@ -17,7 +17,7 @@ await build({
   outdir: out,
 });
 await build({
-  entryPoints: { app: join(here, 'src/style.css') }, bundle: true, minify: true, legalComments: 'none', outdir: out,
+  entryPoints: { app: join(here, 'src/page.css') }, bundle: true, minify: true, legalComments: 'none', outdir: out,
 });
 for (const name of ['index.html', 'icon.svg']) await copyFile(join(here, 'src', name), join(out, name));
 const licences = [];

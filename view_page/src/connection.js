@@ -3,6 +3,8 @@ import { readPacket } from './packet.js';
 
 const token = new URLSearchParams(location.search).get('token') ?? '';
 
+const SERVED = new Set(['log']); // requests that the server answers for a recording, too
+
 export class Connection {
   /** `receive(packet)` is called for each packet, `report(text)` for an error without a request. */
   constructor(receive, report, onLink) {
@@ -61,7 +63,7 @@ export class Connection {
 
   /** Sends a request; returns a promise of its answer. */
   ask(name, args = {}) {
-    if (this.player) return this.player.ask(name, args);
+    if (this.player && !SERVED.has(name)) return this.player.ask(name, args);
     if (this.socket?.readyState !== WebSocket.OPEN) return Promise.reject(new Error('there is no connection'));
     const id = ++this.number;
     this.socket.send(JSON.stringify({ ...args, do: name, id }));

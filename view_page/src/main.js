@@ -131,7 +131,7 @@ app.pickAt = (x, y) => {
 try {
   app.stage = new Stage(document.getElementById('canvas'), new URLSearchParams(location.search).get('quality') ?? 'auto');
   app.world = new World(app.stage);
-  app.connection = new Connection(packet => { if (!app.player) receive(packet); }, showNotice, isUp => app.emit('link', isUp));
+  app.connection = new Connection(packet => { if (!app.player || packet.recorded) receive(packet); }, showNotice, isUp => app.emit('link', isUp));
   app.layers = new Layers(app);
   app.views = new Views(app);
   app.sensors = new Sensors(app);

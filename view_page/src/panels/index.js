@@ -1,5 +1,6 @@
 // Panels of the page: side and function `make(app)`, which returns an element or null. A new panel is one line here.
 import { makeCameraPanel } from './camera_panel.js';
+import { makeDock } from './dock.js';
 import { makeDrivePanel } from './drive_panel.js';
 import { makeJointPanel } from './joint_panel.js';
 import { makeLayerPanel } from './layer_panel.js';
@@ -13,4 +14,5 @@ export const PANELS = [
   ['right', makeCameraPanel],
   ['right', makeDrivePanel],
   ['right', makeJointPanel],
+  ['right', makeDock], // below the scene
 ];

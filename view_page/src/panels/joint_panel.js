@@ -17,7 +17,12 @@ export function makeJointPanel(app) {
     slider.hidden = joint.axes.length !== 1 || range[0] >= range[1];
     return { joint, index, slider, value, row: element('label', { title: joint.name }, element('span', {}, joint.name.split('::').at(-1)), value, slider) };
   };
-  const want = () => app.connection.want('joints', rows.length && box.open ? {} : null);
+  const others = new Set(); // other panels that show positions
+  const want = () => app.connection.want('joints', (rows.length && box.open && !box.hidden) || others.size ? {} : null);
+  app.wantJoints = (name, isWanted) => {
+    if (isWanted) others.add(name); else others.delete(name);
+    want();
+  };
   app.on('scene', scene => {
     const robots = new Set(app.robots.map(robot => robot.name));
     rows = scene.joints.map((joint, i) => [joint, i]).filter(([joint]) => robots.has(joint.name.split('::', 1)[0])).slice(0, MOST).map(([joint, i]) => make(joint, i));
