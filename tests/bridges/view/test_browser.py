@@ -45,7 +45,15 @@ class Session:
     """Simulation in a thread that keeps it running, and its page in a browser."""
 
     def __init__(
-        self, browser: Any, stack: ExitStack, world: str, *, checks_policy: bool = False, more: str = ""
+        self,
+        browser: Any,
+        stack: ExitStack,
+        world: str,
+        *,
+        checks_policy: bool = False,
+        more: str = "",
+        size: tuple[int, int] = (1200, 720),
+        theme: str = "dark",
     ) -> None:
         self.sim = stack.enter_context(simkit.load(world, sleep=False))  # a body asleep has no contacts
         self.view = stack.enter_context(LiveView(self.sim))
@@ -54,7 +62,8 @@ class Session:
         self._thread.start()
         stack.callback(self._end)
         # Playwright's waiting functions need `eval`, which the page's policy forbids
-        context = browser.new_context(viewport={"width": 1200, "height": 720}, bypass_csp=not checks_policy)
+        viewport = {"width": size[0], "height": size[1]}
+        context = browser.new_context(viewport=viewport, bypass_csp=not checks_policy, color_scheme=theme)
         stack.callback(context.close)
         self.page = context.new_page()
         self.outside: list[str] = []

@@ -6,7 +6,7 @@ export function makeCallList(app) {
   const rows = new Map();
   const make = call => {
     const status = element('span', { class: 'status' }), text = element('pre', {}), cancel = element('button', { onclick: () => app.send('cancel', { goal: call.id }) }, 'Cancel');
-    const box = element('div', { class: 'call', 'data-call': call.id }, element('div', { class: 'call-head' }, element('span', { class: 'name' }, `${call.name}`), status, cancel), text);
+    const box = element('div', { class: 'call', 'data-call': call.id }, element('div', { class: 'call-head' }, element('span', { class: 'name', title: call.name }, element('bdi', {}, call.name)), status, cancel), text);
     list.prepend(box);
     return { box, status, text, cancel };
   };

@@ -10,8 +10,7 @@ export function makeCallTab(app) {
   const send = element('button', { id: 'call-send', onclick: () => submit() }, 'Call'), problem = element('p', { id: 'call-problem', class: 'wrong', hidden: true });
   const response = element('pre', { id: 'call-response', hidden: true }), calls = makeCallList(app);
   const hint = element('p', { class: 'dim hint' }, 'Choose a service or an action');
-  const middle = element('div', { class: 'call-middle' }, hint, head, place, element('div', { class: 'row-left' }, send), problem, response);
-  send.hidden = true;
+  const middle = element('div', { class: 'call-middle' }, hint, head, problem, response, place);
 
   const tell = text => { problem.textContent = text; problem.hidden = !text; };
   const show = () => {
@@ -33,10 +32,9 @@ export function makeCallTab(app) {
       if (chosen?.name !== name) return;
       form = found;
       hint.hidden = true;
-      head.replaceChildren(element('strong', {}, name), element('span', { class: 'type' }, type));
+      head.replaceChildren(element('strong', {}, name), element('span', { class: 'type' }, type), send);
       place.replaceChildren(form.element);
       send.textContent = kind === 'action' ? 'Send goal' : 'Call';
-      send.hidden = false;
     } catch (error) { tell(error.message); }
   };
   const submit = async () => {

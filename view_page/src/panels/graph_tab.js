@@ -3,6 +3,7 @@ import { element } from '../dom.js';
 
 const SPACE = 'http://www.w3.org/2000/svg';
 const LINE = 16;
+const READABLE = 1.7; // most units of the drawing for a pixel at first
 const LONGEST = 44; // characters of a line, as in simkit/recording/graphs/graph_svg.py
 
 function shape(name, attributes, ...children) {
@@ -46,7 +47,7 @@ class GraphView {
       this.svg.addEventListener('pointermove', move);
       this.svg.addEventListener('lostpointercapture', () => this.svg.removeEventListener('pointermove', move), { once: true });
     });
-    new ResizeObserver(() => { if (this.isFitted) this.fit(); else if (this.view) this.keepShape(); }).observe(this.svg);
+    new ResizeObserver(() => { if (!this.view || this.isFitted) this.begin(); else this.keepShape(); }).observe(this.svg);
   }
 
   zoom(factor, x, y) {
@@ -73,6 +74,17 @@ class GraphView {
     this.apply();
   }
 
+  /** Shows everything if it is readable then; else the part at the root, or the top. */
+  begin() {
+    this.fit();
+    if (!this.size || !this.view || this.view[2] / this.svg.clientWidth < READABLE) return;
+    const { clientWidth: width, clientHeight: height } = this.svg, scale = Math.min(Math.max((this.size[0] + 32) / width, 1), READABLE);
+    const left = this.size[0] > width * scale ? -16 : (this.size[0] - width * scale) / 2;
+    this.view = [left, this.root === null ? -12 : this.root - height * scale / 2, width * scale, height * scale];
+    this.isFitted = false;
+    this.apply();
+  }
+
   apply() { this.svg.setAttribute('viewBox', this.view.join(' ')); }
 
   draw({ boxes, edges, size }) {
@@ -89,7 +101,9 @@ class GraphView {
       return line;
     });
     this.svg.replaceChildren(shape('defs', {}, tip), ...lines, ...boxes.map(box => this.box(box, lines)));
-    if (isNew) this.fit();
+    const first = boxes.filter(box => box.place[0] < 100 && boxes.every(one => one.place[0] >= box.place[0]));
+    this.root = first.length === 1 ? first[0].place[1] + first[0].place[3] / 2 : null; // the middle of the only box on the left
+    if (isNew) this.begin();
   }
 
   box({ name, kind, head, above, lines, place: [x, y, width, height] }, edges) {

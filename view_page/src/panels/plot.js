@@ -158,8 +158,8 @@ export class Plot {
       width, height, scales, legend: { show: false }, padding: [8, units.length > 1 ? 0 : 12, 0, 0],
       cursor: { drag: { x: true, y: false, setScale: false }, points: { size: 5 }, focus: { prox: 24 } },
       focus: { alpha: 0.4 },
-      series: [{}, ...curves.map(curve => ({ label: curve.label, stroke: this.colourOf(curve), width: 1.5, scale: scaleOf(curve), points: { show: false }, spanGaps: false }))],
-      axes: [axis({ size: 24 }), ...units.map((unit, i) => axis({ scale: `u${i}`, side: i ? 1 : 3, size: 52, label: unit || ' ', grid: { show: i === 0, stroke: line, width: 1 } }))],
+      series: [{}, ...curves.map(curve => ({ label: curve.label, stroke: this.colourOf(curve), width: 1.5, scale: scaleOf(curve), points: { show: false }, spanGaps: false, pxAlign: 0 }))],
+      axes: [axis({ size: 24 }), ...units.map((unit, i) => axis({ scale: `u${i}`, side: i ? 1 : 3, size: 52, label: unit || ' ', values: ticks, grid: { show: i === 0, stroke: line, width: 1 } }))],
       hooks: {
         setSelect: [u => this.setZoom(u)],
         setCursor: [() => this.showValues()],
@@ -198,7 +198,7 @@ export class Plot {
         return curves.map((curve, i) => {
           const swatch = element('i', {}), value = element('output', {});
           swatch.style.background = this.colourOf(curve);
-          return element('span', { class: 'key', title: curve.label, 'data-curve': curve.key }, swatch, element('span', { class: 'label' }, curve.label), value, i ? null : drop());
+          return element('span', { class: 'key', title: curve.label, 'data-curve': curve.key }, swatch, element('span', { class: 'label' }, element('bdi', {}, curve.label)), value, i ? null : drop());
         });
       }));
     }
@@ -286,6 +286,13 @@ function padded(min, max) {
   if (min === null || max === null) return [-1, 1];
   const space = max > min ? 0.08 * (max - min) : Math.max(Math.abs(max) * 0.1, 0.1);
   return [min - space, max + space];
+}
+
+/** Returns the texts of an axis: as many digits as the distance between two values needs. */
+function ticks(u, values, axis, space, step) {
+  const largest = Math.max(...values.map(Math.abs)), digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  if (digits > 5 || largest >= 1e6) return values.map(value => value === 0 ? '0' : value.toExponential(Math.max(0, Math.min(2, Math.round(Math.log10(largest / step))))));
+  return values.map(value => (Math.abs(value) < step / 2 ? 0 : value).toFixed(digits));
 }
 
 function format(value) {
