@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.bridges.view.packet import make_packet
+from simkit.bridges.view.packet import Arrays, make_packet
 from simkit.errors import SimkitError
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
 from simkit.msgs.field_units import unit_of
@@ -131,7 +131,11 @@ def series_packet(name: str, rows: Sequence[Row], curves: Sequence[Mapping[str, 
     begin = float(times[0]) if len(rows) else 0.0
     shown = [{**curve, "base": base} for curve, base in zip(curves, bases, strict=True)]
     with np.errstate(over="ignore", invalid="ignore"):
-        arrays = {"times": times - begin, "stamps": stamps - begin, "values": (values - bases).astype(np.float32)}
+        arrays: Arrays = {
+            "times": times - begin,
+            "stamps": stamps - begin,
+            "values": (values - bases).astype(np.float32),
+        }
     return make_packet({"kind": name, **head, "begin": begin, "curves": shown}, arrays)
 
 

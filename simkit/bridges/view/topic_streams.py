@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
@@ -12,18 +13,22 @@ from simkit.bridges.live.introspection import parameter_list, topic_list
 from simkit.bridges.view.packet import Head, make_packet
 from simkit.bridges.view.series_stream import TRUTH, field_paths
 from simkit.errors import MessageError
-from simkit.recording.topic_counts import RENDERED, TopicCounter
+from simkit.recording.message_taps import is_available
+from simkit.recording.topic_counts import RENDERED
 from simkit.runtime.communication.publisher import KEPT_LOG_MESSAGES, ROSOUT
 
 if TYPE_CHECKING:
     from simkit.msgs.message_types import Message
-    from simkit.runtime import Simulation
+    from simkit.runtime import Simulation, Subscription
 
 _SLOW: Final = 1.0  # [s] of wall time between two looks at lists
 _QUICK: Final = 0.2  # [s] of wall time between two packets about messages
 _MOST_ENTRIES: Final = 300  # log messages of one answer
 _LONGEST_LINE: Final = 4000  # characters of a log message
 _SILENT_AFTER: Final = 3  # periods without a message after which a topic has no rate
+_SECOND: Final = 2
+_ENOUGH: Final = 22  # messages of one measurement of a rate
+_BETWEEN: Final = 5.0  # [s] of wall time between two measurements of a rate
 
 
 class ChangeStream:
@@ -83,24 +88,92 @@ def topics_stream(sim: Simulation, _: str) -> ChangeStream:
     return ChangeStream("topics", _SLOW, content)
 
 
+@dataclass
+class _Count:
+    """Messages of a topic since its tap was opened.
+
+    Attributes:
+        tap: subscription; None between two measurements.
+        due: wall time of the next measurement [s].
+        count: number of messages.
+        since, second, last: simulated time of the tap, of its second and of its newest message [ns].
+        rate: rate of the last complete measurement [Hz].
+    """
+
+    tap: Subscription | None = None
+    due: float = 0.0
+    count: int = 0
+    since: int = 0
+    second: int = 0
+    last: int = 0
+    rate: float | None = None
+
+    def take(self, now: int) -> None:
+        """Count a message."""
+        if now < self.last:
+            self.count, self.since = 0, now  # after a reset
+        self.count += 1
+        self.last = now
+        if self.count == _SECOND:
+            self.second = now  # the time from the first to the second message may differ from the period
+
+    def measured(self, now: int) -> float | None:
+        """Return the rate [Hz]; None before the third message, and for a topic that has become silent."""
+        if self.tap is not None and self.count > _SECOND and self.last > self.second:
+            self.rate = (self.count - _SECOND) * 1e9 / (self.last - self.second)
+        newest = max(self.since, self.last)
+        if self.tap is not None and self.rate is not None and now - newest > _SILENT_AFTER * 1e9 / self.rate + 1e9:
+            self.rate = None
+        return self.rate
+
+
 class RateStream:
-    """Rates of the topics in simulated time [Hz]; `rates`. Topics whose messages are rendered are not counted."""
+    """Rates of the topics in simulated time [Hz]; `rates`. Topics whose messages are rendered are not counted.
+
+    A topic is received until it has sent some messages, and again some seconds later: a subscription to each topic all
+    the time costs a robot such as TIAGo a tenth of a core.
+    """
 
     def __init__(self, sim: Simulation, _: str) -> None:
-        self._sim, self._counter = sim, TopicCounter(sim, RENDERED)
+        self._sim, self._counts = sim, dict[str, _Count]()
         self._stream = ChangeStream("rates", _SLOW, self._content)
-        self.packet, self._close = self._stream.packet, self._counter.close
+
+    def packet(self, options: Sequence[Any]) -> bytes | None:
+        now = time.perf_counter()
+        for topic, found in self._counts.items():
+            if found.tap is not None and found.count >= _ENOUGH:
+                found.measured(self._sim.time_ns)
+                found.tap.close()
+                found.tap, found.due = None, now + _BETWEEN
+            elif found.tap is None and now >= found.due:
+                self._open(topic, found)
+        return self._stream.packet(options)
+
+    def _open(self, topic: str, found: _Count) -> None:
+        sim = self._sim
+        found.count, found.since, found.second, found.last = 0, sim.time_ns, 0, 0
+        found.tap = sim.communication.bus.tap(topic, lambda _: found.take(sim.time_ns), takes_later=True)
 
     def _content(self) -> Head:
-        now, found = self._sim.time_ns, {}
-        for row in self._counter.rows:
-            rate = row.rate()
-            if rate is not None and now - row.last < _SILENT_AFTER * 1e9 / rate + 1e9:
-                found[row.topic] = round(rate, 3)
-        return {"rates": found}
+        sim, bus = self._sim, self._sim.communication.bus
+        topics = bus.topics()
+        for topic in [topic for topic in self._counts if topic not in topics]:
+            self._close(self._counts.pop(topic))
+        for topic, type_name in topics.items():
+            is_counted = type_name not in RENDERED and topic not in self._counts
+            if is_counted and (topic not in bus.aside or bus.wanted(topic)) and is_available(sim, topic):
+                self._counts[topic] = _Count()
+                self._open(topic, self._counts[topic])
+        rates = ((topic, found.measured(sim.time_ns)) for topic, found in self._counts.items())
+        return {"rates": {topic: round(rate, 3) for topic, rate in rates if rate is not None}}
+
+    def _close(self, found: _Count) -> None:
+        if found.tap is not None:
+            found.tap.close()
 
     def close(self) -> None:
-        self._close()
+        for found in self._counts.values():
+            self._close(found)
 
 
 def parameters_stream(sim: Simulation, _: str) -> ChangeStream:

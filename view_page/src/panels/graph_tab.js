@@ -3,7 +3,7 @@ import { element } from '../dom.js';
 
 const SPACE = 'http://www.w3.org/2000/svg';
 const LINE = 16;
-const READABLE = 1.7; // most units of the drawing for a pixel at first
+const READABLE = 1.35; // most units of the drawing for a pixel at first
 const LONGEST = 44; // characters of a line, as in simkit/recording/graphs/graph_svg.py
 
 function shape(name, attributes, ...children) {

@@ -24,11 +24,11 @@ export function makeMotionTab(app) {
       const found = await app.ask('call', { name }).catch(() => null), space = name.split('/').slice(0, -2).join('/');
       for (const controller of found?.values?.controller ?? []) states.set(`${space}/${controller.name}`, controller);
     }
-    const boxes = Object.keys(actions).filter(one => actions[one] === FOLLOW).map(name => makeController(name, states.get(name.slice(0, name.lastIndexOf('/'))))).filter(Boolean);
+    const boxes = Object.keys(actions).filter(one => actions[one] === FOLLOW).map((name, i) => makeController(name, states.get(name.slice(0, name.lastIndexOf('/'))), i === 0)).filter(Boolean);
     controllers.replaceChildren(...boxes);
     controllers.parentElement.hidden = !boxes.length;
   };
-  const makeController = (action, state) => {
+  const makeController = (action, state, isFirst) => {
     const names = [...new Set((state?.claimed_interfaces ?? []).map(one => one.slice(0, one.lastIndexOf('/'))))];
     if (!names.length) return null; // not active, or not of ros2_control
     const rows = names.map(name => {
@@ -44,7 +44,7 @@ export function makeMotionTab(app) {
       app.send('goal', { name: action, values: { trajectory: { joint_names: names, points: [point] } } });
       for (const row of rows) row.isMoved = false;
     } }, 'Move');
-    const box = element('details', { open: controllers.childElementCount < 1 }, element('summary', { title: action }, action.split('/').slice(1, -1).join('/')), element('div', { class: 'joints' }, ...rows.map(row => row.element)), element('div', { class: 'row-left' }, seconds, 's', move));
+    const box = element('details', { open: isFirst }, element('summary', { title: action }, action.split('/').slice(1, -1).join('/')), element('div', { class: 'joints' }, ...rows.map(row => row.element)), element('div', { class: 'row-left' }, seconds, 's', move));
     box.rows = rows;
     return box;
   };

@@ -149,7 +149,7 @@ export class Plot {
     this.chart = null;
     if (!curves.length) return;
     const style = getComputedStyle(document.body), text = style.getPropertyValue('--dim').trim(), line = style.getPropertyValue('--grid').trim();
-    const font = '11px system-ui, sans-serif', units = [...new Set(curves.map(curve => this.unit(curve)))].slice(0, 2);
+    const font = '11px system-ui, sans-serif', all = [...new Set(curves.map(curve => this.unit(curve)))], units = all.slice(0, 2);
     const scaleOf = curve => units.includes(this.unit(curve)) ? `u${units.indexOf(this.unit(curve))}` : `u${units.length - 1}`;
     const axis = (options) => ({ stroke: text, font, labelFont: font, labelSize: 16, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1, size: 4 }, gap: 3, ...options });
     const scales = { x: { time: false }, ...Object.fromEntries(units.map((_, i) => [`u${i}`, { range: (u, min, max) => padded(min, max) }])) };
@@ -159,7 +159,7 @@ export class Plot {
       cursor: { drag: { x: true, y: false, setScale: false }, points: { size: 5 }, focus: { prox: 24 } },
       focus: { alpha: 0.4 },
       series: [{}, ...curves.map(curve => ({ label: curve.label, stroke: this.colourOf(curve), width: 1.5, scale: scaleOf(curve), points: { show: false }, spanGaps: false, pxAlign: 0 }))],
-      axes: [axis({ size: 24 }), ...units.map((unit, i) => axis({ scale: `u${i}`, side: i ? 1 : 3, size: 52, label: unit || ' ', values: ticks, grid: { show: i === 0, stroke: line, width: 1 } }))],
+      axes: [axis({ size: 24 }), ...units.map((unit, i) => axis({ scale: `u${i}`, side: i ? 1 : 3, size: 52, label: (i ? all.slice(1) : [unit]).filter(Boolean).join(', ') || ' ', values: ticks, grid: { show: i === 0, stroke: line, width: 1 } }))],
       hooks: {
         setSelect: [u => this.setZoom(u)],
         setCursor: [() => this.showValues()],
