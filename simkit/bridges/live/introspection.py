@@ -133,24 +133,25 @@ class NodeNames:
 
     def __init__(self, sim: Simulation, clients: Iterable[ClientConnection]) -> None:
         self._world = "/" + name_part(sim.world.name)
-        self._nodes: dict[int, str] = {
-            id(p.owner): node
-            for node, found in sim.communication.parameters.items()
-            for p in found.values()
-            if p.owner is not None
-        }
+        self._nodes: dict[int, list[str]] = {}
+        for node, found in sim.communication.parameters.items():
+            for owner in {id(p.owner): p.owner for p in found.values() if p.owner is not None}:
+                self._nodes.setdefault(owner, []).append(node)
         self._clients = {id(end): peer.node for peer in clients for end in peer.publishers.values()}
         self._clients |= {id(e.opened): peer.node for peer in clients for e in peer.endpoints.values()}
 
     def endpoint_node(self, end: Any) -> str:
         """Return the node of a publisher, a subscriber, a service or an action."""
-        return self._clients.get(id(end)) or self.owner_node(end.owner)
+        name = str(getattr(end, "topic", None) or end.name)
+        nodes = self._nodes.get(id(end.owner), ()) if end.owner is not None else ()
+        below = [node for node in nodes if name.startswith(f"{node}/")]  # a controller manager has several nodes
+        return self._clients.get(id(end)) or max(below, key=len, default="") or self.owner_node(end.owner)
 
     def owner_node(self, owner: object) -> str:
         """Return the node of a plugin or a sensor; the world's node if there is no owner."""
         if owner is None:
             return self._world
         known = self._nodes.get(id(owner))
-        if known is not None:
-            return known
+        if known is not None and len(known) == 1:
+            return known[0]
         return node_of(owner) or self._world

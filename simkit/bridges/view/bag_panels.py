@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 _MOST_SAMPLES: Final = 5000  # samples of a topic for a page; of a longer topic, every n-th message is read
 _MOST_IN_FILE: Final = 600  # samples of a topic in an HTML file
 _MOST_TOPICS: Final = 60  # topics in an HTML file
+_MOST_ENTRIES: Final = 1000  # log messages in an HTML file
 _MOST_ITEMS: Final = 12  # items of an array in an HTML file
 
 
@@ -86,6 +87,8 @@ class BagPanels:
             fields = self._file_fields(topic)
             if fields:
                 packets[topic.name] = self.series_packet(topic.name, fields, _MOST_IN_FILE)
+        if entries := self._log_entries()[-_MOST_ENTRIES:]:
+            packets["log"] = make_packet({"kind": "log", "entries": entries}, {})
         arrays = {name: np.frombuffer(packet, np.uint8) for name, packet in packets.items()}
         return make_packet({"kind": "packets"}, arrays)
 

@@ -38,8 +38,8 @@ def opened(found: Session, tab: str) -> Session:
     return found
 
 
-def drive(found: Session) -> None:
-    found.page.evaluate("simkitView.send('drive', {topic: '/cmd_vel', ahead: 0.5, turn: 0.4})")
+def drive(found: Session, ahead: float = 0.5, turn: float = 0.4) -> None:
+    found.page.evaluate(f"simkitView.send('drive', {{topic: '/cmd_vel', ahead: {ahead}, turn: {turn}}})")
 
 
 def newest(found: Session, curve: str) -> float:
@@ -110,6 +110,33 @@ def test_a_plot_pauses_zooms_clears_and_is_saved(session: Callable[..., Session]
     page.locator(".plot .clear").click()
     found.until("app.plots.store.curves.get('/odom twist.twist.linear.x').v.length < 5")
     assert found.errors == []
+
+
+def test_odometry_is_plotted_beside_the_truth(session: Callable[..., Session]) -> None:
+    found = opened(session("turtlebot3_world", size=(1400, 860)), "plots")
+    found.until("app.plots.list.topics.length > 5")
+    drive(found, 0.12, 0.25)
+    for topic, fields in {"/odom": ("x", "y"), "truth": ("x", "y")}.items():
+        for field in fields:
+            name = f"turtlebot3.{field}" if topic == "truth" else f"pose.pose.position.{field}"
+            found.get(f"app.plots.choose('{topic}', '{name}')")
+    found.get("app.plots.add()")
+    found.get("app.plots.choose('/odom', 'pose.pose.orientation.yaw')")
+    found.get("app.plots.choose('truth', 'turtlebot3.yaw')")
+    found.page.locator("[data-topic='/odom'] summary").click()
+    found.until("app.state.time > 6")
+    found.page.wait_for_timeout(300)
+    found.picture("view_plots")
+    yaw = newest(found, "truth turtlebot3.yaw")
+    assert newest(found, "/odom pose.pose.orientation.yaw") == pytest.approx(yaw, abs=0.2) and yaw > 1.0
+    found.page.locator("#tab-calls").click()
+    found.page.locator("#call-search").fill("set_pose")
+    found.page.locator("[data-call-name='/world/turtlebot3_world/set_pose']").click()
+    found.page.locator(".call-form [name=name]").fill("turtlebot3", timeout=TIMEOUT)
+    found.page.locator(".call-form [name=x]").first.fill("-0.5")
+    found.page.locator("#call-send").click()
+    found.page.locator("#call-response", has_text="success: true").wait_for(timeout=TIMEOUT)
+    found.picture("view_forms")
 
 
 def test_a_tab_that_is_not_shown_asks_for_nothing(session: Callable[..., Session]) -> None:
@@ -352,5 +379,7 @@ def test_one_file_plots_without_simkit(browser: Any, bag: Path, tmp_path: Path) 
     assert len(values) > 90 and values[-1] - values[0] == pytest.approx(1.0, abs=0.05)
     page.evaluate("simkitView.plots.choose('truth', 'rover.x')")
     assert page.evaluate("simkitView.plots.store.curves.get('truth rover.x').v.at(-1)") == pytest.approx(1.0, abs=0.05)
+    page.locator("#tab-console").click()
+    assert page.locator(".log.warn .text").inner_text() == "it moves"
     assert [url for url in requests if not url.startswith(("file:", "data:", "blob:"))] == []
     page.close()

@@ -1,5 +1,6 @@
 // Console: diagnostics of the load and log messages of plugins, with filters by level, node and text.
 import { element } from '../dom.js';
+import { filePackets } from './series_store.js';
 
 const LEVELS = [['debug', 10], ['info', 20], ['warn', 30], ['error', 40], ['fatal', 50]];
 const MOST = 2000; // kept messages
@@ -57,6 +58,8 @@ export function makeConsoleTab(app) {
     ask();
   });
   app.console = { get entries() { return entries; } };
+  const file = filePackets();
+  if (file) append(file.get('log')?.entries ?? []);
   return {
     element: element('div', { class: 'console-tab' }, bar, rows),
     show(shown) {

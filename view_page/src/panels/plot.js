@@ -125,15 +125,9 @@ export class Plot {
     const tables = curves.map(curve => {
       const times = this.times(curve), from = Math.max(0, bisect(times, low) - 1), to = Math.min(times.length, bisect(times, high) + 1), scale = this.scale(curve);
       const t = [], v = [];
-      let last = null;
       for (let i = from; i < to; i++) {
         if (!Number.isFinite(times[i]) || (t.length && times[i] <= t[t.length - 1])) continue;
-        const value = Number.isFinite(curve.v[i]) ? curve.v[i] : null;
-        if (curve.isAngle && value !== null && last !== null && Math.abs(value - last) > Math.PI) {
-          t.push((t[t.length - 1] + times[i]) / 2); v.push(null); // an angle that wraps around
-        }
-        t.push(times[i]); v.push(value === null ? null : value * scale);
-        last = value;
+        t.push(times[i]); v.push(Number.isFinite(curve.v[i]) ? curve.v[i] * scale : null);
       }
       return [t, v];
     });
@@ -158,7 +152,7 @@ export class Plot {
       width, height, scales, legend: { show: false }, padding: [8, units.length > 1 ? 0 : 12, 0, 0],
       cursor: { drag: { x: true, y: false, setScale: false }, points: { size: 5 }, focus: { prox: 24 } },
       focus: { alpha: 0.4 },
-      series: [{}, ...curves.map(curve => ({ label: curve.label, stroke: this.colourOf(curve), width: 1.5, scale: scaleOf(curve), points: { show: false }, spanGaps: false, pxAlign: 0 }))],
+      series: [{}, ...curves.map(curve => ({ label: curve.label, stroke: this.colourOf(curve), width: 1.5, scale: scaleOf(curve), points: { show: false }, spanGaps: false, pxAlign: 0, paths: curve.isAngle ? anglePath(scaleOf(curve), Math.PI * this.scale(curve)) : undefined }))],
       axes: [axis({ size: 24 }), ...units.map((unit, i) => axis({ scale: `u${i}`, side: i ? 1 : 3, size: 52, label: (i ? all.slice(1) : [unit]).filter(Boolean).join(', ') || ' ', values: ticks, grid: { show: i === 0, stroke: line, width: 1 } }))],
       hooks: {
         setSelect: [u => this.setZoom(u)],
@@ -286,6 +280,23 @@ function padded(min, max) {
   if (min === null || max === null) return [-1, 1];
   const space = max > min ? 0.08 * (max - min) : Math.max(Math.abs(max) * 0.1, 0.1);
   return [min - space, max + space];
+}
+
+/** Returns the path of an angle: without a line where it wraps around. uPlot draws gaps only where they are wider than a pixel. */
+function anglePath(scale, half) {
+  return (u, number, from, to) => {
+    const stroke = new Path2D(), times = u.data[0], values = u.data[number];
+    let last = null;
+    for (let i = from; i <= to; i++) {
+      const value = values[i];
+      if (value === undefined) continue;
+      if (value === null) { last = null; continue; }
+      const x = u.valToPos(times[i], 'x', true), y = u.valToPos(value, scale, true);
+      if (last === null || Math.abs(value - last) > half) stroke.moveTo(x, y); else stroke.lineTo(x, y);
+      last = value;
+    }
+    return { stroke, fill: null, clip: null, flags: 1 };
+  };
 }
 
 /** Returns the texts of an axis: as many digits as the distance between two values needs. */

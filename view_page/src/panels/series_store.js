@@ -12,6 +12,13 @@ const keyOf = (topic, path) => `${topic} ${path}`;
 /** Returns true if a curve belongs to a field: `position` has the curves `position.x`, `position.y` and `position.z`. */
 const belongs = (path, field) => path === field || path.startsWith(`${field}.`) || path.startsWith(`${field}[`);
 
+/** Returns the packets of a one-file page by topic, and `topics` and `log`; null for a page with a server. */
+export function filePackets() {
+  if (!window.simkitFile) return null;
+  const { series } = window.simkitFile;
+  return new Map(Object.entries(series?.byteLength ? readPacket(series).arrays : {}).map(([name, bytes]) => [name, readPacket(bytes.slice().buffer)]));
+}
+
 export class SeriesStore {
   constructor(app) {
     this.app = app;
@@ -24,8 +31,7 @@ export class SeriesStore {
     app.on('packet:series', packet => this.take(packet, packet.kind.slice('series:'.length)));
     app.on('packet:truth', packet => this.take(packet, TRUTH));
     app.on('recording', () => this.want());
-    const file = window.simkitFile?.series;
-    if (file?.byteLength) this.file = new Map(Object.entries(readPacket(file).arrays).map(([name, bytes]) => [name, readPacket(bytes.slice().buffer)]));
+    this.file = filePackets();
   }
 
   /** Asks for a field of a topic, or ends this. */
@@ -99,8 +105,7 @@ export class SeriesStore {
   // ---- recordings
 
   takeFile(topic, fields) {
-    const packet = this.file.get(topic);
-    if (!packet) return;
+    const packet = this.file.get(topic) ?? { curves: [], arrays: {} };
     this.take(packet, topic);
     for (const field of fields) {
       if (!packet.curves.some(curve => belongs(curve.path, field))) this.errors.set(keyOf(topic, field), 'this file does not contain the field');
@@ -136,7 +141,7 @@ function readTruth(poses, at) {
 const reader = (unit, make, isAngle = false) => Object.assign(make, { unit, isAngle });
 const speed = axis => (p, a, b, dt) => (b[axis] - a[axis]) / dt;
 const along = (p, a, b, dt, angle) => (Math.cos(angle) * (b.x - a.x) + Math.sin(angle) * (b.y - a.y)) / dt;
-const READERS = {
+export const READERS = {
   x: reader('m', p => p.x), y: reader('m', p => p.y), z: reader('m', p => p.z),
   roll: reader('rad', p => p.roll, true), pitch: reader('rad', p => p.pitch), yaw: reader('rad', p => p.yaw, true),
   vx: reader('m/s', speed('x')), vy: reader('m/s', speed('y')), vz: reader('m/s', speed('z')),

@@ -1,6 +1,6 @@
 // List of topics with types, rates and fields. A field is dragged to a plot, or clicked.
 import { element } from '../dom.js';
-import { TRUTH } from './series_store.js';
+import { READERS, TRUTH } from './series_store.js';
 
 /** Type of the data of a dragged field. */
 export const FIELD_DATA = 'text/plain';
@@ -28,8 +28,10 @@ export class TopicList {
   }
 
   setShown(isShown) {
-    const file = this.store.file?.get('topics');
-    if (file) { if (!this.topics.length) this.take(file); return; }
+    if (this.store.file) {
+      if (!this.topics.length) this.take(this.store.file.get('topics') ?? { topics: [], types: {}, models: [...this.app.bodyOf.keys()], truth: Object.keys(READERS) });
+      return;
+    }
     this.app.connection.want('topics', isShown ? {} : null);
     if (!this.app.scene?.recording) this.app.connection.want('rates', isShown ? {} : null);
   }
