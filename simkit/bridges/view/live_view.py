@@ -119,6 +119,7 @@ class LiveView:
         self._last = now
         self.travel.sample()
         if not self.server.client_count:
+            self._close_streams()
             return
         if self.sim.mj_model is not self._model:
             self._set_scene()
@@ -179,16 +180,19 @@ class LiveView:
             if packet is not None:
                 self.server.send(name, packet)
 
+    def _close_streams(self) -> None:
+        for stream in self._streams.values():
+            if stream is not None:
+                stream.close()
+        self._streams.clear()
+
     # ------------------------------------------------------------------ scene
 
     def _set_scene(self) -> None:
         self.revision += 1
         self._model = self.sim.mj_model
         self._moving = scene_packet.moving_bodies(self._model)
-        for stream in self._streams.values():
-            if stream is not None:
-                stream.close()
-        self._streams.clear()
+        self._close_streams()
         extra = {"seed": self.sim.seed, "recording": self._is_recording}
         packet = scene_packet.make_scene_packet(self.sim, self.revision, extra)
         self._looks = self._appearance_digest()
@@ -237,10 +241,7 @@ class LiveView:
 
     def close(self) -> None:
         """Disconnect the pages."""
-        for stream in self._streams.values():
-            if stream is not None:
-                stream.close()
-        self._streams.clear()
+        self._close_streams()
         self.server.close()
 
     def __enter__(self) -> LiveView:

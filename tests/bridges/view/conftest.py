@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 import simkit
@@ -61,7 +62,7 @@ class TestPage:
         while True:
             try:
                 data = self.socket.recv(timeout=0.005)
-            except TimeoutError:
+            except (TimeoutError, ConnectionClosed):
                 return
             if isinstance(data, str):
                 self.answers.append(json.loads(data))

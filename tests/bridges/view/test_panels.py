@@ -157,6 +157,15 @@ def test_topics_come_with_types_fields_and_rates(moving: Stage) -> None:
     page.until(lambda: moving.sim.communication.bus.subscriptions() == [])
 
 
+def test_the_last_page_that_leaves_ends_all_subscriptions(moving: Stage) -> None:
+    page = moving.page()
+    page.want(**PANELS)
+    packet(page, "rates")
+    page.until(lambda: len(moving.sim.communication.bus.subscriptions()) > 5)
+    page.socket.close()
+    page.until(lambda: moving.sim.communication.bus.subscriptions() == [])
+
+
 def test_the_console_has_the_diagnostics_of_the_load_and_later_messages(stage: Stage) -> None:
     page, sim = stage.page(), stage.sim
     assert page.ask("log", after=0)["ok"] == []  # nothing is received before a page shows it
