@@ -23,11 +23,13 @@ def _interfaces(call: Call) -> object:
 
 
 def _describe(call: Call) -> object:
-    """Return the form of a service (`kind` service) or an action (`kind` action): `kind`, `type`."""
-    kind = call.text("kind")
+    """Return the form of a service (`kind` service) or an action (`kind` action): `kind`, `name`."""
+    kind, name = call.text("kind"), absolute_name(call.text("name"))
     if kind not in _PARTS:
         raise RequestFailed(f"'kind' must be service or action, got {kind!r:.80}")
-    return describe_form(f"{call.text('type')}_{_PARTS[kind]}")
+    communication = call.sim.communication
+    endpoint = communication.services.get(name) if kind == "service" else communication.actions.get(name)
+    return describe_form(f"{endpoint.type_name}_{_PARTS[kind]}")
 
 
 def _call(call: Call) -> object:

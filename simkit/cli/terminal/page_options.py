@@ -94,7 +94,7 @@ def open_page(
     view = stack.enter_context(LiveView(sim, options.host, options.port, recording=recording, streams=streams))
     show_address(view.address, opens=options.opens and view.is_local)
     if not view.is_local:
-        text = "other machines reach the page; whoever has its address may drive, spawn and reset"
+        text = "other machines reach the page; whoever has its address may drive, spawn, reset and call services"
         print_status(f"warning SK-WEB-007: {text}; without --host only this machine reaches it")
     return view
 

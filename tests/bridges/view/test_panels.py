@@ -20,6 +20,7 @@ from simkit.bridges.view.series_stream import SeriesStream, field_paths, series_
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.bags.recorder import Recorder
 from simkit.runtime.engine.snapshot import state_hash
+from simkit.testing.bundles import keep, replay, write_bundle
 from tests.bridges.view.conftest import YARD, Stage, TestPage
 from tests.bridges.view.test_live_view import ODOMETRY
 
@@ -248,7 +249,7 @@ def test_a_page_calls_a_service_of_the_world(stage: Stage) -> None:
     page = stage.page()
     found = page.ask("interfaces")["ok"]
     assert found["services"]["/world/yard/set_pose"] == "ros_gz_interfaces/srv/SetEntityPose"
-    form = page.ask("describe", kind="service", type="ros_gz_interfaces/srv/SetEntityPose")["ok"]
+    form = page.ask("describe", kind="service", name="/world/yard/set_pose")["ok"]
     assert [f["name"] for f in form["types"][form["type"]]["fields"]] == ["entity", "pose"]
     values = {"entity": {"name": "stone"}, "pose": {"position": {"x": 1.0, "y": 2.0, "z": 0.5}}}
     answer = page.ask("call", name="/world/yard/set_pose", values=values)["ok"]
@@ -315,9 +316,10 @@ def test_a_parameter_is_set_within_its_range(stage: Stage) -> None:
 
 
 NONSENSE = (
-    {"do": "describe", "kind": "x", "type": "std_srvs/srv/Trigger"},
-    {"do": "describe", "kind": "service", "type": "none/srv/None"},
-    {"do": "describe", "kind": "service", "type": "../../etc/passwd"},
+    {"do": "describe", "kind": "x", "name": "/world/yard/set_pose"},
+    {"do": "describe", "kind": "service", "name": "/none"},
+    {"do": "describe", "kind": "action", "name": "/world/yard/set_pose"},
+    {"do": "describe", "kind": "service", "name": "../../etc/passwd"},
     {"do": "call", "name": "/none"},
     {"do": "call", "name": ""},
     {"do": "call", "name": "/world/yard/set_pose", "values": [1]},
@@ -363,6 +365,26 @@ def test_panels_change_no_bit_of_a_run(moving: Stage, pages: int) -> None:
         moving.view._last = 0.0  # so that each of these steps is sent
         moving.view.update()
     assert state_hash(moving.sim) == expected
+
+
+def test_what_a_page_calls_sends_and_sets_is_repeated_by_a_bundle(tmp_path: Path) -> None:
+    (tmp_path / "yard.sdf").write_text(YARD)
+    with ExitStack() as stack:
+        stage = Stage(stack, str(tmp_path / "yard.sdf"))
+        sim = stage.sim
+        stack.enter_context(keep(sim))
+        page = stage.page()
+        page.want(**PANELS)
+        sim.declare("push", 0.0, on_change=lambda value: sim.model("stone").set_velocity((value, 0.0, 0.0)))
+        values = {"entity": {"name": "stone"}, "pose": {"position": {"x": -2.0, "y": 1.0, "z": 0.05}}}
+        assert page.ask("call", name="/world/yard/set_pose", values=values)["ok"]["values"]["success"]
+        sim.run(0.1)
+        page.ask("set_parameter", node="/script", name="push", value=1.5)
+        page.ask("goal", name="/simulate_steps", values={"steps": 1})
+        sim.run(0.2)
+        assert sim.model("stone").pose.position[0] > -2.0
+        found = replay(write_bundle(sim, tmp_path / "run.zip"), allow_code=True)
+    assert found.is_same, (found.differences, found.refused)
 
 
 # ---------------------------------------------------------------------- bags

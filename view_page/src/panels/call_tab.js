@@ -28,7 +28,7 @@ export function makeCallTab(app) {
     tell('');
     response.hidden = true;
     try {
-      const found = new Form(await app.ask('describe', { kind, type }));
+      const found = new Form(await app.ask('describe', { kind, name }));
       if (chosen?.name !== name) return;
       form = found;
       hint.hidden = true;
