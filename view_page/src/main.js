@@ -1,6 +1,7 @@
 // Page of simkit's live view. `app` connects its parts: they announce events and listen to those of others.
 import * as T from 'three';
 import { Connection } from './connection.js';
+import { Displays } from './displays.js';
 import { element } from './dom.js';
 import { Layers } from './layers.js';
 import { PANELS } from './panels/index.js';
@@ -135,6 +136,7 @@ try {
   app.layers = new Layers(app);
   app.views = new Views(app);
   app.sensors = new Sensors(app);
+  app.displays = new Displays(app);
   app.ask = (name, args) => app.connection.ask(name, args);
   app.send = (name, args) => app.connection.send(name, args);
   makeToolbar(app, document.getElementById('toolbar'));

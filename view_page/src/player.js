@@ -70,6 +70,26 @@ export class Player {
     const time = recording.begin + this.time;
     this.app.receive({ kind: 'state', revision: this.app.scene.revision, time, tick: Math.round(1000 * this.time), paused: !this.isPlaying, pace: this.pace, rtf: this.pace, contacts: 0, arrays: { poses } });
     this.showScans();
+    this.showDisplays();
+  }
+
+  /** Returns topic and type of each display. */
+  displayTopics() {
+    return (this.recording.displays ?? []).map(({ topic, type }) => [topic, type]);
+  }
+
+  /** Announces the drawings of the wanted topics at the present time: those that changed, or all. */
+  showDisplays(all = false) {
+    this.drawn ??= new Map();
+    (this.recording.displays ?? []).forEach(({ topic, times, ends }, number) => {
+      if (!this.app.displays.wanted.has(topic)) { this.drawn.delete(topic); return; }
+      const i = times.findLastIndex(time => time <= this.time + 1e-6);
+      if (!all && this.drawn.get(topic) === i) return;
+      this.drawn.set(topic, i);
+      const data = this.recording.arrays[`display${number}`];
+      const packet = i < 0 ? { kind: `display:${topic}`, problems: [], groups: [], arrays: {} } : readPacket(data.slice(i ? ends[i - 1] : 0, ends[i]).buffer);
+      this.app.receive(packet);
+    });
   }
 
   showScans() {

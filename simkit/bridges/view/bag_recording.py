@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from simkit.bridges.view import scene_packet
 from simkit.bridges.view.packet import Head, make_packet
+from simkit.bridges.view.recorded_displays import RecordedDisplays
 from simkit.msgs.message_types import Message
 from simkit.recording.bags.bag_motion import SCAN, BagMotion
 
@@ -49,10 +50,11 @@ class _Playback:
         self._motion = BagMotion(sim, topics)
         self._moving = scene_packet.moving_bodies(sim.mj_model)
         self._lidars: dict[str, _Lidar] = {}
+        self._displays = RecordedDisplays(sim, self._motion, topics)
 
     def packet(self) -> bytes:
         """Read the bag and return the packet."""
-        wanted = [*self._motion.topics, *sorted(self._scans)]
+        wanted = list(dict.fromkeys([*self._motion.topics, *sorted(self._scans), *self._displays.topics]))
         times: list[float] = []
         states: list[npt.NDArray[Any]] = []
         begun = None
@@ -67,10 +69,12 @@ class _Playback:
                 self._take_scan(message.topic, decoded, time - begun)
             else:
                 self._motion.take(message.topic, decoded)
+                self._displays.take(message.topic, decoded, time - begun)
         times.append(len(times) / RATE)
         states.append(scene_packet.poses(self._sim, self._moving))
         head: Head = {"kind": "recording", "name": self._bag.path.name, "begin": begun or 0.0, "lidars": []}
-        arrays = {"times": np.array(times), "poses": np.array(states)}
+        head["displays"], drawings = self._displays.finish(times[-1])
+        arrays = {"times": np.array(times), "poses": np.array(states), **drawings}
         for number, (topic, lidar) in enumerate(self._lidars.items()):
             head["lidars"].append({"topic": topic, "low": lidar.low, "step": lidar.step, "count": lidar.count})
             arrays |= {f"lidar{number}.{name}": values for name, values in lidar.arrays().items()}

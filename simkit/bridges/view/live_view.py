@@ -7,7 +7,7 @@ import hashlib
 import queue
 import secrets
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -18,7 +18,7 @@ from simkit.bridges.view.packet import make_packet
 from simkit.bridges.view.page_calls import PageCalls
 from simkit.bridges.view.page_requests import execute_request
 from simkit.bridges.view.page_server import PageRequest, PageServer
-from simkit.bridges.view.streams import Stream, StreamMaker, make_stream
+from simkit.bridges.view.streams import LASTING, Stream, StreamMaker, make_stream
 from simkit.bridges.view.travel import Travel
 from simkit.bridges.web.access import is_loopback
 from simkit.errors import InputError, PluginError, SimulationDiverged, SubscriberError
@@ -180,11 +180,12 @@ class LiveView:
             if packet is not None:
                 self.server.send(name, packet)
 
-    def _close_streams(self) -> None:
-        for stream in self._streams.values():
+    def _close_streams(self, kept: Collection[str] = ()) -> None:
+        """Close all streams except those of the given kinds."""
+        for name in [name for name in self._streams if name.partition(":")[0] not in kept]:
+            stream = self._streams.pop(name)
             if stream is not None:
                 stream.close()
-        self._streams.clear()
 
     # ------------------------------------------------------------------ scene
 
@@ -192,7 +193,7 @@ class LiveView:
         self.revision += 1
         self._model = self.sim.mj_model
         self._moving = scene_packet.moving_bodies(self._model)
-        self._close_streams()
+        self._close_streams(LASTING)
         extra = {"seed": self.sim.seed, "recording": self._is_recording}
         packet = scene_packet.make_scene_packet(self.sim, self.revision, extra)
         self._looks = self._appearance_digest()

@@ -10,10 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.bridges.view.displays.frame_poses import FramePoses
 from simkit.bridges.view.packet import make_packet
 from simkit.bridges.view.panel_streams import PANEL_STREAMS
+from simkit.bridges.view.topic_display import DisplayList, TopicDisplay
 from simkit.errors import SimkitError
-from simkit.pose import IDENTITY
+from simkit.runtime.communication.transform_buffer import TransformBuffer
 
 if TYPE_CHECKING:
     from simkit.pose import Pose
@@ -206,6 +208,8 @@ class CloudStream:
     def __init__(self, sim: Simulation, name: str) -> None:
         self._sim, self._topic = sim, name
         self._subscription = sim.subscribe(name, keep=1)
+        self._tree = TransformBuffer(sim.communication.bus, lambda: sim.time_ns).open()
+        self._frames = FramePoses(sim, self._tree)
         self._seen: object = None
 
     def packet(self, options: Sequence[Any]) -> bytes | None:
@@ -217,7 +221,7 @@ class CloudStream:
         place = np.stack([points[axis] for axis in "xyz"], axis=1).astype(np.float64)
         usable = np.flatnonzero(np.isfinite(place).all(axis=1))
         usable = _thinned(usable)
-        pose = self._frame(message.header.frame_id)
+        pose = self._frames.pose(message.header.frame_id)
         if pose is None:
             text = f"the frame {message.header.frame_id!r:.80} is unknown"
             return make_packet({"kind": f"cloud:{self._topic}", "error": text}, {})
@@ -227,22 +231,9 @@ class CloudStream:
             arrays["colours"] = np.stack([packed >> 16, packed >> 8, packed], axis=1).astype(np.uint8)
         return make_packet({"kind": f"cloud:{self._topic}", "time": self._sim.time}, arrays)
 
-    def _frame(self, frame: str) -> Pose | None:
-        """Return the pose of a frame in the world: of an optical frame, a sensor, or a link; None if it is unknown."""
-        for sensor in self._sim.contents.sensors.values():
-            optical = sensor.optical_frames()
-            if frame in optical or frame == sensor.frame_id:
-                pose: Pose = sensor.pose @ optical.get(frame, IDENTITY)
-                return pose
-        links = self._sim.contents.handles.tables["link"]
-        found = next((link for name, link in links.items() if name == frame or name.endswith(f"::{frame}")), None)
-        if found is None:
-            return IDENTITY if frame.strip("/") in ("world", "map") else None
-        link_pose: Pose = found.pose
-        return link_pose
-
     def close(self) -> None:
         self._subscription.close()
+        self._tree.close()
 
 
 STREAMS: Final[dict[str, Callable[[Simulation, str], Stream]]] = {
@@ -253,8 +244,13 @@ STREAMS: Final[dict[str, Callable[[Simulation, str], Stream]]] = {
     "image": ImageStream,
     "cloud": CloudStream,
     **PANEL_STREAMS,
+    "displays": DisplayList,
+    "display": TopicDisplay,
 }
 """Streams by the first part of their name; the part after a colon is the second argument."""
+
+LASTING: Final = ("display",)
+"""Streams that go on when the structure changes, because they keep messages that do not come again."""
 
 
 def make_stream(sim: Simulation, name: str) -> Stream | None:

@@ -38,11 +38,13 @@ class BagMotion:
     Attributes:
         topics: topics of the bag that describe the state.
         moved: names of the models that messages have moved.
+        links_by_frame: scoped names of the links that messages place, by their frames.
     """
 
     def __init__(self, sim: Simulation, topics: Mapping[str, str]) -> None:
         self._sim = sim
         self.moved: set[str] = set()
+        self.links_by_frame: dict[str, str] = {}
         self._origins: dict[str, Pose] = {}
         self._edges: dict[str, tuple[str, Pose]] = {}
         self._joints = {joint.name: joint for model in sim.models.values() for joint in model.joints.values()}
@@ -107,6 +109,7 @@ class BagMotion:
         if frame not in self._origins:
             is_world = np.linalg.norm(link.pose.position[:2] - pose.position[:2]) < _NEAR
             self._origins[frame] = IDENTITY if is_world else link.pose
+            self.links_by_frame[frame.strip("/")] = link.scoped
         self._move(model, self._origins[frame] @ pose @ link.pose.inverse() @ model.pose)
 
     def _move(self, model: Model, pose: Pose) -> None:

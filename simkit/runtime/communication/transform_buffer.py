@@ -10,7 +10,7 @@ from simkit.msgs.message_types import FieldValue
 from simkit.msgs.transform_tree import TransformTree, TreeState
 from simkit.pose import Pose
 from simkit.runtime.communication.publisher import Publisher
-from simkit.runtime.communication.subscription import LazyMessage
+from simkit.runtime.communication.subscription import LazyMessage, Subscription
 from simkit.runtime.communication.topic_bus import TopicBus
 
 _TOPICS: Final = {"/tf_static": True, "/tf": False}
@@ -32,17 +32,25 @@ class TransformBuffer(TransformTree):
         super().__init__()
         self._bus, self._now_ns = bus, now_ns
         self._is_open = self._has_present = False
+        self._taps: list[Subscription] = []
 
     def open(self) -> TransformBuffer:
         """Begin to receive transforms, if this has not begun; the present transforms are known at once."""
         if not self._is_open:
             self._is_open = True
             for topic, is_static in _TOPICS.items():
-                self._bus.tap(topic, partial(self.take, is_static=is_static))
+                self._taps.append(self._bus.tap(topic, partial(self.take, is_static=is_static)))
         if not self._has_present:
             self._has_present, self.since_ns = True, self._now_ns()
             self._take_present()
         return self
+
+    def close(self) -> None:
+        """End the reception of transforms."""
+        for tap in self._taps:
+            tap.close()
+        self._taps.clear()
+        self._is_open = self._has_present = False
 
     def _take_present(self) -> None:
         """Store the present transforms, because the next message of a publisher may be far away."""

@@ -1,6 +1,7 @@
 // Panels of the page: side and function `make(app)`, which returns an element or null. A new panel is one line here.
 import { makeCameraPanel } from './camera_panel.js';
 import { makeDock } from './dock.js';
+import { makeDisplayPanel } from './display_panel.js';
 import { makeDrivePanel } from './drive_panel.js';
 import { makeJointPanel } from './joint_panel.js';
 import { makeLayerPanel } from './layer_panel.js';
@@ -11,6 +12,7 @@ export const PANELS = [
   ['left', makeTree],
   ['left', makeSelectionPanel],
   ['right', makeLayerPanel],
+  ['right', makeDisplayPanel],
   ['right', makeCameraPanel],
   ['right', makeDrivePanel],
   ['right', makeJointPanel],
