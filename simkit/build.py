@@ -19,7 +19,7 @@ from simkit.loaders.garbage_collection import no_collection
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.model_world import add_model_world
 from simkit.loaders.resources.world_interfaces import read_interfaces
-from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models
+from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, spawnable_models
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.make_instances import (
     InstanceMaker,
@@ -188,6 +188,7 @@ def load(
         simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.control.write_sdf = _sdf_of
     simulation.control.resolve_world = resolve_world
+    simulation.control.list_models = lambda: spawnable_models(resolver)
     simulation.control.file_arguments = file_scene.arguments
     simulation.control.xacro_overrides = xacro_overrides(overrides)
     simulation._open_page = _open_page

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import replace
 from typing import Final
 
@@ -47,7 +48,7 @@ def stand_models(world: SceneWorld, names: Sequence[str], diagnostics: Diagnosti
     for number, name in enumerate(wanted):
         own = _geoms_of(compiled, name)
         ignored = np.logical_or.reduce([np.zeros_like(own), *(_geoms_of(compiled, n) for n in wanted[number + 1 :])])
-        heights = _free_heights(compiled, own)
+        heights = _free_heights(compiled.model, own)
         found = search.find(own, ignored)
         if found is None:
             continue
@@ -63,6 +64,29 @@ def stand_models(world: SceneWorld, names: Sequence[str], diagnostics: Diagnosti
         carrier = _surface_name(compiled, surface if surface != -1 else found.surface)
         world = _with_model_moved(world, name, lift, carrier, diagnostics)
     return world
+
+
+def standing_lift(model: mujoco.MjModel, data: mujoco.MjData, own: Bools) -> float | None:
+    """Return the vertical distance [m] from the present pose of a model to the pose on what is below it.
+
+    Args:
+        model: compiled world with the model; it is copied.
+        data: present state; it is copied.
+        own: geoms of the model.
+
+    Returns:
+        None if nothing is below the model, or if it has no collisions.
+    """
+    model, data = copy(model), copy(data)
+    search, ignored = StandingHeight(model, data), np.zeros_like(own)
+    found = search.find(own, ignored)
+    if found is None:
+        return None
+    heights = _free_heights(model, own)
+    if heights is None:
+        return found.lift
+    data.qpos[heights] += found.lift
+    return found.lift + search.raise_from_contacts(own, ignored, heights)[0]
 
 
 def _without_visuals(model: SceneModel) -> SceneModel:
@@ -82,9 +106,8 @@ def _geoms_of(compiled: Compiled, name: str) -> Bools:
     return found
 
 
-def _free_heights(compiled: Compiled, own: Bools) -> list[int] | None:
+def _free_heights(model: mujoco.MjModel, own: Bools) -> list[int] | None:
     """Return the indices of the heights of a model's free links in the positions; None if a link is fixed."""
-    model = compiled.model
     found = []
     for root in sorted({int(r) for r in model.body_rootid[model.geom_bodyid[own]]}):
         joint = int(model.body_jntadr[root])

@@ -193,6 +193,7 @@ class WorldControl:
         origin: geographic position of the world's origin.
         write_sdf: function that writes a world as SDF text; set from outside, because this package knows no file
             format.
+        list_models: function that returns the sources of the models that can be spawned, by name; set from outside.
         resolve_world: function that returns the world of the file with other overrides; set from outside.
         file_arguments: arguments of the xacro file of the world, with their values.
         xacro_overrides: those of the arguments that overrides gave.
@@ -201,6 +202,7 @@ class WorldControl:
 
     write_sdf: Callable[[SceneWorld], str] | None = None
     resolve_world: Callable[[Sequence[str], Diagnostics], SceneWorld] | None = None
+    list_models: Callable[[], dict[str, str]] | None = None
 
     def __init__(
         self, engine: Engine, bus: TopicBus, handles: EntityHandles, advance: Advance, loaded: Callable[[], Snapshot]

@@ -118,7 +118,7 @@ function pickOnClick(canvas) {
   canvas.addEventListener('pointerup', event => {
     if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || !app.scene) return;
     const hit = app.pickAt(event.clientX, event.clientY);
-    if (app.clickMode) app.clickMode(hit);
+    if (app.clickMode) app.clickMode(hit, event);
     else app.select(hit && !hit.isFloor ? hit.link : null);
   });
 }
@@ -127,6 +127,13 @@ app.pickAt = (x, y) => {
   const box = app.stage.canvas.getBoundingClientRect(), ray = new T.Raycaster();
   ray.setFromCamera(new T.Vector2(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height), app.stage.camera);
   return app.world.pick(ray);
+};
+
+/** Returns where the ray of a pointer event meets the level z = 0; null above the horizon. */
+app.groundAt = ({ clientX, clientY }) => {
+  const box = app.stage.canvas.getBoundingClientRect(), ray = new T.Raycaster();
+  ray.setFromCamera(new T.Vector2(2 * (clientX - box.left) / box.width - 1, 1 - 2 * (clientY - box.top) / box.height), app.stage.camera);
+  return ray.ray.intersectPlane(new T.Plane(new T.Vector3(0, 0, 1), 0), new T.Vector3());
 };
 
 try {

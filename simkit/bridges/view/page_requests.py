@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
+from simkit.bridges.view.model_requests import set_pose, spawn_standing, spawnable
 from simkit.bridges.view.page_call import Call, RequestFailed, ViewHost
 from simkit.bridges.view.panel_requests import PANEL_REQUESTS
 from simkit.pose import Pose
@@ -105,27 +106,30 @@ def _joint(call: Call) -> None:
 
 
 def _spawn(call: Call) -> object:
-    """Spawn a model by name, file or XML: `source`, `name`, `x`, `y`, `z` [m], `yaw` [rad]."""
+    """Spawn a model by name, file or XML: `source`, `name`, `x`, `y`, `z` [m], `yaw` [rad].
+
+    Without `z`, the model stands on what is below it; without `x`, it has the pose of its file.
+    """
     name = call.text("name") if call.value("name") else None
-    pose = None
+    source, pose = call.text("source"), None
     if call.value("x") is not None:
-        pose = Pose.from_rpy(
-            call.number("x"), call.number("y"), call.number("z", 0.0), 0.0, 0.0, call.number("yaw", 0.0)
-        )
-    return call.sim.spawn(call.text("source"), name, pose).name
+        x, y, yaw = call.number("x"), call.number("y"), call.number("yaw", 0.0)
+        if call.value("z") is None:
+            return spawn_standing(call.sim, source, name, x, y, yaw)
+        pose = Pose.from_rpy(x, y, call.number("z"), 0.0, 0.0, yaw)
+    return call.sim.spawn(source, name, pose).name
+
+
+def _model_pose(call: Call) -> object:
+    """Return the pose of a model: position [m] and quaternion (w, x, y, z)."""
+    return call.sim.model(call.text("name")).pose.as_list()
 
 
 def _move(call: Call) -> None:
     """Move a model to `position` [m] and `quaternion` (w, x, y, z)."""
-    sim = call.sim
-    model = sim.model(call.text("name"))
+    model = call.sim.model(call.text("name"))
     position, quaternion = call.numbers("position", 3), call.numbers("quaternion", 4)
-    pose = {
-        "position": dict(zip("xyz", position, strict=True)),
-        "orientation": dict(zip("wxyz", quaternion, strict=True)),
-    }
-    answer = sim.call(f"/world/{sim.world.name}/set_pose", {"entity": {"name": model.scoped}, "pose": pose})
-    if not answer.success:
+    if not set_pose(call.sim, model.scoped, position, quaternion):
         raise RequestFailed(f"{model.scoped!r} cannot be moved")
 
 
@@ -145,7 +149,9 @@ REQUESTS: Final[dict[str, Callable[[Call], object]]] = {
     "key": _key,
     "pose": _pose,
     "joint": _joint,
+    "spawnable": lambda call: spawnable(call.sim),
     "spawn": _spawn,
+    "model_pose": _model_pose,
     "move": _move,
     "remove": _remove,
     **PANEL_REQUESTS,

@@ -5,12 +5,14 @@ import { makeDisplayPanel } from './display_panel.js';
 import { makeDrivePanel } from './drive_panel.js';
 import { makeJointPanel } from './joint_panel.js';
 import { makeLayerPanel } from './layer_panel.js';
+import { makeModelPanel } from './model_panel.js';
 import { makeSelectionPanel } from './selection_panel.js';
 import { makeTree } from './tree_panel.js';
 
 export const PANELS = [
   ['left', makeTree],
   ['left', makeSelectionPanel],
+  ['left', makeModelPanel],
   ['right', makeLayerPanel],
   ['right', makeDisplayPanel],
   ['right', makeCameraPanel],
