@@ -41,15 +41,15 @@ document.getElementById('notice').hidden = true;
 
 function receive(packet) {
   if (packet.kind === 'state') takeState(packet);
-  else if (packet.kind === 'scene_changed') { if (packet.revision !== app.scene?.revision) loadScene(); }
-  else if (packet.kind === 'appearance') { if (packet.revision === app.scene?.revision) app.world.setAppearance(packet.arrays); }
+  else if (packet.kind === 'scene_changed') requireScene(packet.revision);
+  else if (packet.kind === 'appearance') takeAppearance(packet);
   app.emit(`packet:${packet.kind.split(':', 1)[0]}`, packet);
 }
 
 function takeState(packet) {
   if (!app.scene || packet.revision !== app.scene.revision) {
     app.early = packet;
-    if (app.scene && packet.revision > app.scene.revision) loadScene();
+    requireScene(packet.revision);
     return;
   }
   const isBack = app.state && packet.tick < app.state.tick;
@@ -61,10 +61,25 @@ function takeState(packet) {
   app.emit('state', packet);
 }
 
-let isLoading = false;
-async function loadScene() {
+function takeAppearance(packet) {
+  if (packet.revision === app.scene?.revision) app.world.setAppearance(packet.arrays);
+  else app.earlyAppearance = packet;
+}
+
+let isLoading = false, required = 0;
+/** Loads the scene if it is older than a revision. A paused simulation announces a revision only once. */
+async function requireScene(revision) {
+  required = Math.max(required, revision);
   if (isLoading) return;
   isLoading = true;
+  for (let tries = 0; (app.scene?.revision ?? 0) < required && tries < 20; tries++) {
+    if (!await loadScene()) await new Promise(resolve => setTimeout(resolve, 500));
+  }
+  isLoading = false;
+}
+
+/** Loads the scene; returns false, and tells why, if that fails. */
+async function loadScene() {
   try {
     const scene = await app.connection.loadScene(), isFirst = !app.scene;
     app.stage.setSurroundings(scene.surroundings, scene.arrays);
@@ -79,6 +94,7 @@ async function loadScene() {
     const early = app.early;
     app.early = null;
     if (early?.revision === scene.revision) takeState(early);
+    if (app.earlyAppearance?.revision === scene.revision) takeAppearance(app.earlyAppearance);
     if (scene.recording && isFirst) {
       app.player = app.connection.player = new Player(app, await loadRecording(app.connection));
       app.player.show();
@@ -88,9 +104,10 @@ async function loadScene() {
     app.connection.ask('travel').then(paths => app.layers.setPaths(paths)).catch(() => {});
   } catch (error) {
     showNotice(`the scene cannot be loaded: ${error.message}`);
+    return false;
   }
-  isLoading = false;
   app.stage.invalidate();
+  return true;
 }
 
 /** Returns the first moving body of each model that can move. */

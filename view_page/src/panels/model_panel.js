@@ -18,7 +18,7 @@ export function makeModelPanel(app) {
   const proxy = new T.Object3D(), gizmo = new TransformControls(app.stage.camera, app.stage.canvas), helper = gizmo.getHelper();
   app.stage.helpers.add(proxy, helper);
   gizmo.setSize(0.8);
-  let sources = {}, edited = null, timer = null;
+  let sources = {}, edited = null, timer = null, spawned = null;
 
   const model = () => app.selected?.split('::', 1)[0] ?? null;
   const show = () => {
@@ -44,8 +44,15 @@ export function makeModelPanel(app) {
     let free = choice.value, number = 1;
     while (app.models.has(free)) free = `${choice.value}_${number++}`;
     try {
-      app.select(`${await app.ask('spawn', { source, name: free, x: point.x, y: point.y })}`);
+      spawned = await app.ask('spawn', { source, name: free, x: point.x, y: point.y });
+      selectSpawned();
     } catch (error) { app.report(error.message); }
+  };
+
+  const selectSpawned = () => {
+    if (!app.models.has(spawned)) return; // its scene comes later
+    app.select(app.models.get(spawned).links[0] ?? spawned);
+    spawned = null;
   };
 
   // ---- move and turn
@@ -95,6 +102,7 @@ export function makeModelPanel(app) {
     box.hidden = !!scene.recording;
     if (box.hidden) return;
     if (app.selected && !app.models.has(model())) app.select(null);
+    selectSpawned();
     show();
   });
   app.on('link', isUp => {
