@@ -14,6 +14,7 @@ from simkit.pose import Pose
 from simkit.recording.pictures.frames import Look, Render, choose_camera, draw_frame
 from simkit.recording.pictures.overlay import Marks
 from simkit.recording.pictures.subject import find_subject, last_scans, scan_points
+from simkit.recording.travel import Travel
 
 if TYPE_CHECKING:
     from simkit.msgs import PoseStamped
@@ -23,45 +24,44 @@ __all__ = ["DrivenPath", "check_target", "marks_of", "save_picture", "scan_point
 
 Points = NDArray[np.float64]
 
-_SHORTEST: Final = 0.01  # [m] of travel per piece of the path
 _GOALS: Final = "geometry_msgs/msg/PoseStamped"
 
 
 class DrivenPath:
-    """Paths of the models that move, and the newest goals; the run loop calls `sample`.
+    """Paths of the models that move, and the newest goals, since the last reset; the run loop calls `sample`.
 
     Attributes:
-        tracks: positions of each model [m].
         goals: position of the newest goal by topic [m], shape (3,).
     """
 
     def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
-        self.tracks: dict[str, list[Points]] = {}
+        self._sim, self._travel = sim, Travel(sim)
         self.goals: dict[str, Points] = {}
+        self._watched: set[str] = set()
         self.sample()
         sim.communication.bus.on_topic(self._watch_goals)
 
     def sample(self) -> None:
-        """Store the present positions, except in a diverged state, which the next step reports."""
-        if not np.isfinite(self._sim.mj_data.qpos).all():
-            return
-        for name, model in self._sim.models.items():
-            if model.static:
-                continue
-            position = model.pose.position
-            track = self.tracks.setdefault(name, [position])
-            if float(np.linalg.norm(position - track[-1])) >= _SHORTEST:
-                track.append(position)
+        """Store the present positions."""
+        before = self._travel.resets
+        self._travel.sample()
+        if self._travel.resets > before:
+            self.goals.clear()
+
+    @property
+    def tracks(self) -> dict[str, list[Points]]:
+        """Positions of each model [m]."""
+        return self._travel.tracks
 
     def paths(self) -> dict[str, Points]:
         """Return the path of each model that moved [m], shape (n, 3), the longest first."""
-        found = {name: np.array(track) for name, track in self.tracks.items() if len(track) > 1}
+        found = {name: path for name, path in self._travel.paths().items() if len(path) > 1}
         return dict(sorted(found.items(), key=lambda item: -len(item[1])))
 
     def _watch_goals(self, topic: str, type_name: str) -> None:
-        if type_name != _GOALS or "goal" not in topic.rpartition("/")[2] or topic in self.goals:
+        if type_name != _GOALS or "goal" not in topic.rpartition("/")[2] or topic in self._watched:
             return
+        self._watched.add(topic)
 
         def keep(message: PoseStamped) -> None:
             at, frame = message.pose.position, _frame_pose(self._sim, message.header.frame_id)

@@ -130,3 +130,19 @@ def test_a_moving_model_without_visuals_is_drawn_by_its_collisions(tmp_path: Pat
 def test_an_unwritable_picture_is_reported_before_the_run(tmp_path: Path, name: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         check_target(tmp_path / name)
+
+
+def test_a_reset_begins_new_paths_and_forgets_goals() -> None:
+    with simkit.load(WORLD) as sim:
+        goals = sim.advertise("/goal_pose", "geometry_msgs/msg/PoseStamped")
+        driven = DrivenPath(sim)
+        sim.run(0.2)
+        sim.model("rover").set_pose(simkit.Pose((3.0, 0.0, 1.0)))
+        goals.publish({"header": {"frame_id": "map"}, "pose": {"position": {"x": 1.0}}})
+        driven.sample()
+        assert len(driven.paths()["rover"]) > 1 and "/goal_pose" in driven.goals
+        sim.reset()
+        driven.sample()
+        assert (driven.paths(), driven.goals) == ({}, {})
+        goals.publish({"header": {"frame_id": "map"}, "pose": {"position": {"x": 2.0}}})
+        assert driven.goals["/goal_pose"][0] == 2.0

@@ -19,9 +19,9 @@ from simkit.bridges.view.page_calls import PageCalls
 from simkit.bridges.view.page_requests import execute_request
 from simkit.bridges.view.page_server import PageRequest, PageServer
 from simkit.bridges.view.streams import LASTING, Stream, StreamMaker, make_stream
-from simkit.bridges.view.travel import Travel
 from simkit.bridges.web.access import is_loopback
 from simkit.errors import InputError, PluginError, SimulationDiverged, SubscriberError
+from simkit.recording.travel import Travel
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from simkit.bridges.view.page_calls import PageCalls
     from simkit.bridges.view.page_server import PageRequest
     from simkit.bridges.view.streams import Stream
-    from simkit.bridges.view.travel import Travel
+    from simkit.recording.travel import Travel
     from simkit.runtime import Simulation
 
 

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from simkit.bridges.teleop import Teleop
     from simkit.bridges.view.page_server import PageRequest
 
+_MOST_TRAVEL: Final = 40_000  # points of all paths in one answer
+
 
 def execute_request(view: ViewHost, request: PageRequest) -> object:
     """Execute a request and return its answer.
@@ -53,8 +55,10 @@ def _reset(call: Call) -> None:
 
 
 def _travel(call: Call) -> object:
-    paths = call.view.travel.paths.items()
-    return {name: [[round(float(x), 4) for x in point] for point in path] for name, path in paths}
+    """Return the path of each model [m]; of many models, fewer points each."""
+    travel = call.view.travel
+    most = max(_MOST_TRAVEL // max(len(travel.tracks), 1), 2)
+    return {name: path.round(4).tolist() for name, path in travel.paths(most).items()}
 
 
 def _targets(call: Call) -> object:

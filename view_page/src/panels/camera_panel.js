@@ -12,10 +12,10 @@ export function makeCameraPanel(app) {
   const own = checkbox('own-picture', 'as the sensor sees it', false, () => change());
   const box = panel('camera-panel', 'Camera', choice, canvas, note, own);
   const camera = new T.PerspectiveCamera(60, 1.6, 0.02, 300);
-  let target = null, pixels = null, cameras = [], drawnAt = 0, stream = null;
+  let target = null, pixels = null, cameras = [], drawnAt = -1e4, stream = null, late = null;
 
   const sensor = () => cameras[choice.selectedIndex];
-  const isOwn = () => own.querySelector('input').checked;
+  const isOwn = () => !own.hidden && own.querySelector('input').checked;
   const change = () => {
     if (stream) app.connection.want(stream, null);
     stream = null;
@@ -26,12 +26,17 @@ export function makeCameraPanel(app) {
     pixels = new Uint8Array(4 * canvas.width * canvas.height);
     note.textContent = isOwn() ? sensor().topic : 'drawn by the browser';
     if (isOwn() && box.open) app.connection.want(stream = `image:${sensor().name}`, {});
-    drawnAt = 0;
+    drawnAt = -1e4;
     app.stage.invalidate();
   };
   const draw = () => {
     const now = performance.now();
-    if (!sensor() || isOwn() || !box.open || box.hidden || now - drawnAt < (app.stage.isSoftware ? 700 : 80)) return;
+    if (!sensor() || isOwn() || !box.open || box.hidden) return;
+    const wait = drawnAt + (app.stage.isSoftware ? 700 : 80) - now;
+    if (wait > 0) { // the last picture must be that of the last state
+      late ??= setTimeout(() => { late = null; draw(); }, wait);
+      return;
+    }
     drawnAt = now;
     const { stage } = app, { gl, scene, helpers, sky } = stage;
     app.views.aim(camera, sensor(), canvas.width / canvas.height);
@@ -60,6 +65,7 @@ export function makeCameraPanel(app) {
     cameras = scene.sensors.filter(isCamera);
     box.hidden = cameras.length === 0;
     choice.hidden = cameras.length < 2;
+    own.hidden = !!scene.recording; // a recording has no sensor that could be asked
     choice.replaceChildren(...cameras.map(found => element('option', {}, found.name)));
     choice.selectedIndex = Math.max(0, cameras.findIndex(found => found.name === before));
     change();

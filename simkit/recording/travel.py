@@ -10,50 +10,62 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
-_SHORTEST: Final = 0.015  # [m] between two points
+Points = npt.NDArray[np.float64]
+
+_SHORTEST: Final = 0.01  # [m] between two points
 _MOST: Final = 8000  # points of a path; then every second one is dropped
 
 
 class Travel:
-    """Paths of the moving models since the view was opened, or since the last reset.
+    """Paths of the first links of the moving models since the creation, or since the last reset.
+
+    Args:
+        sim: simulation.
 
     Attributes:
-        paths: points in the world [m] by model.
+        tracks: points in the world [m] by model.
+        resets: number of resets that have cleared the paths.
     """
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
-        self.paths: dict[str, list[npt.NDArray[Any]]] = {}
+        self.tracks: dict[str, list[Points]] = {}
+        self.resets = 0
         self._model: object = None
+        self._names: list[str] = []
+        self._bodies: npt.NDArray[Any] = np.zeros(0, int)
         self._last: npt.NDArray[Any] = np.zeros((0, 3))
         self._tick = -1
 
     def sample(self) -> None:
-        """Add the present positions."""
+        """Add the present positions, except in a diverged state, which the next step reports."""
         sim = self._sim
-        if sim.tick == self._tick:
-            return
         if sim.tick < self._tick:
-            self.paths.clear()
+            self.tracks.clear()
+            self.resets += 1
         self._tick = sim.tick
         if sim.mj_model is not self._model:
             self._find_bodies()
         if not self._names:
             return
-        positions = sim.mj_data.xpos[self._bodies]
+        positions = sim.engine.physics.fresh().xpos[self._bodies]
         if not np.isfinite(positions).all():
-            return  # the next step reports the diverged state
-        if self.paths:
+            return
+        if self.tracks:
             moved = np.linalg.norm(positions - self._last, axis=1) >= _SHORTEST
         else:
             moved = np.ones(len(positions), bool)
             self._last = positions.copy()
         for index in np.flatnonzero(moved):
             self._last[index] = positions[index]
-            path = self.paths.setdefault(self._names[index], [])
+            path = self.tracks.setdefault(self._names[index], [])
             path.append(positions[index].copy())
             if len(path) > _MOST:
                 del path[1::2]
+
+    def paths(self, most: int = _MOST) -> dict[str, Points]:
+        """Return the path of each moving model [m], shape (n, 3), with at most about `most` points."""
+        return {name: np.array(track[:: 1 + len(track) // most]) for name, track in self.tracks.items()}
 
     def _find_bodies(self) -> None:
         """Find the body of each moving model: that of its first link with a body."""
@@ -65,7 +77,7 @@ class Travel:
                 found.setdefault(link.model, link.body)
         self._model = sim.mj_model
         self._names, self._bodies = list(found), np.array(list(found.values()), dtype=int)
-        self._last = sim.mj_data.xpos[self._bodies].copy()
-        self.paths = {name: path for name, path in self.paths.items() if name in found}
+        self._last = sim.engine.physics.fresh().xpos[self._bodies].copy()
+        self.tracks = {name: path for name, path in self.tracks.items() if name in found}
         for name, place in zip(self._names, self._last, strict=True):
-            self.paths.setdefault(name, [place.copy()])
+            self.tracks.setdefault(name, [place.copy()])
