@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
+import typer
 from typer import Option
 
 from simkit.cli.plot_sources import is_bag
@@ -21,13 +23,13 @@ _PORT_HELP = "Port of the page on this machine; default: a free one."
 Target = Annotated[
     str, argument("World or robot, name of a running simulation, or bag.", "WORLD|SIM|BAG|ROBOT", completion.worlds)
 ]
-Port = Annotated[int, option(_PORT_HELP, "PORT", min=0, max=65535)]
+Port = Annotated[int | None, option(_PORT_HELP, "PORT", min=0, max=65535)]
 
 
 @report_errors
 def view(
     target: Target,
-    port: Port = 0,
+    port: Port = None,
     host: page_options.Host = None,
     no_open: page_options.NoOpen = False,
     set_: options.Overrides = [],
@@ -45,13 +47,22 @@ def view(
 
     A world and a robot are paused; a robot has a slider for each joint.
     """
-    page = page_options.PageOptions(port, host or "127.0.0.1", not no_open)
+    page = page_options.PageOptions(port or 0, host or "127.0.0.1", not no_open)
+    scene = {"--set": set_, "--spawn": spawn}
+    server = {"--port": port, "--host": host}
+    loads = {"--world": model_world, "--resource-path": resource_path, "--package-path": package_path}
+    loads |= {"--plugin-path": plugin_path, "--xacro-arg": xacro_arg, "--base": base if base != "auto" else None}
+    if html is not None:
+        _refuse({**server, "--no-open": no_open}, "no page is served with --html; open the file")
     if is_bag(Path(target)) or html is not None:
+        _refuse(scene, "a bag plays as it was recorded; --world WORLD names its world")
         from simkit.cli.bag_view import show_bag
 
         loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
         return show_bag(Path(target), model_world, loading, page, html)
     if not Path(target).exists() and target in _running():
+        text = f"{target} runs already; start it with these options, such as `simkit run WORLD --web PORT`"
+        _refuse(server | scene | loads, text)
         return _show_running(target, page)
     loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
     spec = RunSpec(
@@ -65,6 +76,13 @@ def view(
         paused=True,
     )
     return execute(spec, RunDisplay(quiet=True, verbose=verbose, page=page))
+
+
+def _refuse(given: Mapping[str, object], reason: str) -> None:
+    """Raise a usage error if options are given that would have no effect."""
+    names = [name for name, value in given.items() if value not in (None, False, [], "")]
+    if names:
+        raise typer.BadParameter(f"{', '.join(names)} would have no effect: {reason}", param_hint=names[0])
 
 
 def _running() -> set[str]:

@@ -27,6 +27,8 @@ _CODECS: Final = {
 _GIF_COLOURS: Final = 120  # of the first frame
 _CUBE: Final = tuple(itertools.product((0, 64, 128, 191, 255), repeat=3))  # colours that may appear later
 _GIF_UNIT: Final = 10  # [ms] unit of the durations in a GIF file
+_VERSION: Final = b"GIF89a"  # that of files with durations
+_REPEATS: Final = b"!\xff\x0bNETSCAPE2.0\x03\x01\x00\x00\x00"  # extension: plays for ever
 
 
 class FrameFile(Protocol):
@@ -124,6 +126,8 @@ class VideoFile:
 class GifFile:
     """Writer of a GIF file, which repeats for ever. All frames have the colours of the first one and those of marks.
 
+    Each frame is written when the next one comes: only the rectangle that differs from the frame before it.
+
     Args:
         path: file to write.
         rate: frames per second [Hz]; the file has durations in units of 10 ms.
@@ -131,28 +135,57 @@ class GifFile:
 
     def __init__(self, path: Path, rate: Fraction) -> None:
         self._path, self._rate = path, rate
-        self._frames: list[Any] = []
+        self._file: Any = None
         self._palette: Any = None
+        self._last: Any = None  # newest frame, and the part of it that waits with its corner
+        self._part: tuple[Any, tuple[int, int]] | None = None
+        self._count, self._begun = 0, 0  # frames so far, and before the one that waits
 
     def take(self, frame: Colours) -> None:
-        """Add a frame."""
-        from PIL import Image
+        """Add a frame; a frame like the one before makes that longer."""
+        from PIL import Image, ImageChops
 
         picture = Image.fromarray(frame)
         if self._palette is None:
             own = picture.quantize(_GIF_COLOURS).getpalette() or []
             self._palette = Image.new("P", (1, 1))
             self._palette.putpalette([*own[: 3 * _GIF_COLOURS], *itertools.chain(*MARK_COLOURS, *_CUBE)])
-        self._frames.append(picture.quantize(palette=self._palette, dither=Image.Dither.NONE))
+        picture = picture.quantize(palette=self._palette, dither=Image.Dither.NONE)
+        changed = (0, 0, *picture.size)
+        if self._last is not None:
+            changed = ImageChops.difference(self._last, picture).getbbox()
+        if changed is not None:
+            self._write_part()
+            self._part, self._begun = (picture.crop(changed), changed[:2]), self._count
+        self._last = picture
+        self._count += 1
 
     def close(self) -> None:
-        """Write the file."""
-        frames, self._frames = self._frames, []
-        if not frames:
+        """Write the last frame and the end of the file."""
+        if self._last is None:
             return
-        ends = [round(n * 1000 / _GIF_UNIT / self._rate) * _GIF_UNIT for n in range(len(frames) + 1)]
-        durations = [max(end - start, _GIF_UNIT) for start, end in itertools.pairwise(ends)]
+        self._write_part()
+        self._last = self._part = None
+        self._write(b";")
+        self._file.close()
+
+    def _write_part(self) -> None:
+        """Write the part that waits."""
+        from PIL import GifImagePlugin
+
+        if self._part is None:
+            return
+        picture, corner = self._part
+        begin, end = (round(n * 1000 / _GIF_UNIT / self._rate) * _GIF_UNIT for n in (self._begun, self._count))
+        if self._file is None:
+            header = b"".join(GifImagePlugin.getheader(picture)[0])
+            self._write(_VERSION, header[len(_VERSION) :], _REPEATS)
+        self._write(*GifImagePlugin.getdata(picture, corner, duration=max(end - begin, _GIF_UNIT)))
+
+    def _write(self, *blocks: bytes) -> None:
         try:
-            frames[0].save(self._path, save_all=True, append_images=frames[1:], duration=durations, loop=0)
+            if self._file is None:
+                self._file = self._path.open("wb")
+            self._file.writelines(blocks)
         except OSError as error:
             raise InputError(f"SK-CLI-053 cannot write {self._path}: {error.strerror}", "SK-CLI-053") from None
