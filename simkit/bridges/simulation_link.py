@@ -15,7 +15,8 @@ Then = Callable[[Any, bytes], None]
 Failed = Callable[[LiveError], None]
 """Callback for an error that a request was answered with."""
 _ANSWER_TIMEOUT = 1e6  # [s]; a simulation may make one very long step
-_DEPTH = 1000  # queued messages of a topic in the simulation
+DEPTH = 1000
+"""Queued messages of a topic in the simulation."""
 
 
 CDR_HEADER = b"\0\1\0\0"
@@ -81,7 +82,7 @@ class SimulationLink(ServerLink):
                 then(value, data)
 
     def subscribe(
-        self, topic: str, take: Callable[[int, str, bytes, int], None], failed: Failed, depth: int = _DEPTH
+        self, topic: str, take: Callable[[int, str, bytes, int], None], failed: Failed, depth: int = DEPTH
     ) -> int:
         """Subscribe to a topic; return the number of the subscription."""
         number = self.next_number()

@@ -244,7 +244,7 @@ class RosbridgeClient(WebClient):
             end(str(text), False)
 
         if name in ROSAPI:
-            ROSAPI[name](RosapiCall(self, words.get("args") or {}, end, fail))
+            self.link.guarded(ROSAPI[name], fail)(RosapiCall(self, words.get("args") or {}, end, fail))
             return
 
         def send(kind: str, data: bytes) -> None:
@@ -291,7 +291,7 @@ class RosbridgeClient(WebClient):
             self._offered.pop(name, None)
             self.report_error(f"{name}: {error}", words.get("id"))
 
-        self.link.endpoints[number] = ask_client
+        self.link.endpoints[number] = self.link.guarded(ask_client)
         self.link.ask("offer", {"number": number, "name": name, "type": kind}, failed=fail)
 
     def unadvertise_service(self, words: JsonObject) -> None:
@@ -342,7 +342,7 @@ class RosbridgeClient(WebClient):
                 elif status.is_final:
                     end(values, status, True)
 
-            self.link.goals[number] = update
+            self.link.goals[number] = self.link.guarded(update)
             self.link.ask("goal", {"name": action, "number": number, "type": f"{kind}_Goal"}, data, failed=fail)
 
         self._with_type("actions", action, words, "Goal", send, fail)

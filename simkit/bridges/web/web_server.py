@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from simkit.bridges.bridge_program import begin, run_until_end, tell
 from simkit.bridges.live.protocol import LARGEST_IN, JsonObject, LiveClosed, LiveError
-from simkit.bridges.simulation_link import SimulationLink
+from simkit.bridges.simulation_link import DEPTH, Failed, SimulationLink, Then
 from simkit.bridges.web.access import has_token, is_known_origin, is_token
 from simkit.bridges.web.web_process import TOKEN_VARIABLE
 
@@ -29,9 +29,57 @@ _LONGEST_REASON: Final = 100  # characters; a WebSocket has room for 123 bytes
 class WebLink(SimulationLink):
     """Connection to the simulation that an event loop serves.
 
+    An error in a callback, because the client asked for something odd, is reported to this client and ends nothing.
+
     Attributes:
         is_due: event that is set when data have arrived or are to be sent to the client.
+        report_failure: function that receives the text of an error in a callback.
     """
+
+    report_failure: Callable[[str], None] = staticmethod(lambda text: tell(note=text))
+
+    def ask(
+        self,
+        question: str,
+        args: JsonObject,
+        data: bytes = b"",
+        then: Then | None = None,
+        failed: Failed | None = None,
+    ) -> None:
+        """Send a request; an error in `then` counts as an error of the request; see `SimulationLink.ask`."""
+
+        def fail(error: LiveError) -> None:
+            if failed is not None:
+                failed(error)
+
+        def end(text: str) -> None:
+            if failed is None:
+                self.report_failure(text)
+            else:
+                failed(LiveError(text, "SK-LIVE-001"))
+
+        super().ask(question, args, data, self.guarded(then or (lambda *_: None), end), self.guarded(fail))
+
+    def subscribe(
+        self, topic: str, take: Callable[[int, str, bytes, int], None], failed: Failed, depth: int = DEPTH
+    ) -> int:
+        """Subscribe to a topic; return the number of the subscription."""
+        return super().subscribe(topic, self.guarded(take), failed, depth)
+
+    def guarded(self, call: Callable[..., None], end: Callable[[str], None] | None = None) -> Callable[..., None]:
+        """Return a callback whose errors go to `end`, or to `report_failure`; that the simulation ends is no error."""
+
+        def guarded_call(*args: Any) -> None:
+            try:
+                call(*args)
+            except LiveClosed:
+                raise
+            except KeyError as error:
+                (end or self.report_failure)(f"{error} is missing or unknown")
+            except Exception as error:  # noqa: BLE001 - the client may have asked for anything
+                (end or self.report_failure)(f"{type(error).__name__}: {error}")
+
+        return guarded_call
 
     def attach(self) -> None:
         """Begin to use the event loop that runs; requests before this call wait for their answers."""
@@ -117,6 +165,11 @@ class WebClient:
     def __init__(self, server: WebServer, socket: Any, link: WebLink, *, is_allowed: bool) -> None:
         self.server, self.socket, self.link, self.is_allowed = server, socket, link, is_allowed
         self._waiting: deque[str | bytes] = deque()
+        link.report_failure = self.report_error
+
+    def report_error(self, text: str) -> None:
+        """Send an error to the client."""
+        raise NotImplementedError
 
     def take(self, data: str | bytes) -> None:
         """Process a message of the client."""
@@ -135,7 +188,9 @@ class WebClient:
 
     async def run(self) -> None:
         """Pass data in both directions until one side ends."""
-        self.apply_graph()
+        from websockets.exceptions import ConnectionClosed
+
+        self.link.guarded(self.apply_graph)()
         tasks = [asyncio.create_task(self._read()), asyncio.create_task(self._write())]
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -145,7 +200,7 @@ class WebClient:
         for result in await asyncio.gather(*tasks, return_exceptions=True):
             if isinstance(result, LiveClosed):
                 await self.socket.close(1001, str(result)[:_LONGEST_REASON])
-            elif isinstance(result, Exception):
+            elif isinstance(result, Exception) and not isinstance(result, ConnectionClosed):  # the client has gone
                 raise result
 
     async def _read(self) -> None:
@@ -250,10 +305,11 @@ class WebServer:
         if "topics" in found:
             self.graph = found
         self.graph["time_ns"] = found["time_ns"]
-        for client in self._clients:
-            if "topics" in found:
-                client.apply_graph()
-            client.apply_time(found["time_ns"])
+        for client in tuple(self._clients):
+            with suppress(LiveClosed):  # its own task ends a client whose connection to the simulation is closed
+                if "topics" in found:
+                    client.link.guarded(client.apply_graph)()
+                client.link.guarded(client.apply_time)(found["time_ns"])
 
     # ------------------------------------------------------------------ clients
 

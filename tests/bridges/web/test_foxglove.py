@@ -166,3 +166,19 @@ def test_a_robot_in_urdf_has_its_description(court: Path, start_run: Callable[..
         assert uri in text
         client.send("fetchAsset", uri=uri, requestId=1)
         assert client.until(_is_binary(4))[10:].startswith(b"solid t")
+
+
+def test_odd_requests_are_answered_and_a_client_that_dies_ends_no_other(
+    running: Any, client: Any, connect: Connect
+) -> None:
+    client.send("getParameters", parameterNames=5, id="odd")
+    assert "not iterable" in client.until_op("status")["message"]
+    for _ in range(3):
+        dying = connect(running.addresses["foxglove"], subprotocols=["foxglove.sdk.v1"])
+        dying.send("subscribeParameterUpdates", parameterNames=["/Counter.gain"])
+        dying.send("setParameters", parameters=[{"name": "/Counter.gain", "value": "much"}])
+        dying.socket.socket.close()
+    for number in range(3):
+        client.send("getParameters", parameterNames=["/Counter.gain"], id=f"after {number}")
+        found = client.until_op("parameterValues")
+        assert (found["id"], len(found["parameters"])) == (f"after {number}", 1)

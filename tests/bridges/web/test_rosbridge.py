@@ -76,6 +76,21 @@ def test_every_invalid_message_has_a_status_and_the_connection_stays(running: An
     assert socket.until_op("service_response")["values"] == {"sum": 42}
 
 
+def test_a_request_that_fails_when_its_answer_comes_ends_nothing(running: Any, connect: Connect) -> None:
+    socket = connect(running.addresses["rosbridge"])
+    for service, args in (
+        ("/rosapi/topic_type", {}),
+        ("/rosapi/node_details", {"node": ["a"]}),
+        ("/rosapi/publishers", {}),
+        ("/rosapi/get_param", {"name": {}}),
+    ):
+        socket.send("call_service", service=service, args=args, id=service)
+        found = socket.until_op("service_response")
+        assert (found["id"], found["result"]) == (service, False), found
+    socket.send("call_service", service="/add", args=[20, 22], id="after")
+    assert socket.until_op("service_response")["values"] == {"sum": 42}
+
+
 def test_throttled_topics_keep_the_newest_messages_and_two_ids_share_one_stream(running: Any, connect: Connect) -> None:
     socket = connect(running.addresses["rosbridge"])
     for identifier in ("a", "b"):
