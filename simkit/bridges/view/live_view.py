@@ -86,7 +86,9 @@ class LiveView:
         self._sent: tuple[object, ...] = ()
         self._pace = (time.perf_counter(), sim.time)
         self._rtf = 0.0
+        self._packets: dict[str, bytes] = {}
         self._set_scene()
+        self._send_packets()
 
     @property
     def address(self) -> str:
@@ -128,6 +130,7 @@ class LiveView:
             self._send_appearance()
         self._send_state(now)
         self._send_streams()
+        self._send_packets()
 
     def _send_state(self, now: float) -> None:
         sim, pausing = self.sim, self.sim.control.pausing
@@ -149,7 +152,13 @@ class LiveView:
             "rtf": round(self._rtf, 3),
             "contacts": int(sim.mj_data.ncon),
         }
-        self.server.send("state", make_packet(head, {"poses": poses}))
+        self._packets["state"] = make_packet(head, {"poses": poses})
+
+    def _send_packets(self) -> None:
+        """Send the packets of an update together, because each wake-up of the server's thread costs time."""
+        if self._packets:
+            self.server.send(self._packets)
+            self._packets = {}
 
     def stream(self, name: str) -> Stream | None:
         """Return an open stream; None if no page shows it."""
@@ -178,7 +187,7 @@ class LiveView:
                 self._streams[name] = None
                 packet = make_packet({"kind": name, "error": str(error)}, {})
             if packet is not None:
-                self.server.send(name, packet)
+                self._packets[name] = packet
 
     def _close_streams(self, kept: Collection[str] = ()) -> None:
         """Close all streams except those of the given kinds."""
@@ -198,7 +207,7 @@ class LiveView:
         packet = scene_packet.make_scene_packet(self.sim, self.revision, extra)
         self._looks = self._appearance_digest()
         self.server.set_scene(compress_packet(packet))
-        self.server.send("scene_changed", make_packet({"kind": "scene_changed", "revision": self.revision}, {}))
+        self._packets["scene_changed"] = make_packet({"kind": "scene_changed", "revision": self.revision}, {})
         self._sent = ()
 
     def _appearance_digest(self) -> bytes:
@@ -212,7 +221,7 @@ class LiveView:
         if found != self._looks:
             self._looks = found
             head = {"kind": "appearance", "revision": self.revision}
-            self.server.send("appearance", make_packet(head, scene_packet.appearance(self.sim)))
+            self._packets["appearance"] = make_packet(head, scene_packet.appearance(self.sim))
 
     # ------------------------------------------------------------------ requests
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Final
 from urllib.parse import urlsplit
 
-from websockets.asyncio.server import serve
+from websockets.asyncio.server import broadcast, serve
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
@@ -54,12 +54,15 @@ class PageClient:
         wants: streams that the page shows, with their options.
         slots: newest packet of each stream that was not sent yet.
         answers: answers and notifications that were not sent yet.
+        is_due: event that is set while something waits.
+        is_busy: True while packets that have waited are being sent.
     """
 
     wants: Wants = field(default_factory=dict)
     slots: dict[str, bytes] = field(default_factory=dict)
     answers: list[str] = field(default_factory=list)
     is_due: asyncio.Event = field(default_factory=asyncio.Event)
+    is_busy: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,9 +118,9 @@ class PageServer:
         """Set the recording, compressed with gzip, that pages play."""
         self._recording = packed
 
-    def send(self, stream: str, packet: bytes) -> None:
-        """Send a packet to the pages that show the stream; it replaces an older packet that waits."""
-        self._call(self._offer, stream, packet)
+    def send(self, packets: Mapping[str, bytes]) -> None:
+        """Send packets to the pages that show their streams; each replaces an older packet that waits."""
+        self._call(self._offer, packets)
 
     def answer(self, client: PageClient, content: Mapping[str, Any]) -> None:
         """Send an answer to one page, or a notification."""
@@ -164,12 +167,22 @@ class PageServer:
         server.close()
         await server.wait_closed()
 
-    def _offer(self, stream: str, packet: bytes) -> None:
-        self._newest[stream] = packet
+    def _offer(self, packets: Mapping[str, bytes]) -> None:
+        self._newest |= packets
         for client in self._clients:
-            if stream in client.wants or stream in _FOR_ALL:
-                client.slots[stream] = packet
+            wanted = {s: packet for s, packet in packets.items() if s in client.wants or s in _FOR_ALL}
+            if wanted and not self._send_at_once(client, wanted):
+                client.slots |= wanted
                 client.is_due.set()
+
+    def _send_at_once(self, client: PageClient, packets: Mapping[str, bytes]) -> bool:
+        """Send packets to a page for which nothing waits; return False otherwise. This wakes no task, which costs more."""
+        socket = self._clients[client]
+        if client.is_due.is_set() or client.is_busy or socket.transport.get_write_buffer_size():
+            return False
+        for packet in packets.values():
+            broadcast((socket,), packet)
+        return True
 
     def _queue_answer(self, client: PageClient, text: str) -> None:
         client.answers.append(text)
@@ -227,8 +240,10 @@ class PageServer:
             client.is_due.clear()
             answers, client.answers = client.answers, []
             slots, client.slots = client.slots, {}
+            client.is_busy = True
             for data in (*answers, *slots.values()):
                 await socket.send(data)
+            client.is_busy = False
 
     def _take(self, client: PageClient, text: str | bytes) -> None:
         """Queue a request for the simulation, or answer it with an error."""

@@ -213,8 +213,8 @@ def test_a_page_that_reads_nothing_holds_one_packet_of_each_stream(stage: Stage)
     quick.want(last={})
     quick.until(lambda: {"big", "last"} <= server.wants.keys())
     for number in range(200):
-        server.send("big", make_packet({"kind": "big", "number": number}, {"x": np.zeros(50_000, np.float32)}))
-    server.send("last", make_packet({"kind": "last"}, {}))
+        server.send({"big": make_packet({"kind": "big", "number": number}, {"x": np.zeros(50_000, np.float32)})})
+    server.send({"last": make_packet({"kind": "last"}, {})})
     quick.until(lambda: "last" in quick.packets)
     waiting = [client.slots for client in server._clients if client.slots]
     assert sum(len(slots) for slots in waiting) <= 1
