@@ -35,19 +35,30 @@ export class Views {
     }
     let direction = new T.Vector3(...DIRECTIONS[0]);
     if (!robots.isEmpty() && stage.gl.info.render.triangles < 4e5) {
-      const target = robots.getCenter(new T.Vector3()), ray = new T.Raycaster();
-      const names = new Set(this.app.robots.map(robot => robot.name));
-      const sees = DIRECTIONS.find(values => {
-        const ahead = new T.Vector3(...values).normalize(), distance = stage.fitDistance(box, ahead, 0.94);
-        const eye = box.getCenter(new T.Vector3()).addScaledVector(ahead, -distance);
-        ray.set(eye, target.clone().sub(eye).normalize());
-        ray.camera = stage.camera;
-        const hit = world.pick(ray);
-        return !hit || names.has(hit.link.split('::', 1)[0]) || hit.point.distanceTo(target) < 0.3;
-      });
-      if (sees) direction = new T.Vector3(...sees);
+      direction = this.clearest(box, robots);
     }
     stage.fit(box, direction);
+  }
+
+  /** Returns the direction from which most of the robots is seen: centre and lower corners of their box. */
+  clearest(box, robots) {
+    const { stage, world } = this.app, ray = new T.Raycaster(), names = new Set(this.app.robots.map(robot => robot.name));
+    const { min, max } = robots, points = [robots.getCenter(new T.Vector3())];
+    for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) points.push(new T.Vector3(x, y, 0.7 * min.z + 0.3 * max.z));
+    let best = null, most = -1;
+    for (const values of DIRECTIONS) {
+      const ahead = new T.Vector3(...values).normalize();
+      const eye = box.getCenter(new T.Vector3()).addScaledVector(ahead, -stage.fitDistance(box, ahead, 0.94));
+      const seen = points.filter(point => {
+        ray.set(eye, point.clone().sub(eye).normalize());
+        ray.camera = stage.camera;
+        const hit = world.pick(ray);
+        return !hit || names.has(hit.link.split('::', 1)[0]) || hit.point.distanceTo(eye) > point.distanceTo(eye);
+      }).length;
+      if (seen > most) { most = seen; best = ahead; }
+      if (seen === points.length) break;
+    }
+    return best;
   }
 
   all() {

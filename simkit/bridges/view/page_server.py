@@ -176,7 +176,7 @@ class PageServer:
                 client.is_due.set()
 
     def _send_at_once(self, client: PageClient, packets: Mapping[str, bytes]) -> bool:
-        """Send packets to a page for which nothing waits; return False otherwise. This wakes no task, which costs more."""
+        """Send packets to a page for which nothing waits; return False otherwise. Waking its task would cost more."""
         socket = self._clients[client]
         if client.is_due.is_set() or client.is_busy or socket.transport.get_write_buffer_size():
             return False
