@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _PERIOD: Final = 1.0  # [s] of wall time between two looks
 _MOST_BOXES: Final = 600  # the time of a layout grows faster than the number of boxes
-_TOPICS: Final = {"/tf_static": True, "/tf": False}
+_TRANSFORMS: Final = "tf2_msgs/msg/TFMessage"
 
 
 def drawing(boxes: Sequence[GraphBox], edges: Sequence[GraphEdge]) -> Head:
@@ -81,7 +81,7 @@ class GraphStream:
 
 
 class FrameStream:
-    """Tree of frames from `/tf` and `/tf_static`, with the rate of each transform [Hz]; `frames`.
+    """Tree of frames from `/tf` and `/tf_static`, also below namespaces, with rates [Hz]; `frames`.
 
     The last line of each frame that moves is empty: the page writes the rate there.
     """
@@ -93,19 +93,22 @@ class FrameStream:
         self._stream = ChangeStream("frames", _PERIOD, self._content)
         self.packet = self._stream.packet
         bus = sim.communication.bus
-        self._taps = [bus.tap(topic, partial(self._take, topic)) for topic in _TOPICS]
-        for topic in _TOPICS:
+        found = (topic for topic, type_name in bus.all_topics().items() if type_name == _TRANSFORMS)
+        topics = {"/tf_static", "/tf", *(topic for topic in found if topic.endswith(("/tf", "/tf_static")))}
+        self._taps = [bus.tap(topic, partial(self._take, topic)) for topic in sorted(topics)]
+        for topic in sorted(topics):
             for _topic, end, _types, _role in tuple(bus.endpoints(topic)):
                 if isinstance(end, Publisher) and end.active and end.present is not None:
-                    found = end.present()
-                    message = found.get() if isinstance(found, LazyMessage) else found
-                    self._tree.take(message, is_static=_TOPICS[topic])
+                    present = end.present()
+                    message = present.get() if isinstance(present, LazyMessage) else present
+                    self._tree.take(message, is_static=topic.endswith("tf_static"))
 
     def _take(self, topic: str, message: Message) -> None:
         now = self._sim.time_ns
         self._tree.advance(topic, now)
-        self._tree.take(message, is_static=_TOPICS[topic])
-        for stamped in message.transforms if topic == "/tf" else ():
+        is_static = topic.endswith("tf_static")
+        self._tree.take(message, is_static=is_static)
+        for stamped in () if is_static else message.transforms:
             name = stamped.child_frame_id.lstrip("/")
             found = self._stamps.get(name)
             if found is None or now < found[2]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.bridges.view.packet import make_packet
+from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_text import TextStyle, message_to_yaml
 from simkit.runtime.communication.service_call import ServiceCall
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _PERIOD: Final = 0.15  # [s] of wall time between two packets
 _MOST_KEPT: Final = 50  # calls and goals that have ended
 _MOST_OPEN: Final = 200  # goals and calls that have not ended
+_NAMES: Final = {GoalStatus.UNKNOWN: "WAITING"}  # until the next step
 _STYLE: Final = TextStyle(truncate=64)
 _LONGEST: Final = 20_000  # characters of a message
 
@@ -85,7 +87,7 @@ class PageCalls:
             "kind": "goal",
             "id": number,
             "name": entry._action.name,
-            "status": "UNDONE" if is_undone else entry.status.name,
+            "status": "UNDONE" if is_undone else _NAMES.get(entry.status, entry.status.name),
             "done": is_done,
             "reason": "a reset or a restore has undone the goal" if is_undone else entry.reason,
             "is_result": entry.is_done,

@@ -204,11 +204,11 @@ class SeriesStream:
         self._stride = self._skipped = 1
 
     def packet(self, options: Sequence[Any]) -> bytes | None:
+        if not self._rows.is_due():
+            return None
         fields = wanted_fields(options)
         if fields != self._fields:
             self._choose(fields)
-        if not self._rows.is_due():
-            return None
         pending, self._pending, self._stride = self._pending, [], 1
         for now, found in pending:
             row = found if isinstance(found, tuple) else self._row(now, found)

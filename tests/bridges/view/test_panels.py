@@ -211,6 +211,12 @@ def test_frames_come_with_their_rates(stage: Stage) -> None:
         header = {"frame_id": parent, "stamp": stamp}
         return {"transforms": [{"header": header, "child_frame_id": child, "transform": {"rotation": {"w": 1.0}}}]}
 
+    other = sim.advertise("/second/tf", "tf2_msgs/msg/TFMessage")
+    page.want()
+    page.until(lambda: "frames" not in stage.view._streams)
+    page.want(frames={})
+    page.until(lambda: "frames" in stage.view._streams)
+    other.publish(transform("map", "odom"))
     fixed.publish(transform("base", "laser"))
     for _ in range(11):
         tf.publish(transform("odom", "base"))
@@ -218,6 +224,7 @@ def test_frames_come_with_their_rates(stage: Stage) -> None:
     page.until(lambda: page.packets["frames"][0]["rates"].get("base") == pytest.approx(20.0))
     head = page.packets["frames"][0]
     assert {(*edge["ends"], edge["dashed"]) for edge in head["edges"]} == {
+        ("map", "odom", False),
         ("odom", "base", False),
         ("base", "laser", True),
         ("base", SCAN, True),
@@ -286,6 +293,7 @@ def test_a_goal_shows_feedback_and_result_and_can_be_cancelled(stage: Stage) -> 
     sim.act("/count", "example_interfaces/action/Fibonacci", goals.append, on_cancel=lambda goal: goal.canceled())
     page.want(calls={})
     number = page.ask("goal", name="/count", values={"order": 5})["ok"]["id"]
+    page.until(lambda: page.packets["calls"][0]["calls"][0]["status"] == "WAITING")
     sim.step()
     goals[0].publish_feedback({"sequence": [0, 1]})
     page.until(lambda: "sequence" in page.packets["calls"][0]["calls"][0]["text"])

@@ -7,9 +7,9 @@ const COLOURS = ['#4c9ffe', '#f2a33c', '#3fbf7f', '#e5636b', '#b38cf4', '#2fc4c9
 const WINDOWS = [['5 s', 5], ['10 s', 10], ['30 s', 30], ['60 s', 60], ['5 min', 300], ['all', Infinity]];
 
 export class Plot {
-  /** `close(plot)` is called by the button with the cross, `select(plot)` by a click. */
-  constructor(app, store, close, select) {
-    Object.assign(this, { app, store });
+  /** `close(plot)` is called by the button with the cross, `select(plot)` by a click, `changed()` for other fields. */
+  constructor(app, store, { close, select, changed }) {
+    Object.assign(this, { app, store, changed });
     this.fields = [];
     this.zoom = null;
     this.isPaused = this.usesStamps = this.inDegrees = false;
@@ -29,8 +29,10 @@ export class Plot {
     this.legend = element('div', { class: 'legend' });
     this.area = element('div', { class: 'area' });
     this.hint = element('p', { class: 'hint dim' }, 'Drag fields here, or click them in the list');
+    const clear = button('clear', 'Clear', 'Drop the samples', () => this.clear());
+    clear.hidden = Boolean(app.scene?.recording); // a recording has no later samples
     const tools = element('div', { class: 'plot-tools' }, this.pause, this.range, this.axis, this.degrees,
-      button('clear', 'Clear', 'Drop the samples', () => this.clear()), button('csv', 'CSV', 'Save the samples as CSV', () => this.saveCsv()),
+      clear, button('csv', 'CSV', 'Save the samples as CSV', () => this.saveCsv()),
       button('png', 'PNG', 'Save the picture', () => this.savePng()), button('close', '✕', 'Close the plot', () => close(this)));
     this.element = element('div', { class: 'plot' }, element('div', { class: 'plot-head' }, this.legend, tools), this.area);
     this.area.append(this.hint);
@@ -50,12 +52,14 @@ export class Plot {
     if (!field || this.fields.some(one => one.topic === topic && one.field === field)) return;
     this.fields.push({ topic, field });
     this.store.use(topic, field, true);
+    this.changed();
     this.draw();
   }
 
   remove(topic, field) {
     this.fields = this.fields.filter(one => one.topic !== topic || one.field !== field);
     this.store.use(topic, field, false);
+    this.changed();
     this.draw();
   }
 

@@ -19,13 +19,22 @@ export function makePlotTab(app) {
     plot.element.remove();
     plots = plots.filter(one => one !== plot);
     select(plots.at(-1) ?? null);
+    keep();
   };
   const add = () => {
-    const plot = new Plot(app, store, close, select);
+    const plot = new Plot(app, store, { close, select, changed: keep });
     plots.push(plot);
     area.append(plot.element);
     select(plot);
     return plot;
+  };
+  const key = () => `simkit-plots ${app.scene?.world}`;
+  const keep = () => {
+    try { localStorage.setItem(key(), JSON.stringify(plots.map(plot => plot.fields))); } catch { /* a page in a notebook may have no storage */ }
+  };
+  const restore = () => {
+    try { for (const fields of JSON.parse(localStorage.getItem(key())) ?? []) { const plot = add(); for (const { topic, field } of fields) plot.add(topic, field); } } catch { /* as above */ }
+    if (!plots.length) add();
   };
   const choose = (topic, field) => (chosen ?? add()).add(topic, field);
   const draw = () => {
@@ -42,7 +51,7 @@ export function makePlotTab(app) {
   app.on('scene', () => { if (isShown) store.want(); });
   matchMedia('(prefers-color-scheme: light)').addEventListener('change', draw);
   app.plots = { store, list, add, choose, get all() { return plots; } };
-  add();
+  restore();
   return {
     element: element('div', { class: 'plot-tab' }, list.element, area),
     show(shown) {

@@ -73,7 +73,8 @@ export class SeriesStore {
   announce() { for (const call of this.listeners) call(); }
 
   take(packet, topic) {
-    for (const [field, text] of Object.entries(packet.errors ?? { '': packet.error })) if (text) this.errors.set(keyOf(topic, field), text);
+    const errors = packet.error ? Object.fromEntries([...(this.fields.get(topic)?.keys() ?? [])].map(field => [field, packet.error])) : packet.errors ?? {};
+    for (const [field, text] of Object.entries(errors)) this.errors.set(keyOf(topic, field), text);
     const { times, stamps, values } = packet.arrays, count = packet.curves?.length ?? 0;
     const place = this.places.get(topic), first = packet.first ?? 0;
     const from = !packet.recorded && place?.source === packet.source ? Math.max(0, place.next - first) : 0;
