@@ -97,6 +97,20 @@ def test_a_batch_has_the_rewards_and_collisions_of_the_registered_goal_task() ->
     assert assert_like_single("simkit/TurtleBot3Goal-v0", 8, 2, control_period=0.5, time_limit=3.5) >= 2
 
 
+def test_a_batch_computes_expressions_like_single_environments() -> None:
+    robot, goal = "'turtlebot3'", "(1.6, 0.5, 0)"
+    observation = {
+        "to_goal": f"{goal} - pose({robot}).position",
+        "speed": f"norm(velocity({robot})) * 2",
+        "turn": f"clamp(pose({robot}).yaw, -1, 1) + time",
+        "wheel": "joint('turtlebot3::wheel_left_joint').velocity ** 2",
+    }
+    options: dict[str, Any] = {"observation": observation, "action": TWIST, "time_limit": 0.9, "overrides": MUJOCO}
+    reward = f"-distance({robot}, {goal}) + max(pose({robot}).x, 0.1, -velocity({robot}).y)"
+    ends = f"contact({robot}) or not (0 <= abs(pose({robot}).y) < 1) or pose({robot}).position.x > 5"
+    assert assert_like_single("turtlebot3_world", 10, 2, reward=reward, terminated=ends, **options) == 2
+
+
 @pytest.mark.slow
 def test_a_batch_casts_on_the_walls_of_the_maze() -> None:
     assert_like_single("simkit/TurtleBot3Maze-v0", 60)
@@ -148,7 +162,8 @@ def test_the_mode_without_autoreset_resets_by_a_mask() -> None:
     ("world", "options", "reason"),
     [
         ("turtlebot3_world", {}, "contact law"),
-        (CART, {"reward": "1 + 1"}, "the expression '1 \\+ 1'"),
+        (CART, {"reward": "count('/eye')"}, "reward: count\\('/eye'\\) in the expression"),
+        (CART, {"reward": "{k} + 1", "randomise": {"k": {"choice": [1, 2]}}}, "variables"),
         (CART, {"reward": lambda env: 1.0}, "Batched"),
         (CART, {"sync": False}, "sync=False"),
         (CART, {"render_mode": "rgb_array"}, "render_mode"),
@@ -162,9 +177,11 @@ def test_what_a_batch_cannot_do_is_named(world: str, options: dict[str, Any], re
 
 
 def test_processes_take_over_and_say_why() -> None:
-    envs = simkit.gym.make_vec(CART, num_envs=1, observation=SLIDE, action=SLIDE, reward="2 * 3")
+    envs = simkit.gym.make_vec(
+        CART, num_envs=1, observation=SLIDE, action=SLIDE, reward="2 * 3", success="age('/eye') > 9"
+    )
     assert isinstance(envs, gymnasium.vector.AsyncVectorEnv)
-    assert "the expression '2 * 3'" in envs.not_batched
+    assert "age('/eye') in the expression" in envs.not_batched
     envs.reset()
     assert envs.step(np.zeros((1, 1), np.float32))[1].tolist() == [6.0]
     envs.close()

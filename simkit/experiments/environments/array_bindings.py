@@ -9,7 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.experiments.environments.array_view import ArrayView
+from simkit.experiments.environments.cannot_batch import CannotBatchError
 from simkit.experiments.environments.drive_arrays import DiffDriveArrays
+from simkit.experiments.environments.expression_arrays import array_expression
 from simkit.experiments.environments.sensor_arrays import ImuArrays, ScanArrays, sensor_obstacle
 from simkit.experiments.environments.specification import Batched, Observation
 from simkit.msgs.topic_names import absolute_name
@@ -49,10 +51,6 @@ PUBLISHERS: Final = frozenset(
 
 _TWISTS: Final = frozenset(("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"))
 _HOOKS: Final = ("before_step", "after_step")
-
-
-class CannotBatchError(Exception):
-    """Reason why a part of an environment cannot be computed as arrays."""
 
 
 # ---------------------------------------------------------------------- the world
@@ -101,14 +99,25 @@ def spec_obstacles(spec: EnvironmentSpec, render_mode: str | None) -> list[str]:
 # ---------------------------------------------------------------------- values of functions
 
 
-def array_value(value: Value | None, view: ArrayView, name: str) -> Callable[[], Any]:
+def array_value(value: Value | None, view: ArrayView, name: str, env: SimulationEnv) -> Callable[[], Any]:
     """Return the function that returns a reward or an end of all environments."""
+    if isinstance(value, str):
+        try:
+            get = _expression(value, view, env)
+        except CannotBatchError as error:
+            raise CannotBatchError(f"{name}: {error}") from None
+        return lambda: np.broadcast_to(get(), (view.count,))
     if isinstance(value, Batched):
         return lambda: value.of_all(view)
     if isinstance(value, (bool, int, float)) or value is None:
         return lambda: np.full(view.count, value or 0.0)
-    what = f"the expression {value!r}" if isinstance(value, str) else "a Python function of one environment"
-    raise CannotBatchError(f"{name} is {what}; simkit.gym.Batched has a function for arrays")
+    raise CannotBatchError(f"{name} is a Python function of one environment; simkit.gym.Batched has one for arrays")
+
+
+def _expression(source: str, view: ArrayView, env: SimulationEnv) -> Callable[[], Any]:
+    if env.with_variables(source) != source:
+        raise CannotBatchError(f"the expression {source!r} has variables, whose values differ")
+    return array_expression(source, view, env.view)
 
 
 # ---------------------------------------------------------------------- observations
@@ -198,7 +207,8 @@ class Sources:
             return self._pose(source)
         if source.startswith("/") and " " not in source:
             return self._topic(absolute_name(source), given, bound)
-        raise CannotBatchError(f"the expression {source!r}; simkit.gym.Batched has a function for arrays")
+        get = _expression(source, view, self._env)
+        return lambda _: np.broadcast_to(value := np.asarray(get()), (view.count, *value.shape[1:]))
 
     def _pose(self, name: str) -> Read:
         view = self._view

@@ -38,6 +38,7 @@ class ArrayView:
         action: last actions within their bounds, shape (count, n).
         observation: last observations.
         time: simulated time since the reset [s], shape (count,).
+        sim_time: time of the simulations [s], shape (count,).
     """
 
     def __init__(self, sim: Simulation, batch: Any, read_state: ReadState) -> None:
@@ -51,6 +52,7 @@ class ArrayView:
         self.action: Floats = np.zeros((self.count, 0))
         self.observation: Any = None
         self.time: Floats = np.zeros(self.count)
+        self.sim_time: Floats = np.zeros(self.count)
         self._places: dict[str, tuple[int, Pose | None]] = {}
         self._contacts: dict[str, _TouchSearch] = {}
 
@@ -102,6 +104,16 @@ class ArrayView:
         root = int(self._sim.mj_model.body_rootid[body])
         arm = self._xpos[:, body] - self._centre[:, root]
         found: Floats = self._cvel[:, body, 3:] + np.cross(self._cvel[:, body, :3], arm)
+        return found
+
+    def velocity(self, name: str) -> Floats:
+        """Return the velocities of the origin of a model or link in the world [m/s], shape (count, 3)."""
+        tables = self._sim.contents.handles.tables
+        if name in tables["link"]:
+            return self.linear_velocity(name)
+        link = tables["model"][name]._canonical.scoped
+        arm = self.position(name) - self.position(link)
+        found: Floats = self.linear_velocity(link) + np.cross(self.angular_velocity(link), arm)
         return found
 
     def angular_velocity(self, link: str) -> Floats:

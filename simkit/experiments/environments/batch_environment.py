@@ -14,7 +14,6 @@ from gymnasium.vector.utils import batch_space, create_empty_array
 from simkit.diagnostics import shorten
 from simkit.experiments.environments.array_bindings import (
     ActionArrays,
-    CannotBatchError,
     ObservationArrays,
     Sources,
     array_value,
@@ -22,6 +21,7 @@ from simkit.experiments.environments.array_bindings import (
     world_obstacles,
 )
 from simkit.experiments.environments.batch_physics import BatchPhysics
+from simkit.experiments.environments.cannot_batch import CannotBatchError
 from simkit.experiments.environments.environment import SimulationEnv
 from simkit.experiments.environments.sensor_arrays import thread_count
 from simkit.experiments.environments.specification import EnvironmentSpec, Observation, invalid
@@ -106,7 +106,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self._values: dict[str, Any] = {}
         for name in ("reward", "terminated", "success"):
             try:
-                self._values[name] = array_value(getattr(spec, name), view, name)
+                self._values[name] = array_value(getattr(spec, name), view, name, env)
             except CannotBatchError as error:
                 found.append(str(error))
         try:
@@ -283,6 +283,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self._count_samples(ids, before, steps)
         diverged = physics.diverged & is_active
         good = is_active & ~diverged
+        view.sim_time = np.multiply(physics.tick, self._sim.timestep, dtype=np.float64)
         view.time = np.multiply(physics.tick - self._first_tick, self._sim.timestep, dtype=np.float64)
         rows = np.flatnonzero(good)
         for name, bound_source in self._bound.items():

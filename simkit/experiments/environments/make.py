@@ -12,8 +12,8 @@ from typing import Any, Final, Literal
 import gymnasium
 
 from simkit.diagnostics import did_you_mean, shorten
-from simkit.experiments.environments.array_bindings import CannotBatchError
 from simkit.experiments.environments.batch_environment import BatchVectorEnv
+from simkit.experiments.environments.cannot_batch import CannotBatchError
 from simkit.experiments.environments.environment import SimulationEnv
 from simkit.experiments.environments.specification import EnvironmentSpec, invalid
 from simkit.experiments.environments.tiago_tasks import pick_spec, reach_spec
