@@ -162,6 +162,40 @@ def test_a_clone_continues_with_the_same_bits() -> None:
     assert env.reset()[0]["eye"].tolist() == other.reset()[0]["eye"].tolist()
 
 
+@pytest.mark.parametrize("observation", ["/eye", "path_length('cart::car') + 0 * {k}"])
+def test_a_clone_of_a_long_episode_continues_with_the_same_noise_and_variables(observation: str) -> None:
+    def reward(env: Any) -> float:
+        env.memory["sum"] = env.memory.get("sum", 0.0) + float(env.action[0]) + env.values["k"]
+        return float(env.memory["sum"])
+
+    randomise = {"k": {"choice": [1.0, 2.0]}}
+    env = make(observation=observation, reward=reward, terminated=False, randomise=randomise, time_limit=3.0)
+    results(env, steps=12)
+    other = env.clone()
+    for action in ([2.0], [-3.0]):
+        assert all(map(same, env.step(action)[:4], other.step(action)[:4]))
+    assert env.time == other.time and env.memory == other.memory
+    assert all(map(same, env.clone().step([1.0])[:4], other.clone().step([1.0])[:4]))
+    assert same(env.reset()[0], other.reset()[0])
+
+
+def test_a_clone_of_the_goal_task_restores_a_snapshot_and_drives_the_same_way() -> None:
+    env = simkit.gym.make("simkit/TurtleBot3Goal-v0")
+    env.reset(seed=2)
+    for _ in range(5):
+        env.step([0.5, 0.5])
+    other = env.clone()
+    try:
+        pickle.dumps(env.sim.snapshot())
+    except TypeError:
+        assert not env._copy_state(other)  # the clone has repeated the episode
+    else:
+        assert env._copy_state(other)
+    for _ in range(5):
+        assert all(map(same, env.step([0.3, -0.5])[:4], other.step([0.3, -0.5])[:4]))
+    assert np.array_equal(env.sim.mj_data.qpos, other.sim.mj_data.qpos)
+
+
 def test_values_are_drawn_at_each_reset_and_can_be_given() -> None:
     mass = "cart::car.inertial.mass"
     env = make(

@@ -50,6 +50,7 @@ class Actions:
     Attributes:
         names: name of each number of an action.
         space: space of the actions.
+        integrals: integrals of commanded velocities.
 
     Raises:
         InputError: SK-GYM-002 targets have errors; the message lists all of them.
@@ -61,7 +62,7 @@ class Actions:
         self.sim, self._period = sim, period
         self._sends: list[tuple[int, Send]] = []
         self._efforts: list[tuple[Joint, float]] = []
-        self._integrals: list[_VelocityIntegral] = []
+        self.integrals: list[_VelocityIntegral] = []
         self._has_joints = False
         self.names: list[str] = []
         bounds: list[Bounds] = []
@@ -115,7 +116,7 @@ class Actions:
     def clear(self) -> None:
         """Forget the efforts and positions of the last action."""
         self._efforts.clear()
-        for integral in self._integrals:
+        for integral in self.integrals:
             integral.clear()
 
     def _push(self, _: int) -> None:
@@ -174,7 +175,7 @@ class Actions:
         make, nothing = builder_of(_TRAJECTORY).default, np.empty(0)
         follower = _VelocityIntegral(joints, self._period)
         if is_velocity:
-            self._integrals.append(follower)
+            self.integrals.append(follower)
 
         def send(numbers: list[float]) -> None:
             message = make()
@@ -229,26 +230,29 @@ class _VelocityIntegral:
     Args:
         joints: joints with one degree of freedom.
         period: time between two actions [s].
+
+    Attributes:
+        wanted: positions at the end of the last control period; None before the first action.
     """
 
     def __init__(self, joints: list[Joint], period: float) -> None:
         self._joints, self._period = joints, period
-        self._wanted: npt.NDArray[np.float64] | None = None
+        self.wanted: npt.NDArray[np.float64] | None = None
 
     def clear(self) -> None:
         """Begin at the present positions again."""
-        self._wanted = None
+        self.wanted = None
 
     def positions(self, velocities: list[float]) -> npt.NDArray[np.float64]:
         """Return the positions at the end of the control period, at most `_LEAD` before the present ones."""
         present = np.array([float(joint.position) for joint in self._joints])
-        if self._wanted is None:
-            self._wanted = present
+        if self.wanted is None:
+            self.wanted = present
         low = np.array([float(joint.lower) for joint in self._joints])
         high = np.array([float(joint.upper) for joint in self._joints])
-        wanted = self._wanted + self._period * np.array(velocities)
-        self._wanted = np.clip(np.clip(wanted, present - _LEAD, present + _LEAD), low, high)
-        return self._wanted
+        wanted = self.wanted + self._period * np.array(velocities)
+        self.wanted = np.clip(np.clip(wanted, present - _LEAD, present + _LEAD), low, high)
+        return self.wanted
 
 
 def _wrong(message: str, hint: str = "") -> InputError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import pickle
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -164,21 +165,52 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
     def clone(self) -> SimulationEnv:
         """Return another environment in the same state; the same actions then give the same results.
 
-        The copy loads its own world and repeats the episode so far.
+        The copy loads its own world and restores a snapshot; it repeats the episode if the state is not only numbers.
         """
         self._check_open()
         other = SimulationEnv(self.spec_of_env, self.render_mode, self._size)
         if self._begun is None:
             return other
-        state, options = self._begun
         other._is_seeded = True
         other.np_random = np.random.Generator(type(self.np_random.bit_generator)())
+        if not self._copy_state(other):
+            self._repeat(other)
+        other.np_random.bit_generator.state = self.np_random.bit_generator.state
+        return other
+
+    def _copy_state(self, other: SimulationEnv) -> bool:
+        """Bring a new environment of this specification into the present state by a snapshot.
+
+        Returns:
+            False, and the other is unchanged, if expressions have messages or histories, the drawn values have loaded
+            another world, or the memory has objects of the simulation.
+        """
+        if self._view_of_sim.remembers or self._loaded_overrides != other._loaded_overrides:
+            return False
+        try:
+            memory, snapshot = pickle.dumps(self.memory), pickle.dumps(self.sim.snapshot())
+        except (TypeError, AttributeError, pickle.PicklingError):
+            return False
+        other.values, other._variables = dict(self.values), dict(self._variables)
+        if other._uses_variables:
+            other._bind()
+        other.sim.restore(pickle.loads(snapshot))
+        other.memory = pickle.loads(memory)
+        other.action, other.observation = self.action.copy(), copy.deepcopy(self.observation)
+        for name in ("_first_tick", "_last_tick", "_has_ended", "_begun", "_sent"):
+            setattr(other, name, copy.deepcopy(getattr(self, name)))
+        for mine, copied in zip(self._actions.integrals, other._actions.integrals, strict=True):
+            copied.wanted = None if mine.wanted is None else mine.wanted.copy()
+        return True
+
+    def _repeat(self, other: SimulationEnv) -> None:
+        """Repeat the episode so far in another environment."""
+        assert self._begun is not None
+        state, options = self._begun
         other.np_random.bit_generator.state = copy.deepcopy(state)
         other.reset(options=dict(options) if options else None)
         for action in np.array(self._sent).reshape(-1, len(self._actions.names)):
             other.step(action)
-        other.np_random.bit_generator.state = self.np_random.bit_generator.state
-        return other
 
     # ------------------------------------------------------------------ for functions of the environment
 
@@ -290,11 +322,9 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         self._loaded_overrides = overrides
         self._steps = round(spec.control_period / self.sim.timestep)
         if self._steps < 1 or abs(self._steps * self.sim.timestep - spec.control_period) > 1e-9:
-            step = self.sim.timestep
+            found, step = spec.control_period, self.sim.timestep
             self.sim.close()
-            raise invalid(
-                f"control_period: found {spec.control_period:g} s; expected a multiple of the step, {step:g} s"
-            )
+            raise invalid(f"control_period: found {found:g} s; expected a multiple of the step, {step:g} s")
         self._view_of_sim = WorldView(self.sim)
         try:
             self._bind()
@@ -334,16 +364,8 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
     @property
     def _uses_variables(self) -> bool:
         """True if expressions contain variables, whose values are new in each episode."""
-        if not self._variables:
-            return False
-        texts = str(
-            (
-                self.spec_of_env.observation,
-                self.spec_of_env.reward,
-                self.spec_of_env.terminated,
-                self.spec_of_env.success,
-            )
-        )
+        spec = self.spec_of_env
+        texts = str((spec.observation, spec.reward, spec.terminated, spec.success))
         return any("{" + name + "}" in texts for name in self._variables)
 
     def _getter(self, value: Value | None) -> Callable[[], Any]:

@@ -26,6 +26,7 @@ FAST_CONTACTS: Final = ("physics.contact_law=mujoco",)
 """Override for MuJoCo's own contacts, which all environments of a batch can compute in one call."""
 
 GOAL_RADIUS: Final = 0.25  # [m]
+_TOUCHES: Final = f"contact('{ROBOT}')"
 SECTORS: Final = 36
 FARTHEST: Final = 6.0  # [m]; upper limit of the observed distance
 _PILLARS: Final = [(x, y) for x in (-1.1, 0.0, 1.1) for y in (-1.1, 0.0, 1.1)]
@@ -111,7 +112,7 @@ def _reward(env: Environment) -> float:
     approach = memory["distance"] - distance
     memory["distance"] = distance
     memory["reached"] = distance < GOAL_RADIUS
-    memory["collided"] = bool(memory["touches"]())
+    memory["collided"] = bool(env.expression(_TOUCHES)())
     return float(4.0 * approach - 0.01 + 10.0 * memory["reached"] - 10.0 * memory["collided"])
 
 
@@ -160,13 +161,11 @@ def _begin(env: Environment, start: Point, goal: Point) -> None:
     yaw = float(env.np_random.uniform(-math.pi, math.pi))
     robot.set_pose(Pose.from_rpy(*start, float(robot.pose.position[2]), 0.0, 0.0, yaw))
     distance = math.dist(start, goal)
-    touches = env.expression(f"contact('{ROBOT}')")
     env.memory |= {
         "goal": np.array(goal),
         "distance": distance,
         "reached": False,
         "collided": False,
-        "touches": touches,
     }
 
 
