@@ -262,8 +262,11 @@ def parameter_problems(spec: SweepSpec, rows: Sequence[SweepRow], names: Sequenc
         if name.isidentifier():
             continue
         for row in rows:
+            given = [one for one in row.values if one == name or one.endswith(".count")]  # a path may name a copy
             try:
-                apply_to_scene(scene, [f"{name}={value_text(row.values[name])}"] if name in row.values else [])
+                apply_to_scene(
+                    scene, [f"{one}={value_text(row.values[one])}" for one in given] if name in given else []
+                )
             except InputError as error:
                 found.setdefault(name, error)
             else:

@@ -30,6 +30,7 @@ from simkit.experiments.sweeps.sweep_spec import (
     Keep,
     Metric,
     SweepSpec,
+    metric_problems,
     name_problems,
     raise_problems,
     sequence_of_seeds,
@@ -102,6 +103,7 @@ def sweep(
     design = make_design(
         parameters, sequence_of_seeds(seeds, run.seed), samples=samples, sampling=sampling, design_seed=design_seed
     )
+    raise_problems(metric_problems({} if metrics is None else metrics))
     spec = SweepSpec(run, design, dict(metrics or {}), keep, tuple(bag_topics), warm)
     temporary = tempfile.TemporaryDirectory() if folder is None else nullcontext(os.fspath(folder))
     with cast(AbstractContextManager[str], temporary) as name:

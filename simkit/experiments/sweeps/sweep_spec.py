@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
@@ -256,8 +257,33 @@ def raise_problems(problems: Sequence[str]) -> None:
         raise InputError("\n".join(problems), problems[0].partition(" ")[0])
 
 
+def _duration_problems(duration: Any, has_end: bool) -> list[str]:
+    """Return a message for a duration that is no number of seconds, or that never ends."""
+    is_number = isinstance(duration, (int, float)) or getattr(duration, "dtype", None) is not None
+    if not is_number or isinstance(duration, bool) or not duration >= 0:
+        return [f"{INVALID} duration: found {duration!r:.60}; expected a number of seconds of at least 0"]
+    if math.isinf(duration) and not has_end:
+        return [f"{INVALID} duration: found {duration!r}; an endless run needs until"]
+    return []
+
+
+def metric_problems(metrics: Any) -> list[str]:
+    """Return a message for each metric that is neither an expression nor a function."""
+    if not isinstance(metrics, Mapping):
+        return [f"{INVALID} metrics: found {metrics!r:.60}; expected a mapping of names to expressions or functions"]
+    wrong = {name: one for name, one in metrics.items() if not (isinstance(one, str) or callable(one))}
+    return [
+        f"{INVALID} metric {name!r}: found {one!r:.60}; expected an expression as text, or a function of the simulation"
+        for name, one in wrong.items()
+    ]
+
+
 def spec_of_world(world: Any, duration: float | None, until: str) -> RunSpec:
     """Return the run specification of a world, or of a specification with another duration and end condition."""
+    problems = [] if duration is None else _duration_problems(duration, bool(until or getattr(world, "until", "")))
+    if not isinstance(world, (str, os.PathLike, RunSpec)):
+        problems.append(f"{INVALID} world: found {world!r:.60}; expected a file, a bare name, XML text or a RunSpec")
+    raise_problems(problems)
     if isinstance(world, RunSpec):
         changes: dict[str, Any] = {} if duration is None else {"duration": duration, "timeout": None}
         if until:

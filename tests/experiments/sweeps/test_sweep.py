@@ -127,6 +127,13 @@ def test_a_csv_file_gives_the_values_of_each_run(tmp_path: Path) -> None:
         ({"jobs": 0}, ["jobs"]),
         ({"metrics": {"run": "time"}}, ["two columns"]),
         ({"until": "pose('bx').z < 0"}, ["SK-COND-005"]),
+        ({"metrics": ["time"]}, ["SK-SWEEP-001 metrics: found ['time']"]),
+        ({"metrics": {"a": 5}}, ["SK-SWEEP-001 metric 'a': found 5"]),
+        ({"duration": -1.0}, ["duration: found -1.0"]),
+        ({"duration": math.nan}, ["duration: found nan"]),
+        ({"duration": "2"}, ["duration: found '2'"]),
+        ({"duration": math.inf}, ["an endless run needs until"]),
+        ({"parameters": {"box.count": [2], "box_*.mass": [2]}}, ["'mass' cannot be set here"]),
     ],
 )
 def test_a_wrong_sweep_is_refused_before_its_first_run(arguments: Any, messages: list[str]) -> None:
