@@ -97,7 +97,6 @@ WRONG_TYPES: dict[str, Call] = {
     "one path": lambda _: simkit.load(WORLD, resource_paths="models"),
     "xacro_args": lambda _: simkit.load(WORLD, xacro_args=3),
     "pickled simulation": lambda sim: pickle.dumps(sim),
-    "pickled snapshot": lambda sim: pickle.dumps(sim.snapshot()),
     "pickled link": lambda sim: pickle.dumps(sim.link("b::l")),
 }
 WRONG_VALUES: dict[str, Call] = {

@@ -80,9 +80,9 @@ class NumberChanges:
         engine = self._engine
         found = body_numbers(engine.compiled, engine.world, link, inertial)
         if found is None:
-            message = f"the mass of link {link.scoped!r} cannot change during a run"
-            reason = "it does not move, it closes a loop, or its inertia needs a new compilation"
-            help_ = f"set it before the load, with overrides=['{link.scoped}.inertial.mass=…']"
+            message = f"the mass or inertia of link {link.scoped!r} cannot change in this way during a run"
+            reason = "it does not move, it closes a loop, or its inertia gets other principal axes"
+            help_ = f"scale the inertia, or set it before the load: overrides=['{link.scoped}.inertial.inertia=…']"
             raise InputError(f"SK-CORE-006 {message}: {reason}\n    help: {help_}", "SK-CORE-006")
         body, numbers = found
         for field, value in numbers.items():
