@@ -8,8 +8,8 @@ import numpy as np
 
 from simkit.compiler.meshes.mesh_part import Floats, Indices
 
-_TRIANGLES_FROM: Final = 8
-"""Number of triangles in one plane from which they are divided along their own outline."""
+_LEAST_AREA: Final = 8.0
+"""Area relative to the median triangle from which triangles in one plane are divided along their own outline."""
 
 _ANGLE: Final = 1e-4
 """Difference between the normals of triangles in one plane."""
@@ -28,27 +28,46 @@ def flat_areas(corners: Floats, normals: Floats) -> list[Indices]:
         corners: corners of the triangles [m], shape (n, 3, 3).
         normals: unit normals, shape (n, 3).
     """
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
     size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     offsets = np.einsum("ij,ij->i", corners[:, 0], normals)
     plane = np.column_stack([np.rint(normals / _ANGLE), np.rint(offsets / (_ANGLE * size))])
     point = np.rint(corners.reshape(-1, 3) / (1e-6 * size))
     planes, points = _numbers(plane), _numbers(np.column_stack([np.repeat(plane, 3, axis=0), point]))
-    counts = np.bincount(planes)
-    chosen = np.flatnonzero(counts[planes] >= _TRIANGLES_FROM)
+    sizes = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    least = _LEAST_AREA * float(np.median(sizes))
+    chosen = np.flatnonzero((np.bincount(planes, sizes)[planes] >= least) & (np.bincount(planes)[planes] > 1))
     if not len(chosen):
         return []
-    ends = points.reshape(-1, 3)[chosen]
+    areas = [chosen[area] for area in _connected(points.reshape(-1, 3)[chosen])]
+    return [area for area in areas if len(area) > 1 and sizes[area].sum() >= least]
+
+
+def connected_areas(corners: Floats, sides: Indices) -> list[Indices]:
+    """Return the triangles of each connected area of one side.
+
+    Args:
+        corners: corners of the triangles [m], shape (n, 3, 3).
+        sides: number of the side of each triangle, shape (n,).
+    """
+    if not len(corners):
+        return []
+    size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    point = np.rint(corners.reshape(-1, 3) / (1e-6 * size))
+    return _connected(_numbers(np.column_stack([np.repeat(sides, 3), point])).reshape(-1, 3))
+
+
+def _connected(ends: Indices) -> list[Indices]:
+    """Return the triangles of each connected set; `ends` are the numbers of their corners, shape (n, 3)."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     row, column = ends[:, (0, 1)].reshape(-1), ends[:, (1, 2)].reshape(-1)
-    count = int(points.max()) + 1
+    count = int(ends.max()) + 1
     graph = coo_matrix((np.ones(len(row), bool), (row, column)), shape=(count, count))
     _, label = connected_components(graph, directed=False)
-    of_area = label[ends[:, 0]]
-    order = np.argsort(of_area, kind="stable")
-    areas = np.split(chosen[order], np.flatnonzero(np.diff(of_area[order])) + 1)
-    return [area for area in areas if len(area) >= _TRIANGLES_FROM]
+    of_set = label[ends[:, 0]]
+    order = np.argsort(of_set, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(of_set[order])) + 1)
 
 
 def _numbers(rows: Floats) -> Indices:

@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simkit.compiler.meshes.convex_pieces import ConvexPiece, closed_convex_parts, layer_depths, prism_count
-from simkit.compiler.meshes.flat_areas import dividing_line, flat_areas
+from simkit.compiler.meshes.flat_areas import connected_areas, dividing_line, flat_areas
 from simkit.compiler.meshes.height_tiles import HeightTile, height_tiles
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 
@@ -46,6 +46,9 @@ _BATCH: Final = 256
 
 _SNAP: Final = 1e-7
 """Distance to a plane, relative to the size of the mesh, below which a corner lies in the plane."""
+
+_THIN: Final = 1e-6
+"""Height of a triangle, relative to the size of the mesh, below which it is left out."""
 
 _STEEP: Final = 1e-3
 """Sine of the slope from which a side of a piece belongs to its top or bottom."""
@@ -131,16 +134,23 @@ def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[
     """
     normals = _area_vectors(corners)
     lengths = np.linalg.norm(normals, axis=1)
-    has_area = lengths > 0.0
-    corners, depths, normals = corners[has_area], depths[has_area], normals[has_area] / lengths[has_area, None]
     size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    # the normal of a triangle that is thinner than the rounding of its corners may have any direction
+    longest = np.linalg.norm(corners - corners[:, (1, 2, 0)], axis=2).max(axis=1)
+    has_area = lengths > _THIN * size * longest
+    if not has_area.any():
+        return [], 0.0
+    corners, depths, normals = corners[has_area], depths[has_area], normals[has_area] / lengths[has_area, None]
     tolerance = max(LEAST_TOLERANCE, TOLERANCE * size)
     coarse = 10.0 * tolerance
     axis = np.abs(normals).argmax(axis=1)
     side = 2 * axis + (normals[np.arange(len(axis)), axis] < 0.0)
     areas = flat_areas(corners, normals)
     side[np.concatenate([np.zeros(0, int), *areas])] = -1
-    groups = [*areas, *(np.flatnonzero(side == k) for k in range(6))]
+    curved = np.flatnonzero(side >= 0)
+    parts = [curved[part] for part in connected_areas(corners[curved], side[curved])]
+    # parts of one patch would be joined by its hull until cuts have separated them
+    groups = [*areas, *(parts if len(parts) <= 4 * most else (np.flatnonzero(side == k) for k in range(6)))]
     waiting = [_Patch(corners[group], normals[group], depths[group]) for group in groups if len(group)]
     heap: list[tuple[float, int, _Patch]] = []
     done: list[_Patch] = []
@@ -191,17 +201,19 @@ def _measure(patches: list[_Patch], tolerance: float) -> None:
     middles = np.concatenate([corners.mean(axis=1)[:, None], 0.5 * (corners + corners[:, (2, 0, 1)])], axis=1)
     for i, patch in enumerate(patches):
         of = slice(starts[i], starts[i + 1])
+        flat = patch.corners.reshape(-1, 3) - levels[of].reshape(-1, 1) * ups[i]
+        width = float(np.ptp(flat, axis=0).max())
         if counts[i] > _MOST_TRIANGLES and heights[i] > tolerance:
             points = patch.corners.reshape(-1, 3)
-            patch.cut = _between_layers(levels[of], ups[i]) or _middle(points, patch.corners)
+            patch.cut = _between_layers(levels[of], ups[i], width) or _middle(points, patch.corners)
             continue
         # between its corners, a triangle may be further below the piece than at its corners
         _measure_hull(patch, ups[i], middles[of].reshape(-1, 3), float(covered[i]), tolerance)
         if patch.error > tolerance and patch.cut is None:
             is_flat = heights[i] <= tolerance
-            patch.cut = (dividing_line(patch.corners, ups[i]) if is_flat else _between_layers(levels[of], ups[i])) or (
-                _best_cut(patch, ups[i], areas[of])
-            )
+            patch.cut = (
+                dividing_line(patch.corners, ups[i]) if is_flat else _between_layers(levels[of], ups[i], width)
+            ) or (_best_cut(patch, ups[i], areas[of]))
 
 
 def _measure_hull(patch: _Patch, up: Floats, middles: Floats, covered: float, tolerance: float) -> None:
@@ -285,17 +297,21 @@ def _area_vectors(corners: Floats) -> Floats:
     return np.column_stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
-def _between_layers(levels: Floats, up: Floats) -> tuple[Floats, float] | None:
+def _between_layers(levels: Floats, up: Floats, width: float) -> tuple[Floats, float] | None:
     """Return the plane in the widest gap between layers of triangles; None without a wide gap.
 
     Args:
         levels: heights of the corners of each triangle along `up` [m], shape (n, 3).
         up: normal of the patch.
+        width: extent of the patch across the normal [m].
     """
     low, high = levels.min(axis=1), levels.max(axis=1)
     order = low.argsort(kind="stable")
     gaps = low[order][1:] - np.maximum.accumulate(high[order])[:-1]
-    if not len(gaps) or gaps.max() <= 0.3 * (high.max() - low.min()):
+    height = float(high.max() - low.min())
+    # a stack of many even layers, higher than it is wide, has no wide gap, but no other cut would separate the layers
+    least = 0.3 if height < width else 0.3 / len(low)
+    if not len(gaps) or gaps.max() <= least * height:
         return None
     widest = int(gaps.argmax())
     return up, float(low[order][widest + 1] - 0.5 * gaps[widest])
