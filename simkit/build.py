@@ -51,7 +51,8 @@ from simkit.writers.inspect_description import describe_scene
 if TYPE_CHECKING:
     from simkit.compiler.mjcf_parser import MjcfParser
     from simkit.plugins.run_parameter_files import ParameterFileArgument, RunParameterFile
-    from simkit.runtime.simulation import Page, Simulation
+    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.world_control import Page
 
 Source = str | os.PathLike[str]
 
@@ -182,12 +183,10 @@ def load(
         return InstanceMaker(builder, diagnostics, allowed).model_parts(model)
 
     movable = frozenset(m.name for m in world.models if m.moved_by is not None)
-
     structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
     with progress.task("loading plugins"):
         simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
-    simulation.control.write_sdf = _sdf_of
-    simulation.control.resolve_world = resolve_world
+    simulation.control.write_sdf, simulation.control.resolve_world = _sdf_of, resolve_world
     simulation.control.list_models = lambda: spawnable_models(resolver)
     simulation.control.file_arguments = file_scene.arguments
     simulation.control.xacro_overrides = xacro_overrides(overrides)

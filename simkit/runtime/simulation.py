@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.argument_checks import check_function, checked_integer
 from simkit.errors import InputError, SimulationDiverged
@@ -30,7 +30,7 @@ from simkit.runtime.handles.visual import Visual
 from simkit.runtime.portable_snapshot import PortableSnapshot, pack_snapshot, unpack_snapshot
 from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker
 from simkit.runtime.world_contents import WorldContents
-from simkit.runtime.world_control import WorldControl
+from simkit.runtime.world_control import Page, WorldControl
 
 if TYPE_CHECKING:
     import mujoco
@@ -42,20 +42,6 @@ if TYPE_CHECKING:
 
 
 _ASYNC_SLICE: Final = 0.02  # [s] wall time in which `run_async` does not return to the event loop
-
-
-class Page(Protocol):
-    """Page in a browser that shows a simulation which a script steps."""
-
-    @property
-    def address(self) -> str:
-        """Address of the page."""
-
-    def advance(self, target: int, advance: Callable[[int], None]) -> None:
-        """Call `advance` up to the tick `target`, and update the page in between."""
-
-    def close(self) -> None:
-        """Close the page."""
 
 
 class Simulation(ScriptGraph, InProcess):

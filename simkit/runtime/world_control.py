@@ -178,6 +178,20 @@ class GeographicOrigin:
             self.move(state)
 
 
+class Page(Protocol):
+    """Page in a browser that shows a simulation which a script steps."""
+
+    @property
+    def address(self) -> str:
+        """Address of the page."""
+
+    def advance(self, target: int, advance: Callable[[int], None]) -> None:
+        """Call `advance` up to the tick `target`, and update the page in between."""
+
+    def close(self) -> None:
+        """Close the page."""
+
+
 class WorldControl:
     """Functions behind the services of a world.
 

@@ -6,9 +6,8 @@ import os
 import re
 import sys
 from collections.abc import Mapping
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Protocol
 
 import typer
@@ -26,7 +25,6 @@ PORT: Final = re.compile(r"\d+")
 """Value of `--web`, which a word after it must match."""
 _MOST_PORT: Final = 65535
 _LOOPBACK: Final = "127.0.0.1"
-_REDIRECT_LIFE: Final = 60.0  # [s] for which the file that leads a browser to the page exists
 
 _WEB_HELP = "Show the run in a browser, on this port of this machine; default: a free one."
 _HOST_HELP = "Address of this machine that other machines reach, for --web; whoever has the page's address may drive."
@@ -116,35 +114,9 @@ def show_address(address: str, *, opens: bool) -> None:
         sys.stdout.write(f"{address}\n")
         sys.stdout.flush()
     if opens and _has_desktop():
-        _open_browser(address)
+        from simkit.cli.terminal.browser import open_browser
 
-
-def _open_browser(address: str) -> None:
-    """Open a page in a browser, by a file that only this user can read and that is removed soon.
-
-    Every user of the machine can read the arguments of a program, so the address with its token must not be one.
-    """
-    import atexit
-    import html
-    import tempfile
-    import threading
-    import webbrowser
-
-    text = f'<!doctype html><meta http-equiv="refresh" content="0; url={html.escape(address)}"><title>simkit</title>'
-    with tempfile.NamedTemporaryFile("w", prefix="simkit-", suffix=".html", delete=False) as file:  # its mode is 0600
-        file.write(text)
-    path = Path(file.name)
-
-    def remove() -> None:
-        with suppress(OSError):
-            path.unlink()
-
-    atexit.register(remove)
-    timer = threading.Timer(_REDIRECT_LIFE, remove)
-    timer.daemon = True
-    timer.start()
-    with suppress(webbrowser.Error):
-        webbrowser.open(path.as_uri())
+        open_browser(address)
 
 
 def _has_desktop() -> bool:
