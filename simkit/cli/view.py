@@ -50,7 +50,11 @@ def view(
     page = page_options.PageOptions(port or 0, host or "127.0.0.1", not no_open)
     scene: dict[str, object] = {"--set": set_, "--spawn": spawn}
     server: dict[str, object] = {"--port": port, "--host": host}
-    loads: dict[str, object] = {"--world": model_world, "--resource-path": resource_path, "--package-path": package_path}
+    loads: dict[str, object] = {
+        "--world": model_world,
+        "--resource-path": resource_path,
+        "--package-path": package_path,
+    }
     loads |= {"--plugin-path": plugin_path, "--xacro-arg": xacro_arg, "--base": base if base != "auto" else None}
     if html is not None:
         _refuse({**server, "--no-open": no_open}, "no page is served with --html; open the file")
