@@ -21,5 +21,5 @@ class InProcess:
 
     def __reduce__(self) -> NoReturn:
         reason = f"a {type(self).__name__} cannot be pickled, because it belongs to a simulation of this process"
-        help_ = "pickle `sim.run_spec` and `sim.snapshot()`; load and restore them in the other process"
+        help_ = "pickle the RunSpec `sim.run_spec` and `sim.snapshot()`; load and restore them in the other process"
         raise ArgumentTypeError(f"{reason}; {help_}")
