@@ -80,7 +80,7 @@ def pack_snapshot(sim: SnapshotOwner, snapshot: Snapshot) -> PortableSnapshot:
         return packed(f"sensor {sensor.scoped!r}", state)
 
     model = _compiled_model(sim, structure)
-    head, _, tail = snapshot.data.__getstate__().partition(structure.compiled.model.__getstate__())
+    head, _, tail = _to_bytes(snapshot.data).partition(_to_bytes(structure.compiled.model))
     content = {
         "changes": packed("spawned models", structure.changes, References(sim, snapshot, has_states=False)),
         "memory": structure.builder.spec.memory,
@@ -146,8 +146,8 @@ def _bound(sim: SnapshotOwner, content: dict[str, Any], now: Snapshot) -> Snapsh
         raise ArgumentValueError(f"the numbers of sensors, plugins or handles differ: {counts}")
     places = References(sim, now)
     head, tail, awake = content["data"]
-    data = mujoco.MjData.__new__(mujoco.MjData)
-    data.__setstate__(head + structure.compiled.model.__getstate__() + tail)
+    data: Any = mujoco.MjData.__new__(mujoco.MjData)
+    data.__setstate__(head + _to_bytes(structure.compiled.model) + tail)
     for name, value in awake.items():
         setattr(data, name, value)
     fields: dict[str, Any] = load_state(content["plain"], places)
@@ -172,4 +172,10 @@ def _compiled_model(sim: SnapshotOwner, structure: WorldStructure) -> mujoco.MjM
 
 
 def _fingerprint(model: mujoco.MjModel) -> str:
-    return hashlib.sha256(model.__getstate__()).hexdigest()
+    return hashlib.sha256(_to_bytes(model)).hexdigest()
+
+
+def _to_bytes(of_engine: Any) -> bytes:
+    """Return the engine's own bytes of a model or of data."""
+    found: bytes = of_engine.__getstate__()
+    return found
