@@ -166,7 +166,7 @@ def test_the_gain_of_a_wheel_servo_is_set_and_outlives_a_spawn() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda sim: setattr(sim.link("ground::l"), "mass", 2.0), "mass of link 'ground::l' cannot change"),
+        (lambda sim: setattr(sim.link("ground::l"), "mass", 2.0), "mass or inertia of link 'ground::l' cannot change"),
         (lambda sim: setattr(sim.joint("swing::hinge"), "kv", 2.0), "has no position or velocity servo"),
     ],
 )
