@@ -31,7 +31,6 @@ _MOST_FEEDBACK: Final = 100
 
 UNSUPPORTED: Final = {
     "SetEntityInfo": "the category of an entity comes from its model",
-    "GetSpawnables": "simkit has no list of models; spawn a file, a URI or a text",
     "GetNamedPoses": "the world has no named poses",
     "GetNamedPoseBounds": "the world has no named poses",
     "LoadWorld": "a simulation has one world; start simkit with another one",
@@ -53,6 +52,7 @@ _FEATURES: Final = {
     "SetSimulationState": ("SIMULATION_STATE_SETTING", "SIMULATION_STATE_PAUSE"),
     "StepSimulation": ("STEP_SIMULATION_SINGLE", "STEP_SIMULATION_MULTIPLE", "STEP_SIMULATION_ACTION"),
     "GetCurrentWorld": ("WORLD_INFO_GETTING",),
+    "GetSpawnables": ("SPAWNABLES",),
 }
 """Features that a world has while it serves the service."""
 
@@ -87,6 +87,7 @@ class SimulationInterfaces(WorldPlugin):
             "GetEntityInfo": entities.entity_info,
             "GetEntityBounds": entities.entity_bounds,
             "GetCurrentWorld": _current_world,
+            "GetSpawnables": _spawnables,
             "ResetSimulation": self._reset_simulation,
             "StepSimulation": self._step_simulation,
             "GetSimulationState": lambda *_: {"state": {"state": self._state}},
@@ -217,6 +218,15 @@ def _current_world(sim: Simulation, _: object) -> dict[str, object]:
     is_text = source.lstrip().startswith("<")
     resource = {"resource_string": source} if is_text else {"uri": source}
     return {"world": {"name": sim.world.name, "world_resource": resource}}
+
+
+def _spawnables(sim: Simulation, request: msgs.GetSpawnables_Request) -> dict[str, object]:
+    """Return simkit's models and those of the resource paths."""
+    if request.sources:
+        raise Refusal(ResultCode.UNSUPPORTED, "sources are not searched; name folders by --resource-path")
+    models = sim.control.list_models() if sim.control.list_models is not None else {}
+    found = [{"entity_resource": {"uri": source}, "description": name} for name, source in models.items()]
+    return {"spawnables": found}
 
 
 def _refuse(reason: str) -> Handler:

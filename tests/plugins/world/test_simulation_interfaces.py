@@ -218,7 +218,16 @@ def test_a_reset_has_scopes() -> None:
         assert reset(0) == OK and sim.tick == 0
 
 
-@pytest.mark.parametrize("service", ["get_spawnables", "get_named_poses", "load_world", "get_available_worlds"])
+def test_a_listed_model_can_be_spawned() -> None:
+    with load() as sim:
+        listed = {found.description: found.entity_resource.uri for found in sim.call("/get_spawnables").spawnables}
+        assert "tiago" in listed
+        request = {"name": "robot", "entity_resource": {"uri": listed["tiago"]}}
+        assert result_of(sim, "/spawn_entity", request) == OK and "robot" in sim.models
+        assert result_of(sim, "/get_spawnables", {"sources": ["https://example.org"]}) == UNSUPPORTED
+
+
+@pytest.mark.parametrize("service", ["get_named_poses", "load_world", "get_available_worlds"])
 def test_a_service_without_a_function_says_so(service: str) -> None:
     with load() as sim:
         answer = sim.call(f"/{service}")
