@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import select
+import signal
 import subprocess
 import sys
 import time
@@ -105,6 +106,7 @@ class Terminal:
 
 def _own_terminal() -> None:
     """In the child: makes the terminal at its standard input the one that controls it."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # tests that `nohup` has started inherit that it is ignored
     import fcntl
     import termios
 
