@@ -148,6 +148,7 @@ def test_a_run_goes_on_when_its_server_is_killed_and_says_so(court: Path, start_
         assert "warning SK-WEB-004: the rosbridge server has ended (signal SIGKILL)" in errors
 
 
+@pytest.mark.slow
 def test_a_token_of_the_environment_is_required_in_the_address_or_as_op_auth(
     court: Path, start_run: Callable[..., Any], connect: Connect
 ) -> None:

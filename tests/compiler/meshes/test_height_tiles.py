@@ -67,6 +67,7 @@ def test_the_tiles_of_a_downward_surface_lie_behind_it():
     assert top <= vertices[:, 2].max() + 0.05 + 1e-9  # the layer lies behind the surface, here above it
 
 
+@pytest.mark.slow
 def test_a_ball_between_two_layers_of_a_grid_stays_there(make, compiled, tmp_path):
     vertices, faces = ground()
     upper = vertices + np.array((0.0, 0.0, 0.7))

@@ -44,6 +44,7 @@ def controller(more: str = "", rotors: int = 4) -> str:
 
 def world(plugins: str = "", rotors: str = "", wind: str = "0 0 0", gravity: float = -G) -> str:
     return f"""<sdf version="1.9"><world name="w"><gravity>0 0 {gravity}</gravity>
+      <physics name="p" type="ode"><max_step_size>0.002</max_step_size></physics>
       <wind><linear_velocity>{wind}</linear_velocity></wind><model name="quad"><pose>0 0 5 0 0 0</pose>
       <link name="base"><inertial><mass>{BASE}</mass>
         <inertia><ixx>0.03</ixx><iyy>0.05</iyy><izz>0.08</izz></inertia></inertial></link>
@@ -115,7 +116,7 @@ def test_the_controller_reaches_velocity_and_turning_rate() -> None:
     with simkit.load(world(controller(), NO_DRAG)) as sim:
         base = sim.link("quad::base")
         fly(sim, z=0.5)
-        sim.run(4.0)
+        sim.run(3.5)
         assert base.linear_velocity == pytest.approx([0, 0, 0.5], abs=2e-3)
         fly(sim, x=1.0)
         sim.run(6.0)

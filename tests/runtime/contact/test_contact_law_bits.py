@@ -401,6 +401,7 @@ def push(sim: simkit.Simulation) -> None:
     sim.engine.physics.changed(STALE)
 
 
+@pytest.mark.slow
 def test_worlds_under_runge_kutta_step_on_several_threads_while_others_load() -> None:
     expected = simkit.load(mjcf("RK4"))
     push(expected)
