@@ -51,7 +51,7 @@ def test_a_topic_is_drawn_while_its_box_is_checked(session: Callable[..., Sessio
     found.page.locator(".problem", has_text="the frame 'nowhere' is unknown").wait_for(timeout=TIMEOUT)
     found.until("app.stage.draws > 3")
     found.picture("displays")
-    sim.spawn(SPHERE)
+    found.do(lambda: sim.spawn(SPHERE))
     found.until("app.models.has('ball') && app.displays.shown.has('/plan')")
     found.page.locator("[id='display-/map']").uncheck()
     found.until("!app.displays.shown.has('/map')")

@@ -24,7 +24,7 @@ def test_a_model_is_placed_dragged_turned_and_deleted(session: Callable[..., Ses
     page.mouse.click(*place)
     found.until("app.selected?.startsWith('turtlebot3_burger::')")
     burger = sim.model("turtlebot3_burger")
-    assert burger.pose.position[:2] == pytest.approx((x, y), abs=0.05)
+    assert found.do(lambda: burger.pose.position[:2]) == pytest.approx((x, y), abs=0.05)
     found.until("app.models.has('turtlebot3_burger')")
 
     page.locator("#move-model").click()
@@ -42,7 +42,7 @@ def test_a_model_is_placed_dragged_turned_and_deleted(session: Callable[..., Ses
     page.mouse.move(*end, steps=6)
     page.mouse.up()
     found.until_here(lambda: burger.pose.position[0] > x + 0.1)
-    assert burger.pose.position[1] == pytest.approx(y, abs=0.05)
+    assert found.do(lambda: burger.pose.position[1]) == pytest.approx(y, abs=0.05)
     found.picture("gizmo")
 
     page.locator("#turn-model").click()
@@ -64,13 +64,13 @@ def test_a_model_that_is_spawned_while_the_page_loads_a_scene_appears(
     def answer_late(route: Any) -> None:
         response, before = route.fetch(), found.view.revision
         if "second" not in found.sim.models:  # after the first scene has been sent, and before the page has it
-            found.sim.spawn(BALL, "second")
+            found.do(lambda: found.sim.spawn(BALL, "second"))
             while found.view.revision == before:
                 pass
         route.fulfill(response=response)
 
     found.page.route("**/scene?*", answer_late)
-    found.sim.spawn(BALL, "first")
+    found.do(lambda: found.sim.spawn(BALL, "first"))
     found.until("app.models.has('first') && app.models.has('second')")
 
 
