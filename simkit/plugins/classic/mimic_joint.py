@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from simkit.compiler.couplings import Couplings
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.find_entities import find_axis_joint
+from simkit.plugins.joints.joint_axis import suggest_names
 from simkit.plugins.options import Options, OptionsOf, number, text, without_effect
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit.scene import SceneJoint, SceneModel
 
 
 class MimicJointOptions(Options):
@@ -52,8 +52,7 @@ class MimicJoint(ModelPlugin):
         named, mimicking = params.child("joint"), params.child("mimicJoint")
         if named is None or mimicking is None:
             return
-        leader = find_axis_joint(scene, options.joint, named)
-        follower = find_axis_joint(scene, options.mimic_joint, mimicking)
+        leader, follower = _find(scene, named), _find(scene, mimicking)
         if leader is None or follower is None or follower.axes[0].mimic is not None:
             return
         if leader.scoped == follower.scoped:
@@ -66,3 +65,17 @@ class MimicJoint(ModelPlugin):
 
     def load(self, parent: Model, params: Params) -> None:
         """Do nothing: the engine keeps the joints together."""
+
+
+def _find(scene: SceneModel, named: Params) -> SceneJoint | None:
+    """Return the joint with one axis that an element names; None after a warning, because Gazebo goes on, too."""
+    joints = {joint.name: joint for joint in reversed(scene.all_joints())}
+    joint = joints.get(named.value)
+    if joint is None:
+        message = f"model {scene.scoped!r} has no joint {named.value!r}, so no joint mimics another one"
+        named.warning("SK-PLUGIN-003", message, suggest_names(named.value, list(joints)))
+    elif len(joint.axes) != 1:
+        message = f"joint {named.value!r} is {joint.type}, so no joint mimics another one"
+        named.warning("SK-PLUGIN-003", message, "a joint with one axis can follow another one")
+        return None
+    return joint

@@ -45,14 +45,19 @@ def test_a_joint_follows_its_leader(library: str, more: str, expected: tuple[flo
         assert right.position == pytest.approx(multiplier * left.position + offset, abs=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("parameters", "code"),
-    [
-        ("<joint>left_joint</joint>", "SK-PARAM-001"),
-        ("<joint>left_joint</joint><mimicJoint>thumb</mimicJoint>", "SK-PLUGIN-003"),
-        ("<joint>left_joint</joint><mimicJoint>left_joint</mimicJoint>", "SK-PARAM-002"),
-    ],
-)
-def test_a_wrong_joint_is_an_error(parameters: str, code: str) -> None:
-    with pytest.raises(simkit.InputError, match=code):
-        simkit.load(world(parameters))
+@pytest.mark.parametrize("parameters", ["", "<joint>left_joint</joint>", "<joint>a</joint><mimicJoint>a</mimicJoint>"])
+def test_missing_names_are_errors(parameters: str) -> None:
+    with pytest.raises(simkit.InputError, match=r"SK-PARAM-00[12]|SK-PLUGIN-003"):
+        simkit.load(world(parameters), strict=True)
+
+
+@pytest.mark.parametrize("name", ["thumb", "held"])
+def test_a_joint_that_cannot_follow_is_a_warning_as_in_gazebo(name: str) -> None:
+    with simkit.load(world(f"<joint>left_joint</joint><mimicJoint>{name}</mimicJoint>")) as sim:
+        (found,) = [found for found in sim.diagnostics if found.severity == "warning"]
+        assert found.code == "SK-PLUGIN-003" and name in found.message and "mimics" in found.message
+
+
+def test_a_joint_does_not_follow_itself() -> None:
+    with pytest.raises(simkit.InputError, match="SK-PARAM-002"):
+        simkit.load(world("<joint>left_joint</joint><mimicJoint>left_joint</mimicJoint>"))
