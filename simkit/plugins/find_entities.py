@@ -53,6 +53,13 @@ def find_named_link(scene: SceneModel, element: str, params: Params) -> str:
     return "" if link is None else link.scoped
 
 
+def find_named_joint(scene: SceneModel, element: str, params: Params) -> SceneJoint | None:
+    """Return the joint with one axis that a required element names; None after an error."""
+    name = params.text(element, required=True)
+    named = params.child(element)
+    return None if named is None else find_axis_joint(scene, name, named)
+
+
 def read_required_name(params: Params, element: str) -> str:
     """Return the text of a required element; empty after an error. An empty element is an error, too."""
     name = params.text(element, required=True)

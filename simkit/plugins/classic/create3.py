@@ -6,6 +6,7 @@ of the robot remap.
 
 from __future__ import annotations
 
+import abc
 import math
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,7 +16,7 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.find_entities import SensorFrameOptions, find_axis_joint, find_link
+from simkit.plugins.find_entities import SensorFrameOptions, find_link, find_named_joint
 from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.publish_on_demand import publish_while_subscribed
 from simkit.pose import quat_conjugate, quat_rotate
@@ -64,9 +65,9 @@ class CreateSensor(SensorPlugin):
         parent.publish_on({next(iter(parent.products())): self.ros.topic("~/raw")})
         publish_while_subscribed(self, self._out, parent.update_rate, "publish")
 
+    @abc.abstractmethod
     def publish(self) -> None:
         """Publish the newest reading."""
-        raise NotImplementedError
 
     def _nearest(self) -> float:
         """Return the shortest range of a ray sensor [m], at most its maximum range."""
@@ -193,8 +194,7 @@ class CreateWheelDrop(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         options = self.options.read_all()
-        named = params.child("joint_name")
-        joint = find_axis_joint(scene, options.joint_name, named) if named is not None else None
+        joint = find_named_joint(scene, "joint_name", params)
         self._joint_name = "" if joint is None else joint.scoped
         self.after_step_rate = options.update_rate
 

@@ -21,11 +21,11 @@ from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import listens
-from simkit.plugins.find_entities import find_axis_joint, find_named_link
+from simkit.plugins.find_entities import find_named_joint, find_named_link
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.joint_commands import ACTUATORS
-from simkit.plugins.joints.propeller_joint import PropellerJoint, inertia_about
+from simkit.plugins.joints.propeller_joint import PropellerJoint, propeller_inertia
 from simkit.plugins.options import Options, OptionsOf, choice, integer, number, text, without_effect
 
 if TYPE_CHECKING:
@@ -79,8 +79,7 @@ class MulticopterMotorModel(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         options = self.options.read_all()
         self._link = find_named_link(scene, "linkName", params)
-        named = params.child("jointName")
-        joint = find_axis_joint(scene, options.joint, named) if named is not None else None
+        joint = find_named_joint(scene, "jointName", params)
         self._number = options.actuator_number if params.has("actuator_number") else options.motor_number
         if not params.has("actuator_number") and not params.has("motorNumber"):
             params.text("motorNumber", required=True)
@@ -91,8 +90,7 @@ class MulticopterMotorModel(ModelPlugin):
         if joint is None:
             return
         self._joint_name, self._parent = joint.scoped, joint.parent_link
-        rotor = next((link for link in scene.all_links() if link.scoped == joint.child_link), None)
-        self._inertia = 0.0 if rotor is None else inertia_about(rotor, joint)
+        self._inertia = propeller_inertia(scene, joint)
 
     def load(self, parent: Model, params: Params) -> None:
         options = self.options

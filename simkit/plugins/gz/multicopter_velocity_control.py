@@ -18,7 +18,7 @@ from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.endpoints import listens
-from simkit.plugins.find_entities import find_axis_joint, find_named_link
+from simkit.plugins.find_entities import find_named_joint, find_named_link
 from simkit.plugins.fluids.link_forces import moving_data
 from simkit.plugins.gz.multicopter_motor_model import MulticopterMotorModel
 from simkit.plugins.options import Options, OptionsOf, block, blocks, choice, number, text, vector3
@@ -104,8 +104,7 @@ class MulticopterVelocityControl(ModelPlugin):
     def _read_rotor(self, scene: SceneModel, rotor: RotorOptions) -> tuple[float, float, float, float] | None:
         """Return the effects of a rotor at 1 rad/s in the axes of the link: torques [N·m] and thrust [N]."""
         rotor.read_all()
-        named = rotor.params.child("jointName")
-        joint = find_axis_joint(scene, rotor.joint, named) if named is not None and rotor.joint else None
+        joint = find_named_joint(scene, "jointName", rotor.params)
         links = {link.scoped: link for link in scene.all_links()}
         if joint is None or self._link not in links:
             return None

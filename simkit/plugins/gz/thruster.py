@@ -9,6 +9,7 @@ speed V.
 from __future__ import annotations
 
 import math
+import sys
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -18,12 +19,12 @@ from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.battery import Battery, BatteryConsumer
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.find_entities import find_axis_joint
+from simkit.plugins.find_entities import find_named_joint
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.joint_commands import DOUBLE
 from simkit.plugins.joints.pid import Pid
-from simkit.plugins.joints.propeller_joint import PropellerJoint, inertia_about
+from simkit.plugins.joints.propeller_joint import PropellerJoint, propeller_inertia
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text
 
 if TYPE_CHECKING:
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
 _BOOL: Final = "std_msgs/msg/Bool"
 _MOST: Final = 1e12
 _CLOSE: Final = 0.1  # error of the speed [rad/s] below which the PID does nothing
-_SLOWEST: Final = 2.220446049250313e-16  # [rad/s]
 
 
 class ThrusterOptions(Options):
@@ -87,8 +87,7 @@ class Thruster(BatteryConsumer):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         options = self.options.read_all()
-        named = params.child("joint_name")
-        joint = find_axis_joint(scene, options.joint_name, named) if named is not None else None
+        joint = find_named_joint(scene, "joint_name", params)
         if options.max_thrust_cmd < options.min_thrust_cmd:
             found = f"<max_thrust_cmd>{options.max_thrust_cmd:g}</max_thrust_cmd> is below <min_thrust_cmd>"
             params.error("SK-PARAM-002", f"{found}; expected at least {options.min_thrust_cmd:g}")
@@ -96,8 +95,7 @@ class Thruster(BatteryConsumer):
             params.error("SK-PARAM-001", "<power_load> needs the name of a battery", "add <battery_name>")
         if joint is not None:
             self._joint_name, self._link = joint.scoped, joint.child_link
-            link = next((link for link in scene.all_links() if link.scoped == joint.child_link), None)
-            self._inertia = 0.0 if link is None else inertia_about(link, joint)
+            self._inertia = propeller_inertia(scene, joint)
 
     def load(self, parent: Model, params: Params) -> None:
         options = self.options
@@ -183,7 +181,7 @@ class Thruster(BatteryConsumer):
     def _update_coefficient(self) -> None:
         """Compute the thrust coefficient for the present speed of the vehicle, unless the file gives it."""
         options = self.options
-        if options.params.has("thrust_coefficient") or abs(self._speed) <= _SLOWEST:
+        if options.params.has("thrust_coefficient") or abs(self._speed) <= sys.float_info.epsilon:
             return
         speed = float(np.linalg.norm(self._links.velocities(moving_data(self.sim))[0])) if len(self._links) else 0.0
         advance = (1 - options.wake_fraction) * speed / (self._speed * options.propeller_diameter)

@@ -9,7 +9,7 @@ import numpy as np
 from simkit.plugins.joints.joint_axis import JointAxis
 
 if TYPE_CHECKING:
-    from simkit.scene import SceneJoint, SceneLink
+    from simkit.scene import SceneJoint, SceneModel
 
 
 class PropellerJoint:
@@ -20,7 +20,7 @@ class PropellerJoint:
 
     Args:
         axis: axis of the joint.
-        inertia: inertia of the propeller about the axis, from `inertia_about` [kg·m²].
+        inertia: inertia of the propeller about the axis, from `propeller_inertia` [kg·m²].
         step: physics step [s].
     """
 
@@ -38,8 +38,11 @@ class PropellerJoint:
         self.axis.push(effort)
 
 
-def inertia_about(link: SceneLink, joint: SceneJoint) -> float:
-    """Return the inertia of a link about the first axis of a joint [kg·m²]."""
+def propeller_inertia(scene: SceneModel, joint: SceneJoint) -> float:
+    """Return the inertia of a joint's child link about its first axis [kg·m²]; 0 if the model has no such link."""
+    link = next((link for link in scene.all_links() if link.scoped == joint.child_link), None)
+    if link is None:
+        return 0.0
     into_link = link.pose_world.inverse()
     axis = into_link.rotate(joint.axes[0].xyz_world)
     arm = np.cross(axis, np.subtract(link.inertial.com, into_link.transform(joint.pose_world.position)))

@@ -42,3 +42,20 @@ def crashing(sim: Any) -> float:
     if sim.seed == 3:
         os.abort()
     return 1.0
+
+
+CART = """<sdf version="1.9"><world name="w"><physics type="ignored"><max_step_size>0.002</max_step_size></physics>
+<model name="wall"><static>true</static><pose>3 0 0 0 0 0</pose><link name="l">
+  <collision name="c"><geometry><box><size>0.2 4 2</size></box></geometry></collision></link></model>
+<model name="cart"><pose>0 0 0.5 0 0 0</pose>
+  <link name="rail"><inertial><mass>1</mass></inertial></link>
+  <joint name="fix" type="fixed"><parent>world</parent><child>rail</child></joint>
+  <link name="car"><inertial><mass>2</mass></inertial>
+    <sensor name="eye" type="lidar"><update_rate>4</update_rate><topic>eye</topic><lidar><scan>
+      <horizontal><samples>6</samples><min_angle>-0.2</min_angle><max_angle>0.2</max_angle></horizontal></scan>
+      <range><min>0.1</min><max>5</max></range><noise><type>gaussian</type><stddev>0.01</stddev></noise></lidar></sensor>
+  </link>
+  <joint name="slide" type="prismatic"><parent>rail</parent><child>car</child>
+    <axis><xyz>1 0 0</xyz><limit><lower>-2</lower><upper>2</upper><effort>8</effort></limit></axis></joint>
+</model></world></sdf>"""
+SLIDE = "cart::slide"
