@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 VECTOR: Final = "geometry_msgs/msg/Vector3"
 _FORCES, _SPEEDS = "xyzkmn", "UVWPQR"
 _COEFFICIENT: Final = re.compile(rf"([{_FORCES}])(?:(Dot)([{_SPEEDS}])|([{_SPEEDS}])(?:(abs)?([{_SPEEDS}]))?)")
-_MOST: Final = 1e12
 
 
 class HydrodynamicsOptions(Options):
@@ -103,12 +102,13 @@ class Hydrodynamics(ModelPlugin):
     def _read_coefficients(self, params: Params, as_gazebo_8: bool) -> None:
         """Read all coefficients that the file has."""
         drags: list[str] = []
+        declared = {field.element: getattr(self.options, name) for name, field in self.options.fields().items()}
         for child in params.children:
             found = _COEFFICIENT.fullmatch(child.name)
             if found is None:
                 continue
             row, dot, column, first, is_absolute, second = found.groups()
-            value = params.number(child.name, 0.0, minimum=-_MOST, maximum=_MOST)
+            value = declared[child.name] if child.name in declared else params.number(child.name, 0.0)
             i = _FORCES.index(row)
             if dot:
                 self._added[i, _SPEEDS.index(column)] = -value

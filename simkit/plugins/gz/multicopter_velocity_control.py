@@ -91,9 +91,12 @@ class MulticopterVelocityControl(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         options = self.options.read_all()
         self._link = find_named_link(scene, "comLinkName", params)
+        faults = params.diagnostics.error_count
         rows = [row for row in (self._read_rotor(scene, rotor) for rotor in options.configuration.rotors) if row]
         self._mass = sum(float(link.inertial.mass) for link in scene.all_links())
         effects = np.array(rows).reshape(-1, 4).T
+        if params.diagnostics.error_count > faults:
+            return  # rotors that could not be read are reported already
         if np.linalg.matrix_rank(effects, tol=1e-9) < 4:
             found = f"<rotorConfiguration> has {len(rows)} rotors that cannot push and turn the vehicle about all axes"
             hint = "list at least four rotors that are not in one line, with both directions"
