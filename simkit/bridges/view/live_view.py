@@ -184,7 +184,9 @@ class LiveView:
             except (PluginError, SimulationDiverged, SubscriberError):
                 raise
             except Exception as error:  # noqa: BLE001 - no renderer, or an odd message: the run goes on without it
-                self._streams[name] = None
+                broken, self._streams[name] = self._streams.get(name), None
+                if broken is not None:
+                    broken.close()
                 packet = make_packet({"kind": name, "error": str(error)}, {})
             if packet is not None:
                 self._packets[name] = packet

@@ -66,7 +66,7 @@ def _constants(owner: str, field: str, base: str) -> list[list[Any]]:
     """Return name and value of the constants that a field may have.
 
     A definition does not connect constants with fields. Those with the field's name in front belong to it; a constant
-    without such a field belongs to the only field of its type, or to the first one after it.
+    without such a field belongs to the only field of its type, if there is only one.
     """
     constants = [(name, value) for name, kind, value in type_store().fielddefs[owner][0] if kind == base]
     fields = [name for name, node in field_nodes(owner) if _base_of(node) == base]

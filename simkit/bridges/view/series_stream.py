@@ -221,8 +221,10 @@ class SeriesStream:
         bus = self._sim.communication.bus
         type_name = bus.all_topics().get(self._topic)
         if type_name is None:
-            self._errors = dict.fromkeys(fields, f"no topic {self._topic!r:.80}")
-            self._rows.clear()
+            errors = dict.fromkeys(fields, f"no topic {self._topic!r:.80}")
+            if errors != self._errors:
+                self._errors = errors
+                self._rows.clear()
             return
         self._fields = fields
         self._pending.clear()
@@ -270,6 +272,7 @@ class TruthStream:
         self._sim, self._rows = sim, SampleRows("truth")
         self._fields: list[str] = []
         self._readers: list[tuple[str, int]] = []
+        self._curves: list[dict[str, object]] = []
         self._errors: dict[str, str] = {}
         self._tick = -1
 
@@ -286,7 +289,7 @@ class TruthStream:
 
     def _choose(self, fields: list[str]) -> None:
         self._fields, self._tick, self._readers, self._errors = fields, -1, [], {}
-        self._curves: list[dict[str, object]] = []
+        self._curves = []
         self._rows.clear()
         for field in fields:
             name, _, value = field.rpartition(".")

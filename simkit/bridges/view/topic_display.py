@@ -50,7 +50,8 @@ class DisplayList:
 class TopicDisplay:
     """Drawing of a topic; `display:TOPIC`. The topic may be opened later.
 
-    A message is placed where its frame is when it arrives. Frames are known from links, sensors and `/tf`.
+    A message is placed where its frame is when the page next looks for messages. Frames are known from links, sensors
+    and `/tf`.
     """
 
     def __init__(self, sim: Simulation, name: str) -> None:

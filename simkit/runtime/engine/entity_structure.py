@@ -201,7 +201,9 @@ class WorldStructure:
                 is_spawned |= len(requests) < len(arguments[0])
                 if requests:
                     kept.append((name, (requests,)))
-            elif not (is_spawned and any(str(one).split("::")[0] == model for one in arguments)):
+                continue
+            entities = arguments[1:] if name == "add_weld" else arguments[:1]
+            if not (is_spawned and any(str(entity).split("::")[0] == model for entity in entities)):
                 kept.append((name, arguments))
         return tuple(kept) if is_spawned else self.changed("remove", model)
 

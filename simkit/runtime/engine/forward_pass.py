@@ -47,13 +47,15 @@ class ForwardPass(PhysicsState):
         data = self.fresh()
         if not (data.tree_asleep >= 0).any():
             return data
-        awake = copy.copy(data)
+        held, awake = self.hold(), copy.copy(data)
         awake.tree_asleep[:] = -1
         options = self.model.opt
         flags = options.enableflags
         options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
-        mujoco.mj_forward(self.model, awake)
-        options.enableflags = flags
+        try:
+            self._forward_held(held, awake)  # with the contact law of the step, as for the bodies that are awake
+        finally:
+            options.enableflags = flags
         return awake
 
     def fresh_velocities(self) -> bool:

@@ -60,3 +60,16 @@ def test_listing_contacts_changes_no_bit() -> None:
             if one.tick % 50 == 0:
                 assert len(one.contacts()) >= 8
         assert state_hash(one) == state_hash(other)
+
+
+def test_a_body_that_sleeps_changes_no_force_between_others() -> None:
+    slippery = "</geometry><surface><friction><ode><mu>0.01</mu><mu2>0.01</mu2></ode></friction></surface>"
+    slide = f"""<model name="slide"><pose>3 0 0.1 0 0 0</pose><link name="l"><inertial><mass>1</mass></inertial>
+      {BOX.replace("</geometry>", slippery)}</link></model></world>"""
+    with simkit.load(WORLD.replace("</world>", slide)) as sim:
+        for _ in range(3000):
+            sim.link("slide::l").set_velocity((2, 0, 0))
+            sim.step()
+        assert (sim.mj_data.tree_asleep >= 0).any()
+        upward = sum(c.force[2] if c.second == "slide::l::c" else -c.force[2] for c in sim.contacts("slide"))
+        assert upward == pytest.approx(10, rel=0.05)

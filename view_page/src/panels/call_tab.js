@@ -24,6 +24,8 @@ export function makeCallTab(app) {
   };
   const choose = async (kind, name, type) => {
     chosen = { kind, name, type };
+    form = null;
+    send.disabled = true;
     show();
     tell('');
     response.hidden = true;
@@ -31,11 +33,12 @@ export function makeCallTab(app) {
       const found = new Form(await app.ask('describe', { kind, name }));
       if (chosen?.name !== name) return;
       form = found;
+      send.disabled = false;
       hint.hidden = true;
       head.replaceChildren(element('strong', {}, name), element('span', { class: 'type' }, type), send);
       place.replaceChildren(form.element);
       send.textContent = kind === 'action' ? 'Send goal' : 'Call';
-    } catch (error) { tell(error.message); }
+    } catch (error) { if (chosen?.name === name) tell(error.message); }
   };
   const submit = async () => {
     if (!form) return;
@@ -47,7 +50,7 @@ export function makeCallTab(app) {
       const answer = await app.ask(chosen.kind === 'action' ? 'goal' : 'call', { name: chosen.name, values });
       if (answer.text !== undefined) { response.textContent = answer.text || 'done'; response.hidden = false; }
     } catch (error) { tell(error.message); }
-    send.disabled = false;
+    send.disabled = !form;
   };
   const load = () => app.ask('interfaces').then(found => { ({ services, actions } = found); show(); }).catch(() => {});
   let isShown = false;

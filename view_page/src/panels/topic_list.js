@@ -55,10 +55,11 @@ export class TopicList {
   /** Adds a field by its text, such as `/odom.twist.twist.linear.x` or `rover.x`; returns true if there is such a topic. */
   add(text) {
     const found = this.topics.map(topic => topic.name).filter(name => text.startsWith(name) && './['.includes(text[name.length] ?? ' ')).sort((a, b) => b.length - a.length)[0];
+    const isModel = this.models.some(name => text.startsWith(`${name}.`));
     if (found) this.choose(found, text.slice(found.length).replace(/^[./]/, ''));
-    else if (this.models.some(name => text.startsWith(`${name}.`))) this.choose(TRUTH, text);
+    else if (isModel) this.choose(TRUTH, text);
     else this.app.report(`there is no topic with numbers for ${text}`);
-    return Boolean(found);
+    return Boolean(found) || isModel;
   }
 
   show() {

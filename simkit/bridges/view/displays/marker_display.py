@@ -19,7 +19,7 @@ from simkit.pose import IDENTITY, Pose
 _ADD, _DELETE, _DELETE_ALL = 0, 2, 3
 _NS: Final = 1_000_000_000
 _MOST: Final = 10_000  # markers
-_MOST_POINTS: Final = 200_000  # points of one marker; of more, those at the end are left out
+_MOST_POINTS: Final = 199_998  # points of one marker, whole lines and triangles; those at the end are left out
 _HEAD_SHARE: Final = 0.23  # of the length of an arrow, as in RViz
 _HEAD_RATIO: Final = 2.0  # diameter of the head by that of the shaft
 _TEXT_HEIGHT: Final = 1.0
@@ -214,7 +214,8 @@ def _draw_triangles(drawing: Drawing, message: Any, at: Placement, scale: Floats
         return
     colours = _colours(message, colour, len(points))
     if 3 * len(message.colors) == len(message.points):
-        colours = np.array([_colour(found) for found in message.colors], np.float64).repeat(3, axis=0)
+        colours = np.array([_colour(found) for found in message.colors[: len(points) // 3]], np.float64)
+        colours = colours.repeat(3, axis=0)
     drawing.triangles(at, points * np.where(scale == 0, 1.0, scale), colours)
 
 
