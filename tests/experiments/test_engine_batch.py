@@ -73,6 +73,34 @@ def test_a_batch_draws_masses_at_each_reset_like_single_environments() -> None:
     assert assert_like_single(CART, 9, observation=SLIDE, action=SLIDE, time_limit=0.3, randomise=randomise) == 6
 
 
+def test_a_topic_whose_period_is_no_number_of_steps_is_like_that_of_single_environments() -> None:
+    plugin = """<plugin name="states" filename="libgazebo_ros_joint_state_publisher.so"><update_rate>7</update_rate>
+    <joint_name>slide</joint_name></plugin></model></world>"""
+    options: dict[str, Any] = {"observation": {"joints": "/joint_states"}, "action": SLIDE, "time_limit": 0.7}
+    assert assert_like_single(CART.replace("</model></world>", plugin), 18, terminated=FAR, **options) > 3
+
+
+def heavier(env: Any) -> None:
+    env.sim.link("cart::car").mass = env.np_random.uniform(1.0, 5.0)
+
+
+WALL = CART[CART.index("<model") : CART.index("</model>") + len("</model>")]
+
+
+def crowded(env: Any) -> None:
+    if env.np_random.random() < 0.5:
+        env.sim.spawn(f"<sdf version='1.9'>{WALL}</sdf>", name="other")
+
+
+def test_on_reset_may_change_numbers_of_the_model_but_not_its_parts() -> None:
+    options: dict[str, Any] = {"observation": SLIDE, "action": SLIDE, "time_limit": 0.3}
+    assert assert_like_single(CART, 9, on_reset=heavier, **options) == 6
+    envs = simkit.gym.make_vec(CART, num_envs=8, batch=True, on_reset=crowded, **options)
+    with pytest.raises(InputError, match="SK-GYM-001 on_reset spawned"):
+        envs.reset(seed=1)
+    envs.close()
+
+
 def test_a_batch_has_the_odometry_imu_and_joint_states_of_single_robots() -> None:
     observation = {"imu": "/imu", "odom": "/odom", "joints": "/joint_states", "pose": "turtlebot3", "scan": "/scan"}
     options: dict[str, Any] = {"observation": observation, "action": TWIST, "time_limit": 0.3}

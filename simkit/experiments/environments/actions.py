@@ -35,7 +35,6 @@ Send = Callable[[list[float]], None]
 _FIELD: Final = re.compile(r"[a-z_][a-z0-9_]*(\.[a-z_][a-z0-9_]*)*(\[\d{1,4}\])?")
 _LEAD: Final = 0.3  # [rad, m] a blocked joint must not store a long way that it makes up for later
 _TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
-_TWISTS: Final = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 
 class Actions:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from simkit.pose import Pose
 from simkit.runtime import Simulation
+from simkit.sensors.inertial.inertial_kinematics import hamilton_product
 from simkit.testing.conditions.contact_query import ContactQuery
 
 Floats = npt.NDArray[np.float64]
@@ -39,6 +40,7 @@ class ArrayView:
         observation: last observations.
         time: simulated time since the reset [s], shape (count,).
         sim_time: time of the simulations [s], shape (count,).
+        varies_model: the environments have models of their own, which differ in drawn or written values.
     """
 
     def __init__(self, sim: Simulation, batch: Any, read_state: ReadState) -> None:
@@ -48,6 +50,7 @@ class ArrayView:
         self._xpos, self._xquat, self._xmat = batch.bind("xpos"), batch.bind("xquat"), batch.bind("xmat")
         self._cvel, self._centre = batch.bind("cvel"), batch.bind("subtree_com")
         self._geom_xpos, self._geom_xmat = batch.bind("geom_xpos"), batch.bind("geom_xmat")
+        self.varies_model = False
         self.memory: dict[str, Any] = {}
         self.action: Floats = np.zeros((self.count, 0))
         self.observation: Any = None
@@ -145,7 +148,11 @@ class ArrayView:
             self._contacts[name] = _TouchSearch(self._sim, name)
         search = self._contacts[name]
         found = np.zeros(self.count, np.bool_)
-        for row in np.flatnonzero(search.may_touch(self._geom_xpos, self._geom_xmat)).tolist():
+        # the bounds are those of one model
+        rows = np.arange(self.count)
+        if not self.varies_model:
+            rows = np.flatnonzero(search.may_touch(self._geom_xpos, self._geom_xmat))
+        for row in rows.tolist():
             model, data = self._read_state(row)
             mujoco.mj_fwdPosition(model, data)
             found[row] = bool(search.query.among(data))
@@ -197,14 +204,4 @@ class _TouchSearch:
 
 def multiply(a: Any, b: Any) -> Floats:
     """Return the Hamilton products of quaternions w, x, y, z, along the last axis."""
-    aw, ax, ay, az = np.moveaxis(np.asarray(a), -1, 0)
-    bw, bx, by, bz = np.moveaxis(np.asarray(b), -1, 0)
-    return np.stack(
-        (
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ),
-        axis=-1,
-    )
+    return np.stack(hamilton_product(np.moveaxis(np.asarray(a), -1, 0), np.moveaxis(np.asarray(b), -1, 0)), axis=-1)

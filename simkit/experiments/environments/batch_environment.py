@@ -23,9 +23,9 @@ from simkit.experiments.environments.array_bindings import (
 from simkit.experiments.environments.batch_physics import BatchPhysics
 from simkit.experiments.environments.cannot_batch import CannotBatchError
 from simkit.experiments.environments.environment import SimulationEnv
-from simkit.experiments.environments.sensor_arrays import thread_count
 from simkit.experiments.environments.specification import EnvironmentSpec, Observation, invalid
 from simkit.experiments.sweeps.sweep_spec import split_values
+from simkit.sensors.cameras.rendering.render_thread import usable_cores
 
 Bools = npt.NDArray[np.bool_]
 Ids = npt.NDArray[np.intp]
@@ -69,7 +69,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self.num_envs, self.render_mode, self._autoreset_mode = num_envs, render_mode, autoreset
         self.metadata = {**self._env.metadata, "autoreset_mode": autoreset}
         try:
-            self._bind(min(thread_count(threads), num_envs))
+            self._bind(min(threads or usable_cores(), num_envs))
         except BaseException:
             self._env.close()
             raise
@@ -92,6 +92,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
             raise CannotBatchError("; ".join(found))
         self._physics = physics = BatchPhysics(sim, self.num_envs, threads)
         self.view = view = physics.view
+        view.varies_model = bool(split_values(env.values)[0])
         self._sources = Sources(env, view, physics.batch, physics.drives)
         self._bound: dict[str, ObservationArrays] = {}
         sources = spec.observation
@@ -119,8 +120,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
     def _variation_obstacles(self) -> list[str]:
         """Return why drawn values cannot change the models of a batch; empty if they can."""
         env, sim = self._env, self._env.sim
-        self._varies_model = bool(split_values(env.values)[0])
-        if not self._varies_model:
+        if not split_values(env.values)[0]:
             return []
         env.reset(seed=env.spec_of_env.run.seed)
         env.reset()
@@ -147,12 +147,15 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         mask = np.asarray(options.pop("reset_mask", np.ones(self.num_envs, np.bool_)))
         if mask.shape != (self.num_envs,) or mask.dtype != np.bool_ or not mask.any():
             raise invalid(f"reset_mask: expected {self.num_envs} truth values, one of them true; found {mask!r}")
-        if seed is not None and not isinstance(seed, int) and len(seed) != self.num_envs:
+        if seed is None or isinstance(seed, (int, np.integer)):
+            seeds = [None if seed is None else int(seed) + row for row in range(self.num_envs)]
+        elif len(seed) == self.num_envs:
+            seeds = list(seed)
+        else:
             raise invalid(f"seed: found {len(seed)} seeds; expected one number, or {self.num_envs} seeds")
         infos: dict[str, Any] = {}
         for row in np.flatnonzero(mask).tolist():
-            own = seed[row] if isinstance(seed, list) else None if seed is None else int(seed) + row
-            infos = self._reset_row(row, infos, own, options)
+            infos = self._reset_row(row, infos, seeds[row], options)
         self._begin()
         return self._copied(), infos
 
@@ -171,20 +174,23 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
             raise invalid("the drawn values changed the structure of the world", "pass batch=False to make_vec")
         self._randoms[row], self.values[row] = env.np_random, dict(env.values)
         sim = env.sim
+        if sim.mj_model.names != physics.names or sim.contents.handles.exact_limits:
+            raise invalid("on_reset spawned, removed or limited something", "pass batch=False to make_vec")
+        view.varies_model |= bool(sim.engine.originals)  # on_reset may have written to the model
         if sim.engine.loop._commands.inbox:
             sim.engine.loop._commands.deliver_inputs()
         if sim.engine.physics.one_shot:
             raise invalid("on_reset applied a force for one step only", "pass batch=False to make_vec")
         physics.take(row)
-        if self._varies_model:
+        if view.varies_model:
             physics.take_model(row)
         for source in (*self._sources.sensors, *self._sources.sampled):
             source.take(row)
         for name, value in env.memory.items():
             if isinstance(value, (bool, int, float, np.ndarray, np.number, np.bool_)):
                 array = np.asarray(value)
-                if name not in view.memory:
-                    view.memory[name] = np.zeros((self.num_envs, *array.shape), array.dtype)
+                kept = view.memory.get(name, np.zeros((self.num_envs, *array.shape), array.dtype))
+                view.memory[name] = kept.astype(np.result_type(kept, array), copy=False)
                 view.memory[name][row] = array
         self._first_tick[row], self._last_tick[row] = env._first_tick, env._last_tick or np.inf
         self._has_begun[row], self._has_ended[row] = True, False
@@ -199,7 +205,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
             self._observation[row] = observation
 
     def _begin(self) -> None:
-        if self._varies_model:
+        if self.view.varies_model:
             self._physics.use_models()
 
     def _copied(self) -> Any:

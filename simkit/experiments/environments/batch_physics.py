@@ -41,10 +41,12 @@ class BatchPhysics:
         drives: differential drives.
         applied: forces on degrees of freedom, shape (count, nv).
         tick: present tick of each environment.
+        names: names of all elements of MuJoCo's model, which all environments share.
     """
 
     def __init__(self, sim: Simulation, count: int, threads: int) -> None:
-        self._sim, self._models = sim, [sim.mj_model] * count
+        self._sim, self._models = sim, [copy.copy(sim.mj_model)] * count
+        self.names: bytes = sim.mj_model.names
         # bodies that may sleep need engine data of their own
         self.batch: Any = Batch(sim.mj_model, count, threads, persistent=True)
         self.view = ArrayView(sim, self.batch, self.state_of)
@@ -115,7 +117,7 @@ class BatchPhysics:
 
     def advance(self, ids: Ids, steps: int, sampled: list[SampledRows], *, with_accelerations: bool) -> None:
         """Make `steps` steps of some environments, with everything that is due on the way."""
-        for group in self._groups(ids):
+        for group in self._groups(ids, sampled):
             first = int(self.tick[group[0]])
             tick, last = first, first + steps
             rows = None if len(group) == len(self.tick) else group
@@ -131,11 +133,11 @@ class BatchPhysics:
                 self._after(group, tick, sampled)
             self.tick[group] += steps
 
-    def _groups(self, ids: Ids) -> list[Ids]:
+    def _groups(self, ids: Ids, sampled: list[SampledRows]) -> list[Ids]:
         """Divide environments into groups at which the same parts are due at the same steps."""
         ticks = self.tick[ids]
         cycle = 1
-        for grid in self._grids([]):
+        for grid in self._grids(sampled):
             cycle = math.lcm(cycle, grid.cycle) if isinstance(grid, TickGrid) else cycle
         phases = np.where(ticks > 0, ticks % cycle, -1)
         return [ids[phases == phase] for phase in np.unique(phases)]

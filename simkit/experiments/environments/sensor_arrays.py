@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
@@ -21,11 +20,6 @@ from simkit.sensors.rays.ray_culling import ENDLESS
 
 Floats = npt.NDArray[np.float64]
 Ids = npt.NDArray[np.intp]
-
-
-def thread_count(threads: int) -> int:
-    """Return a number of threads; 0 stands for all processors that the process may use."""
-    return threads or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else threads
 
 
 class NoiseArrays:

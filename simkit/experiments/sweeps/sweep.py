@@ -243,8 +243,10 @@ def run_sweep(
                     store.close()
                 if cluster is None:
                     keep_runs(spec, store, blocks, executor)
-        if (not missing or cluster is not None) and runs_to_keep(spec, store, blocks):
-            with make_executor(spec, jobs, None, missing, always_processes=True) as local:  # nodes cannot write here
+        kept = runs_to_keep(spec, store, blocks) if not missing or cluster is not None else ()
+        if kept:
+            # the nodes of a cluster cannot write here
+            with make_executor(spec, jobs, None, len(kept), always_processes=always_processes) as local:
                 keep_runs(spec, store, blocks, local)
         tables = write_tables(store) if writes_tables and store.finished_count() == store.count else ()
         failed = sum(row["exit_code"] != 0 for row in store.rows())

@@ -163,48 +163,56 @@ _PLACES: Final = ("file", "folder", "where")
 """Fields that say where a value stands; they differ between machines and working folders."""
 
 
-def plain_description(value: Any) -> Any:
-    """Return any value as plain data that is equal in all processes; functions are described by their names."""
+def plain_description(value: Any, seen: dict[int, tuple[int, Any]] | None = None) -> Any:
+    """Return any value as plain data that is equal in all processes; functions are described by their names.
+
+    Args:
+        value: value to describe.
+        seen: objects that are described already, by identity: their number, and the object itself, which thus lives on.
+    """
+    seen = {} if seen is None else seen
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, Mapping):
-        return {str(key): plain_description(item) for key, item in value.items() if key != "where"}
+        return {str(key): plain_description(item, seen) for key, item in value.items() if key != "where"}
     if isinstance(value, range) and len(value) > 1000:
         return repr(value)
-    if isinstance(value, (list, tuple, set, frozenset, range)):
-        return [plain_description(item) for item in value]
+    if isinstance(value, (set, frozenset)):
+        return sorted((plain_description(item, seen) for item in value), key=repr)
+    if isinstance(value, (list, tuple, range)):
+        return [plain_description(item, seen) for item in value]
     if is_dataclass(value) and not isinstance(value, type):
-        own = {f.name: plain_description(getattr(value, f.name)) for f in fields(value) if f.name not in _PLACES}
+        own = {f.name: plain_description(getattr(value, f.name), seen) for f in fields(value) if f.name not in _PLACES}
         return {"type": type(value).__name__, **own}
     if isinstance(value, Path):
         return str(value)
     if isinstance(value, functools.partial):
-        return [plain_description(part) for part in (value.func, value.args, value.keywords)]
+        return [plain_description(part, seen) for part in (value.func, value.args, value.keywords)]
     if hasattr(value, "tolist"):  # an array or a number of NumPy
         return value.tolist()
     if isinstance(value, MethodType):
-        return [plain_description(value.__func__), plain_description(value.__self__)]
+        return [plain_description(value.__func__, seen), plain_description(value.__self__, seen)]
     name = getattr(value, "__qualname__", None)
     if isinstance(value, FunctionType):
         cells = [_cell_content(cell) for cell in value.__closure__ or ()]
-        bound = plain_description([value.__defaults__, *cells])
+        bound = plain_description([value.__defaults__, value.__kwdefaults__, *cells], seen)
         return [f"{value.__module__}.{name}", _code_hash(value.__code__), bound]
     if name:
         return f"{value.__module__}.{name} {getattr(value, 'content_hash', '')}".strip()
-    return _object_description(value)
+    return _object_description(value, seen)
 
 
-def _object_description(value: Any) -> Any:
+def _object_description(value: Any, seen: dict[int, tuple[int, Any]]) -> Any:
     """Return the class of an object with the code of its methods, and its attributes; MuJoCo's objects have none."""
+    if id(value) in seen:
+        return f"again object {seen[id(value)][0]}"
+    seen[id(value)] = len(seen), value
     kind = type(value)
     methods = [_code_hash(one.__code__) for _, one in sorted(vars(kind).items()) if isinstance(one, FunctionType)]
     attributes = {name: one for name, one in getattr(value, "__dict__", {}).items() if not name.startswith("__")}
     if kind.__module__.startswith("simkit."):
         methods = []
-    try:
-        return [f"a {kind.__module__}.{kind.__qualname__}", methods, plain_description(attributes)]
-    except RecursionError:  # objects that refer to each other
-        return [f"a {kind.__module__}.{kind.__qualname__}", methods]
+    return [f"a {kind.__module__}.{kind.__qualname__}", methods, plain_description(attributes, seen)]
 
 
 def _constant_text(value: object) -> str:

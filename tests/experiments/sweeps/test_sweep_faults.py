@@ -91,6 +91,14 @@ def test_a_change_of_a_metric_or_a_plugin_makes_another_sweep(tmp_path: Path) ->
         return spec_of([-1.0], metrics={"m": lambda sim: sim.time * number}).fingerprint()
 
     assert of_function(1.0) == of_function(1.0) != of_function(2.0)
+
+    def of_cycle(number: float) -> str:
+        first, second = Weigher(number), Weigher(2.0)
+        first.other, second.other = second, first  # type: ignore[attr-defined]
+        return spec_of([-1.0], metrics={"m": lambda sim: first.factor}).fingerprint()
+
+    assert of_cycle(1.0) == of_cycle(1.0) != of_cycle(2.0)
+
     other = spec_of([-1.0], metrics={"m": lambda sim: sim.time + 1.0}).fingerprint()
     assert other != spec_of([-1.0], metrics={"m": lambda sim: sim.time - 1.0}).fingerprint()
 
