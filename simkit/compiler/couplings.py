@@ -123,14 +123,20 @@ class Couplings:
             self.couple(f"{scoped}#mimic{axis}", follower, leader.joint_names[leader_axis], offset, ratio)
             self._add_follower(leader, Follower(follower, ratio, offset=offset, axis=leader_axis))
 
-    def tie(self, follower: str, leader: str, ratio: float, offset: float) -> None:
+    def tie(self, follower: str, leader: str, ratio: float, offset: float) -> bool:
         """Make the first axis of a joint follow the first axis of another joint: follower = offset + ratio · leader.
 
         Both joints are scoped names.
+
+        Returns:
+            False if the joint follows another one already; nothing changes then.
         """
+        if f"{follower}#mimic0" in self.record.equalities:
+            return False
         binding, follower_name = self.record.joints[leader], self.record.joints[follower].joint_names[0]
         self.couple(f"{follower}#mimic0", follower_name, binding.joint_names[0], offset, ratio)
         self._add_follower(binding, Follower(follower_name, ratio, offset=offset))
+        return True
 
     def _first_leader(
         self, joint: SceneJoint, axis: int, mimics: dict[tuple[str, int], tuple[SceneJoint, Mimic]]

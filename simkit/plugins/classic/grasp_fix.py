@@ -53,11 +53,13 @@ class Touch(SharedByCopies):
     Attributes:
         link: scoped name of the link.
         on_link, on_object: the place in the frames of the link and of the object [m].
+        push: force of the link on the object at that time, in the frame of the object [N].
     """
 
     link: str
     on_link: Vector
     on_object: Vector
+    push: Vector
 
 
 class GraspFix(ModelPlugin):
@@ -67,8 +69,8 @@ class GraspFix(ModelPlugin):
     `<forces_angle_tolerance>` (120°). Each time its count rises by one, up to `<max_grip_count>` (10), or falls by one.
     The object is attached when the count exceeds `<grip_count_threshold>` (half of the largest count). It is released
     when the count has fallen to the threshold and a link is farther than `<release_tolerance>` (0.005 m) from the place
-    where it touched the object. With `<disable_collisions_on_attach>` an attached object collides with nothing. One
-    object is held at a time.
+    where it touched the object, and not further towards the object. With `<disable_collisions_on_attach>` an attached
+    object collides with nothing. One object is held at a time.
     """
 
     options = OptionsOf(GraspFixOptions)
@@ -110,7 +112,7 @@ class GraspFix(ModelPlugin):
         for name in gripped:
             self._counts[name] = min(self._counts.get(name, 0) + 1, self._most)
         for name in [name for name in self._counts if name not in gripped]:
-            self._counts[name] -= 1
+            self._counts[name] = max(self._counts[name] - 1, 0)
         self._counts = {name: count for name, count in self._counts.items() if count > 0 or name == self._held}
         held = self._held
         if held is not None:
@@ -159,8 +161,8 @@ class GraspFix(ModelPlugin):
         sim = self.sim
         place = sim.link(name).pose.inverse()
         self._touches = tuple(
-            Touch(finger, sim.link(finger).pose.inverse().transform(at), place.transform(at))
-            for finger, (_, at) in pushes.items()
+            Touch(finger, sim.link(finger).pose.inverse().transform(at), place.transform(at), place.rotate(push))
+            for finger, (push, at) in pushes.items()
         )
         weld = self._weld(name)
         if not self._has_weld(weld):
@@ -183,9 +185,13 @@ class GraspFix(ModelPlugin):
             self.log.info("released %s", name)
 
     def _has_opened(self, name: str) -> bool:
-        place, link = self.sim.link(name).pose, self.sim.link
-        gaps = [link(t.link).pose.transform(t.on_link) - place.transform(t.on_object) for t in self._touches]
-        return any(bool(np.linalg.norm(gap) > self._opening) for gap in gaps)
+        into_object = self.sim.link(name).pose.inverse()
+        for touch in self._touches:
+            gap = into_object.transform(self.sim.link(touch.link).pose.transform(touch.on_link)) - touch.on_object
+            # without collisions the fingers close through the object
+            if np.linalg.norm(gap) > self._opening and gap @ touch.push < 0:
+                return True
+        return False
 
     def _weld(self, name: str) -> str:
         return f"{self._palm}#grasp {name}"

@@ -72,7 +72,7 @@ class HectorError:
     def __init__(self, params: Params, prefix: str, size: int, stream: RandomStream) -> None:
         self._stream, self._size = stream, size
         names = [f"{prefix}{name}" if prefix else name[0].lower() + name[1:] for name in _FIELDS]
-        values = [_axes(params, name, size, default) for name, default in zip(names, (0, 0, 1 / _HOUR, 0), strict=True)]
+        values = [_axes(params, name, size, default) for name, default in zip(names, _DEFAULTS, strict=True)]
         self._offset, self._deviation, self._frequency, self.noise = values
         self._drift = np.zeros(size)
         self.present = np.zeros(size)
@@ -100,14 +100,19 @@ class HectorError:
 
 
 _FIELDS: Final = ("Offset", "Drift", "DriftFrequency", "GaussianNoise")
+_DEFAULTS: Final = (0.0, 0.0, 1 / _HOUR, 0.0)
 
 
 def _axes(params: Params, name: str, size: int, default: float) -> Vector:
     """Return the numbers of an element, one for each axis; a single number is that of all axes."""
     child = params.child(name)
+    least = -LARGEST if name.lower().endswith("offset") else 0.0
     if size > 1 and child is not None and len(child.value.split()) == size:
-        return np.array(params.vector(name, size, (default,) * size))
-    return np.full(size, params.number(name, default, minimum=-LARGEST, maximum=LARGEST))
+        found = np.array(params.vector(name, size, (default,) * size))
+        if found.min() < least:
+            child.error("SK-PARAM-002", f"<{name}>: found {child.value!r}; expected numbers of at least 0")
+        return found
+    return np.full(size, params.number(name, default, minimum=least, maximum=LARGEST))
 
 
 class HectorSensor(ModelPlugin):

@@ -35,7 +35,7 @@ class MimicJoint(ModelPlugin):
 
     A stiff constraint of the engine couples the joints, as for a `<mimic>` in a URDF. `<hasPID>`, `<maxEffort>` and
     `<sensitiveness>` describe the servo of the original and have no effect. If the URDF has a `<mimic>` for the joint,
-    the `<mimic>` counts.
+    the `<mimic>` counts; of several plugins for one joint, the first counts.
     """
 
     options = OptionsOf(MimicJointOptions)
@@ -61,7 +61,9 @@ class MimicJoint(ModelPlugin):
         binding = builder.names.joint(follower.scoped)
         record, step = builder.records[binding.model], builder.world.physics.max_step_size
         couplings = Couplings(builder.spec, record, step, builder.diagnostics)
-        couplings.tie(follower.scoped, leader.scoped, options.multiplier, options.offset)
+        if not couplings.tie(follower.scoped, leader.scoped, options.multiplier, options.offset):
+            message = f"joint {options.mimic_joint!r} follows another joint already, so this plugin has no effect"
+            mimicking.warning("SK-PLUGIN-003", message)
 
     def load(self, parent: Model, params: Params) -> None:
         """Do nothing: the engine keeps the joints together."""

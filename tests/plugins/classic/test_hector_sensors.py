@@ -66,6 +66,13 @@ def test_offsets_shift_acceleration_rate_and_orientation() -> None:
     assert abs(pitch) == pytest.approx(math.atan2(0.98, 9.8), rel=1e-6)
 
 
+@pytest.mark.parametrize("value", ["-1", "0 -1 0", "nan"])
+@pytest.mark.parametrize("name", ["accelDriftFrequency", "rateDrift", "accelGaussianNoise"])
+def test_a_negative_deviation_or_frequency_is_an_error(name: str, value: str) -> None:
+    with pytest.raises(simkit.InputError, match=f"SK-PARAM-002.*{name}"):
+        simkit.load(world("imu", f"<{name}>{value}</{name}>"))
+
+
 def test_noise_has_its_standard_deviation_and_its_covariance() -> None:
     noise = "<accelGaussianNoise>0.5 0.5 0.5</accelGaussianNoise><rateGaussianNoise>0.1</rateGaussianNoise>"
     found = readings(world("imu", noise), "/imu", 20.0)

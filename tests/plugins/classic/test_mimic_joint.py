@@ -58,6 +58,19 @@ def test_a_joint_that_cannot_follow_is_a_warning_as_in_gazebo(name: str) -> None
         assert found.code == "SK-PLUGIN-003" and name in found.message and "mimics" in found.message
 
 
+def test_the_first_of_two_plugins_for_a_joint_counts() -> None:
+    second = f'</plugin><plugin filename="{NAMES[0]}" name="again">{BOTH}<multiplier>-3</multiplier>'
+    with simkit.load(world(BOTH + second)) as sim:
+        (found,) = [found for found in sim.diagnostics if found.severity == "warning"]
+        assert found.code == "SK-PLUGIN-003" and "'right_joint' follows another joint already" in found.message
+        for _ in range(400):
+            sim.joint("hand::left_joint").set_effort(0.05)
+            sim.step()
+        assert sim.joint("hand::right_joint").position == pytest.approx(
+            sim.joint("hand::left_joint").position, abs=1e-3
+        )
+
+
 def test_a_joint_does_not_follow_itself() -> None:
     with pytest.raises(simkit.InputError, match="SK-PARAM-002"):
         simkit.load(world("<joint>left_joint</joint><mimicJoint>left_joint</mimicJoint>"))
