@@ -392,3 +392,13 @@ def test_render_draws_the_world_from_outside() -> None:
     except simkit.RenderError as error:
         pytest.skip(str(error))
     assert image.shape == (48, 64, 3) and image.dtype == np.uint8 and image.std() > 1.0
+
+
+def test_on_reset_draws_the_same_numbers_before_the_first_reset() -> None:
+    drawn: list[float] = []
+    for _ in range(2):
+        env = simkit.gym.make(
+            CART, observation=SLIDE, action=SLIDE, on_reset=lambda e: drawn.append(e.np_random.random())
+        )
+        env.close()
+    assert len(drawn) == 2 and drawn[0] == drawn[1]

@@ -82,7 +82,8 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         self._is_seeded = False
         self._begun = None
         self._sent = array("d")  # eight bytes for each number of an action of the episode, for `clone`
-        self._draw(np.random.default_rng(spec.run.seed), {})
+        self.np_random = np.random.default_rng(spec.run.seed)
+        self._draw(self.np_random, {})
         self._open(self._overrides())
         self._begin(spec.run.seed)
         self.observation_space = self._observations.space
