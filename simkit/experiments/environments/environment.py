@@ -267,12 +267,11 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         self._variables = split_values(self.values)[1]
 
     def _overrides(self) -> tuple[str, ...]:
-        paths, _ = split_values(self.values)
-        return (*self.spec_of_env.run.overrides, *override_texts(paths))
+        return (*self.spec_of_env.run.overrides, *override_texts(split_values(self.values)[0]))
 
     def _apply_values(self, seed: int) -> None:
         """Reset the world with the present values."""
-        overrides, is_bound = self._overrides(), False
+        overrides, was_opened = self._overrides(), False
         if overrides == self._loaded_overrides:
             self.sim.reset(seed)
         elif apply_overrides(self.sim, overrides, seed):
@@ -281,8 +280,8 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
             self._close_world()
             self._open(overrides)
             self.sim.reset(seed)
-            is_bound = True
-        if not is_bound and (self._uses_variables or self._view_of_sim.remembers):
+            was_opened = True
+        if not was_opened and (self._uses_variables or self._view_of_sim.remembers):
             self._bind()  # without messages, counts and histories of the last episode
         self._begin(seed)
 
@@ -371,10 +370,8 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
 
     def _getter(self, value: Value | None) -> Callable[[], Any]:
         """Return the function that returns the present value of a reward or an end."""
-        if callable(value):
-            return lambda: value(self)
         if not isinstance(value, str):
-            return lambda: value
+            return (lambda: value(self)) if callable(value) else (lambda: value)
         source = self.with_variables(value)
         part = bind(parse(source), self._view_of_sim)
         if not is_scalar(part.kind) or part.kind is TEXT:
