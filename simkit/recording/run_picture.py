@@ -59,7 +59,7 @@ class DrivenPath:
         return dict(sorted(found.items(), key=lambda item: -len(item[1])))
 
     def _watch_goals(self, topic: str, type_name: str) -> None:
-        if type_name != _GOALS or "goal" not in topic.rpartition("/")[2] or topic in self._watched:
+        if topic in self._watched or not is_goal(topic, type_name):
             return
         self._watched.add(topic)
 
@@ -70,6 +70,11 @@ class DrivenPath:
                 self.goals[topic] = position
 
         self._sim.communication.bus.tap(topic, keep)
+
+
+def is_goal(topic: str, type_name: str) -> bool:
+    """Check whether the messages of a topic are goals for a robot."""
+    return type_name == _GOALS and "goal" in topic.rpartition("/")[2]
 
 
 def marks_of(sim: Simulation, driven: DrivenPath | None) -> Marks:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.runtime import Model, Simulation
 
 Points = npt.NDArray[np.float64]
 
@@ -33,6 +33,7 @@ class Travel:
         self.resets = 0
         self._model: object = None
         self._names: list[str] = []
+        self._models: dict[str, Model] = {}
         self._bodies: npt.NDArray[Any] = np.zeros(0, int)
         self._last: npt.NDArray[Any] = np.zeros((0, 3))
         self._tick = -1
@@ -78,6 +79,9 @@ class Travel:
         self._model = sim.mj_model
         self._names, self._bodies = list(found), np.array(list(found.values()), dtype=int)
         self._last = sim.engine.physics.fresh().xpos[self._bodies].copy()
-        self.tracks = {name: path for name, path in self.tracks.items() if name in found}
+        before, self._models = self._models, {name: sim.models[name] for name in found}
+        self.tracks = {  # a model that was removed and spawned again begins a new path
+            name: path for name, path in self.tracks.items() if self._models.get(name, self) is before.get(name)
+        }
         for name, place in zip(self._names, self._last, strict=True):
             self.tracks.setdefault(name, [place.copy()])

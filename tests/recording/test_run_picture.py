@@ -53,6 +53,20 @@ def test_paths_follow_moving_models_and_leave_out_static_ones() -> None:
         np.testing.assert_allclose([p[0] for p in driven.tracks["rover"]], np.arange(11) * 0.05, atol=1e-9)
 
 
+def test_a_model_that_was_removed_and_spawned_again_begins_a_new_path() -> None:
+    with simkit.load(WORLD) as sim:
+        driven = DrivenPath(sim)
+        for x in (3.0, 5.0):
+            ball = f'<sdf version="1.9"><model name="ball"><pose>{x} 0 1 0 0 0</pose><link name="l"/></model></sdf>'
+            sim.spawn(ball)
+            driven.sample()
+            sim.remove("ball")
+        sim.spawn(ball)
+        driven.sample()
+        np.testing.assert_allclose(driven.tracks["ball"], [[5.0, 0.0, 1.0]], atol=1e-9)
+        assert len(driven.tracks["rover"]) == 1
+
+
 def test_a_path_leaves_out_a_diverged_state() -> None:
     with simkit.load(WORLD) as sim:
         driven = DrivenPath(sim)

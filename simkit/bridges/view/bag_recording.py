@@ -81,9 +81,7 @@ class _Playback:
         return make_packet(head, arrays)
 
     def _take_scan(self, topic: str, message: Message, time: float) -> None:
-        sensors = (s.pose for s in self._sim.contents.sensors.values() if s.topic == topic)
-        pose = next(sensors, None) or self._motion.frame_pose(message.header.frame_id)
-        if pose is not None:
+        if (pose := self._motion.scan_pose(topic, message)) is not None:
             self._lidars.setdefault(topic, _Lidar(message)).add(message, time, pose)
 
 

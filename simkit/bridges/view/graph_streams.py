@@ -14,8 +14,7 @@ from simkit.msgs.transform_tree import TransformTree
 from simkit.recording.graphs.graph_contents import frame_graph, node_graph
 from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
 from simkit.recording.graphs.layered_layout import layered_layout
-from simkit.runtime.communication.publisher import Publisher
-from simkit.runtime.communication.subscription import LazyMessage
+from simkit.runtime.communication.transform_buffer import present_messages
 
 if TYPE_CHECKING:
     from simkit.msgs.message_types import Message
@@ -97,11 +96,8 @@ class FrameStream:
         topics = {"/tf_static", "/tf", *(topic for topic in found if topic.endswith(("/tf", "/tf_static")))}
         self._taps = [bus.tap(topic, partial(self._take, topic)) for topic in sorted(topics)]
         for topic in sorted(topics):
-            for _topic, end, _types, _role in tuple(bus.endpoints(topic)):
-                if isinstance(end, Publisher) and end.active and end.present is not None:
-                    present = end.present()
-                    message = present.get() if isinstance(present, LazyMessage) else present
-                    self._tree.take(message, is_static=topic.endswith("tf_static"))
+            for message in present_messages(bus, topic):
+                self._tree.take(message, is_static=topic.endswith("tf_static"))
 
     def _take(self, topic: str, message: Message) -> None:
         now = self._sim.time_ns

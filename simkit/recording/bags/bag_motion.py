@@ -88,6 +88,11 @@ class BagMotion:
             offset = edge @ offset
         return None if self._only is None else self._only[1].pose @ offset
 
+    def scan_pose(self, topic: str, message: Message) -> Pose | None:
+        """Return the pose of a scan in the world: that of the world's sensor on its topic, or that of its frame."""
+        sensors = (sensor.pose for sensor in self._sim.contents.sensors.values() if sensor.topic == topic)
+        return next(sensors, None) or self.frame_pose(message.header.frame_id)
+
     def _take_transforms(self, topic: str, message: Message) -> None:
         for stamped in message.transforms:
             child, parent, pose = stamped.child_frame_id, stamped.header.frame_id, msgs.pose(stamped)

@@ -21,7 +21,7 @@ from simkit.recording.pictures.frames import Look, Render, choose_camera, draw_f
 from simkit.recording.pictures.overlay import Marks, Points
 from simkit.recording.pictures.subject import Subject, find_subject, scan_points
 from simkit.recording.pictures.video_file import VIDEO_SUFFIXES, FrameFile, check_video_target, open_video
-from simkit.recording.run_picture import DrivenPath, marks_of
+from simkit.recording.run_picture import DrivenPath, is_goal, marks_of
 
 if TYPE_CHECKING:
     from simkit.recording.bags.reader import BagReader
@@ -33,7 +33,6 @@ _AROUND: Final = np.array((4.0, 4.0, 1.0))  # what a following camera shows, in 
 _ROOM: Final = 20.0  # size of a room with a fixed camera, in sizes of the robots
 _LARGEST: Final = 4096  # [px]
 _FASTEST: Final = 120
-_GOAL: Final = "geometry_msgs/msg/PoseStamped"
 
 
 @dataclass(frozen=True)
@@ -185,8 +184,8 @@ class _BagMarks:
 
     def __init__(self, types: Mapping[str, str]) -> None:
         scans = [name for name, type_name in types.items() if type_name == SCAN]
-        goals = [name for name, type_name in types.items() if type_name == _GOAL and "goal" in name.rpartition("/")[2]]
-        self.topics = [*scans, *goals]
+        goals = [name for name, type_name in types.items() if is_goal(name, type_name)]
+        self._goal_topics, self.topics = set(goals), [*scans, *goals]
         self.scans: dict[str, Points] = {}
         self.goals: dict[str, Points] = {}
 
@@ -195,9 +194,9 @@ class _BagMarks:
         if topic not in self.topics:
             return
         with suppress(SimkitError):
-            if message.__msgtype__ == _GOAL:
+            if topic in self._goal_topics:
                 self.goals[topic] = msgs.pose(message).position
-            elif (pose := motion.frame_pose(message.header.frame_id)) is not None:
+            elif (pose := motion.scan_pose(topic, message)) is not None:
                 self.scans[topic] = scan_points(message, pose)
 
 

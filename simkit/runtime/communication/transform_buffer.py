@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Final
 
-from simkit.msgs.message_types import FieldValue
+from simkit.msgs.message_types import FieldValue, Message
 from simkit.msgs.transform_tree import TransformTree, TreeState
 from simkit.pose import Pose
 from simkit.runtime.communication.publisher import Publisher
@@ -18,6 +18,16 @@ _TOPICS: Final = {"/tf_static": True, "/tf": False}
 
 BufferState = tuple[int | None, TreeState] | None
 """Time from which on transforms are received, and the transforms; None before the first use."""
+
+
+def present_messages(bus: TopicBus, topic: str) -> Iterator[Message]:
+    """Yield the newest message of each publisher of a topic, or its present one if the publisher can make it."""
+    for _, end, _, _ in tuple(bus.endpoints(topic)):
+        if isinstance(end, Publisher) and end.active:
+            message = end.last if end.present is None else end.present()
+            message = message.get() if type(message) is LazyMessage else message
+            if message is not None:
+                yield message
 
 
 class TransformBuffer(TransformTree):
@@ -55,10 +65,8 @@ class TransformBuffer(TransformTree):
     def _take_present(self) -> None:
         """Store the present transforms, because the next message of a publisher may be far away."""
         for topic, is_static in _TOPICS.items():
-            for _, end, _, _ in tuple(self._bus.endpoints(topic)):
-                if isinstance(end, Publisher) and end.active:
-                    message = end.last if end.present is None else end.present()
-                    self.take(message.get() if type(message) is LazyMessage else message, is_static=is_static)
+            for message in present_messages(self._bus, topic):
+                self.take(message, is_static=is_static)
 
     def lookup(self, target: str, source: str, time: FieldValue = None) -> Pose:
         """Return the pose of the frame `source` in the frame `target`; see `TransformTree.lookup`."""
