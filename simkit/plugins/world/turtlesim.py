@@ -1,0 +1,339 @@
+"""World plugin with the turtles of ROS 2's `turtlesim_node`: their topics, services, action and parameters."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.endpoints import acts, listens, offers, publishes
+from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit.plugins.publish_on_demand import publish_while_subscribed
+from simkit.pose import Pose
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.runtime.communication.action_server import GoalHandle
+
+_PERIOD: Final = 0.016  # [s] between two updates
+_COMMAND_TIME: Final = 1.0  # [s] for which a command stays active
+_TURNING_SPEED: Final = 1.0  # [rad/s] of the action
+_TOLERANCE: Final = 0.02  # [rad] of the action
+_PIXELS: Final = 500  # side of the window
+_SCALE: Final = 45.0  # [px/m]
+_SIZE: Final = (_PIXELS - 1) / _SCALE  # [m]
+_MIDDLE: Final = 5.544445  # [m], x and y of the first turtle
+_BACKGROUND: Final = {"r": 69, "g": 86, "b": 255}
+_PEN: Final = (0xB3, 0xB8, 0xFF)
+_TURTLE_COLOUR: Final = (90, 160, 60)
+_SHAPE: Final = np.array([(18.0, 0.0), (-14.0, 12.0), (-8.0, 0.0), (-14.0, -12.0)])  # [px] of a turtle in the image
+_IMAGE_RATE: Final = 10.0  # [Hz]
+_MODEL: Final = "turtlesim_turtle"
+_TYPES: Final = "turtlesim"
+_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,99}")  # a part of a topic's name
+
+Image = npt.NDArray[np.uint8]
+
+
+@dataclass
+class Turtle:
+    """Pose, command and pen of a turtle.
+
+    Attributes:
+        x, y: position [m].
+        theta: heading [rad], between -pi and pi.
+        forward, sideways, turning: commanded velocity [m/s, m/s, rad/s].
+        commanded: simulated time of the newest command [s].
+        pen, width: colour (RGB) and width [px] of the trail.
+        is_pen_down: True if the turtle draws.
+        goal: active goal of the action.
+        begin: heading at the goal's begin [rad].
+    """
+
+    x: float
+    y: float
+    theta: float
+    forward: float = 0.0
+    sideways: float = 0.0
+    turning: float = 0.0
+    commanded: float = -math.inf
+    pen: tuple[int, int, int] = _PEN
+    width: int = 3
+    is_pen_down: bool = True
+    goal: GoalHandle | None = None
+    begin: float = 0.0
+
+
+@dataclass(eq=False)
+class _Endpoints(SharedByCopies):
+    """Open topics, services and actions by the name of their turtle."""
+
+    by_turtle: dict[str, list[Any]] = field(default_factory=dict)
+
+
+class TurtleSim(WorldPlugin):
+    """Moves the turtles of `turtlesim_node`, which draw with pens on a square of 11.09 m.
+
+    Names, types, defaults and behaviour are those of ROS 2's turtlesim: a command lasts 1 s, updates come every 16 ms,
+    turtles stop at the walls. Each turtle is a model, a copy of `model://turtlesim_turtle`. `~/image` shows the window.
+    """
+
+    filenames = ("libsimkit_turtlesim.so",)
+    names = ("simkit::TurtleSim",)
+    endpoints = (
+        listens("<turtle>/cmd_vel", "geometry_msgs/msg/Twist"),
+        publishes("<turtle>/pose", "turtlesim/msg/Pose"),
+        publishes("<turtle>/color_sensor", "turtlesim/msg/Color"),
+        offers("<turtle>/set_pen", "turtlesim/srv/SetPen"),
+        offers("<turtle>/teleport_absolute", "turtlesim/srv/TeleportAbsolute"),
+        offers("<turtle>/teleport_relative", "turtlesim/srv/TeleportRelative"),
+        acts("<turtle>/rotate_absolute", "turtlesim/action/RotateAbsolute"),
+    )
+    after_step_rate = 1.0 / _PERIOD
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self._background = [
+            self.declare(f"background_{channel}", value, minimum=0, maximum=255, description="background after /clear")
+            for channel, value in _BACKGROUND.items()
+        ]
+        self._holonomic = self.declare("holonomic", False, description="turtles follow linear.y, too")
+        self._endpoints = _Endpoints()
+        self._turtles: dict[str, Turtle] = {}
+        self._clear()
+        self.offer("clear", "std_srvs/srv/Empty", lambda _: self._clear())
+        self.offer("reset", "std_srvs/srv/Empty", lambda _: self._start_again())
+        self.offer("spawn", f"{_TYPES}/srv/Spawn", self._on_spawn)
+        self.offer("kill", f"{_TYPES}/srv/Kill", self._on_kill)
+        self._add("turtle1", _MIDDLE, _MIDDLE, 0.0)
+        self._image = self.advertise("~/image", "sensor_msgs/msg/Image")
+        publish_while_subscribed(self, self._image, _IMAGE_RATE, "publish_image")
+
+    # ------------------------------------------------------------------ services
+
+    def _clear(self) -> None:
+        self._canvas: Image = np.full((_PIXELS, _PIXELS, 3), [c.value for c in self._background], np.uint8)
+
+    def _start_again(self) -> None:
+        self.log.info("Resetting turtlesim.")
+        for name in list(self._turtles):
+            self._remove(name)
+        self._clear()
+        self._add("turtle1", _MIDDLE, _MIDDLE, 0.0)
+
+    def _on_spawn(self, request: Any) -> dict[str, str]:
+        name = request.name
+        if not name:
+            number = 1
+            while f"turtle{number}" in self._turtles or f"turtle{number}" in self.sim.models:
+                number += 1
+            name = f"turtle{number}"
+        if name in self._turtles or name in self.sim.models:
+            self.log.error("A turtle named [%s] already exists", name)
+            return {"name": ""}
+        if not all(map(math.isfinite, (request.x, request.y, request.theta))) or not _NAME.fullmatch(name):
+            self.log.error("Cannot spawn turtle %.60r: the name must be that of a topic, the pose must be finite", name)
+            return {"name": ""}
+        self.log.info("Spawning turtle [%s] at x=[%f], y=[%f], theta=[%f]", name, request.x, request.y, request.theta)
+        self._add(name, request.x, request.y, request.theta)
+        return {"name": name}
+
+    def _on_kill(self, request: Any) -> None:
+        if request.name not in self._turtles:
+            self.log.error("Tried to kill turtle [%s], which does not exist", request.name)
+            return
+        self._remove(request.name)
+
+    def _on_set_pen(self, turtle: Turtle, request: Any) -> None:
+        turtle.is_pen_down = not request.off
+        if turtle.is_pen_down:
+            turtle.pen, turtle.width = (request.r, request.g, request.b), request.width
+
+    def _teleport(self, turtle: Turtle, x: float, y: float, theta: float) -> None:
+        if not all(map(math.isfinite, (x, y, theta))):
+            self.log.error("Cannot teleport a turtle to a pose with NaN or infinite values")
+            return
+        before, turtle.theta = (turtle.x, turtle.y), math.remainder(theta, math.tau)
+        self._move(turtle, x, y)
+        self._draw(turtle, before)
+
+    # ------------------------------------------------------------------ the action
+
+    def _on_goal(self, turtle: Turtle, goal: GoalHandle) -> None:
+        if not math.isfinite(goal.request.theta):
+            goal.reject("theta is NaN or infinite")
+            return
+        if turtle.goal is not None:
+            self.log.warning("Rotation goal received before a previous goal finished. Aborting previous goal")
+            turtle.goal.abort(_result(turtle))
+        turtle.goal, turtle.begin = goal, turtle.theta
+
+    def _on_cancel(self, turtle: Turtle, goal: GoalHandle) -> None:
+        goal.canceled(_result(turtle))
+        turtle.goal, turtle.turning = None, 0.0
+
+    def _turn_to_goal(self, turtle: Turtle) -> None:
+        """Set the turning speed of the action, or end the goal."""
+        goal = turtle.goal
+        assert goal is not None
+        remaining = math.remainder(goal.request.theta - turtle.theta, math.tau)
+        turtle.commanded = self.sim.time
+        turtle.forward = turtle.sideways = 0.0
+        goal.publish_feedback({"remaining": remaining})
+        if abs(remaining) < _TOLERANCE:
+            self.log.info("Rotation goal completed successfully")
+            goal.succeed(_result(turtle))
+            turtle.goal, turtle.turning = None, 0.0
+        else:
+            turtle.turning = math.copysign(_TURNING_SPEED, remaining)
+
+    # ------------------------------------------------------------------ turtles
+
+    def _add(self, name: str, x: float, y: float, theta: float) -> None:
+        turtle = self._turtles[name] = Turtle(x, y, math.remainder(theta, math.tau))
+        turtle.x, turtle.y = _inside(x), _inside(y)
+        self._match_endpoints()
+
+    def _remove(self, name: str) -> None:
+        goal = self._turtles.pop(name).goal
+        if goal is not None:
+            goal.abort(reason=f"turtle {name} was removed")
+        self._match_endpoints()
+        if name in self.sim.models:
+            self.sim.remove(name)
+
+    def _match_endpoints(self) -> None:
+        """Open the topics of new turtles, and close those of turtles that are gone."""
+        open_ends = self._endpoints.by_turtle
+        for name in [name for name in open_ends if name not in self._turtles]:
+            for end in open_ends.pop(name):
+                end.close()
+        for name in [name for name in self._turtles if name not in open_ends]:
+            open_ends[name] = self._open(name)
+
+    def _open(self, name: str) -> list[Any]:
+        """Open the topics, services and the action of a turtle: first the publishers of its pose and colour."""
+
+        def of_turtle(function: Callable[[Turtle, Any], Any]) -> Callable[[Any], Any]:
+            return lambda argument: function(self._turtles[name], argument) if name in self._turtles else None
+
+        def absolute(turtle: Turtle, request: Any) -> None:
+            self._teleport(turtle, request.x, request.y, request.theta)
+
+        def relative(turtle: Turtle, request: Any) -> None:
+            theta, way = turtle.theta + request.angular, request.linear
+            self._teleport(turtle, turtle.x + way * math.cos(theta), turtle.y + way * math.sin(theta), theta)
+
+        return [
+            self.advertise(f"{name}/pose", f"{_TYPES}/msg/Pose"),
+            self.advertise(f"{name}/color_sensor", f"{_TYPES}/msg/Color"),
+            self.listen(f"{name}/cmd_vel", "geometry_msgs/msg/Twist", of_turtle(self._on_command)),
+            self.offer(f"{name}/set_pen", f"{_TYPES}/srv/SetPen", of_turtle(self._on_set_pen)),
+            self.offer(f"{name}/teleport_absolute", f"{_TYPES}/srv/TeleportAbsolute", of_turtle(absolute)),
+            self.offer(f"{name}/teleport_relative", f"{_TYPES}/srv/TeleportRelative", of_turtle(relative)),
+            self.act(
+                f"{name}/rotate_absolute",
+                f"{_TYPES}/action/RotateAbsolute",
+                of_turtle(self._on_goal),
+                of_turtle(self._on_cancel),
+            ),
+        ]
+
+    def _on_command(self, turtle: Turtle, message: Any) -> None:
+        values = message.linear.x, message.linear.y, message.angular.z
+        if not all(map(math.isfinite, values)):
+            self.log.error("A velocity with NaN or infinite values was ignored")
+            return
+        turtle.forward, turtle.sideways, turtle.turning = values
+        turtle.commanded = self.sim.time
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        super().set_state(state)
+        self._match_endpoints()
+
+    # ------------------------------------------------------------------ motion
+
+    def after_step(self) -> None:
+        for name, turtle in self._turtles.items():
+            before = turtle.x, turtle.y
+            self._update(turtle)
+            self._place_model(name, turtle)
+            pose, colour, *_ = self._endpoints.by_turtle[name]
+            fields = {"x": turtle.x, "y": turtle.y, "theta": turtle.theta, "angular_velocity": turtle.turning}
+            speed = math.hypot(turtle.forward, turtle.sideways)
+            pose.publish(msgs.make(f"{_TYPES}/msg/Pose", linear_velocity=speed, **fields))
+            column, row = _pixel(turtle.x, turtle.y)
+            red, green, blue = self._canvas[row, column].tolist()  # without the newest piece of the turtle's own trail
+            colour.publish(msgs.make(f"{_TYPES}/msg/Color", r=red, g=green, b=blue))
+            self._draw(turtle, before)
+
+    def _update(self, turtle: Turtle) -> None:
+        """Move a turtle by one period."""
+        if turtle.goal is not None:
+            self._turn_to_goal(turtle)
+        if self.sim.time - turtle.commanded > _COMMAND_TIME:
+            turtle.forward = turtle.sideways = turtle.turning = 0.0
+        if not self._holonomic.value:
+            turtle.sideways = 0.0
+        turtle.theta = math.remainder(turtle.theta + turtle.turning * _PERIOD, math.tau)
+        cos, sin = math.cos(turtle.theta), math.sin(turtle.theta)
+        way, aside = turtle.forward * _PERIOD, turtle.sideways * _PERIOD
+        if way or aside:
+            self._move(turtle, turtle.x + way * cos - aside * sin, turtle.y + way * sin + aside * cos)
+
+    def _move(self, turtle: Turtle, x: float, y: float) -> None:
+        """Move a turtle, not beyond the walls."""
+        turtle.x, turtle.y = _inside(x), _inside(y)
+        if (turtle.x, turtle.y) != (x, y):
+            self.log.warning("Oh no! I hit the wall! (Clamping from [x=%f, y=%f])", x, y)
+
+    def _draw(self, turtle: Turtle, before: tuple[float, float]) -> None:
+        """Draw the trail from a place to the present one."""
+        if turtle.is_pen_down and before != (turtle.x, turtle.y) and turtle.width:
+            import cv2
+
+            cv2.line(self._canvas, _pixel(*before), _pixel(turtle.x, turtle.y), turtle.pen, turtle.width)
+
+    def _place_model(self, name: str, turtle: Turtle) -> None:
+        """Move the model of a turtle, which is spawned first if it does not exist."""
+        pose = Pose.from_rpy(turtle.x, turtle.y, 0.0, 0.0, 0.0, turtle.theta)
+        if name not in self.sim.models:
+            self.sim.spawn(_MODEL, name, pose)
+        else:
+            self.sim.model(name).set_pose(pose)
+
+    def publish_image(self) -> None:
+        """Publish the window with trails and turtles."""
+        import cv2
+
+        image = self._canvas.copy()
+        for turtle in self._turtles.values():
+            cos, sin = math.cos(turtle.theta), math.sin(turtle.theta)
+            corners = _SHAPE @ np.array([[cos, -sin], [-sin, -cos]]) + _pixel(turtle.x, turtle.y)
+            cv2.fillPoly(image, [np.round(corners).astype(np.int32)], _TURTLE_COLOUR)
+        size = {"height": _PIXELS, "width": _PIXELS, "step": 3 * _PIXELS}
+        header = msgs.header(self.sim.time_ns, "window")
+        self._image.publish(
+            msgs.make("sensor_msgs/msg/Image", header=header, encoding="rgb8", data=image.reshape(-1), **size)
+        )
+
+
+def _result(turtle: Turtle) -> dict[str, float]:
+    """Return the result of the action: its begin minus the present heading, as turtlesim defines it."""
+    return {"delta": math.remainder(turtle.begin - turtle.theta, math.tau)}
+
+
+def _inside(coordinate: float) -> float:
+    return min(max(coordinate, 0.0), _SIZE)
+
+
+def _pixel(x: float, y: float) -> tuple[int, int]:
+    """Return column and row of a place; row 0 is at the top."""
+    return round(x * _SCALE), round((_SIZE - y) * _SCALE)
