@@ -30,6 +30,7 @@ COMMANDS = {
     "fetch": "Download the models that a world names on Fuel servers.",
     "bench": "Compare the speed of a world with bare MuJoCo.",
     "grade": "Run an exercise with submitted plugins and print the results.",
+    "lab": "List, start and grade the labs of the course.",
     "sweep": "Run a world with many parameters and seeds, and report the results.",
     "doctor": "Check the installation and print a remedy for each problem.",
     "golden": "Record and compare golden runs (reference sensor outputs).",

@@ -29,6 +29,24 @@ def grade(
     json_: options.Json = False,
 ) -> int:
     """Run an exercise with submitted plugins and print the results."""
+    return grade_files(exercise, submissions, junit, pictures, jobs, json_=json_)
+
+
+def grade_files(
+    exercise: Path,
+    submissions: list[Path] | None = None,
+    junit: Path | None = None,
+    pictures: Path | None = None,
+    jobs: int = 1,
+    *,
+    json_: bool = False,
+) -> int:
+    """Grade plugins, print the results, and return the exit code; the arguments are those of the command.
+
+    Raises:
+        LoadError: the exercise has problems.
+        InputError: a plugin does not exist, or a file cannot be written.
+    """
     from simkit.testing.scenarios.exercise import read_exercise
     from simkit.testing.scenarios.grading import grade_all, grade_json, grade_text, junit_cases
 

@@ -21,7 +21,7 @@ def _package_folder() -> Path:
 
 
 def bundled_folders(kind: str) -> list[Path]:
-    """Return the folders `assets` or `worlds` of simkit, inside the package and beside it."""
+    """Return the folders `assets`, `worlds` or `labs` of simkit, inside the package and beside it."""
     package = _package_folder()
     return [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
 

@@ -112,7 +112,8 @@ class TurtleSim(WorldPlugin):
         self.offer("reset", "std_srvs/srv/Empty", lambda _: self._start_again())
         self.offer("spawn", f"{_TYPES}/srv/Spawn", self._on_spawn)
         self.offer("kill", f"{_TYPES}/srv/Kill", self._on_kill)
-        self._add("turtle1", _MIDDLE, _MIDDLE, 0.0)
+        begin = self.sim.models["turtle1"].pose if "turtle1" in self.sim.models else Pose((_MIDDLE, _MIDDLE, 0.0))
+        self._add("turtle1", float(begin.position[0]), float(begin.position[1]), float(begin.rpy[2]))
         self._image = self.advertise("~/image", "sensor_msgs/msg/Image")
         publish_while_subscribed(self, self._image, _IMAGE_RATE, "publish_image")
 
