@@ -22,7 +22,7 @@ from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
-    from simkit.writers.occupancy_map import OccupancyMap
+    from simkit.sensors.occupancy_map import OccupancyMap
 
 _SUFFIXES = (".pgm", ".yaml")
 
@@ -48,7 +48,7 @@ def map(
 ) -> None:
     """Write the true occupancy map of a world as the files of map_server."""
     from simkit.build import load
-    from simkit.writers.occupancy_map import parse_place
+    from simkit.sensors.occupancy_map import parse_place
 
     place = None if start is None else parse_place(start)
     if place is not None and everywhere:
@@ -78,7 +78,7 @@ def _make(
     sim: Simulation, height: float, resolution: float, start: tuple[float, float] | None, *, everywhere: bool
 ) -> OccupancyMap:
     """Return the map; without a start, it begins at the first model that can move and has joints, if that is free."""
-    from simkit.writers.occupancy_map import make_map
+    from simkit.sensors.occupancy_map import make_map
 
     data = sim.engine.physics.fresh()
     if start is None and not everywhere:

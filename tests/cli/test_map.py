@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import simkit
 from simkit.cli import app
-from simkit.writers.occupancy_map import OccupancyMap, make_map
+from simkit.sensors.occupancy_map import OccupancyMap, make_map
 
 BALL = (
     '<model name="ball"><pose>0.5 0 0.2 0 0 0</pose><link name="l"><inertial><mass>1</mass></inertial>{}</link></model>'
@@ -45,8 +45,8 @@ def test_a_box_on_the_borders_of_cells_occupies_exactly_its_area() -> None:
     found = true_map(world(box))
     assert area(found) == pytest.approx(0.4, abs=1e-12)
     rows, columns = np.nonzero(found.cells == 100)
-    assert columns.min() * 0.05 + found.origin[0] == pytest.approx(0.0, abs=1e-9)
-    assert rows.min() * 0.05 + found.origin[1] == pytest.approx(0.0, abs=1e-9)
+    assert columns.min() * 0.05 + found.origin.position[0] == pytest.approx(0.0, abs=1e-9)
+    assert rows.min() * 0.05 + found.origin.position[1] == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -329,6 +329,7 @@ WORLDS: dict[str, str] = {
         )
     ),
     "SolarSensor": lab(model=plugin("libsolar_sensor.so", tags(light_name="sun", gaussian_noise=0.1, update_rate=50))),
+    "MapServer": lab(world=plugin("libsimkit_map_server.so", tags(height=0.05))),
     "TurtleSim": lab(world=plugin("libsimkit_turtlesim.so")),
     "Sun": lab(
         world=plugin("simkit-sun", tags(start="2024-06-21T10:30:00Z", time_scale=600, update_rate=50), "simkit::Sun")

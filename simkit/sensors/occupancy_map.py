@@ -13,6 +13,7 @@ import numpy.typing as npt
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.shape_geometry import textured_triangles
 from simkit.errors import InputError
+from simkit.pose import Pose
 from simkit.scene import Capsule, Cylinder, Ellipsoid, Geometry, Sphere
 
 FREE: Final = 0
@@ -37,12 +38,12 @@ class OccupancyMap:
     Attributes:
         cells: 100 occupied, 0 free, -1 unknown, shape (rows, columns); row 0 has the lowest y, column 0 the lowest x.
         resolution: side of a cell [m].
-        origin: x and y of the map's corner with the lowest coordinates, in the world [m].
+        origin: pose in the world of the corner of row 0 and column 0 [m, rad].
     """
 
     cells: npt.NDArray[np.int8]
     resolution: float
-    origin: tuple[float, float]
+    origin: Pose
 
     def image(self) -> bytes:
         """Return the map as a PGM image: occupied black, free white, unknown grey; the highest y is at the top."""
@@ -54,9 +55,11 @@ class OccupancyMap:
 
     def description(self, image: str) -> str:
         """Return the YAML file of `map_server` for an image file."""
-        x, y = self.origin
+        x, y, _ = self.origin.position.tolist()
+        yaw = self.origin.rpy[2]
         return (
-            f"image: {image}\nmode: trinary\nresolution: {self.resolution:.9g}\norigin: [{x:.9g}, {y:.9g}, 0]\n"
+            f"image: {image}\nmode: trinary\nresolution: {self.resolution:.9g}\n"
+            f"origin: [{x:.9g}, {y:.9g}, {yaw:.9g}]\n"
             "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
         )
 
@@ -109,7 +112,7 @@ def make_map(
         grid.fill_where(grid.corners, lambda p, n=normal, o=point: (p - o) @ n < -_OVERLAP, height)
     if start is not None:
         grid.keep_reachable(start)
-    return OccupancyMap(grid.cells, resolution, grid.origin)
+    return OccupancyMap(grid.cells, resolution, Pose((*grid.origin, 0.0)))
 
 
 def _error(message: str, help: str = "simkit map WORLD --height Z chooses another height") -> InputError:
