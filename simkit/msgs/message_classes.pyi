@@ -523,6 +523,27 @@ class UnloadController_Response:
     ok: bool
     __msgtype__: ClassVar[str]
 
+# conveyorbelt_msgs
+
+@dataclass
+class ConveyorBeltState:
+    """`conveyorbelt_msgs/msg/ConveyorBeltState`"""
+    power: float
+    enabled: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ConveyorBeltControl_Request:
+    """`conveyorbelt_msgs/srv/ConveyorBeltControl_Request`"""
+    power: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ConveyorBeltControl_Response:
+    """`conveyorbelt_msgs/srv/ConveyorBeltControl_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
 # diagnostic_msgs
 
 @dataclass
@@ -2844,6 +2865,46 @@ class GetOctomap_Request:
 class GetOctomap_Response:
     """`octomap_msgs/srv/GetOctomap_Response`"""
     map: Octomap
+    __msgtype__: ClassVar[str]
+
+# osrf_gear
+
+@dataclass
+class osrf_gear__msg__ConveyorBeltState:
+    """`osrf_gear/msg/ConveyorBeltState`"""
+    power: float
+    enabled: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VacuumGripperState:
+    """`osrf_gear/msg/VacuumGripperState`"""
+    enabled: bool
+    attached: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class osrf_gear__srv__ConveyorBeltControl_Request:
+    """`osrf_gear/srv/ConveyorBeltControl_Request`"""
+    power: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class osrf_gear__srv__ConveyorBeltControl_Response:
+    """`osrf_gear/srv/ConveyorBeltControl_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VacuumGripperControl_Request:
+    """`osrf_gear/srv/VacuumGripperControl_Request`"""
+    enable: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VacuumGripperControl_Response:
+    """`osrf_gear/srv/VacuumGripperControl_Response`"""
+    success: bool
     __msgtype__: ClassVar[str]
 
 # play_motion2_msgs

@@ -265,6 +265,9 @@ WORLDS: dict[str, str] = {
         model=plugin("libgazebo_ros_create_optical_mouse.so", tags(link="base"))
         + gz("velocity-control", tags(initial_linear="1 0 0"), "VelocityControl")
     ),
+    "IfraConveyorBelt": lab(model=plugin("libros2_conveyorbelt_plugin.so", tags(joint_name="door"))),
+    "AriacConveyorBelt": lab(model=plugin("libROSConveyorBeltPlugin.so", tags(joint="door", power=50))),
+    "ContactVacuumGripper": lab(model=plugin("libROSVacuumGripperPlugin.so", tags(suction_cup_link="base"))),
     "Slotcar": lab(model=plugin("libslotcar.so", tags(nominal_power=20))),
     "RmfDoor": lab(model=plugin("libdoor.so", '<door left_joint_name="door" right_joint_name="door_0"/>')),
     "RmfLift": lab(model=plugin("liblift.so", RMF_LIFT)),
