@@ -232,7 +232,8 @@ def ros_1_mecanum(folder: Path, values: str = "", shape: str = SHAPE) -> simkit.
     wheels += "".join(ROLLERS.format(name=name, direction=way) for name, (_, _, way) in places.items())
     wheels += "".join(
         f'<transmission name="t{name}"><type>transmission_interface/SimpleTransmission</type>'
-        f'<joint name="{name}_wheel"><hardwareInterface>hardware_interface/VelocityJointInterface</hardwareInterface></joint>'
+        f'<joint name="{name}_wheel"><hardwareInterface>hardware_interface/VelocityJointInterface'
+        "</hardwareInterface></joint>"
         f'<actuator name="m{name}"><mechanicalReduction>1</mechanicalReduction></actuator></transmission>'
         for name in places
     )
