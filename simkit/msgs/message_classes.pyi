@@ -1746,6 +1746,14 @@ class GPSStatus:
 # irobot_create_msgs
 
 @dataclass
+class DockStatus:
+    """`irobot_create_msgs/msg/DockStatus`"""
+    header: Header
+    dock_visible: bool
+    is_docked: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class HazardDetection:
     """`irobot_create_msgs/msg/HazardDetection`"""
     header: Header
@@ -1763,6 +1771,24 @@ class IrIntensity:
     """`irobot_create_msgs/msg/IrIntensity`"""
     header: Header
     value: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IrOpcode:
+    """`irobot_create_msgs/msg/IrOpcode`"""
+    header: Header
+    opcode: int
+    sensor: int
+    CODE_IR_FORCE_FIELD: ClassVar[int] = 161
+    CODE_IR_VIRTUAL_WALL: ClassVar[int] = 162
+    CODE_IR_BUOY_GREEN: ClassVar[int] = 164
+    CODE_IR_BUOY_RED: ClassVar[int] = 168
+    CODE_IR_BUOY_BOTH: ClassVar[int] = 172
+    CODE_IR_EVAC_GREEN_FIELD: ClassVar[int] = 244
+    CODE_IR_EVAC_RED_FIELD: ClassVar[int] = 248
+    CODE_IR_EVAC_BOTH_FIELD: ClassVar[int] = 252
+    SENSOR_OMNI: ClassVar[int] = 0
+    SENSOR_DIRECTIONAL_FRONT: ClassVar[int] = 1
     __msgtype__: ClassVar[str]
 
 @dataclass
