@@ -523,6 +523,27 @@ class UnloadController_Response:
     ok: bool
     __msgtype__: ClassVar[str]
 
+# conveyorbelt_msgs
+
+@dataclass
+class ConveyorBeltState:
+    """`conveyorbelt_msgs/msg/ConveyorBeltState`"""
+    power: float
+    enabled: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ConveyorBeltControl_Request:
+    """`conveyorbelt_msgs/srv/ConveyorBeltControl_Request`"""
+    power: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ConveyorBeltControl_Response:
+    """`conveyorbelt_msgs/srv/ConveyorBeltControl_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
 # diagnostic_msgs
 
 @dataclass
@@ -1725,6 +1746,14 @@ class GPSStatus:
 # irobot_create_msgs
 
 @dataclass
+class DockStatus:
+    """`irobot_create_msgs/msg/DockStatus`"""
+    header: Header
+    dock_visible: bool
+    is_docked: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class HazardDetection:
     """`irobot_create_msgs/msg/HazardDetection`"""
     header: Header
@@ -1742,6 +1771,24 @@ class IrIntensity:
     """`irobot_create_msgs/msg/IrIntensity`"""
     header: Header
     value: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IrOpcode:
+    """`irobot_create_msgs/msg/IrOpcode`"""
+    header: Header
+    opcode: int
+    sensor: int
+    CODE_IR_FORCE_FIELD: ClassVar[int] = 161
+    CODE_IR_VIRTUAL_WALL: ClassVar[int] = 162
+    CODE_IR_BUOY_GREEN: ClassVar[int] = 164
+    CODE_IR_BUOY_RED: ClassVar[int] = 168
+    CODE_IR_BUOY_BOTH: ClassVar[int] = 172
+    CODE_IR_EVAC_GREEN_FIELD: ClassVar[int] = 244
+    CODE_IR_EVAC_RED_FIELD: ClassVar[int] = 248
+    CODE_IR_EVAC_BOTH_FIELD: ClassVar[int] = 252
+    SENSOR_OMNI: ClassVar[int] = 0
+    SENSOR_DIRECTIONAL_FRONT: ClassVar[int] = 1
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2846,6 +2893,46 @@ class GetOctomap_Response:
     map: Octomap
     __msgtype__: ClassVar[str]
 
+# osrf_gear
+
+@dataclass
+class osrf_gear__msg__ConveyorBeltState:
+    """`osrf_gear/msg/ConveyorBeltState`"""
+    power: float
+    enabled: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VacuumGripperState:
+    """`osrf_gear/msg/VacuumGripperState`"""
+    enabled: bool
+    attached: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class osrf_gear__srv__ConveyorBeltControl_Request:
+    """`osrf_gear/srv/ConveyorBeltControl_Request`"""
+    power: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class osrf_gear__srv__ConveyorBeltControl_Response:
+    """`osrf_gear/srv/ConveyorBeltControl_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VacuumGripperControl_Request:
+    """`osrf_gear/srv/VacuumGripperControl_Request`"""
+    enable: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VacuumGripperControl_Response:
+    """`osrf_gear/srv/VacuumGripperControl_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
 # play_motion2_msgs
 
 @dataclass
@@ -3272,6 +3359,166 @@ class SetParameters_Request:
 class SetParameters_Response:
     """`rcl_interfaces/srv/SetParameters_Response`"""
     results: list[SetParametersResult]
+    __msgtype__: ClassVar[str]
+
+# rmf_door_msgs
+
+@dataclass
+class DoorMode:
+    """`rmf_door_msgs/msg/DoorMode`"""
+    value: int
+    MODE_CLOSED: ClassVar[int] = 0
+    MODE_MOVING: ClassVar[int] = 1
+    MODE_OPEN: ClassVar[int] = 2
+    MODE_OFFLINE: ClassVar[int] = 3
+    MODE_UNKNOWN: ClassVar[int] = 4
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DoorRequest:
+    """`rmf_door_msgs/msg/DoorRequest`"""
+    request_time: Time
+    requester_id: str
+    door_name: str
+    requested_mode: DoorMode
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DoorState:
+    """`rmf_door_msgs/msg/DoorState`"""
+    door_time: Time
+    door_name: str
+    current_mode: DoorMode
+    __msgtype__: ClassVar[str]
+
+# rmf_fleet_msgs
+
+@dataclass
+class Location:
+    """`rmf_fleet_msgs/msg/Location`"""
+    t: Time
+    x: float
+    y: float
+    yaw: float
+    obey_approach_speed_limit: bool
+    approach_speed_limit: float
+    level_name: str
+    index: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ModeParameter:
+    """`rmf_fleet_msgs/msg/ModeParameter`"""
+    name: str
+    value: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ModeRequest:
+    """`rmf_fleet_msgs/msg/ModeRequest`"""
+    fleet_name: str
+    robot_name: str
+    mode: RobotMode
+    task_id: str
+    parameters: list[ModeParameter]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PathRequest:
+    """`rmf_fleet_msgs/msg/PathRequest`"""
+    fleet_name: str
+    robot_name: str
+    path: list[Location]
+    task_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PauseRequest:
+    """`rmf_fleet_msgs/msg/PauseRequest`"""
+    fleet_name: str
+    robot_name: str
+    mode_request_id: int
+    type: int
+    at_checkpoint: int
+    TYPE_PAUSE_IMMEDIATELY: ClassVar[int] = 0
+    TYPE_PAUSE_AT_CHECKPOINT: ClassVar[int] = 1
+    TYPE_RESUME: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RobotMode:
+    """`rmf_fleet_msgs/msg/RobotMode`"""
+    mode: int
+    mode_request_id: int
+    MODE_IDLE: ClassVar[int] = 0
+    MODE_CHARGING: ClassVar[int] = 1
+    MODE_MOVING: ClassVar[int] = 2
+    MODE_PAUSED: ClassVar[int] = 3
+    MODE_WAITING: ClassVar[int] = 4
+    MODE_EMERGENCY: ClassVar[int] = 5
+    MODE_GOING_HOME: ClassVar[int] = 6
+    MODE_DOCKING: ClassVar[int] = 7
+    MODE_ADAPTER_ERROR: ClassVar[int] = 8
+    MODE_CLEANING: ClassVar[int] = 9
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RobotState:
+    """`rmf_fleet_msgs/msg/RobotState`"""
+    name: str
+    model: str
+    task_id: str
+    seq: int
+    mode: RobotMode
+    battery_percent: float
+    location: Location
+    path: list[Location]
+    __msgtype__: ClassVar[str]
+
+# rmf_lift_msgs
+
+@dataclass
+class LiftRequest:
+    """`rmf_lift_msgs/msg/LiftRequest`"""
+    lift_name: str
+    request_time: Time
+    session_id: str
+    request_type: int
+    destination_floor: str
+    door_state: int
+    REQUEST_END_SESSION: ClassVar[int] = 0
+    REQUEST_AGV_MODE: ClassVar[int] = 1
+    REQUEST_HUMAN_MODE: ClassVar[int] = 2
+    DOOR_CLOSED: ClassVar[int] = 0
+    DOOR_OPEN: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LiftState:
+    """`rmf_lift_msgs/msg/LiftState`"""
+    lift_time: Time
+    lift_name: str
+    available_floors: list[str]
+    current_floor: str
+    destination_floor: str
+    door_state: int
+    motion_state: int
+    available_modes: NDArray[np.uint8]
+    current_mode: int
+    session_id: str
+    DOOR_CLOSED: ClassVar[int] = 0
+    DOOR_MOVING: ClassVar[int] = 1
+    DOOR_OPEN: ClassVar[int] = 2
+    MOTION_STOPPED: ClassVar[int] = 0
+    MOTION_UP: ClassVar[int] = 1
+    MOTION_DOWN: ClassVar[int] = 2
+    MOTION_UNKNOWN: ClassVar[int] = 3
+    MODE_UNKNOWN: ClassVar[int] = 0
+    MODE_HUMAN: ClassVar[int] = 1
+    MODE_AGV: ClassVar[int] = 2
+    MODE_FIRE: ClassVar[int] = 3
+    MODE_OFFLINE: ClassVar[int] = 4
+    MODE_EMERGENCY: ClassVar[int] = 5
     __msgtype__: ClassVar[str]
 
 # rmw_dds_common

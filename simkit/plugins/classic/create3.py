@@ -31,6 +31,7 @@ HAZARD: Final = "irobot_create_msgs/msg/HazardDetection"
 INTENSITY: Final = "irobot_create_msgs/msg/IrIntensity"
 MOUSE: Final = "irobot_create_msgs/msg/Mouse"
 IMU: Final = "sensor_msgs/msg/Imu"
+_RAYS: Final = ("ray", "gpu_ray", "lidar", "gpu_lidar")
 _BUMP, _CLIFF, _WHEEL_DROP = 1, 2, 4  # constants of HazardDetection
 _STRONGEST: Final = 3500.0  # intensity at zero distance
 _ZONES: Final = (
@@ -47,22 +48,22 @@ class CreateSensor(SensorPlugin):
     """Base class of plugins that publish what a sensor measures; while nobody subscribes, the sensor rests.
 
     Attributes:
-        kind: kind of the sensor.
+        kinds: kinds of sensors that fit; the first one is named in errors.
         message_type: type of the messages on `~/out`.
     """
 
     options = OptionsOf(SensorFrameOptions)
-    kind: str
+    kinds: tuple[str, ...]
     message_type: str
 
     def load(self, parent: Any, params: Params) -> None:
         self._frame = self.options.read_all().frame_of(parent)
-        if self.kind not in parent.kind:
-            self.refuse(parent, self.kind)
+        if parent.kind not in self.kinds:
+            self.refuse(parent, self.kinds[0])
             return
         self._sensor = parent
         self._out = self.advertise("~/out", self.message_type)
-        parent.publish_on({next(iter(parent.products())): self.ros.topic("~/raw")})
+        parent.publish_on({next(iter(parent.products())): self.ros.topic("~/_raw")})
         publish_while_subscribed(self, self._out, parent.update_rate, "publish")
 
     @abc.abstractmethod
@@ -88,7 +89,7 @@ class CreateBumper(CreateSensor):
 
     endpoints = (publishes("~/out", HAZARD),)
     filenames = ("libgazebo_ros_create_bumper.so",)
-    kind, message_type = "contact", HAZARD
+    kinds, message_type = ("contact",), HAZARD
 
     def publish(self) -> None:
         """Publish a message for each zone with a contact."""
@@ -122,7 +123,7 @@ class CreateCliffSensor(CreateSensor):
     endpoints = (publishes("~/out", HAZARD),)
     options = OptionsOf(CreateCliffOptions)
     filenames = ("libgazebo_ros_create_cliff_sensor.so",)
-    kind, message_type = "ray", HAZARD
+    kinds, message_type = _RAYS, HAZARD
 
     def publish(self) -> None:
         """Publish a message if there is a cliff."""
@@ -136,7 +137,7 @@ class CreateIrIntensity(CreateSensor):
 
     endpoints = (publishes("~/out", INTENSITY),)
     filenames = ("libgazebo_ros_create_ir_intensity_sensor.so",)
-    kind, message_type = "ray", INTENSITY
+    kinds, message_type = _RAYS, INTENSITY
 
     def publish(self) -> None:
         """Publish the intensity."""
@@ -151,7 +152,7 @@ class CreateImu(CreateSensor):
 
     endpoints = (publishes("~/out", IMU),)
     filenames = ("libgazebo_ros_create_imu.so",)
-    kind, message_type = "imu", IMU
+    kinds, message_type = ("imu",), IMU
 
     def load(self, parent: ImuMeasurement, params: Params) -> None:
         super().load(parent, params)

@@ -12,6 +12,7 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.find_entities import find_link
+from simkit.plugins.joints.run_time_welds import close_weld, open_weld
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, OptionsOf, block, boolean, integer, number, text, texts, without_effect
 from simkit.pose import Vector
@@ -164,10 +165,7 @@ class GraspFix(ModelPlugin):
             Touch(finger, sim.link(finger).pose.inverse().transform(at), place.transform(at), place.rotate(push))
             for finger, (push, at) in pushes.items()
         )
-        weld = self._weld(name)
-        if not self._has_weld(weld):
-            sim.contents.add_weld(weld, self._palm, name)
-        sim.contents.set_weld(weld, True)
+        close_weld(sim, self._weld(name), self._palm, name)
         self._held = name
         if self._disables:
             sim.link(name).collisions_enabled = False
@@ -178,8 +176,7 @@ class GraspFix(ModelPlugin):
         if name is None:
             return
         self._counts.pop(name, None)
-        if self._has_weld(self._weld(name)):
-            self.sim.contents.set_weld(self._weld(name), False)
+        if open_weld(self.sim, self._weld(name)):
             if self._disables:
                 self.sim.link(name).collisions_enabled = True
             self.log.info("released %s", name)
@@ -195,10 +192,3 @@ class GraspFix(ModelPlugin):
 
     def _weld(self, name: str) -> str:
         return f"{self._palm}#grasp {name}"
-
-    def _has_weld(self, weld: str) -> bool:
-        try:
-            self.sim.engine.names.equality(weld)
-        except KeyError:
-            return False
-        return True

@@ -1,28 +1,22 @@
-"""Sensors of hector_gazebo_plugins: `libhector_gazebo_ros_imu.so`, `…_gps.so`, `…_magnetic.so` and `…_sonar.so`.
-
-The error of each axis is offset + drift + white noise. The drift d is a first-order Gauss-Markov process with the
-standard deviation `…Drift` and the correlation frequency `…DriftFrequency` f: between two instants with the distance
-dt, d changes to d · exp(-f·dt), plus noise that keeps the standard deviation. It starts at zero. (The sources integrate
-the same process by Euler's method, and add its noise once per step of any length, so that the drift depends on the
-update rate.)
-"""
+"""Sensors of hector_gazebo_plugins: `libhector_gazebo_ros_imu.so`, `…_gps.so`, `…_magnetic.so` and `…_sonar.so`."""
 
 from __future__ import annotations
 
+import abc
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit import msgs
-from simkit.params import LARGEST, Params
+from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, SensorPlugin
+from simkit.plugins.classic.hector_error import HectorError
 from simkit.plugins.endpoints import offers, publishes
 from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.options import Options, OptionsOf, boolean, integer, number, text, vector3, without_effect
-from simkit.plugins.publish_on_demand import count_instants
+from simkit.plugins.publish_on_demand import count_instants, publish_while_subscribed
 from simkit.pose import Vector, quat_multiply
 from simkit.scene import SphericalCoordinates
 from simkit.sensors.environment.geodesy import WorldOnPlanet
@@ -30,7 +24,7 @@ from simkit.sensors.environment.geodesy import WorldOnPlanet
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model
-    from simkit.runtime.engine.random_streams import RandomStream
+    from simkit.runtime.communication.publisher import Publisher
     from simkit.scene import SceneModel
     from simkit.sensors.rays.lidar import Lidar
 
@@ -40,7 +34,6 @@ FIELD: Final = "sensor_msgs/msg/MagneticField"
 VECTOR: Final = "geometry_msgs/msg/Vector3Stamped"
 
 _ULTRASOUND: Final = 0  # value of sensor_msgs/Range
-_HOUR: Final = 3600.0  # [s]
 _BIG: Final = 1e100
 _G: Final = 9.8065  # [m/s²], as in the sources
 
@@ -55,68 +48,10 @@ class HectorOptions(Options):
     seed: bool = without_effect(element="randomEngineSeed")
 
 
-class HectorError:
-    """Error of a measurement with several axes.
-
-    Args:
-        params: parameters of the plugin.
-        prefix: start of the names of the elements, such as `accel`; may be empty.
-        size: number of axes.
-        stream: random stream of 2 · `size` numbers.
-
-    Attributes:
-        noise: standard deviation of the white noise, shape (size,).
-        present: error at the last instant, shape (size,).
-    """
-
-    def __init__(self, params: Params, prefix: str, size: int, stream: RandomStream) -> None:
-        self._stream, self._size = stream, size
-        names = [f"{prefix}{name}" if prefix else name[0].lower() + name[1:] for name in _FIELDS]
-        values = [_axes(params, name, size, default) for name, default in zip(names, _DEFAULTS, strict=True)]
-        self._offset, self._deviation, self._frequency, self.noise = values
-        self._drift = np.zeros(size)
-        self.present = np.zeros(size)
-
-    def add_offset(self, values: Sequence[float]) -> None:
-        """Set the offsets of axes for which the file gives none."""
-        self._offset = np.where(self._offset == 0, values, self._offset)
-
-    def advance(self, index: int, dt: float) -> Vector:
-        """Return the error at the next instant.
-
-        Args:
-            index: number of the instant.
-            dt: time since the last instant [s].
-        """
-        drawn = self._stream.normal(index)
-        left = np.exp(-self._frequency * dt)
-        self._drift = left * self._drift + self._deviation * np.sqrt(1 - left**2) * drawn[: self._size]
-        self.present = self._offset + self._drift + self.noise * drawn[self._size :]
-        return self.present
-
-    def restart(self, drift: Vector | float = 0.0) -> None:
-        """Set the drift."""
-        self._drift = np.zeros(self._size) + drift
-
-
-_FIELDS: Final = ("Offset", "Drift", "DriftFrequency", "GaussianNoise")
-_DEFAULTS: Final = (0.0, 0.0, 1 / _HOUR, 0.0)
-
-
-def _axes(params: Params, name: str, size: int, default: float) -> Vector:
-    """Return the numbers of an element, one for each axis; a single number is that of all axes."""
-    child = params.child(name)
-    least = -LARGEST if name.lower().endswith("offset") else 0.0
-    if size > 1 and child is not None and len(child.value.split()) == size:
-        found = np.array(params.vector(name, size, (default,) * size))
-        if found.min() < least:
-            child.error("SK-PARAM-002", f"<{name}>: found {child.value!r}; expected numbers of at least 0")
-        return found
-    return np.full(size, params.number(name, default, minimum=least, maximum=LARGEST))
-
-
 class HectorSensor(ModelPlugin):
     """Base class of the sensors on a link; the link is `<bodyName>`, or the model's canonical link.
+
+    Without subscribers, a sensor takes no time, unless its drift must go on.
 
     Attributes:
         rate: rate without `<updateRate>` [Hz]; 0 for every step.
@@ -129,20 +64,38 @@ class HectorSensor(ModelPlugin):
         options = self.options.read_all()
         self._body = find_named_link(scene, "bodyName", params) if params.has("bodyName") else scene.canonical_link
         self._frame = options.frame.strip("/") or self._body.rsplit("::", 1)[-1]
-        self.after_step_rate = options.update_rate if params.has("updateRate") else self.rate
+        self._instants_rate = options.update_rate if params.has("updateRate") else self.rate
 
     def load(self, parent: Model, params: Params) -> None:
         self._link = self.sim.link(self._body)
         self._last_ns = self.sim.time_ns
+
+    @abc.abstractmethod
+    def measure(self) -> None:
+        """Advance the errors, and publish a reading."""
+
+    def measure_on_demand(self, has_memory: bool, *publishers: Publisher) -> None:
+        """Call `measure` at each instant, without subscribers only if the errors remember the instants before."""
+        self._has_memory = has_memory
+        first, *others = publishers
+        for other in others:
+            self.sim.communication.bus.on_readers_change(other.topic, self.sim.communication.on_demand.look)
+
+        def is_wanted() -> bool:
+            return has_memory or any(other.wanted for other in others)
+
+        publish_while_subscribed(self, first, self._instants_rate, "measure", also=is_wanted)
 
     def error(self, prefix: str, size: int = 3) -> HectorError:
         """Return the error model of a measurement; called in `load`."""
         return HectorError(self.params, prefix, size, self.random(prefix or "error", 2 * size))
 
     def instant(self) -> tuple[int, float]:
-        """Return the number of the present instant, and the time since the last one [s]."""
-        dt, self._last_ns = (self.sim.time_ns - self._last_ns) * 1e-9, self.sim.time_ns
-        return count_instants(self, self.after_step_rate or 0.0), dt
+        """Return the number of the present instant, and the time since the last one [s] if the errors depend on it."""
+        dt = 0.0
+        if self._has_memory:  # otherwise no attribute may change, because subscribers must not change the state
+            dt, self._last_ns = (self.sim.time_ns - self._last_ns) * 1e-9, self.sim.time_ns
+        return count_instants(self, self._instants_rate), dt
 
 
 class HectorImuOptions(HectorOptions):
@@ -183,12 +136,14 @@ class HectorImu(HectorSensor):
         self._acceleration.add_offset((pitch * _G, -roll * _G, 0.0))
         self._heading.add_offset((yaw,))
         self._out = self.advertise(options.topic, IMU)
+        errors = (self._acceleration, self._rate, self._heading)
+        self.measure_on_demand(any(error.drifts for error in errors), self._out)
         self.offer(options.service or f"{options.topic}/calibrate", "std_srvs/srv/Empty", self._calibrate)
 
     def _calibrate(self, _: object) -> None:
         self._rate.restart()
 
-    def after_step(self) -> None:
+    def measure(self) -> None:
         index, dt = self.instant()
         errors = self._acceleration.advance(index, dt), self._rate.advance(index, dt), self._heading.advance(index, dt)
         if self._out.wanted:
@@ -264,8 +219,9 @@ class HectorGps(HectorSensor):
         self._position, self._velocity = self.error(""), self.error("velocity")
         self._walk = np.zeros(3)
         self._fix, self._speed = self.advertise(options.topic, FIX), self.advertise(options.velocity_topic, VECTOR)
+        self.measure_on_demand(self._position.drifts or not self._velocity.is_zero, self._fix, self._speed)
 
-    def after_step(self) -> None:
+    def measure(self) -> None:
         index, dt = self.instant()
         velocity_error = self._velocity.advance(index, dt)
         self._walk = self._walk + velocity_error * dt
@@ -328,8 +284,9 @@ class HectorMagnetic(HectorSensor):
         self._field = options.magnitude * field
         self._error = self.error("")
         self._out = self.advertise(options.topic, FIELD if options.as_field else VECTOR)
+        self.measure_on_demand(self._error.drifts, self._out)
 
-    def after_step(self) -> None:
+    def measure(self) -> None:
         index, dt = self.instant()
         error = self._error.advance(index, dt)
         if not self._out.wanted:

@@ -13,6 +13,7 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import offers, publishes
 from simkit.plugins.find_entities import find_link, find_named_link
+from simkit.plugins.joints.run_time_welds import close_weld, has_weld, open_weld
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, OptionsOf, number, text, texts
 from simkit.plugins.publish_on_demand import publish_while_subscribed
@@ -112,7 +113,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
     @property
     def holds(self) -> list[str]:
         """Scoped names of the links that the gripper holds."""
-        return [link for link, weld in self._held.items() if self._is_there(weld)]
+        return [link for link, weld in self._held.items() if has_weld(self.sim, weld)]
 
     def publish_grasping(self) -> None:
         """Publish whether the gripper holds a link."""
@@ -140,8 +141,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
         self._is_on = is_on
         if not is_on:
             for weld in self._held.values():
-                if self._is_there(weld):
-                    self.sim.contents.set_weld(weld, False)
+                open_weld(self.sim, weld)
             self._held = {}
         self.before_step_rate = None if is_on else NEVER
         self.sim.engine.reschedule()
@@ -160,22 +160,13 @@ class GazeboRosVacuumGripper(ModelPlugin):
         near = candidates.near(physics.fresh() if physics.stage == STALE else physics.data, self._reach)
         for gripper, link in near:
             weld = self._held.get(link)
-            if weld is None or not self._is_there(weld):
+            if weld is None or not has_weld(self.sim, weld):
                 self._hold(gripper, link)
 
     def _hold(self, gripper: str, link: str) -> None:
-        sim, weld = self.sim, f"{gripper}#vacuum {link}"
-        if not self._is_there(weld):
-            sim.contents.add_weld(weld, gripper, link)
-        sim.contents.set_weld(weld, True)
+        weld = f"{gripper}#vacuum {link}"
+        close_weld(self.sim, weld, gripper, link)
         self._held = {**self._held, link: weld}
-
-    def _is_there(self, weld: str) -> bool:
-        try:
-            self.sim.engine.names.equality(weld)
-        except KeyError:
-            return False
-        return True
 
 
 class _GrippableLinks(SharedByCopies):

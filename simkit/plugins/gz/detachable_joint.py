@@ -11,6 +11,7 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import find_named_link, read_required_name, read_topic
+from simkit.plugins.joints.run_time_welds import close_weld, has_weld, open_weld
 from simkit.plugins.options import Options, OptionsOf, boolean, text
 
 if TYPE_CHECKING:
@@ -103,8 +104,7 @@ class DetachableJoint(ModelPlugin):
     # ------------------------------------------------------------------ commands
 
     def _on_detach(self, _: object) -> None:
-        if self._is_attached and self._is_there():
-            self.sim.contents.set_weld(self._weld, False)
+        if self._is_attached and open_weld(self.sim, self._weld):
             self._is_attached = False
             self._publish_state("detached")
 
@@ -124,8 +124,7 @@ class DetachableJoint(ModelPlugin):
             self._child = self._find(models, self.params)
             if not self._child:
                 return
-            self.sim.contents.add_weld(self._weld, self._parent, self._child)
-        self.sim.contents.set_weld(self._weld, True)
+        close_weld(self.sim, self._weld, self._parent, self._child)
         self._shall_attach, self._is_attached = False, True
         self._publish_state("attached")
         self._set_pace()
@@ -133,11 +132,7 @@ class DetachableJoint(ModelPlugin):
     # ------------------------------------------------------------------ inside
 
     def _is_there(self) -> bool:
-        try:
-            self.sim.engine.names.equality(self._weld)
-        except KeyError:
-            return False
-        return True
+        return has_weld(self.sim, self._weld)
 
     def _set_pace(self) -> None:
         """Call `before_step` at every step while a child link waits for its attachment, otherwise not at all."""

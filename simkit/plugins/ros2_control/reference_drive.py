@@ -34,12 +34,15 @@ class ReferenceDrive(Controller):
         default_timeout: default of `reference_timeout` [s].
         default_variances: default of the diagonals of the covariances.
         topics: names of the topics of the commands, the odometry and its transform; `read_wheels` may change them.
+        publish_rate: rate of the odometry [Hz]; 0 for every update; `read_wheels` may change it.
     """
 
     default_timeout: ClassVar[float] = 1.0
     default_variances: ClassVar[Sequence[float]] = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 
     topics: tuple[str, str, str]
+    publish_rate: float = 0.0
+    _published = -1  # number of the last instant of the publish rate
 
     def configure(self) -> None:
         params, variances = self.params, self.default_variances
@@ -133,6 +136,11 @@ class ReferenceDrive(Controller):
         return BodyTwist((ahead, left, 0.0), (0.0, 0.0, turn))
 
     def _publish(self, now_ns: int) -> None:
+        if self.publish_rate > 0.0:
+            instant = math.floor(now_ns * 1e-9 * self.publish_rate + 1e-6)
+            if instant == self._published:
+                return
+            self._published = instant
         pose = self._reckoning.pose
         if self._odometry.wanted:
             message = partial(odometry_message, now_ns, *self._frames, pose, self._mean_twist(), *self._covariances)

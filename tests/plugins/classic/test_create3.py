@@ -82,6 +82,16 @@ def test_the_infrared_intensity_falls_exponentially() -> None:
         assert found.messages[-1].value == int(3500 * math.exp(-2 * math.e * 0.25 / 0.4))
 
 
+def test_a_lidar_fits_where_a_ray_sensor_fits_and_its_scan_is_a_hidden_topic() -> None:
+    sensor = ray(plugin("ir_intensity_sensor")).replace('type="ray"', 'type="gpu_lidar"')
+    with simkit.load(world(sensor)) as sim:
+        found = sim.subscribe("/ir_intensity_sensor")
+        sim.run(0.5)
+        assert found.messages
+        scans = [topic for topic, _, (kind, *_), _ in sim.communication.bus.endpoints() if kind.endswith("LaserScan")]
+        assert scans == ["/ir_intensity_sensor/_raw"]
+
+
 def test_the_imu_has_no_gravity() -> None:
     sensor = f'<sensor name="i" type="imu"><update_rate>50</update_rate>{plugin("imu")}</sensor>'
     with simkit.load(world(sensor)) as sim:

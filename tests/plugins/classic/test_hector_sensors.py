@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -26,6 +27,11 @@ def readings(text: str, topic: str, time: float = 1.0, seed: int = 0) -> list:
         found = sim.subscribe(topic)
         sim.run(time)
         return found.messages
+
+
+def plain_state(plugin: object) -> str:
+    """Return the state of a plugin without the addresses of its objects and the numbers of subscribers."""
+    return re.sub(r"0x[0-9a-f]+|\d+ subscribers?", "", str(plugin.get_state()))
 
 
 def array(vector: object) -> np.ndarray:
@@ -114,6 +120,23 @@ def test_errors_depend_on_the_seed_alone() -> None:
         found = sim.subscribe("/imu", keep=1)
         sim.run(0.1)
         assert msgs.serialize(found.messages[-1]) == msgs.serialize(one)
+
+
+@pytest.mark.parametrize(("name", "topic"), [("imu", "/imu"), ("magnetic", "/magnetic"), ("gps", "/fix_velocity")])
+def test_an_idle_sensor_without_a_drift_takes_no_time_and_subscribers_do_not_change_its_state(
+    name: str, topic: str
+) -> None:
+    with simkit.load(world(name, "<updateRate>50</updateRate>")) as sim:
+        (sensor,) = (plugin for plugin in sim.engine.structure.all_plugins() if plugin.name == name)
+        state, instant, calls = plain_state(sensor), sensor.instant, []
+        sensor.instant = lambda: calls.append(sim.time) or instant()
+        sim.run(0.5)
+        assert not calls
+        found = sim.subscribe(topic)
+        sim.run(0.5)
+        del sensor.instant
+        assert len(calls) == len(found.messages) == 25
+        assert state == plain_state(sensor)
 
 
 def test_a_gps_maps_x_to_north_by_its_heading() -> None:

@@ -211,3 +211,71 @@ def test_a_wrong_number_of_joints_and_missing_sizes_are_errors(tmp_path: Path) -
         drive(tmp_path, wheels, ["right"], ["fr"], controller, values)
     codes = [d.code for d in caught.value.diagnostics if d.severity == "error"]
     assert codes.count("SK-CONTROL-040") == 2 and "SK-CONTROL-041" in codes and "SK-PARAM-001" in codes
+
+
+ROS_1 = """base:
+  type: mecanum_drive_controller/MecanumDriveController
+  front_left_wheel_joint: fl_wheel
+  front_right_wheel_joint: fr_wheel
+  back_left_wheel_joint: bl_wheel
+  back_right_wheel_joint: br_wheel
+  pose_covariance_diagonal: [0.001, 0.001, 1000000.0, 1000000.0, 1000000.0, 0.03]
+  twist_covariance_diagonal: [0.001, 0.001, 0.001, 1000000.0, 1000000.0, 0.03]
+"""
+
+
+def ros_1_mecanum(folder: Path, values: str = "", shape: str = SHAPE) -> simkit.Simulation:
+    """Load a mecanum base with the controller of ROS 1, which has no sizes in its parameters."""
+    places = {"fl": (1, 1, "1 -1 0"), "fr": (1, -1, "1 1 0"), "bl": (-1, 1, "1 1 0"), "br": (-1, -1, "1 -1 0")}
+    wheels = "".join(wheel(name, x * BASE / 2, y * TRACK / 2) for name, (x, y, _) in places.items())
+    wheels = wheels.replace(SHAPE, shape)
+    wheels += "".join(ROLLERS.format(name=name, direction=way) for name, (_, _, way) in places.items())
+    wheels += "".join(
+        f'<transmission name="t{name}"><type>transmission_interface/SimpleTransmission</type>'
+        f'<joint name="{name}_wheel"><hardwareInterface>hardware_interface/VelocityJointInterface'
+        "</hardwareInterface></joint>"
+        f'<actuator name="m{name}"><mechanicalReduction>1</mechanicalReduction></actuator></transmission>'
+        for name in places
+    )
+    chassis = LINK.format(name="chassis", shape="", mass=10, i=0.5)
+    robot = f"""<robot name="base" xmlns:gz="http://gazebosim.org/schema">{chassis}{wheels}
+<gazebo><plugin filename="libgazebo_ros_control.so" name="control"><robotNamespace>/</robotNamespace>
+<simkit:parameters>base.yaml</simkit:parameters></plugin></gazebo></robot>"""
+    (folder / "base.urdf").write_text(robot, encoding="utf-8")
+    (folder / "base.yaml").write_text(ROS_1 + values, encoding="utf-8")
+    (folder / "lab.sdf").write_text(GROUND.format(uri=folder / "base.urdf"), encoding="utf-8")
+    return simkit.load(folder / "lab.sdf")
+
+
+@pytest.mark.parametrize(("twist", "expected"), [((0, 0.3, 0), (0, 0.6, 0)), ((0.2, 0, 0.5), None)])
+def test_the_mecanum_controller_of_ros_1_takes_its_sizes_from_the_model(
+    tmp_path: Path, twist: tuple[float, float, float], expected: tuple[float, float, float] | None
+) -> None:
+    with ros_1_mecanum(tmp_path, "  cmd_vel_timeout: 100\n") as sim:
+        odometry = sim.subscribe("/base/odom")
+        sim.run(0.5)
+        x, y, turn = twist
+        command = {"linear": {"x": float(x), "y": float(y)}, "angular": {"z": float(turn)}}
+        sim.publish("/base/cmd_vel", simkit.msgs.make("geometry_msgs/msg/Twist", **command))
+        sim.run(2.0)
+        assert len(odometry.messages) == pytest.approx(125, abs=2)  # 50 Hz
+        pose = sim.model("base").pose
+        if expected is None:  # an arc with the radius v / w
+            radius = x / turn
+            expected = (radius * math.sin(turn * 2), radius * (1 - math.cos(turn * 2)), turn * 2)
+        assert (*pose.position[:2], pose.rpy[2]) == pytest.approx(expected, abs=0.03)
+        measured = odometry.messages[-1].pose.pose
+        assert (measured.position.x, measured.position.y) == pytest.approx(expected[:2], abs=0.03)
+
+
+def test_the_mecanum_controller_of_ros_1_brakes_after_its_timeout(tmp_path: Path) -> None:
+    with ros_1_mecanum(tmp_path) as sim:
+        sim.publish("/base/cmd_vel", simkit.msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.4}))
+        sim.run(2.0)
+        assert sim.model("base").pose.position[0] == pytest.approx(0.4 * 0.5, abs=0.02)
+
+
+def test_the_mecanum_controller_of_ros_1_needs_round_wheels(tmp_path: Path) -> None:
+    box = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    with pytest.raises(simkit.InputError, match="SK-CONTROL-040.*cylinders or spheres"):
+        ros_1_mecanum(tmp_path, shape=box)

@@ -48,6 +48,8 @@ FIVE = "".join(tags(left_joint=n) for n in ("fl_joint", "rl_joint")) + "".join(
 )
 DENSITY = tags(uniform_fluid_density=40)
 CREATE = plugin("libgazebo_ros_create_{}.so")
+CREATE_DOCK = tags(receiver_link_name="base", dock_model_name="crate", emitter_link_name="l")
+RMF_LIFT = tags(cabin_joint_name="lift") + '<floor name="L1" elevation="1"/><floor name="L2" elevation="2"/>'
 MIMIC = tags(joint="door", mimicJoint="door_0", multiplier=0.5)
 ROTORS = {"r0": ("0.3 0.3 0.3", 1), "r1": ("-0.3 0.3 0.3", -1), "r2": ("-0.3 -0.3 0.3", 1), "r3": ("0.3 -0.3 0.3", -1)}
 MOTORS = "".join(
@@ -259,11 +261,22 @@ WORLDS: dict[str, str] = {
     "CreateCliffSensor": sensed("ray", CREATE.format("cliff_sensor")),
     "CreateIrIntensity": sensed("ray", CREATE.format("ir_intensity_sensor")),
     "CreateImu": sensed("imu", CREATE.format("imu")),
+    "CreateIrOpcode": lab(model=plugin("libgazebo_ros_create_ir_opcode.so", CREATE_DOCK + tags(sensor_0_fov=7))),
+    "CreateDockingStatus": lab(
+        model=plugin("libgazebo_ros_create_docking_status.so", CREATE_DOCK + tags(update_rate=50))
+    ),
     "CreateWheelDrop": lab(model=plugin("libgazebo_ros_create_wheel_drop.so", tags(joint_name="door"))),
     "CreateOpticalMouse": lab(
         model=plugin("libgazebo_ros_create_optical_mouse.so", tags(link="base"))
         + gz("velocity-control", tags(initial_linear="1 0 0"), "VelocityControl")
     ),
+    "IfraConveyorBelt": lab(model=plugin("libros2_conveyorbelt_plugin.so", tags(joint_name="door"))),
+    "AriacConveyorBelt": lab(model=plugin("libROSConveyorBeltPlugin.so", tags(joint="door", power=50))),
+    "ContactVacuumGripper": lab(model=plugin("libROSVacuumGripperPlugin.so", tags(suction_cup_link="base"))),
+    "Slotcar": lab(model=plugin("libslotcar.so", tags(nominal_power=20))),
+    "RmfDoor": lab(model=plugin("libdoor.so", '<door left_joint_name="door" right_joint_name="door_0"/>')),
+    "RmfLift": lab(model=plugin("liblift.so", RMF_LIFT)),
+    "RmfComponents": lab(model=plugin("libregister_component.so", f'<component name="Lift">{RMF_LIFT}</component>')),
     "MimicJoint": lab(model=plugin("libroboticsgroup_gazebo_mimic_joint_plugin.so", MIMIC)),
     "GraspFix": lab(
         world=BALL,
