@@ -139,7 +139,8 @@ class ServoTraits:
         gain: kv [N·m·s/rad].
         max_effort: effort limit [N·m]; infinite without one.
         largest_load: largest constant load that is corrected, with the joint's own friction [N·m].
-        damping: damping of the joint, a load that is corrected at any velocity [N·m·s/rad].
+        damping: damping of the joint, a load that is known at any velocity [N·m·s/rad].
+        friction: friction of the joint, a load that is known while the joint turns [N·m].
         response_time: time constant of the servo when it moves the whole robot [s].
     """
 
@@ -147,6 +148,7 @@ class ServoTraits:
     max_effort: float
     largest_load: float
     damping: float
+    friction: float
     response_time: float
 
 
@@ -251,7 +253,7 @@ def servo_traits(
         most = float(ranges[i, 1]) if limited[i] else math.inf
         response = inertia / gain if gain > 0.0 else math.inf
         load = weights * mass * _GRAVITY * reach + float(friction[dof])
-        found.append(ServoTraits(gain, most, min(most, load), float(damping[dof]), response))
+        found.append(ServoTraits(gain, most, min(most, load), float(damping[dof]), float(friction[dof]), response))
     return found
 
 

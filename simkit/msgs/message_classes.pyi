@@ -1399,6 +1399,23 @@ class SpawnModel_Response:
     status_message: str
     __msgtype__: ClassVar[str]
 
+# gazebo_ros_link_attacher
+
+@dataclass
+class Attach_Request:
+    """`gazebo_ros_link_attacher/srv/Attach_Request`"""
+    model_name_1: str
+    link_name_1: str
+    model_name_2: str
+    link_name_2: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Attach_Response:
+    """`gazebo_ros_link_attacher/srv/Attach_Response`"""
+    ok: bool
+    __msgtype__: ClassVar[str]
+
 # geographic_msgs
 
 @dataclass
@@ -1921,6 +1938,40 @@ class GetState_Request:
 class GetState_Response:
     """`lifecycle_msgs/srv/GetState_Response`"""
     current_state: State
+    __msgtype__: ClassVar[str]
+
+# linkattacher_msgs
+
+@dataclass
+class AttachLink_Request:
+    """`linkattacher_msgs/srv/AttachLink_Request`"""
+    model1_name: str
+    link1_name: str
+    model2_name: str
+    link2_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AttachLink_Response:
+    """`linkattacher_msgs/srv/AttachLink_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DetachLink_Request:
+    """`linkattacher_msgs/srv/DetachLink_Request`"""
+    model1_name: str
+    link1_name: str
+    model2_name: str
+    link2_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DetachLink_Response:
+    """`linkattacher_msgs/srv/DetachLink_Response`"""
+    success: bool
+    message: str
     __msgtype__: ClassVar[str]
 
 # map_msgs

@@ -18,6 +18,10 @@ from simkit.gym import Batched, Observation  # noqa: E402
 
 TWIST = {"/cmd_vel": {"linear.x": (0.0, 0.26), "angular.z": (-1.5, 1.5)}}
 MUJOCO = ("physics.contact_law=mujoco",)
+LOADS = tuple(
+    f"turtlebot3::wheel_{side}_joint.axis.dynamics.{load}={value}"
+    for side, load, value in (("left", "damping", 0.05), ("right", "friction", 0.02))
+)
 TOLERANCE = 1e-6
 """Largest difference to a single environment: one unit of the last digit of a 32-bit number near 10."""
 
@@ -104,7 +108,7 @@ def test_on_reset_may_change_numbers_of_the_model_but_not_its_parts() -> None:
 def test_a_batch_has_the_odometry_imu_and_joint_states_of_single_robots() -> None:
     observation = {"imu": "/imu", "odom": "/odom", "joints": "/joint_states", "pose": "turtlebot3", "scan": "/scan"}
     options: dict[str, Any] = {"observation": observation, "action": TWIST, "time_limit": 0.3}
-    assert assert_like_single("turtlebot3_world", 5, 2, overrides=MUJOCO, **options) == 2
+    assert assert_like_single("turtlebot3_world", 5, 2, overrides=(*MUJOCO, *LOADS), **options) == 2
 
 
 def test_a_batch_has_the_rewards_and_collisions_of_the_registered_goal_task() -> None:

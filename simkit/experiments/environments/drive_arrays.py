@@ -23,7 +23,7 @@ _LARGEST: Final = 9e9
 _CLOSE: Final = 0.01  # [m/s] as in the plugin
 _MIN_ERROR: Final = 1e-6  # [rad/s or m/s] as in the servos
 _STATES: Final = ("command", "correction", "position", "velocity", "last_command", "unrest", "tick")
-_CONSTANTS: Final = ("widest", "largest", "damping", "share", "foresight")
+_CONSTANTS: Final = ("widest", "largest", "damping", "friction", "share", "foresight")
 
 
 class BatchState(Protocol):
@@ -74,7 +74,8 @@ class ServoArrays:
             (velocity == 0.0) & (command[ids, column] != 0.0), 0.0, correction[ids, column]
         )
         command[ids, column] = velocity
-        self._state.ctrl[ids, self._indices[column]] = velocity + correction[ids, column]
+        v = {name: values[ids, column] for name, values in self._values.items()}
+        self._state.ctrl[ids, self._indices[column]] = velocity + _compensations(v)
 
     def correct(self, ids: Ids, ticks: npt.NDArray[np.int64]) -> None:
         """Update the corrections of some environments, at the present tick of each, from their commands and motions."""
@@ -88,9 +89,9 @@ class ServoArrays:
         load = np.where(is_known, load, 0.0)
         largest = v["largest"] + v["damping"] * np.abs(v["command"])
         correction = np.maximum(-largest, np.minimum(largest, v["correction"] + v["share"] * load))
-        correction = np.where(load != 0.0, correction, v["correction"])
+        v["correction"] = correction = np.where(load != 0.0, correction, v["correction"])
         places = np.ix_(ids, self._indices)
-        state.ctrl[places] = np.where(load != 0.0, v["command"] + correction, state.ctrl[places])
+        state.ctrl[places] = np.where(load != 0.0, v["command"] + _compensations(v), state.ctrl[places])
         updated = {
             "tick": np.broadcast_to(ticks[:, None], v["tick"].shape),
             "position": position,
@@ -103,6 +104,13 @@ class ServoArrays:
             self._values[name][ids] = values
 
 
+def _compensations(v: dict[str, Floats]) -> Floats:
+    """Return the parts of the controls that compensate the loads of the joints."""
+    command = v["command"]
+    known: Floats = v["correction"] + v["damping"] * command
+    return known + np.where(command != 0.0, np.copysign(v["friction"], command), 0.0)
+
+
 def _uncompensated_loads(v: dict[str, Floats], mean: Floats, velocity: Floats) -> tuple[Floats, Floats]:
     """Return the loads that the servos did not compensate in the last period, and the amounts of recent changes."""
     command, before, foresight = v["command"], v["velocity"], v["foresight"]
@@ -112,7 +120,7 @@ def _uncompensated_loads(v: dict[str, Floats], mean: Floats, velocity: Floats) -
     load = error - (velocity - before) * foresight
     size = np.abs(load) - unrest * np.maximum(1.0, foresight)
     sign = np.where(load > 0.0, 1.0, -1.0)
-    wider = np.maximum(sign * (command - velocity), sign * (v["last_command"] - before)) + sign * v["correction"]
+    wider = np.maximum(sign * (command - velocity), sign * (v["last_command"] - before)) + sign * _compensations(v)
     return np.where(is_small | (size <= 0.0) | (wider >= v["widest"]), 0.0, sign * size), unrest
 
 

@@ -2,8 +2,9 @@
 
 MuJoCo's velocity servo is proportional, `effort = kv · (control − velocity)`, so that a load reduces the velocity by
 load / kv. A larger kv does not help. MuJoCo solves contacts with the inertia of the wheel alone, and a wheel with a
-much stiffer servo slips on the ground. Therefore the control is the command plus a correction, which is updated `RATE`
-times a second:
+much stiffer servo slips on the ground. Therefore the control is the command, plus the loads / kv that the file states,
+plus a correction for all other loads. The stated loads are the damping of the joint at the commanded velocity, and its
+friction. The correction is updated `RATE` times a second:
 
     correction += period / integral_time · (mean error − response_time · gain in velocity / period)
 
@@ -24,7 +25,7 @@ The period is a grid of simulated time, so that readers and the division of a ru
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -91,7 +92,8 @@ class _BoundServo:
         index: index of the actuator.
         widest: error at which the servo gives its full effort [rad/s or m/s].
         largest: largest correction [rad/s or m/s] at rest.
-        damping: largest further correction for each rad/s or m/s of the command.
+        damping: damping of the joint divided by kv, part of the control for each rad/s or m/s of the command.
+        friction: friction of the joint divided by kv, part of the control of a joint that shall turn.
         share: factor of an uncompensated load that one update adds to the correction; above 1 only with damping.
         foresight: response time divided by the update period.
     """
@@ -101,8 +103,19 @@ class _BoundServo:
     widest: float
     largest: float
     damping: float
+    friction: float
     share: float
     foresight: float
+
+    def compensation(self) -> float:
+        """Return the part of the control that compensates the loads of the joint."""
+        servo = self.servo
+        compensation = servo.correction + self.damping * servo.command
+        return compensation + math.copysign(self.friction, servo.command) if servo.command else compensation
+
+    def control(self) -> float:
+        """Return the control: the command and the compensation of the loads."""
+        return self.servo.command + self.compensation()
 
 
 class VelocityServos:
@@ -121,7 +134,7 @@ class VelocityServos:
         # longest pause between two updates [ticks]; after a longer one the correction starts again
         self._longest = math.ceil(min(1.5 * self._period / max(engine.clock.timestep, SHORTEST_STEP), 1e15))
         self._model: mujoco.MjModel | None = None
-        self._rows: list[_BoundServo] = []
+        self._rows: dict[str, _BoundServo] = {}
         self._dofs = self._places = np.zeros(0, np.intp)
 
     def renew(self) -> None:
@@ -136,11 +149,13 @@ class VelocityServos:
 
     def command(self, ref: ActuatorRef, velocity: float) -> None:
         """Set the target velocity of a servo [rad/s or m/s]."""
-        servo = self.servos.setdefault(ref.name, _ServoState())
+        row = self._rows_by_name().get(ref.name)
+        servo = row.servo if row is not None else self.servos.setdefault(ref.name, _ServoState())
         if velocity == 0.0 and servo.command != 0.0:
             servo.correction = 0.0
         servo.command = velocity
-        self._engine.mj_data.ctrl[self._engine.names.actuator(ref)] = velocity + servo.correction
+        control = row.control() if row is not None else velocity
+        self._engine.mj_data.ctrl[self._engine.names.actuator(ref)] = control
 
     def is_commanded(self, actuators: Iterable[int]) -> bool:
         """Check whether one of these actuators of the engine has a nonzero command."""
@@ -169,7 +184,7 @@ class VelocityServos:
                 is_changed = True
                 largest = row.largest + row.damping * abs(servo.command)
                 servo.correction = max(-largest, min(largest, servo.correction + row.share * load))
-                data.ctrl[row.index] = servo.command + servo.correction
+                data.ctrl[row.index] = row.control()
         if is_changed:
             physics.changed(CONTROL)
 
@@ -180,10 +195,14 @@ class VelocityServos:
         for row in rows:
             if row.servo.correction and gains[row.index, 0] == 0.0:
                 row.servo.correction = 0.0
-                engine.mj_data.ctrl[row.index] = row.servo.command
+                engine.mj_data.ctrl[row.index] = row.control()
 
-    def _bound_servos(self) -> list[_BoundServo]:
+    def _bound_servos(self) -> Collection[_BoundServo]:
         """Return the servos with their indices in the engine's present model."""
+        return self._rows_by_name().values()
+
+    def _rows_by_name(self) -> dict[str, _BoundServo]:
+        """Return the servos with their indices in the engine's present model, by the name of the actuator."""
         engine, model = self._engine, self._engine.physics.model
         if self._model is not model:
             self._model = model
@@ -197,7 +216,9 @@ class VelocityServos:
             joints = model.actuator_trnid[indices, 0]
             self._dofs, self._places = (a[joints].astype(np.intp) for a in (model.jnt_dofadr, model.jnt_qposadr))
             rows = zip(refs, indices, traits, strict=True)
-            self._rows = [_bind_servo(self.servos[ref.name], index, trait, self._period) for ref, index, trait in rows]
+            self._rows = {
+                ref.name: _bind_servo(self.servos[ref.name], index, trait, self._period) for ref, index, trait in rows
+            }
         return self._rows
 
     # ------------------------------------------------------------------ state
@@ -231,7 +252,7 @@ def _uncompensated_load(row: _BoundServo, mean: float, velocity: float) -> float
     if size <= 0.0:
         return 0.0
     sign = 1.0 if load > 0.0 else -1.0
-    wider = max(sign * (command - velocity), sign * (servo.last_command - before)) + sign * servo.correction
+    wider = max(sign * (command - velocity), sign * (servo.last_command - before)) + sign * row.compensation()
     return 0.0 if wider >= row.widest else sign * size
 
 
@@ -241,5 +262,6 @@ def _bind_servo(servo: _ServoState, index: int, traits: ServoTraits, period: flo
     share = min(1.0, period / max(SHORTEST_INTEGRAL_TIME, MIN_RESPONSE_TIMES * traits.response_time))
     share *= 1.0 + traits.damping / gain  # damping weakens the effect of the correction on the velocity
     foresight = traits.response_time / period
-    widest, largest, damping = (v / gain for v in (traits.max_effort, traits.largest_load, traits.damping))
-    return _BoundServo(servo, index, widest, largest, damping, share, foresight)
+    loads = traits.max_effort, traits.largest_load, traits.damping, traits.friction
+    widest, largest, damping, friction = (load / gain for load in loads)
+    return _BoundServo(servo, index, widest, largest, damping, friction, share, foresight)
