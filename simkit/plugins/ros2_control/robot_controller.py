@@ -1,4 +1,4 @@
-"""Base of Fetch's controllers: a controller starts with its first goal, unless another one has a goal for its joints."""
+"""Base of Fetch's controllers: each starts with its first goal, unless another one has a goal for its joints."""
 
 from __future__ import annotations
 
