@@ -58,6 +58,7 @@ class ControlPlugin(ModelPlugin):
         hardware: joints and sensors that the manager's controllers use.
         files: parameter files of the controllers.
         is_ros_1: true for the plugin of ROS 1.
+        manager_class: class of the manager.
     """
 
     reads_at_load = ("inertial", "axes")  # gains follow from the inertias at the joints
@@ -73,6 +74,7 @@ class ControlPlugin(ModelPlugin):
     drives = True
     reads_parameter_files = True
     is_ros_1: ClassVar[bool] = False
+    manager_class: ClassVar[type[ControllerManager]] = ControllerManager
     manager: ControllerManager
     hardware: Hardware
     files: ParameterFiles
@@ -203,7 +205,7 @@ class ControlPlugin(ModelPlugin):
 
     def load(self, parent: Model, params: Params) -> None:
         self.hardware.load(self.sim)
-        self.manager = ControllerManager(self, self.hardware, self.files, self._manager_name, params.diagnostics)
+        self.manager = self.manager_class(self, self.hardware, self.files, self._manager_name, params.diagnostics)
         self._choose_free_namespace(parent.scoped.partition("::")[0], params)
         self.manager.is_ros_1 = self.is_ros_1
         offer_services(self.manager)

@@ -332,26 +332,25 @@ class ControllerManager(SharedByCopies):
     def start(self, chosen: Sequence[str]) -> None:
         """Load, configure and activate controllers in order; report controllers that cannot be activated."""
         for name in chosen:
-            where = self._declaration_location(name)
             problem = self.load(name)
             if problem:
-                self.reports.warning("SK-CONTROL-013", f"{problem}; the controller is not loaded", where)
-                continue
-            if self.configure(name):
-                continue  # `configure` has reported the problem
-            conflicts = self.conflicts(name)
-            if conflicts:
-                message = ", ".join(f"{i!r} (of {owner!r})" for i, owner in conflicts.items())
-                self.reports.note(
-                    "SK-CONTROL-014",
-                    f"controller {name!r} stays inactive: earlier controllers have claimed {message}",
-                    where,
-                    f"call {self.plugin.ros.topic(f'{self.name}/switch_controller')} to activate {name} and deactivate "
-                    "the other controllers",
-                )
-                continue
-            self.activate(name)
+                message, where = f"{problem}; the controller is not loaded", self._declaration_location(name)
+                self.reports.warning("SK-CONTROL-013", message, where)
+            elif not self.configure(name):  # `configure` has reported its problem
+                self.start_configured(name)
         self._diagnostics = None
+
+    def start_configured(self, name: str) -> None:
+        """Activate a configured controller at the start; report joints that earlier controllers drive."""
+        conflicts = self.conflicts(name)
+        if not conflicts:
+            self.activate(name)
+            return
+        claimed = ", ".join(f"{i!r} (of {owner!r})" for i, owner in conflicts.items())
+        message = f"controller {name!r} stays inactive: earlier controllers have claimed {claimed}"
+        service = self.plugin.ros.topic(f"{self.name}/switch_controller")
+        hint = f"call {service} to activate {name} and deactivate the other controllers"
+        self.reports.note("SK-CONTROL-014", message, self._declaration_location(name), hint)
 
     def _declaration_location(self, name: str) -> Where:
         own = self.files.of_node(self.node)

@@ -40,7 +40,7 @@ def modes(subscription: object) -> list[int]:
 @pytest.mark.parametrize(
     ("v", "expected"),
     [
-        (0.5, 2 * math.sqrt(1.5 / 0.15)),  # accelerates and brakes
+        pytest.param(0.5, 2 * math.sqrt(1.5 / 0.15), marks=pytest.mark.slow),  # accelerates and brakes
         (0.3, 1.5 / 0.3 + 0.3 / 0.15),  # reaches its largest speed
     ],
 )

@@ -84,6 +84,7 @@ def test_the_robot_turns_on_the_spot_reverses_and_ends_with_the_heading_of_the_p
         assert (x, y) == pytest.approx((0, 0.2 + STOP), abs=0.01) and yaw == pytest.approx(0, abs=2e-3)
 
 
+@pytest.mark.slow
 def test_a_robot_that_is_not_reversible_turns_round() -> None:
     for reversible, expected in (("true", 0.0), ("false", math.pi)):
         with simkit.load(world(f"<reversible>{reversible}</reversible>")) as sim:

@@ -247,7 +247,9 @@ def ros_1_mecanum(folder: Path, values: str = "", shape: str = SHAPE) -> simkit.
     return simkit.load(folder / "lab.sdf")
 
 
-@pytest.mark.parametrize(("twist", "expected"), [((0, 0.3, 0), (0, 0.6, 0)), ((0.2, 0, 0.5), None)])
+@pytest.mark.parametrize(
+    ("twist", "expected"), [((0, 0.3, 0), (0, 0.6, 0)), pytest.param((0.2, 0, 0.5), None, marks=pytest.mark.slow)]
+)
 def test_the_mecanum_controller_of_ros_1_takes_its_sizes_from_the_model(
     tmp_path: Path, twist: tuple[float, float, float], expected: tuple[float, float, float] | None
 ) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import control_robots
 import planar_arm
+import test_fetch as fetch
 import test_ros_1_control as ros_1
 from proof_lab import BOX, HEAVY, LIGHT, gz, lab, plugin, ros, sensed, tags
 
@@ -412,6 +413,10 @@ def _ros_1(folder: Path) -> simkit.Simulation:
     return control_robots.opened(folder, ros_1.robot("EffortJointInterface"), ros_1.yaml(kind, gains))
 
 
+def _fetch(folder: Path) -> simkit.Simulation:
+    return fetch.load(folder)
+
+
 def _motion(folder: Path) -> simkit.Simulation:
     return planar_arm.load(folder)
 
@@ -431,6 +436,7 @@ OPENED: dict[str, Callable[[Path], simkit.Simulation]] = {
     "GazeboRos2Control": _control(control_robots.CLASSIC),
     "GzRos2Control": _control("libgz_ros2_control-system.so"),
     "GazeboRosControl": _ros_1,
+    "FetchGazeboPlugin": _fetch,
     "PlayMotion": _motion,
     "PythonSystemLoader": _python_system,
     "LogRecord": _log("LogRecord"),

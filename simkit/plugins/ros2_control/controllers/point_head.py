@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
@@ -38,7 +38,7 @@ class PointHeadAction(Controller):
     ends the goal.
     """
 
-    types = ("simkit/PointHeadAction", "head_action/PointHeadAction")
+    types: ClassVar[tuple[str, ...]] = ("simkit/PointHeadAction", "head_action/PointHeadAction")
 
     def configure(self) -> None:
         params = self.params
