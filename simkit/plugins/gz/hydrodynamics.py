@@ -102,6 +102,7 @@ class Hydrodynamics(ModelPlugin):
     def _read_coefficients(self, params: Params, as_gazebo_8: bool) -> None:
         """Read all coefficients that the file has."""
         drags: list[str] = []
+        reversed_signs: list[Params] = []
         declared = {field.element: getattr(self.options, name) for name, field in self.options.fields().items()}
         for child in params.children:
             found = _COEFFICIENT.fullmatch(child.name)
@@ -110,6 +111,13 @@ class Hydrodynamics(ModelPlugin):
             row, dot, column, first, is_absolute, second = found.groups()
             value = declared[child.name] if child.name in declared else params.number(child.name, 0.0)
             i = _FORCES.index(row)
+            if (
+                value > 0
+                and _SPEEDS[i] == (column or first)
+                and second in (None, first)
+                and (is_absolute or not second)
+            ):
+                reversed_signs.append(child)
             if dot:
                 self._added[i, _SPEEDS.index(column)] = -value
             elif second is None:
@@ -120,6 +128,8 @@ class Hydrodynamics(ModelPlugin):
                 if is_drag and value:
                     drags.append(child.name)
                 (self._absolute if is_absolute or is_drag else self._signed)[i, j, k] += value
+        for child in reversed_signs:
+            _report_sign(child, is_added_mass="Dot" in child.name)
         if drags:
             listed = ", ".join(f"<{name}>" for name in drags)
             message = f"{listed}: read as factors of v·|v|, such as <xUabsU>, as in Gazebo before version 8"
@@ -173,3 +183,14 @@ class Hydrodynamics(ModelPlugin):
             wrench[3:] += np.cross(momentum[:3], linear) + np.cross(momentum[3:], angular)
         found: Vector = wrench
         return found
+
+
+def _report_sign(element: Params, *, is_added_mass: bool) -> None:
+    """Warn about a positive coefficient of one axis."""
+    found = f"<{element.name}>{element.value}</{element.name}> is positive"
+    if is_added_mass:
+        effect = "the water reduces the inertia of the link, and the simulation may diverge"
+    else:
+        effect = "the water accelerates the link along its velocity instead of braking it"
+    hint = f"write a negative number: <{element.name}>-{element.value.lstrip('+')}</{element.name}>"
+    element.warning("SK-PLUGIN-118", f"{found}: {effect}", hint)
