@@ -174,13 +174,8 @@ class MomentAerofoilOptions(AerofoilOptions):
 def read_aerofoil(options: AerofoilOptions) -> Aerofoil:
     """Return the aerofoil that the options describe; invalid directions are reported as errors."""
     params, with_moment = options.params, options if isinstance(options, MomentAerofoilOptions) else None
-    forward = _direction(params, "forward", options.forward, AerofoilOptions.forward)
-    upward = _direction(params, "upward", options.upward, AerofoilOptions.upward)
     is_radial = options.radial_symmetry
-    across = cross(forward, upward)
-    if not is_radial and dot(across, across) < 1e-12:
-        params.error("SK-PLUGIN-110", "<forward> and <upward> are parallel, so lift has no direction")
-        upward = perpendicular(forward)
+    forward, upward = read_directions(params, options.forward, options.upward, may_be_parallel=is_radial)
     moment = CoefficientLine(options.cma, options.cma_stall)
     if not with_moment and (moment.slope or moment.beyond):
         message = "<cma> and <cma_stall> have no effect: Gazebo Classic's plugin applies no pitching moment"
@@ -201,6 +196,19 @@ def read_aerofoil(options: AerofoilOptions) -> Aerofoil:
         lift_by_joint=options.control_joint_rad_to_cl,
         moment_by_joint=with_moment.cm_delta if with_moment else 0.0,
     )
+
+
+def read_directions(
+    params: Params, forward: Triple, upward: Triple, *, may_be_parallel: bool = False
+) -> tuple[Triple, Triple]:
+    """Return the unit vectors of `<forward>` and `<upward>`; invalid directions are reported as errors."""
+    forward = _direction(params, "forward", forward, AerofoilOptions.forward)
+    upward = _direction(params, "upward", upward, AerofoilOptions.upward)
+    across = cross(forward, upward)
+    if not may_be_parallel and dot(across, across) < 1e-12:
+        params.error("SK-PLUGIN-110", "<forward> and <upward> are parallel, so lift has no direction")
+        upward = perpendicular(forward)
+    return forward, upward
 
 
 def _direction(params: Params, name: str, found: Triple, default: Any) -> Triple:

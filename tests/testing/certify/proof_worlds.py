@@ -275,6 +275,23 @@ WORLDS: dict[str, str] = {
     "Hydrodynamics": lab(
         model=gz("hydrodynamics", tags(link_name="base", xU=-5, xDotU=-3, default_current="1 0 0"), "Hydrodynamics")
     ),
+    "AdvancedLiftDrag": lab(
+        model=gz(
+            "advanced-lift-drag",
+            tags(link_name="base", AR=5, eff=0.9, CL0=2, CD0=1, CLa=3, Cema=-0.3, Cellb=0.2, area=0.5),
+            "AdvancedLiftDrag",
+        )
+    ),
+    "BuoyancyEngine": lab(
+        model=gz("buoyancy-engine", tags(link_name="base", max_inflation_rate=0.01, max_volume=1), "BuoyancyEngine")
+    ),
+    "SpacecraftThrusterModel": lab(
+        model=gz(
+            "spacecraft-thruster-model",
+            tags(link_name="base", actuator_number=0, max_thrust=50, topic="jets", duty_cycle_frequency=20),
+            "SpacecraftThrusterModel",
+        )
+    ),
     "Buoyancy": lab(world=gz("buoyancy", DENSITY, "Buoyancy")),
     "BuoyancyPlugin": lab(model=plugin("libBuoyancyPlugin.so", tags(fluid_density=40))),
     "WindEffects": lab(world=gz("wind-effects", WIND + tags(force_approximation_scaling_factor=0.5), "WindEffects")),
