@@ -46,6 +46,7 @@ FINGER = "<virtualJoint><name>arm</name><scale_factor>0.5</scale_factor></virtua
 FIVE = "".join(tags(left_joint=n) for n in ("fl_joint", "rl_joint")) + "".join(
     tags(right_joint=n) for n in ("fr_joint", "rr_joint")
 )
+SWELL = tags(wave=tags(model="CWR", number=2, amplitude=0.1, period=0.5, tau=0.1))
 DENSITY = tags(uniform_fluid_density=40)
 CREATE = plugin("libgazebo_ros_create_{}.so")
 MIMIC = tags(joint="door", mimicJoint="door_0", multiplier=0.5)
@@ -290,6 +291,32 @@ WORLDS: dict[str, str] = {
             "spacecraft-thruster-model",
             tags(link_name="base", actuator_number=0, max_thrust=50, topic="jets", duty_cycle_frequency=20),
             "SpacecraftThrusterModel",
+        )
+    ),
+    "Surface": lab(
+        model=plugin(
+            "libSurface.so",
+            tags(link_name="base", fluid_level=0.3, fluid_density=30, points=tags(point="0.3 0 0"), wavefield=SWELL),
+            "vrx::Surface",
+        )
+    ),
+    "PolyhedraBuoyancyDrag": lab(
+        model=plugin(
+            "libPolyhedraBuoyancyDrag.so",
+            tags(fluid_density=200, fluid_level=0.2, linear_drag=1, wavefield=SWELL)
+            + tags(buoyancy=tags(link_name="base", geometry="<sphere><radius>0.2</radius></sphere>")),
+            "vrx::PolyhedraBuoyancyDrag",
+        )
+    ),
+    "SimpleHydrodynamics": lab(
+        model=plugin("libSimpleHydrodynamics.so", tags(link_name="base"), "vrx::SimpleHydrodynamics")
+        + gz("velocity-control", tags(initial_linear="1 0 0"), "VelocityControl")
+    ),
+    "PublisherPlugin": lab(
+        world=plugin(
+            "libPublisherPlugin.so",
+            '<message type="gz.msgs.Double" topic="/level" every="0.01">data: 2</message>',
+            "vrx::PublisherPlugin",
         )
     ),
     "Buoyancy": lab(world=gz("buoyancy", DENSITY, "Buoyancy")),
