@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.fluids.link_forces import moving_data
-from simkit.plugins.fluids.tuple_vectors import Triple, to_link_axes, to_world_axes
+from simkit.plugins.fluids.tuple_vectors import ZERO, Triple, to_link_axes, to_world_axes
 from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
@@ -18,7 +18,12 @@ class WingBase(ModelPlugin):
     """Applies a force at a point of a link, which depends on the motion of this point through the air.
 
     A subclass sets `_scoped`, the scoped name of the link, and `_centre`, the point in the link's frame [m].
+
+    Attributes:
+        is_in_wind: True if the fluid moves with the world's wind, false if it is at rest.
     """
+
+    is_in_wind: ClassVar[bool] = True
 
     _scoped: str
     _centre: Triple
@@ -64,7 +69,7 @@ class WingBase(ModelPlugin):
         gx, gy, gz = data.subtree_com[model.body_rootid[body]].tolist()
         wx, wy, wz, vx, vy, vz = data.cvel[body].tolist()  # cvel refers to the centre of mass of the whole tree
         rx, ry, rz = ox + px - gx, oy + py - gy, oz + pz - gz
-        ax, ay, az = self.sim.engine.wind.at(self.sim.tick)
+        ax, ay, az = self.sim.engine.wind.at(self.sim.tick) if self.is_in_wind else ZERO
         velocity = vx + wy * rz - wz * ry - ax, vy + wz * rx - wx * rz - ay, vz + wx * ry - wy * rx - az
         mx, my, mz = data.xipos[body].tolist()
         return (ox + px - mx, oy + py - my, oz + pz - mz), velocity, axes

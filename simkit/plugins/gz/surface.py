@@ -1,19 +1,17 @@
 """Buoyancy of a slender hull in waves: `vrx::Surface` of VRX.
 
-The hull is a half cylinder of length L and radius R. Each of its n points carries the n-th part of the length. At a
-point, the depth h of the hull below the surface of the waves is limited to 0…R, and the force is
-
-    F = ρ·g · L/n · (R²·acos((R - h)/R) - (R - h)·√(2·R·h - h²))
+The hull is a half cylinder. Each of its n points carries the n-th part of the length; see
+`simkit.plugins.fluids.hull_points`.
 """
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import find_named_link
+from simkit.plugins.fluids.hull_points import hull_wrench
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.fluids.wave_field import PARAMETERS, WavefieldOptions, WavesBase
 from simkit.plugins.options import Options, OptionsOf, block, number, text
@@ -70,35 +68,17 @@ class Surface(WavesBase):
             self._links = PushedLinks(self.sim, (self._link,))
         if not len(self._links):
             return
-        options, data, time = self.options, moving_data(self.sim), self.sim.time
-        body = self._links.ids[0]
-        axes, (ox, oy, oz) = data.xmat[body].tolist(), data.xpos[body].tolist()
-        cx, cy, cz = data.xipos[body].tolist()
-        radius = options.hull_radius
-        factor = options.hull_length / max(len(self._points), 1) * options.fluid_density
-        volume = mx = my = mz = 0.0
-        for px, py, pz in self._points:
-            x = ox + axes[0] * px + axes[1] * py + axes[2] * pz
-            y = oy + axes[3] * px + axes[4] * py + axes[5] * pz
-            z = oz + axes[6] * px + axes[7] * py + axes[8] * pz
-            depth = min(options.fluid_level + self._waves.height(x, y, time) - z, radius)
-            if depth > 0:
-                mass = factor * segment_area(radius, depth)
-                volume += mass
-                mx, my, mz = mx + mass * (x - cx), my + mass * (y - cy), mz + mass * (z - cz)
-        if volume:
-            gx, gy, gz = self.sim.mj_model.opt.gravity.tolist()
-            wrench = [-volume * g for g in (gx, gy, gz)]
-            wrench += [gy * mz - gz * my, gz * mx - gx * mz, gx * my - gy * mx]
-            self._links.push_some(data, {0: wrench})
-
-
-def segment_area(radius: float, height: float) -> float:
-    """Return the area of the segment of a circle [m²].
-
-    Args:
-        radius: Radius of the circle [m].
-        height: Height of the segment [m], from 0 to `radius`.
-    """
-    rest = radius - height
-    return radius * radius * math.acos(rest / radius) - rest * math.sqrt(2 * radius * height - height * height)
+        options, data = self.options, moving_data(self.sim)
+        length = options.hull_length / max(len(self._points), 1)
+        wrench = hull_wrench(
+            data,
+            self._links.ids[0],
+            self._points,
+            options.hull_radius,
+            options.fluid_density * length,
+            options.fluid_level,
+            self._waves,
+            self.sim.time,
+            self.sim.mj_model.opt.gravity.tolist(),
+        )
+        self._links.push_some(data, {0: wrench})

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.plugins.gz.surface import segment_area
+from simkit.plugins.fluids.hull_points import segment_area
 
 G, RHO, MASS, LENGTH, RADIUS = 9.8, 997.7735, 180.0, 4.9, 0.213
 SURFACE = 'filename="libSurface.so" name="vrx::Surface"'
