@@ -37,7 +37,7 @@ def world(mapping: str = "", timeout: float = 0.0, sea: str = "") -> str:
     )
     thrusters = "".join(THRUSTER.format(name=name, more=mapping) for name in ("left", "right"))
     return f"""<sdf version="1.6"><world name="sea"><gravity>0 0 {-G}</gravity>{sea}
-      <physics name="p" type="ode"><max_step_size>0.004</max_step_size></physics>
+      <physics name="p" type="ode"><max_step_size>0.008</max_step_size></physics>
       <model name="wamv"><pose>0 0 0.3 0 0 0</pose><link name="hull"><inertial><mass>{MASS - 0.4}</mass>
         <inertia><ixx>120</ixx><iyy>393</iyy><izz>446</izz></inertia></inertial></link>{engines}{DYNAMICS}
       <plugin name="thrust" filename="libusv_gazebo_thrust_plugin.so"><robotNamespace>wamv</robotNamespace>
@@ -112,7 +112,8 @@ def test_the_boat_follows_the_waves_of_the_ocean_model() -> None:
 def test_a_box_heaves_and_its_drag_limits_its_rise() -> None:
     density, area, height, mass = 1000.0, 0.04, 0.5, 10.0
     text = f"""<sdf version="1.6"><world name="sea"><gravity>0 0 {-G}</gravity>
-      <physics name="p" type="ode"><max_step_size>0.005</max_step_size></physics><model name="buoy"><link name="body"><inertial><mass>{mass}</mass>
+      <physics name="p" type="ode"><max_step_size>0.01</max_step_size></physics>
+      <model name="buoy"><link name="body"><inertial><mass>{mass}</mass>
       <inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>
       <plugin name="b" filename="libbuoyancy_gazebo_plugin.so"><fluid_density>{density}</fluid_density>
         <fluid_level>1</fluid_level><fluid_drag>100</fluid_drag><wave_model>ocean</wave_model><link><name>body</name>

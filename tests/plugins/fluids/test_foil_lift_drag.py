@@ -17,7 +17,8 @@ STALL, BEYOND = 1 / (2 * math.pi), -2 * math.pi / (math.pi**2 - 1)
 
 def world(names: str = FOIL, parameters: str = "<cp>0 0 0</cp>", wind: str = "0 0 0") -> str:
     return f"""<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity>
-      <wind><linear_velocity>{wind}</linear_velocity></wind><model name="boat"><link name="foil"><inertial><mass>{MASS}</mass>
+      <wind><linear_velocity>{wind}</linear_velocity></wind>
+      <model name="boat"><link name="foil"><inertial><mass>{MASS}</mass>
       <inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>
       <plugin {names}><link_name>foil</link_name><area>{AREA}</area><fluid_density>1000</fluid_density>{parameters}
       </plugin></model></world></sdf>"""

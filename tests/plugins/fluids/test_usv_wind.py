@@ -47,6 +47,7 @@ def test_a_boat_drifts_to_the_speed_of_the_wind() -> None:
         assert sim.link("boat::hull").linear_velocity[0] == pytest.approx(6 - 6 / (1 + 6 * 5 * 10 / MASS), rel=2e-3)
 
 
+@pytest.mark.slow  # slow: 8000 steps with a message each
 def test_gusts_have_their_strength_and_time_constant_and_are_published() -> None:
     gusts = (
         "<var_wind_gain_constants>1.5</var_wind_gain_constants><var_wind_time_constants>0.2</var_wind_time_constants>"

@@ -18,7 +18,7 @@ def world(parameters: str, *, depth: float = 10.0, more: str = "") -> str:
     """Return a neutrally buoyant submarine: the box displaces its weight."""
     side = (MASS / RHO) ** (1 / 3)
     return f"""<sdf version="1.9"><world name="sea"><gravity>0 0 {-G}</gravity>
-    <physics name="p" type="ode"><max_step_size>0.005</max_step_size></physics>
+    <physics name="p" type="ode"><max_step_size>0.02</max_step_size></physics>
     <plugin filename="gz-sim-buoyancy-system" name="gz::sim::systems::Buoyancy">
       <uniform_fluid_density>{RHO}</uniform_fluid_density></plugin>
     <model name="sub"><pose>0 0 {-depth} 0 0 0</pose><link name="hull"><inertial><mass>{MASS}</mass>

@@ -22,7 +22,7 @@ BOX = f"<box><size>{SIDE} {SIDE} {SIDE}</size></box>"
 
 def world(parameters: str = "", shape: str = BOX, x: float = 0.0, z: float = 0.0, offset: str = "") -> str:
     return f"""<sdf version="1.9"><world name="sea"><gravity>0 0 {-G}</gravity>
-      <physics name="p" type="ode"><max_step_size>0.004</max_step_size></physics>
+      <physics name="p" type="ode"><max_step_size>0.005</max_step_size></physics>
       <model name="buoy"><pose>{x} 0 {z} 0 0 0</pose><link name="body"><inertial><mass>{MASS}</mass>
         <inertia><ixx>0.05</ixx><iyy>0.05</iyy><izz>0.05</izz></inertia></inertial></link>
       <plugin {PLUGIN}><fluid_density>{RHO}</fluid_density>{parameters}

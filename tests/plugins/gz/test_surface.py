@@ -47,7 +47,7 @@ def world(more: str = "", top: str = "", load: str = "0 0 0") -> str:
         for name, y in (("left", 1.0), ("right", -1.0))
     )
     return f"""<sdf version="1.9"><world name="sea"><gravity>0 0 {-G}</gravity>
-      <physics name="p" type="ode"><max_step_size>0.004</max_step_size></physics>{top}
+      <physics name="p" type="ode"><max_step_size>0.008</max_step_size></physics>{top}
       <model name="wamv"><pose>0 0 0.1 0 0 0</pose><link name="hull"><inertial><pose>{load} 0 0 0</pose>
         <mass>{MASS}</mass><inertia><ixx>120</ixx><iyy>393</iyy><izz>446</izz></inertia></inertial></link>
       {thrusters}{hull(1.03)}{hull(-1.03)}{DRAG}{more}</model></world></sdf>"""
