@@ -49,7 +49,7 @@ class WavefieldModelPlugin(ModelPlugin):
     lets_sleep = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        parameters = self.options.wave.read()
+        parameters = self.options.read_all().wave.read()
         self.field = WaveField(parameters.waves(), parameters.tau)
 
     def load(self, parent: Model, params: Params) -> None:

@@ -164,6 +164,7 @@ class WaveOptions(Options):
 
     def read(self) -> WaveParameters:
         """Return the parameters; a fault is reported as an error."""
+        self.read_all()
         x, y = self.direction
         found = WaveParameters(
             model=self.model,
@@ -202,6 +203,7 @@ class WavesBase(ModelPlugin):
 
         Without the block, the water is calm until a message arrives.
         """
+        options.read_all()
         self._wave_parameters = options.wave.read()
         self._waves = self._field() if options.is_given else WaveField()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
 
 _NANOSECONDS: Final = 1_000_000_000
+_LATEST: Final = 1e9  # [s]
 
 
 class PublishedMessageOptions(Options):
@@ -92,7 +92,7 @@ class PublisherPlugin(WorldPlugin):
 def _time(element: Params, attribute: str, written: str) -> int:
     """Return the time in an attribute [ns]; 0 after a reported error."""
     seconds = number_or_nan(written)
-    if not 0 <= seconds < math.inf:
-        element.error("SK-PARAM-002", f'found <message {attribute}="{written}">; expected seconds of at least 0')
+    if not 0 <= seconds <= _LATEST:
+        element.error("SK-PARAM-002", f'found <message {attribute}="{written}">; expected 0 to {_LATEST:g} seconds')
         return 0
-    return round(seconds * _NANOSECONDS)
+    return max(round(seconds * _NANOSECONDS), 1) if seconds > 0 else 0

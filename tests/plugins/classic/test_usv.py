@@ -101,6 +101,7 @@ def test_the_second_mapping_is_the_logistic_function_of_a_measured_engine() -> N
 
 def test_the_boat_follows_the_waves_of_the_ocean_model() -> None:
     with simkit.load(world(sea=SEA.format(name="ocean", amplitude=0.2, period=8.0))) as sim:
+        assert not [found for found in sim.diagnostics if found.severity != "note"]
         sim.run(12.0)
         heights = []
         for _ in range(20):

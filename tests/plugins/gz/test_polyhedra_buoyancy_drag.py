@@ -65,6 +65,7 @@ def test_a_small_body_heaves_as_the_wave_and_the_equation_of_its_motion_say(x: f
     stiffness, damping = RHO * G * SIDE**2, drag * MASS * share
     factor = (stiffness + 1j * damping * frequency) / (stiffness - MASS * frequency**2 + 1j * damping * frequency)
     with simkit.load(world(SWELL + f"<linear_drag>{drag}</linear_drag>", x=x)) as sim:
+        assert not [found for found in sim.diagnostics if found.severity != "note"]
         sim.run(10.0)
         count = 50
         found = heights(sim, PERIOD, count)
