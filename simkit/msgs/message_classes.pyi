@@ -3752,6 +3752,13 @@ class MaterialColor:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class ParamVec:
+    """`ros_gz_interfaces/msg/ParamVec`"""
+    header: Header
+    params: list[Parameter]
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class WorldControl:
     """`ros_gz_interfaces/msg/WorldControl`"""
     pause: bool

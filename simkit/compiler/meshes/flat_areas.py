@@ -17,7 +17,7 @@ _ANGLE: Final = 1e-4
 _LINES: Final = 10
 """Number of lines that are compared, the longest sides of the outline."""
 
-_HIGHEST_FACTOR: Final = 1e-3
+_LEAST_DISTANCE: Final = 1e-3
 """Least distance of a line from the ends of the area, relative to its size."""
 
 
@@ -95,7 +95,7 @@ def dividing_line(corners: Floats, up: Floats) -> tuple[Floats, float] | None:
     for direction, offset in lines:
         across = np.array((-direction[1], direction[0]))
         distances = flat @ across - offset
-        if distances.max() < _HIGHEST_FACTOR * size or distances.min() > -_HIGHEST_FACTOR * size:
+        if distances.max() < _LEAST_DISTANCE * size or distances.min() > -_LEAST_DISTANCE * size:
             continue
         is_above = middles @ across > offset
         total = _hull_area(flat[is_above]) + _hull_area(flat[~is_above])

@@ -18,24 +18,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
 from simkit.plugins.find_entities import find_axis_joint, find_named_link
-from simkit.plugins.fluids.link_forces import moving_data
+from simkit.plugins.fluids.tuple_vectors import ZERO, Triple, cross, dot, perpendicular, scaled, unit
+from simkit.plugins.fluids.wing import WingBase
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3
-from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
-    import mujoco
-
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
-Triple = tuple[float, float, float]
 SLOWEST: Final = 0.01
 """Speed of the stream [m/s] up to which no force acts."""
-_ZERO: Final[Triple] = (0.0, 0.0, 0.0)
 _STRAIGHT: Final = 1e-9  # sine of the largest angle to the axis of revolution at which a stream counts as parallel
 
 
@@ -106,17 +101,17 @@ class Aerofoil:
             velocity: Velocity of the centre of pressure relative to the air [m/s], in the link's frame.
             angle: Angle of the control surface [rad].
         """
-        speed = math.sqrt(_dot(velocity, velocity))
-        if speed <= SLOWEST or not (self.is_reversible or _dot(self.forward, velocity) > 0.0):
-            return _ZERO, _ZERO
+        speed = math.sqrt(dot(velocity, velocity))
+        if speed <= SLOWEST or not (self.is_reversible or dot(self.forward, velocity) > 0.0):
+            return ZERO, ZERO
         up = self._up(velocity, speed)
-        span = unit(_cross(self.forward, up))
-        across = _dot(velocity, span)
+        span = unit(cross(self.forward, up))
+        across = dot(velocity, span)
         plane = tuple(v - across * s for v, s in zip(velocity, span, strict=True))
-        in_plane = math.sqrt(_dot(plane, plane))
+        in_plane = math.sqrt(dot(plane, plane))
         if in_plane < 1e-12 * speed:
-            return _ZERO, _ZERO
-        lift_way = unit(_cross(span, plane))
+            return ZERO, ZERO
+        lift_way = unit(cross(span, plane))
         alpha = self._angle_of_attack(lift_way, up)
         facing = 1.0 - (across / speed) ** 2
         lift = self.lift.one_sided(alpha, self.stall) * facing + self.lift_by_joint * angle
@@ -125,22 +120,22 @@ class Aerofoil:
         pressed = 0.5 * self.density * in_plane * in_plane * self.area
         along = drag * pressed / in_plane
         force = tuple(lift * pressed * way - along * p for way, p in zip(lift_way, plane, strict=True))
-        return (force[0], force[1], force[2]), _scaled(span, moment * pressed)
+        return (force[0], force[1], force[2]), scaled(span, moment * pressed)
 
     def _up(self, velocity: Triple, speed: float) -> Triple:
         if not self.is_radial:
             return self.upward
-        aside = _cross(self.forward, velocity)
-        if _dot(aside, aside) < (_STRAIGHT * speed) ** 2:
+        aside = cross(self.forward, velocity)
+        if dot(aside, aside) < (_STRAIGHT * speed) ** 2:
             # for a parallel stream, the angle of attack is zero with any upward direction
-            return _any_across(self.forward)
-        return unit(_cross(self.forward, aside))
+            return perpendicular(self.forward)
+        return unit(cross(self.forward, aside))
 
     def _angle_of_attack(self, lift_way: Triple, up: Triple) -> float:
         """Return the angle of attack, from -90° to 90°: a stream from behind counts as a stream from the front."""
-        aside = _cross(up, lift_way)
-        angle = math.atan2(math.sqrt(_dot(aside, aside)), _dot(up, lift_way))
-        alpha = self.zero + (angle if _dot(lift_way, self.forward) >= 0.0 else -angle)
+        aside = cross(up, lift_way)
+        angle = math.atan2(math.sqrt(dot(aside, aside)), dot(up, lift_way))
+        alpha = self.zero + (angle if dot(lift_way, self.forward) >= 0.0 else -angle)
         return math.remainder(alpha, math.pi) if abs(alpha) > math.pi / 2 else alpha
 
 
@@ -179,13 +174,8 @@ class MomentAerofoilOptions(AerofoilOptions):
 def read_aerofoil(options: AerofoilOptions) -> Aerofoil:
     """Return the aerofoil that the options describe; invalid directions are reported as errors."""
     params, with_moment = options.params, options if isinstance(options, MomentAerofoilOptions) else None
-    forward = _direction(params, "forward", options.forward, AerofoilOptions.forward)
-    upward = _direction(params, "upward", options.upward, AerofoilOptions.upward)
     is_radial = options.radial_symmetry
-    across = _cross(forward, upward)
-    if not is_radial and _dot(across, across) < 1e-12:
-        params.error("SK-PLUGIN-110", "<forward> and <upward> are parallel, so lift has no direction")
-        upward = _any_across(forward)
+    forward, upward = read_directions(params, options.forward, options.upward, may_be_parallel=is_radial)
     moment = CoefficientLine(options.cma, options.cma_stall)
     if not with_moment and (moment.slope or moment.beyond):
         message = "<cma> and <cma_stall> have no effect: Gazebo Classic's plugin applies no pitching moment"
@@ -208,6 +198,19 @@ def read_aerofoil(options: AerofoilOptions) -> Aerofoil:
     )
 
 
+def read_directions(
+    params: Params, forward: Triple, upward: Triple, *, may_be_parallel: bool = False
+) -> tuple[Triple, Triple]:
+    """Return the unit vectors of `<forward>` and `<upward>`; invalid directions are reported as errors."""
+    forward = _direction(params, "forward", forward, AerofoilOptions.forward)
+    upward = _direction(params, "upward", upward, AerofoilOptions.upward)
+    across = cross(forward, upward)
+    if not may_be_parallel and dot(across, across) < 1e-12:
+        params.error("SK-PLUGIN-110", "<forward> and <upward> are parallel, so lift has no direction")
+        upward = perpendicular(forward)
+    return forward, upward
+
+
 def _direction(params: Params, name: str, found: Triple, default: Any) -> Triple:
     if not any(found):
         params.error("SK-PARAM-002", f"found <{name}>0 0 0</{name}>; expected a direction")
@@ -216,34 +219,7 @@ def _direction(params: Params, name: str, found: Triple, default: Any) -> Triple
     return unit(found)
 
 
-def unit(v: Triple) -> Triple:
-    """Return the vector scaled to length 1; a zero vector stays zero."""
-    largest = max(abs(v[0]), abs(v[1]), abs(v[2]))
-    if largest == 0.0:
-        return _ZERO
-    scaled = (v[0] / largest, v[1] / largest, v[2] / largest)
-    length = math.sqrt(_dot(scaled, scaled))
-    return scaled[0] / length, scaled[1] / length, scaled[2] / length
-
-
-def _any_across(v: Triple) -> Triple:
-    axis = min(range(3), key=lambda i: abs(v[i]))
-    return unit(_cross(v, (float(axis == 0), float(axis == 1), float(axis == 2))))
-
-
-def _dot(a: tuple[float, ...], b: tuple[float, ...]) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: tuple[float, ...], b: tuple[float, ...]) -> Triple:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-def _scaled(v: Triple, by: float) -> Triple:
-    return v[0] * by, v[1] * by, v[2] * by
-
-
-class LiftDragBase(ModelPlugin):
+class LiftDragBase(WingBase):
     """Applies lift, drag and moment to one link.
 
     They depend on the link's velocity relative to the air and on the angle of a joint, which turns a control surface.
@@ -274,61 +250,9 @@ class LiftDragBase(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         self._joint = JointAxis(self.sim.joint(self._joint_name)) if self._joint_name else None
 
-    def before_step(self) -> None:
-        """Apply lift, drag and moment to the link for the next step."""
-        sim = self.sim
-        body = sim.engine.names.links[self._scoped].body
-        if body <= 0:
-            return
-        data = moving_data(sim)
-        arm, velocity, axes = self._motion(data, body)
-        angle = self._joint.position if self._joint is not None else 0.0
-        force, moment = self._aerofoil.load(_turned_back(axes, velocity), angle)
-        if not (any(force) or any(moment)):
-            return
-        (fx, fy, fz), (mx, my, mz) = _in_world_axes(axes, force), _in_world_axes(axes, moment)
-        x, y, z = arm
-        row = data.xfrc_applied[body]
-        row += (fx, fy, fz, mx + y * fz - z * fy, my + z * fx - x * fz, mz + x * fy - y * fx)
-        sim.engine.physics.one_shot = True
-        sim.engine.physics.changed_body(CONTROL, body)
-
-    def _motion(self, data: mujoco.MjData, body: int) -> tuple[Triple, Triple, list[float]]:
-        """Return the state of the centre of pressure.
-
-        Returns:
-            Position relative to the centre of mass [m], velocity relative to the air [m/s], and the link's axes.
-        """
-        model = self.sim.mj_model
-        axes: list[float] = data.xmat[body].tolist()
-        px, py, pz = _in_world_axes(axes, self._centre)
-        ox, oy, oz = data.xpos[body].tolist()
-        gx, gy, gz = data.subtree_com[model.body_rootid[body]].tolist()
-        wx, wy, wz, vx, vy, vz = data.cvel[body].tolist()  # cvel refers to the centre of mass of the whole tree
-        rx, ry, rz = ox + px - gx, oy + py - gy, oz + pz - gz
-        ax, ay, az = self.sim.engine.wind.at(self.sim.tick)
-        velocity = vx + wy * rz - wz * ry - ax, vy + wz * rx - wx * rz - ay, vz + wx * ry - wy * rx - az
-        mx, my, mz = data.xipos[body].tolist()
-        return (ox + px - mx, oy + py - my, oz + pz - mz), velocity, axes
-
-
-def _in_world_axes(axes: list[float], v: Triple) -> Triple:
-    """Rotate a vector from the link's frame into the world; the matrix is row-major."""
-    x, y, z = v
-    return (
-        axes[0] * x + axes[1] * y + axes[2] * z,
-        axes[3] * x + axes[4] * y + axes[5] * z,
-        axes[6] * x + axes[7] * y + axes[8] * z,
-    )
-
-
-def _turned_back(axes: list[float], v: Triple) -> Triple:
-    x, y, z = v
-    return (
-        axes[0] * x + axes[3] * y + axes[6] * z,
-        axes[1] * x + axes[4] * y + axes[7] * z,
-        axes[2] * x + axes[5] * y + axes[8] * z,
-    )
+    def find_load(self, velocity: Triple, spin: Triple) -> tuple[Triple, Triple]:
+        """Return force and moment at the centre of pressure."""
+        return self._aerofoil.load(velocity, self._joint.position if self._joint is not None else 0.0)
 
 
 class LiftDrag(LiftDragBase):

@@ -9,9 +9,7 @@ M is the added mass, whose elements the file gives with the opposite sign (`<xDo
 and centripetal matrix (theorem 6.2). Elements of the file have the names of SNAME (1950): `xU` is the force along x for
 a velocity along x, `xUabsU` the force for u·|u|, `nVR` the torque about z for v·r.
 
-The added mass acts through the acceleration of the last step. Applied as it is, this diverges when the added mass is
-larger than the mass of the link. Therefore the acceleration is smoothed by the factor m / (m + added mass) in each
-axis. A body in open water then accelerates as one with the mass m + added mass, from the second step on.
+The added mass acts through the acceleration of the last steps: see `simkit.plugins.fluids.added_mass`.
 """
 
 from __future__ import annotations
@@ -27,6 +25,7 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import find_named_link
+from simkit.plugins.fluids.added_mass import SmoothedAcceleration, own_inertia
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3, without_effect
 from simkit.pose import Vector
@@ -96,12 +95,12 @@ class Hydrodynamics(ModelPlugin):
         else:
             self._applied_mass = self._added
         link = next((link for link in scene.all_links() if link.scoped == self._link), None)
-        own = np.ones(6) if link is None else np.array([link.inertial.mass] * 3 + [*link.inertial.inertia[:3]])
-        self._smoothing = own / (own + np.maximum(np.diag(self._applied_mass), 0.0))
+        self._acceleration = SmoothedAcceleration(own_inertia(link), np.diag(self._applied_mass))
 
     def _read_coefficients(self, params: Params, as_gazebo_8: bool) -> None:
         """Read all coefficients that the file has."""
         drags: list[str] = []
+        reversed_signs: list[Params] = []
         declared = {field.element: getattr(self.options, name) for name, field in self.options.fields().items()}
         for child in params.children:
             found = _COEFFICIENT.fullmatch(child.name)
@@ -110,6 +109,13 @@ class Hydrodynamics(ModelPlugin):
             row, dot, column, first, is_absolute, second = found.groups()
             value = declared[child.name] if child.name in declared else params.number(child.name, 0.0)
             i = _FORCES.index(row)
+            if (
+                value > 0
+                and _SPEEDS[i] == (column or first)
+                and second in (None, first)
+                and (is_absolute or not second)
+            ):
+                reversed_signs.append(child)
             if dot:
                 self._added[i, _SPEEDS.index(column)] = -value
             elif second is None:
@@ -120,6 +126,8 @@ class Hydrodynamics(ModelPlugin):
                 if is_drag and value:
                     drags.append(child.name)
                 (self._absolute if is_absolute or is_drag else self._signed)[i, j, k] += value
+        for child in reversed_signs:
+            _report_sign(child, is_added_mass="Dot" in child.name)
         if drags:
             listed = ", ".join(f"<{name}>" for name in drags)
             message = f"{listed}: read as factors of v·|v|, such as <xUabsU>, as in Gazebo before version 8"
@@ -130,8 +138,6 @@ class Hydrodynamics(ModelPlugin):
         options = self.options
         self._links = PushedLinks(self.sim, (self._link,))
         self._current = np.array(options.default_current)
-        self._last: Vector | None = None  # velocity of the last step
-        self._acceleration = np.zeros(6)
         own = f"/model/{options.namespace}" if options.namespace else ""
         self.listen(valid_topic(f"{own}/ocean_current"), VECTOR, self._on_current)
 
@@ -160,11 +166,8 @@ class Hydrodynamics(ModelPlugin):
 
     def _wrench(self, velocity: Vector) -> Vector:
         """Return force [N] and torque [N·m] at the link's origin, in its axes, and store the velocity."""
-        if self._last is not None:
-            measured = (velocity - self._last) / self.period
-            self._acceleration += self._smoothing * (measured - self._acceleration)
-        self._last = velocity
-        wrench = self._linear @ velocity - self._applied_mass @ self._acceleration
+        acceleration = self._acceleration.update(velocity, self.period)
+        wrench = self._linear @ velocity - self._applied_mass @ acceleration
         wrench += self._absolute @ np.abs(velocity) @ velocity + self._signed @ velocity @ velocity
         if not self.options.disable_coriolis:
             momentum = self._added @ velocity
@@ -173,3 +176,14 @@ class Hydrodynamics(ModelPlugin):
             wrench[3:] += np.cross(momentum[:3], linear) + np.cross(momentum[3:], angular)
         found: Vector = wrench
         return found
+
+
+def _report_sign(element: Params, *, is_added_mass: bool) -> None:
+    """Warn about a positive coefficient of one axis."""
+    found = f"<{element.name}>{element.value}</{element.name}> is positive"
+    if is_added_mass:
+        effect = "the water reduces the inertia of the link, and the simulation may diverge"
+    else:
+        effect = "the water accelerates the link along its velocity instead of braking it"
+    hint = f"write a negative number: <{element.name}>-{element.value.lstrip('+')}</{element.name}>"
+    element.warning("SK-PLUGIN-118", f"{found}: {effect}", hint)

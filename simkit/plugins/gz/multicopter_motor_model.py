@@ -80,9 +80,10 @@ class MulticopterMotorModel(ModelPlugin):
         options = self.options.read_all()
         self._link = find_named_link(scene, "linkName", params)
         joint = find_named_joint(scene, "jointName", params)
-        self._number = options.actuator_number if params.has("actuator_number") else options.motor_number
-        if not params.has("actuator_number") and not params.has("motorNumber"):
-            params.text("motorNumber", required=True)
+        if params.has("actuator_number"):
+            self._number = options.actuator_number
+        else:
+            self._number = params.integer("motorNumber", required=True, minimum=0)
         self._is_driven = options.motor_type == "velocity"
         if not self._is_driven:
             kind = f"<motorType>{options.motor_type}</motorType> has no effect, as in Gazebo"
@@ -96,7 +97,7 @@ class MulticopterMotorModel(ModelPlugin):
         options = self.options
         self._joint = PropellerJoint(JointAxis(self.sim.joint(self._joint_name)), self._inertia, self.period)
         self._links = PushedLinks(self.sim, (self._link, self._parent))
-        self._ways = _DIRECTIONS[options.direction]
+        self._sign = _DIRECTIONS[options.direction]
         self._input = 0.0  # commanded speed of the rotor [rad/s]
         self._filtered = 0.0  # the same after the filter
         self._has_state = False
@@ -139,7 +140,7 @@ class MulticopterMotorModel(ModelPlugin):
         slow = options.time_up if self._input > self._filtered else options.time_down
         left = math.exp(-self.period / slow) if slow > 0 else 0.0
         self._filtered = left * self._filtered + (1 - left) * self._input
-        self._joint.turn(self._ways * self._filtered / options.slowdown)
+        self._joint.turn(self._sign * self._filtered / options.slowdown)
 
     def _apply_forces(self, speed: float) -> None:
         if not self._links.is_current:
@@ -156,10 +157,10 @@ class MulticopterMotorModel(ModelPlugin):
         jx, jy, jz = data.xaxis[self.sim.mj_model.dof_jntid[self._joint.axis.dof]].tolist()
         along = vx * jx + vy * jy + vz * jz
         vx, vy, vz = vx - along * jx, vy - along * jy, vz - along * jz
-        thrust = self._ways * speed * abs(speed) * options.thrust_factor
+        thrust = self._sign * speed * abs(speed) * options.thrust_factor
         drag = -abs(speed) * options.drag_factor
         wrenches = {0: (xz * thrust + drag * vx, yz * thrust + drag * vy, zz * thrust + drag * vz, 0.0, 0.0, 0.0)}
         if len(links.names) > 1:
-            twist, roll = -self._ways * thrust * options.torque_factor, -abs(speed) * options.rolling_factor
+            twist, roll = -self._sign * thrust * options.torque_factor, -abs(speed) * options.rolling_factor
             wrenches[1] = (0.0, 0.0, 0.0, xz * twist + roll * vx, yz * twist + roll * vy, zz * twist + roll * vz)
         links.push_some(data, wrenches)

@@ -102,7 +102,7 @@ class MulticopterVelocityControl(ModelPlugin):
             hint = "list at least four rotors that are not in one line, with both directions"
             params.error("SK-PLUGIN-116", f"{found}", hint)
             return
-        self._speeds_squared = np.linalg.pinv(effects)
+        self._allocation = np.linalg.pinv(effects)
 
     def _read_rotor(self, scene: SceneModel, rotor: RotorOptions) -> tuple[float, float, float, float] | None:
         """Return the effects of a rotor at 1 rad/s in the axes of the link: torques [N·m] and thrust [N]."""
@@ -153,7 +153,7 @@ class MulticopterVelocityControl(ModelPlugin):
             self._command = None
             if self._is_turning:
                 self._is_turning = False
-                self._send([0.0] * self._speeds_squared.shape[0])
+                self._send([0.0] * self._allocation.shape[0])
             return
         if self._command is not None:
             self._is_turning = True
@@ -191,7 +191,7 @@ class MulticopterVelocityControl(ModelPlugin):
         lag = turning - axes.T @ aim[:, 2] * rate
         torques = -angle * options.attitude_gain - lag * options.rate_gain
         thrust = -self._mass * float(force @ axes[:, 2])
-        squared: Vector = self._speeds_squared @ np.append(torques, thrust)
+        squared: Vector = self._allocation @ np.append(torques, thrust)
         return np.sqrt(np.maximum(squared, 0.0))
 
     def _with_noise(self, name: str, value: Vector) -> Vector:

@@ -11,17 +11,20 @@ from simkit.errors import MessageError
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params, number_or_nan
 from simkit.plugins.base import NEVER, WorldPlugin
+from simkit.plugins.gz.message_elements import (
+    message_kind,
+    read_message,
+    ros_type_of,
+    shortened,
+    topic_attribute,
+)
 from simkit.plugins.gz.performer_detector import DETAILS, STATUS, pose_of_status
-from simkit.plugins.gz_python.msgs import message_class
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.gz_python.msgs.message_matcher import TOLERANCE, MessageMatcher
 from simkit.plugins.gz_python.msgs.ros_conversion import SERVICE_REQUEST_TYPES, call_service, from_ros, to_ros, twins_of
-from simkit.plugins.gz_python.msgs.text_format import parse_message
 from simkit.plugins.options import Options, OptionsOf, blocks, integer, text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from simkit.msgs import PerformerStatus
     from simkit.runtime import Publisher, Simulation
 
@@ -104,7 +107,7 @@ class TriggeredPublisher(WorldPlugin):
     # ------------------------------------------------------------------ parameters
 
     def _read_input(self, element: Params) -> None:
-        kind, topic = self._kind(element, "type"), _topic(element)
+        kind, topic = message_kind(element, "type"), topic_attribute(element)
         matchers = element.all("match")
         if kind is None or not topic:
             for match in matchers:
@@ -139,46 +142,30 @@ class TriggeredPublisher(WorldPlugin):
         try:
             return MessageMatcher(kind, element.value, field, tolerance, logic == "positive")
         except MessageError as error:
-            element.error("SK-PLUGIN-121", f"<match>{_shortened(element.value)}</match>: {error}")
+            element.error("SK-PLUGIN-121", f"<match>{shortened(element.value)}</match>: {error}")
             return None
 
     def _read_output(self, element: Params) -> _Output | None:
-        kind, topic = self._kind(element, "type"), _topic(element)
+        kind, topic = message_kind(element, "type"), topic_attribute(element)
         if kind is None or not topic:
             return None
-        message = _message(kind, element.value, element, "<output>")
+        message = read_message(kind, element.value, element, "<output>")
         if message is None:
             return None
-        known, twins = self.sim.communication.bus.topics().get(topic), [twin.ros for twin in twins_of(kind)]
-        ros = known if known in twins else twins[0]
+        ros = ros_type_of(self.sim, kind, topic)
         return _Output(self.advertise(topic, ros), message, ros)
 
     def _read_request(self, element: Params) -> _Request | None:
         name, text = element.attribute("name"), element.attribute("reqMsg")
         element.attribute("timeout")  # [ms], unused: services respond at once
-        kind = self._kind(element, "reqType", SERVICE_REQUEST_TYPES)
-        answer = self._kind(element, "repType", MESSAGE_CLASSES)
+        kind = message_kind(element, "reqType", SERVICE_REQUEST_TYPES)
+        answer = message_kind(element, "repType", MESSAGE_CLASSES)
         if not name:
             element.error("SK-PARAM-001", '<service> needs name="...", the name of the service')
         if kind is None or answer is None or not name:
             return None
-        message = _message(kind, text, element, "reqMsg")
+        message = read_message(kind, text, element, "reqMsg")
         return None if message is None else _Request(valid_topic(name), message, answer)
-
-    def _kind(self, element: Params, attribute: str, known: Iterable[str] | None = None) -> type[Message] | None:
-        """Return the message class that an attribute names; None after a reported error."""
-        written = element.attribute(attribute)
-        if not written:
-            element.error("SK-PARAM-001", f'<{element.name}> needs {attribute}=: a type such as "gz.msgs.Boolean"')
-            return None
-        package, _, name = written.rpartition(".")
-        listed = [name for name in MESSAGE_CLASSES if _has_ros_type(name)] if known is None else list(known)
-        if name in listed and package in ("gz.msgs", "ignition.msgs"):
-            return message_class(name)
-        hint = did_you_mean(name, listed) or f"expected {', '.join(sorted(listed))} of gz.msgs"
-        message = f'<{element.name} {attribute}="{written}">: messages of this type are not supported here'
-        element.error("SK-PLUGIN-120", message, hint)
-        return None
 
     # ------------------------------------------------------------------ messages
 
@@ -222,23 +209,6 @@ class TriggeredPublisher(WorldPlugin):
                 self._once.warn("SK-PLUGIN-122", f"{request.service} failed", message)
 
 
-def _has_ros_type(name: str) -> bool:
-    try:
-        return bool(twins_of(MESSAGE_CLASSES[name]))
-    except MessageError:
-        return False
-
-
-def _topic(element: Params) -> str:
-    """Return the topic that an element names; an empty text after a reported error."""
-    written = element.attribute("topic")
-    topic = valid_topic(written)
-    if topic == "/":
-        element.error("SK-PARAM-001", f'<{element.name}> needs topic="...", the name of a topic; found {written!r}')
-        return ""
-    return topic
-
-
 def _tolerance(element: Params) -> float:
     text = element.attribute("tol", str(TOLERANCE))
     tolerance = number_or_nan(text)
@@ -246,19 +216,3 @@ def _tolerance(element: Params) -> float:
         element.error("SK-PARAM-002", f'found <match tol="{text}">; expected a number of at least 0')
         return TOLERANCE
     return tolerance
-
-
-def _message(kind: type[Message], text: str, element: Params, label: str) -> Message | None:
-    try:
-        message = parse_message(kind, text)
-        for twin in twins_of(kind)[:1] if _has_ros_type(kind.__name__) else ():
-            to_ros(message, twin.ros)  # report at load time the values that the ROS type cannot store
-    except MessageError as error:
-        element.error("SK-PLUGIN-121", f"{label} {_shortened(text)}: {error}")
-        return None
-    return message
-
-
-def _shortened(text: str) -> str:
-    text = " ".join(text.split())
-    return text if len(text) <= 80 else text[:77] + "..."

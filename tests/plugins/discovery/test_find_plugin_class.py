@@ -101,7 +101,7 @@ def test_a_dissimilar_name_still_gets_the_closest_name() -> None:
 
 
 def test_an_unsupported_gazebo_plugin_is_reported_as_such() -> None:
-    plugin = named("gz-sim-buoyancy-engine-system", "gz::sim::systems::BuoyancyEngine")
+    plugin = named("gz-sim-lens-flare-system", "gz::sim::systems::LensFlare")
     assert find_plugin(plugin) is None
     assert reported(plugin) == [("SK-PLUGIN-002", "warning")]
 

@@ -136,6 +136,16 @@ def test_a_drag_without_abs_is_read_as_before_gazebo_8_with_a_warning() -> None:
             assert sim.link("sub::hull").linear_velocity[0] == pytest.approx(speed / 2, rel=1e-3)
 
 
+@pytest.mark.parametrize("name", ["xDotU", "nDotR", "yV", "zWabsW"])
+def test_a_coefficient_with_the_wrong_sign_is_reported_with_its_place(name: str) -> None:
+    with simkit.load(world(f"<zDotW>-2</zDotW><yR>3</yR><nVabsR>2</nVabsR>\n<{name}>5</{name}>")) as sim:
+        (found,) = [found for found in sim.diagnostics if found.code == "SK-PLUGIN-118"]
+    assert found.severity == "warning"
+    assert f"<{name}>5</{name}> is positive" in found.message
+    assert f"<{name}>-5</{name}>" in found.hint
+    assert found.line == 7  # of the text
+
+
 def test_an_unknown_link_is_an_error() -> None:
     with pytest.raises(simkit.InputError, match="SK-PLUGIN-003"):
         simkit.load(world("").replace("<link_name>hull", "<link_name>bow"))

@@ -209,6 +209,10 @@ _NOT_SENT = ("/light_config", "/material_color")
 _SENT = {
     "trajectory_msgs/msg/JointTrajectory": _trajectory,
     "std_msgs/msg/Float64MultiArray": lambda random: {"data": random.uniform(-0.5, 0.5, 2).tolist()},
+    "actuator_msgs/msg/Actuators": lambda random: {
+        "velocity": random.uniform(0, 40, 4).tolist(),
+        "normalized": random.uniform(0.2, 1, 4).tolist(),
+    },
     "ros_gz_interfaces/msg/EntityWrench": _push,
     "ros_gz_interfaces/msg/Entity": lambda _: {"name": "wall", "type": 2},
 }

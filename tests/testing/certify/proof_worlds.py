@@ -47,6 +47,8 @@ FINGER = "<virtualJoint><name>arm</name><scale_factor>0.5</scale_factor></virtua
 FIVE = "".join(tags(left_joint=n) for n in ("fl_joint", "rl_joint")) + "".join(
     tags(right_joint=n) for n in ("fr_joint", "rr_joint")
 )
+PUSHED = tags(wind_obj=tags(name="car", link_name="base", coeff_vector="0.5 0.5 0.3"))
+SWELL = tags(wave=tags(model="CWR", number=2, amplitude=0.1, period=0.5, tau=0.1))
 DENSITY = tags(uniform_fluid_density=40)
 CREATE = plugin("libgazebo_ros_create_{}.so")
 CREATE_DOCK = tags(receiver_link_name="base", dock_model_name="crate", emitter_link_name="l")
@@ -289,6 +291,93 @@ WORLDS: dict[str, str] = {
     "Hydrodynamics": lab(
         model=gz("hydrodynamics", tags(link_name="base", xU=-5, xDotU=-3, default_current="1 0 0"), "Hydrodynamics")
     ),
+    "AdvancedLiftDrag": lab(
+        model=gz(
+            "advanced-lift-drag",
+            tags(link_name="base", AR=5, eff=0.9, CL0=2, CD0=1, CLa=3, Cema=-0.3, Cellb=0.2, area=0.5),
+            "AdvancedLiftDrag",
+        )
+    ),
+    "BuoyancyEngine": lab(
+        model=gz("buoyancy-engine", tags(link_name="base", max_inflation_rate=0.01, max_volume=1), "BuoyancyEngine")
+    ),
+    "SpacecraftThrusterModel": lab(
+        model=gz(
+            "spacecraft-thruster-model",
+            tags(link_name="base", actuator_number=0, max_thrust=50, topic="jets", duty_cycle_frequency=20),
+            "SpacecraftThrusterModel",
+        )
+    ),
+    "Surface": lab(
+        model=plugin(
+            "libSurface.so",
+            tags(link_name="base", fluid_level=0.3, fluid_density=30, points=tags(point="0.3 0 0"), wavefield=SWELL),
+            "vrx::Surface",
+        )
+    ),
+    "PolyhedraBuoyancyDrag": lab(
+        model=plugin(
+            "libPolyhedraBuoyancyDrag.so",
+            tags(fluid_density=200, fluid_level=0.2, linear_drag=1, wavefield=SWELL)
+            + tags(buoyancy=tags(link_name="base", geometry="<sphere><radius>0.2</radius></sphere>")),
+            "vrx::PolyhedraBuoyancyDrag",
+        )
+    ),
+    "SimpleHydrodynamics": lab(
+        model=plugin("libSimpleHydrodynamics.so", tags(link_name="base"), "vrx::SimpleHydrodynamics")
+        + gz("velocity-control", tags(initial_linear="1 0 0"), "VelocityControl")
+    ),
+    "FoilLiftDrag": lab(
+        model=plugin(
+            "libasv_sim2-foil-lift-drag-system.so", tags(link_name="base", cp="0 0 0"), "gz::sim::systems::FoilLiftDrag"
+        )
+        + gz("velocity-control", tags(initial_linear="1 0.3 0"), "VelocityControl")
+    ),
+    "SailLiftDrag": lab(
+        model=plugin(
+            "libasv_sim2-sail-lift-drag-system.so", tags(link_name="base", cp="0 0 1"), "gz::sim::systems::SailLiftDrag"
+        )
+    ),
+    "UsvWind": lab(
+        world=plugin(
+            "libUSVWind.so",
+            tags(wind_direction=30, wind_mean_velocity=5, var_wind_gain_constants=1, update_rate=50) + PUSHED,
+            "vrx::USVWind",
+        )
+    ),
+    "UsvWindPlugin": lab(
+        world=plugin(
+            "libusv_gazebo_wind_plugin.so",
+            tags(wind_direction=30, wind_mean_velocity=5, var_wind_gain_constants=1, update_rate=50) + PUSHED,
+        )
+    ),
+    "WavefieldModelPlugin": lab(model=plugin("libWavefieldModelPlugin.so", SWELL)),
+    "UsvDynamicsPlugin": lab(
+        model=plugin("libWavefieldModelPlugin.so", SWELL)
+        + plugin("libusv_gazebo_dynamics_plugin.so", tags(bodyName="base", length_n=2, waterDensity=40, hullRadius=0.1))
+    ),
+    "UsvThrust": lab(
+        model=plugin(
+            "libusv_gazebo_thrust_plugin.so",
+            tags(cmdTimeout=0.05)
+            + tags(thruster=tags(linkName="base", propJointName="rl_joint", cmdTopic="thrust", angleTopic="angle")),
+        )
+    ),
+    "BuoyancyInWaves": lab(
+        model=plugin("libWavefieldModelPlugin.so", SWELL)
+        + plugin(
+            "libbuoyancy_gazebo_plugin.so",
+            tags(fluid_density=500, fluid_drag=1)
+            + tags(link=tags(name="base", center_of_volume="0 0 0.1", area=0.1, height=0.4)),
+        )
+    ),
+    "PublisherPlugin": lab(
+        world=plugin(
+            "libPublisherPlugin.so",
+            '<message type="gz.msgs.Double" topic="/level" every="0.01">data: 2</message>',
+            "vrx::PublisherPlugin",
+        )
+    ),
     "Buoyancy": lab(world=gz("buoyancy", DENSITY, "Buoyancy")),
     "BuoyancyPlugin": lab(model=plugin("libBuoyancyPlugin.so", tags(fluid_density=40))),
     "WindEffects": lab(world=gz("wind-effects", WIND + tags(force_approximation_scaling_factor=0.5), "WindEffects")),
@@ -453,6 +542,7 @@ class Idle:
 
 
 IDLE: dict[str, Idle] = {
+    "WavefieldModelPlugin": Idle("sets the waves for the plugins of boats, when the world is loaded"),
     "CreateWheelDrop": Idle("sees no wheel that has dropped here; its test moves a wheel"),
     "MimicJoint": Idle("couples joints, when the world is loaded"),
     "GraspFix": Idle("attaches nothing here; its test lifts a cube"),

@@ -16,7 +16,7 @@ from simkit.errors import InputError, MessageError
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, PLAIN_DEFAULTS, FieldValue, Message
 
 if TYPE_CHECKING:
-    from simkit.msgs import Header, Image, JointState, LaserScan, Odometry, Quaternion, TFMessage
+    from simkit.msgs import Header, Image, JointState, LaserScan, Odometry, ParamVec, Quaternion, TFMessage
     from simkit.runtime import Simulation
 
 RosFields: TypeAlias = dict[str, FieldValue]
@@ -200,6 +200,50 @@ def _image_from(gz: Message, ros: Image) -> None:
     gz.pixel_format_type, gz.data = _PIXELS.get(ros.encoding, 0), np.asarray(ros.data).tobytes()
 
 
+# fields of gz.msgs.Any and of rcl_interfaces/msg/ParameterValue, with the number of the type in each
+_PARAMETERS: Final = (
+    ("bool_value", "bool_value", 4, 1),
+    ("int_value", "integer_value", 2, 2),
+    ("double_value", "double_value", 1, 3),
+    ("string_value", "string_value", 3, 4),
+)
+_VECTOR, _DOUBLES = 5, 8  # a gz vector is an array of doubles in ROS
+
+
+def _parameters_to(gz: Message) -> RosFields:
+    return {"header": _header_to(gz.header), "params": [_parameter_to(entry) for entry in gz.params]}
+
+
+def _parameter_to(entry: Message) -> RosFields:
+    value = entry.value
+    if value.type == _VECTOR:
+        vector = value.vector3d_value
+        return {
+            "name": entry.key,
+            "value": {"type": _DOUBLES, "double_array_value": np.array([vector.x, vector.y, vector.z], float)},
+        }
+    for gz_name, ros_name, gz_type, ros_type in _PARAMETERS:
+        if value.type == gz_type:
+            return {"name": entry.key, "value": {"type": ros_type, ros_name: getattr(value, gz_name)}}
+    raise MessageError(
+        f"parameter {entry.key!r} has the type {value.type}; expected BOOLEAN, INT32, DOUBLE, STRING or VECTOR3D"
+    )
+
+
+def _parameters_from(gz: Message, ros: ParamVec) -> None:
+    _header_from(gz.header, ros.header)
+    for parameter in ros.params:
+        value = gz.params.add(key=parameter.name).value
+        if parameter.value.type == _DOUBLES:
+            value.type = _VECTOR
+            for name, number in zip("xyz", parameter.value.double_array_value, strict=False):
+                setattr(value.vector3d_value, name, float(number))
+        for gz_name, ros_name, gz_type, ros_type in _PARAMETERS:
+            if parameter.value.type == ros_type:
+                value.type = gz_type
+                setattr(value, gz_name, getattr(parameter.value, ros_name))
+
+
 # ---------------------------------------------------------------------- the table
 
 
@@ -229,6 +273,7 @@ def _all_twins() -> dict[str, tuple[RosTwin, ...]]:
         "Model": (RosTwin("sensor_msgs/msg/JointState", _joints_to, _joints_from),),
         "Pose_V": (RosTwin("tf2_msgs/msg/TFMessage", _frames_to, _frames_from),),
         "Image": (RosTwin("sensor_msgs/msg/Image", _image_to, _image_from),),
+        "Param": (RosTwin("ros_gz_interfaces/msg/ParamVec", _parameters_to, _parameters_from),),
     }
 
 

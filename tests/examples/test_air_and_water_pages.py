@@ -1,4 +1,4 @@
-"""The samples of `docs/air_and_water.md` load without a diagnostic."""
+"""The XML samples of `docs/air.md` and `docs/water.md` load without a diagnostic."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from pathlib import Path
 
 import simkit
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "air_and_water.md"
-SAMPLES = re.findall(r"^```xml\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+FOLDER = Path(__file__).resolve().parents[2] / "docs"
+TEXT = "\n".join((FOLDER / name).read_text(encoding="utf-8") for name in ("air.md", "water.md"))
+SAMPLES = re.findall(r"^```xml\n(.*?)^```$", TEXT, flags=re.DOTALL | re.MULTILINE)
 
 
 def test_its_xml_loads_without_a_diagnostic() -> None:
