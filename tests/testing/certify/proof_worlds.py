@@ -271,6 +271,10 @@ WORLDS: dict[str, str] = {
     ),
     "MulticopterMotorModel": lab(model=MOTORS),
     "MulticopterVelocityControl": lab(model=MOTORS + FLIGHT),
+    "ArduPilotPlugin": lab(
+        model=plugin("libArduPilotPlugin.so", tags(imuName="s", fdm_port_in=0), "ArduPilotPlugin"),
+        sensor='<sensor name="s" type="imu"/>',
+    ),
     "Thruster": lab(model=gz("thruster", tags(joint_name="rl_joint", velocity_control="true"), "Thruster")),
     "Hydrodynamics": lab(
         model=gz("hydrodynamics", tags(link_name="base", xU=-5, xDotU=-3, default_current="1 0 0"), "Hydrodynamics")
@@ -435,6 +439,7 @@ IDLE: dict[str, Idle] = {
     "CreateWheelDrop": Idle("sees no wheel that has dropped here; its test moves a wheel"),
     "MimicJoint": Idle("couples joints, when the world is loaded"),
     "GraspFix": Idle("attaches nothing here; its test lifts a cube"),
+    "ArduPilotPlugin": Idle("waits for an autopilot here; its test plays one"),
     "BuiltInSystem": Idle("stands for what simkit does anyway"),
     "MagnetometerSystem": Idle("tells sensors how they measure, when the world is loaded"),
     "SensorsSystem": Idle("sets colours of the sky, when the world is loaded"),
