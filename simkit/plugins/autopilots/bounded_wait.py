@@ -6,15 +6,12 @@ import os
 import select
 import socket
 import time
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 from simkit.interrupts import stop_requests
 from simkit.params import Params
 from simkit.plugins.options import Options, number
-
-if TYPE_CHECKING:
-    from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 ADDRESS_VARIABLE: Final = "SIMKIT_AUTOPILOT_ADDRESS"
 """Environment variable with the address at which simkit listens for autopilots."""
@@ -84,15 +81,3 @@ def listen_address(written: str, params: Params, element: str) -> str:
         hint = f"to listen at another address, set the environment variable {ADDRESS_VARIABLE}"
         params.child_or_self(element).warning("SK-PILOT-001", message, hint)
     return LOOPBACK
-
-
-def open_or_warn(open_socket: Callable[[], None], place: str, once: OneTimeWarnings) -> bool:
-    """Open a server's socket; if this fails, warn and return False."""
-    try:
-        open_socket()
-    except (OSError, OverflowError) as error:
-        message = f"cannot listen at {place}: {error}; the run continues without an autopilot"
-        hint = "end the other simulation that uses the port, or change the port in the file"
-        once.warn("SK-PILOT-002", "port", message, hint)
-        return False
-    return True

@@ -6,74 +6,58 @@ import socket
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
-from simkit.interrupts import stop_requests
+from simkit.plugins.autopilots.autopilot_link import Address, AutopilotLink
 from simkit.plugins.autopilots.bounded_wait import WaitLimit
 from simkit.plugins.autopilots.servo_packet import LONGEST, ServoPacket, decode_servo_packet
-from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.plugins.one_time_warnings import OneTimeWarnings
 
-Address = tuple[str, int]
-
 _MOST_AT_ONCE: Final = 256  # datagrams read in a step without a wait, so that a flood cannot stop the run
+_MOST_NEWER: Final = 32  # packets in a step without lock-step, of which the newest counts
 _SHORT_WAIT: Final = 0.01  # [s] for a packet without lock-step, as in Gazebo
 
 
-class ServoLink(SharedByCopies):
-    """Connection to ArduPilot. It is not part of snapshots: the other program cannot go back.
+class ServoLink(AutopilotLink):
+    """Connection to ArduPilot.
 
     Args:
         name: name of the plugin.
         place: address and port.
-        channels: number of channels, 16 or 32.
         is_lock_step: True if every step waits for a packet.
         timeout: longest wait in lock-step [s].
-        most_misses: without lock-step, number of steps without a packet after which the connection is lost.
         once: reporter of warnings.
+        channels: number of channels, 16 or 32.
+        most_misses: without lock-step, number of steps without a packet after which the connection is lost.
 
     Attributes:
         peer: address of ArduPilot; None while there is no connection.
     """
 
+    autopilot = "ArduPilot"
+
     def __init__(
         self,
         name: str,
         place: Address,
-        channels: int,
         is_lock_step: bool,
         timeout: float,
-        most_misses: int,
         once: OneTimeWarnings,
+        channels: int,
+        most_misses: int,
     ) -> None:
-        self.name = name
+        super().__init__(name, place, is_lock_step, timeout, once)
         self.peer: Address | None = None
-        self._place, self._channels, self._is_lock_step = place, channels, is_lock_step
-        self._timeout, self._most_misses, self._once = timeout, most_misses, once
-        self._socket: socket.socket | None = None
+        self._channels, self._most_misses = channels, most_misses
         self._frame = -1
         self._misses = 0
         self._last_line = b""
-        self._is_answer_due = False  # in lock-step: a state was sent, and no packet has come since then
-        self._stops_before = stop_requests()
-        self._is_time_broken = False  # a reset or a restore has changed the simulated time
 
     @property
-    def is_open(self) -> bool:
-        """True while the port is open."""
-        return self._socket is not None
-
-    @property
-    def port(self) -> int:
-        """Number of the open port."""
-        return 0 if self._socket is None else int(self._socket.getsockname()[1])
+    def is_connected(self) -> bool:
+        return self.peer is not None
 
     def open(self) -> None:
-        """Open the port.
-
-        Raises:
-            OSError: the address cannot be used.
-        """
         opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             opened.bind(self._place)
@@ -83,34 +67,15 @@ class ServoLink(SharedByCopies):
             raise
         self._socket = opened
 
-    def close(self) -> None:
-        """Close the port."""
-        if self._socket is not None:
-            self._socket.close()
-        self._socket, self.peer = None, None
+    def drop_peer(self) -> None:
+        self.peer, self._misses = None, 0
+
+    def drop_answer(self) -> None:
+        self.next_packet()
 
     def wait_for_peer(self, seconds: float) -> ServoPacket | None:
         """Wait for the first packet; None at the end of the wait."""
-        return self._receive(self._limit(seconds))
-
-    def break_time(self) -> None:
-        """Note that the simulated time was changed by a reset or a restore."""
-        self._is_time_broken = self.peer is not None
-
-    def resume(self, state: bytes) -> None:
-        """After a change of the simulated time: drop the answer to the last state, and send the present state.
-
-        Args:
-            state: line for ArduPilot; empty if there is no measurement yet.
-        """
-        if not self._is_time_broken:
-            return
-        self._is_time_broken = False
-        if self._is_lock_step:
-            self.next_packet()
-        self._is_answer_due = False
-        if state and self.peer is not None:
-            self.send(state)
+        return self._receive(self.limit(seconds))
 
     def next_packet(self) -> ServoPacket | None:
         """Return the packet for the next step; None if there is none.
@@ -119,43 +84,33 @@ class ServoLink(SharedByCopies):
         packet.
         """
         if self.peer is None:
-            return self._receive(self._limit(0.0))
+            return self._receive(self.limit(0.0))
         if self._is_lock_step:
             if not self._is_answer_due:
                 return None
-            limit = self._limit(self._timeout)
+            limit = self.limit(self._timeout)
             packet = self._receive(limit)
             if packet is None and not limit.is_stopped:
-                self._lose(f"no packet for {self._timeout:g} s")
+                self.lose(f"no packet for {self._timeout:g} s")
             return packet
-        packet = newest = self._receive(self._limit(_SHORT_WAIT))
-        for _ in range(_MOST_AT_ONCE):
+        packet = newest = self._receive(self.limit(_SHORT_WAIT))
+        for _ in range(_MOST_NEWER):
             if newest is None:
                 break
-            packet, newest = newest, self._receive(self._limit(0.0))
+            packet, newest = newest, self._receive(self.limit(0.0))
         self._misses = 0 if packet is not None else self._misses + 1
         if self._misses > self._most_misses:
-            self._lose(f"no packet in {self._misses} steps")
+            self.lose(f"no packet in {self._misses} steps")
         return packet
 
-    def send(self, line: bytes) -> None:
-        """Send a state to ArduPilot."""
-        self._last_line, self._is_answer_due = line, True
+    def send(self, state: bytes) -> None:
+        self._last_line, self._is_answer_due = state, True
         self._send_again()
 
     def _send_again(self) -> None:
         if self._socket is not None and self.peer is not None and self._last_line:
             with suppress(OSError):  # the peer has ended, or its queue is full: the wait for its answer decides
                 self._socket.sendto(self._last_line, self.peer)
-
-    def _lose(self, reason: str) -> None:
-        self.peer, self._misses, self._is_answer_due = None, 0, False
-        message = f"the connection to ArduPilot is lost: {reason}; the run continues without commands"
-        hint = "start ArduPilot again: simkit still listens. A longer wait: <simkit:peer_timeout>"
-        self._once.warn("SK-PILOT-003", "lost", message, hint)
-
-    def _limit(self, seconds: float) -> WaitLimit:
-        return WaitLimit(seconds, self._stops_before)
 
     def _receive(self, limit: WaitLimit) -> ServoPacket | None:
         """Return the next valid packet of the peer, or of a new peer while there is none; None at the limit."""

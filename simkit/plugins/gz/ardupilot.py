@@ -6,7 +6,6 @@ Parameters, defaults and the order of receiving and sending follow `ArduPilotPlu
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
@@ -15,15 +14,15 @@ from simkit import msgs
 from simkit.compiler.name_map import NameMap
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import LARGEST, Params
-from simkit.plugins.autopilots.bounded_wait import ConnectionOptions, listen_address, open_or_warn
+from simkit.plugins.autopilots.autopilot_plugin import AutopilotPlugin
+from simkit.plugins.autopilots.bounded_wait import ConnectionOptions, listen_address
 from simkit.plugins.autopilots.joint_channel import ChannelKind, JointChannel
 from simkit.plugins.autopilots.servo_link import ServoLink
 from simkit.plugins.autopilots.servo_packet import ServoPacket, encode_state
-from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import find_axis_joint, find_sensor
 from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.joints.joint_commands import DOUBLE, ControlledJoints
+from simkit.plugins.joints.joint_commands import DOUBLE
 from simkit.plugins.joints.kinematic_trees import KinematicTrees
 from simkit.plugins.joints.pid import Pid
 from simkit.plugins.joints.velocity_servo import VelocityServo
@@ -117,7 +116,7 @@ class ArduPilotOptions(ConnectionOptions):
     ranges: tuple[RangeOptions, ...] = blocks(RangeOptions, element="sensor")
 
 
-class ArduPilotPlugin(ControlledJoints, ModelPlugin):
+class ArduPilotPlugin(AutopilotPlugin):
     """Connects a vehicle to ArduPilot (`sim_vehicle.py --model JSON`): servo outputs move joints, sensors go back.
 
     simkit listens for UDP packets at 127.0.0.1 and `<fdm_port_in>` from the first step on. Each packet sets the targets
@@ -132,13 +131,14 @@ class ArduPilotPlugin(ControlledJoints, ModelPlugin):
         listens("{topic}", _SCAN, named_by=("topic",)),
     )
     options = OptionsOf(ArduPilotOptions)
+    _connection: ServoLink
     filenames = ("libArduPilotPlugin.so",)
     names = ("ArduPilotPlugin", "gz::sim::systems::ArduPilotPlugin")
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         options = self.options.read_all()
-        self._address = listen_address(options.address, params, "fdm_addr"), options.port
+        self._place = listen_address(options.address, params, "fdm_addr"), options.port
         imu = find_sensor(scene, options.imu, params.child_or_self("imuName"))
         if imu is not None and imu.kind != "imu":
             params.child_or_self("imuName").error("SK-PLUGIN-003", f"sensor {imu.name!r} is {imu.kind}, not an imu")
@@ -184,11 +184,9 @@ class ArduPilotPlugin(ControlledJoints, ModelPlugin):
         self._ranges = [_UNKNOWN_RANGE] * max((sensor.index for sensor in options.ranges), default=0)
         for sensor in options.ranges:
             self.subscribe(valid_topic(sensor.topic), self._range_callback(sensor.index - 1))
+        lock, timeout = options.lock_step, options.peer_timeout
         channels = 32 if options.have_32_channels else 16
-        lock = options.lock_step
-        limits = options.peer_timeout, options.most_misses
-        self._connection = ServoLink(self.name, self._address, channels, lock, *limits, self._once)
-        self._has_tried = False
+        self._connection = ServoLink(self.name, self._place, lock, timeout, self._once, channels, options.most_misses)
 
     def _range_callback(self, place: int) -> Any:
         def keep(message: LaserScan) -> None:
@@ -199,67 +197,26 @@ class ArduPilotPlugin(ControlledJoints, ModelPlugin):
 
         return keep
 
-    @property
-    def port(self) -> int:
-        """Number of the open UDP port; 0 while it is closed."""
-        return self._connection.port
-
-    @property
-    def is_connected(self) -> bool:
-        """True while there is a connection to ArduPilot."""
-        return self._connection.peer is not None
-
-    # ------------------------------------------------------------------ snapshots
-
-    def get_state(self) -> dict[str, Any]:
-        """Return the state of the plugin; the connection is not part of it."""
-        state = super().get_state()
-        state.pop("_connection", None)
-        state.pop("_has_tried", None)
-        return state
-
-    def set_state(self, state: Mapping[str, Any]) -> None:
-        """Restore a state; ArduPilot then receives the state of the vehicle at the new time."""
-        self._connection.break_time()
-        super().set_state({**state, "_connection": self._connection, "_has_tried": self._has_tried})
-
-    def close(self) -> None:
-        """Close the port."""
-        if hasattr(self, "_connection"):
-            self._connection.close()
-
     # ------------------------------------------------------------------ steps
 
     def before_step(self) -> None:
         """Receive a packet, and move the joints."""
         connection = self._connection
         packet = None
-        if not self._has_tried:
-            packet = self._begin()
+        if self.open_once("UDP") and self.options.connection_wait:
+            packet = connection.wait_for_peer(self.options.connection_wait)
+            self.report_absence(self.options.connection_wait)
         if not connection.is_open:
             return
-        connection.resume(self._state())
+        if connection.is_time_broken:
+            connection.resume(self._state())
         packet = packet or connection.next_packet()
         if packet is not None:
             self._apply(packet)
-        if connection.peer is None:
+        if not connection.is_connected:
             self._targets = [0.0] * len(self._targets)
             return
         self._move_joints()
-
-    def _begin(self) -> ServoPacket | None:
-        """Open the port at the first step, so that loading or checking a world opens no port."""
-        self._has_tried = True
-        options, (address, port) = self.options, self._address
-        if not open_or_warn(self._connection.open, f"{address}:{port} (UDP)", self._once):
-            return None
-        if not options.connection_wait:
-            return None
-        packet = self._connection.wait_for_peer(options.connection_wait)
-        if packet is None:
-            message = f"no packet of ArduPilot at {address}:{port} within {options.connection_wait:g} s"
-            self._once.warn("SK-PILOT-003", "absent", f"{message}; the run continues", "start ArduPilot first")
-        return packet
 
     def _apply(self, packet: ServoPacket) -> None:
         for place, (control, channel) in enumerate(zip(self._controls, self._channels, strict=True)):
@@ -292,14 +249,14 @@ class ArduPilotPlugin(ControlledJoints, ModelPlugin):
 
     def after_step(self) -> None:
         """Send the state of the vehicle."""
-        if self._connection.peer is not None:
+        if self._connection.is_connected:
             state = self._state()
             if state:
                 self._connection.send(state)
 
     def _state(self) -> bytes:
         """Return the state of the vehicle for ArduPilot; empty without a connection or before the first reading."""
-        if self._connection.peer is None or (reading := self._imu.latest) is None:
+        if not self._connection.is_connected or (reading := self._imu.latest) is None:
             return b""
         rate, force = reading.angular_velocity, reading.linear_acceleration
         body = self._to_ned @ self._link.pose @ self._to_model

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from simkit.plugins.autopilots.mavlink import MavlinkDecoder, encode
+
 MASS, ROTOR_MASS, G = 1.5, 0.025, 9.8
 PLACES = ((0.13, -0.22, 1), (-0.13, 0.2, 1), (0.13, 0.22, -1), (-0.13, -0.2, -1))
 """Places of the rotors [m], forward and left, and their direction: 1 counter-clockwise."""
@@ -102,6 +104,33 @@ class JsonPeer:
             return found
         finally:
             self.socket.settimeout(5.0)
+
+    def close(self) -> None:
+        self.socket.close()
+
+
+class MavlinkPeer:
+    """PX4, as the plugin sees it: a TCP client that reads MAVLink frames and sends actuator controls."""
+
+    def __init__(self, port: int) -> None:
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=5.0)
+        self.decoder = MavlinkDecoder()
+        self.sequence = 0
+
+    def send(self, controls: Any = (0.0,) * 4, mode: int = 128) -> None:
+        self.sequence += 1
+        fields = {"time_usec": self.sequence, "controls": (*controls, *(0.0,) * (16 - len(controls))), "mode": mode}
+        self.socket.sendall(encode("HIL_ACTUATOR_CONTROLS", fields, self.sequence, 1, 1))
+
+    def receive(self) -> dict[str, Any]:
+        """Return the messages of one step by name."""
+        found: dict[str, Any] = {}
+        while "HIL_STATE_QUATERNION" not in found:
+            data = self.socket.recv(4096)
+            assert data, "closed"
+            for message in self.decoder.feed(data):
+                found[message.name] = message.fields
+        return found
 
     def close(self) -> None:
         self.socket.close()
