@@ -48,7 +48,7 @@ class AutopilotPlugin(ControlledJoints, ModelPlugin):
         address, port = self._place
         try:
             self._connection.open()
-        except (OSError, OverflowError) as error:
+        except (OSError, OverflowError, UnicodeError) as error:
             where = f"{address}:{port} ({protocol})"
             message = f"cannot listen at {where}: {error}; the run continues without an autopilot"
             hint = "end the other simulation that uses the port, or change the port in the file"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import select
+import selectors
 import socket
 import time
 from collections.abc import Sequence
@@ -18,6 +18,8 @@ ADDRESS_VARIABLE: Final = "SIMKIT_AUTOPILOT_ADDRESS"
 
 LOOPBACK: Final = "127.0.0.1"
 
+# `select` fails in a process with more than 1024 open files; Windows has nothing else
+_Selector: Final = getattr(selectors, "PollSelector", selectors.SelectSelector)
 _SLICE: Final = 0.1  # [s] between two looks whether the user has asked for a stop
 
 
@@ -53,7 +55,7 @@ class WaitLimit:
         while True:
             self.is_stopped = stop_requests() != self._stops_before
             left = 0.0 if self.is_stopped else self._end - time.monotonic()
-            ready, _, _ = select.select(sockets, (), (), max(0.0, min(left, _SLICE)))
+            ready = _with_data(sockets, max(0.0, min(left, _SLICE)))
             if ready or left <= _SLICE:
                 return ready
 
@@ -61,6 +63,13 @@ class WaitLimit:
     def is_over(self) -> bool:
         """True at the end of the wait."""
         return self.is_stopped or time.monotonic() >= self._end
+
+
+def _with_data(sockets: Sequence[socket.socket], seconds: float) -> list[socket.socket]:
+    with _Selector() as selector:
+        for one in sockets:
+            selector.register(one, selectors.EVENT_READ, one)
+        return [key.data for key, _ in selector.select(seconds)]
 
 
 def listen_address(written: str, params: Params, element: str) -> str:

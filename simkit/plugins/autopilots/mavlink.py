@@ -6,6 +6,7 @@ for five messages; the tests compare the bytes with those of pymavlink.
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -54,6 +55,7 @@ _LETTERS: Final = {
     "float": "f",
 }
 _START: Final = {0xFE: 6, 0xFD: 10}  # first byte of version 1 and of version 2 -> bytes before the payload
+_FIRST_BYTE: Final = re.compile(b"[\xfd\xfe]")
 _IS_SIGNED: Final = 0x01  # flag of a frame with a signature
 _SIGNATURE: Final = 13  # bytes
 _HIGHEST: Final = {"B": (0, 255), "h": (-32768, 32767), "H": (0, 65535), "i": (-(2**31), 2**31 - 1)}
@@ -182,8 +184,8 @@ class MavlinkDecoder:
         waiting = bytes(self._waiting)
         while start < len(waiting):
             if waiting[start] not in _START:
-                following = [at for at in (waiting.find(byte, start) for byte in (b"\xfd", b"\xfe")) if at >= 0]
-                end = min(following, default=len(waiting))
+                following = _FIRST_BYTE.search(waiting, start)
+                end = len(waiting) if following is None else following.start()
                 self.damaged += end - start
                 start = end
                 continue

@@ -52,6 +52,7 @@ class ServoLink(AutopilotLink):
         self._frame = -1
         self._misses = 0
         self._last_line = b""
+        self._may_repeat = False  # whether the last state may be sent again in this step
 
     @property
     def is_connected(self) -> bool:
@@ -83,6 +84,7 @@ class ServoLink(AutopilotLink):
         In lock-step with a connection, wait for the answer to the last state. Without lock-step, return the newest
         packet.
         """
+        self._may_repeat = True
         if self.peer is None:
             return self._receive(self.limit(0.0))
         if self._is_lock_step:
@@ -143,7 +145,8 @@ class ServoLink(AutopilotLink):
             self._once.warn("SK-PILOT-004", "second", message, hint)
             return None
         elif packet.frame == self._frame:
-            if self._is_lock_step:
+            if self._is_lock_step and self._may_repeat:
+                self._may_repeat = False  # once a step: several answers to one frame would begin a second exchange
                 self._send_again()  # ArduPilot repeats a frame if it has not received the answer
             return None
         self._frame, self._is_answer_due = packet.frame, False

@@ -42,7 +42,6 @@ from simkit.pose import Pose
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import LaserScan
     from simkit.runtime import Model
     from simkit.runtime.communication.publisher import Publisher
     from simkit.scene import SceneModel
@@ -128,7 +127,7 @@ class ArduPilotPlugin(AutopilotPlugin):
 
     endpoints = (
         publishes("/world/{world}/model/{model}/joint/{joint}/cmd", DOUBLE, named_by=("cmd_topic",)),
-        listens("{topic}", _SCAN, named_by=("topic",)),
+        listens("{topic}", _SCAN, "sensor_msgs/msg/Range", named_by=("topic",)),
     )
     options = OptionsOf(ArduPilotOptions)
     _connection: ServoLink
@@ -189,9 +188,14 @@ class ArduPilotPlugin(AutopilotPlugin):
         self._connection = ServoLink(self.name, self._place, lock, timeout, self._once, channels, options.most_misses)
 
     def _range_callback(self, place: int) -> Any:
-        def keep(message: LaserScan) -> None:
-            ranges = np.asarray(message.ranges, float)
-            far = 2.0 * min(float(message.range_max), LARGEST)  # as in the source: beyond the range of the sensor
+        def keep(message: Any) -> None:
+            measured = getattr(message, "ranges", getattr(message, "range", None))
+            if measured is None:
+                self._once.left_out(f"range {place}", f"a message for rng_{place + 1} is not a LaserScan or Range")
+                return
+            ranges = np.atleast_1d(np.asarray(measured, float))
+            largest = message.range_max if hasattr(message, "range_max") else message.max_range
+            far = 2.0 * min(float(largest), LARGEST)  # without an echo, as in the source
             found = ranges[np.isfinite(ranges)]
             self._ranges[place] = min(float(found.min()), far) if len(found) else far
 

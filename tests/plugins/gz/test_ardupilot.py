@@ -185,6 +185,54 @@ def test_32_channels_and_the_range_finder() -> None:
             assert sim.joint("quad::rotor_0_joint").velocity > 10
 
 
+def test_a_range_comes_from_range_messages_too_and_others_are_ignored() -> None:
+    sensors = "".join(
+        f"<sensor><type>r</type><index>{i}</index><topic>{t}</topic></sensor>" for i, t in ((1, "a"), (3, "b"))
+    )
+    with opened(vehicle(ardupilot(sensors))) as (sim, peer):
+        near, odd = sim.advertise("/a", "sensor_msgs/msg/Range"), sim.advertise("/b", "std_msgs/msg/Float64")
+        peer.send()
+        for measured, expected in ((0.7, 0.7), (math.inf, 8.0)):
+            near.publish({"range": measured, "max_range": 4.0})
+            odd.publish({"data": 1.0})
+            sim.step(1)
+            state = peer.receive()
+            peer.send()
+            assert [state[f"rng_{i}"] for i in (1, 2, 3)] == [pytest.approx(expected), -1.0, -1.0]
+        assert "SK-PLUGIN-041" in {d.code for d in sim.diagnostics}
+
+
+def test_repeated_frames_get_one_answer_a_step() -> None:
+    with opened(vehicle(ardupilot())) as (sim, peer):
+        peer.send(frame=1)
+        sim.step(1)
+        for _ in range(20):
+            peer.send(frame=1)
+        peer.send(frame=2)
+        sim.step(1)
+        assert len(peer.receive_all()) == 3
+
+
+def test_the_wind_vane_has_the_apparent_wind() -> None:
+    vane = '<sensor name="vane" type="custom" gz:type="anemometer"><pose>0.1 0 0.2 0 0 0</pose></sensor></link>'
+    wind = "<wind><linear_velocity>0 -3 0</linear_velocity></wind>"  # from the north
+    more = "<anemometer>vane</anemometer>"
+    text = vehicle(ardupilot(more), world=wind).replace("</sensor></link>", f"</sensor>{vane}", 1)
+    with opened(
+        text.replace('<sdf version="1.9">', '<sdf version="1.9" xmlns:gz="http://gazebosim.org/schema">')
+    ) as found:
+        sim, peer = found
+        for turn, direction, speed in ((0.0, -math.pi / 2, 3.0), (math.pi / 2, 0.0, 3.0), (math.pi / 2, 0.0, 5.0)):
+            sim.model("quad").set_pose(simkit.Pose.from_rpy(0, 0, 2, 0, 0, turn))
+            sim.model("quad").set_velocity((0.0, speed - 3.0, 0.0))
+            peer.send()
+            sim.step(1)
+            found_wind = peer.receive_all()[-1]["windvane"]
+            # heading east (0): the wind from the north comes from the left; heading north: from ahead
+            assert found_wind["speed"] == pytest.approx(speed, abs=0.01)
+            assert found_wind["direction"] == pytest.approx(direction, abs=0.01)
+
+
 # ---------------------------------------------------------------------------------------------- lock-step, repetition
 
 
@@ -269,6 +317,21 @@ def test_a_reset_keeps_the_connection_and_the_timestamps_begin_again() -> None:
         assert peer.receive() == state
         peer.send(widths(state, (0.0, 0.0, -2.0)))
         assert states_and_bits(sim, peer, 10) == first
+
+
+def test_a_removed_vehicle_keeps_its_port_for_a_restore_until_the_simulation_closes() -> None:
+    with opened(vehicle(ardupilot())) as (sim, peer):
+        snapshot, port = sim.snapshot(), plugin_of(sim).port
+        sim.remove("quad")
+        peer.send()
+        sim.step(1)
+        assert not peer.receive_all()
+        sim.restore(snapshot)
+        peer.send()
+        sim.step(1)
+        assert plugin_of(sim).port == port and len(peer.receive_all()) == 1
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", port))
 
 
 def test_loading_and_checking_open_no_port() -> None:
