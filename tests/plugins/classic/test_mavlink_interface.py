@@ -410,6 +410,16 @@ def test_other_kinds_of_connections_are_a_warning(old: str, new: str) -> None:
         assert codes(sim) == ["SK-PILOT-005"]
 
 
+def test_the_interface_moves_the_rotors_of_gz_as_well() -> None:
+    motors = MOTORS.replace("libgazebo_motor_model.so", "gz-sim-multicopter-motor-model-system")
+    for i in range(4):
+        motors = motors.replace(f'name="motor_{i}"', 'name="gz::sim::systems::MulticopterMotorModel"')
+    with connected(vehicle(motors + px4(), step=STEP)) as (sim, peer):
+        states = fly(sim, peer, 100, (0.0, 0.0, -2.0))
+        assert states[-1]["HIL_STATE_QUATERNION"]["vz"] == pytest.approx(0, abs=60)  # cm/s; a free fall has 400
+        assert sim.joint("quad::rotor_0_joint").velocity > 50
+
+
 def test_the_thrust_of_a_rotor_falls_to_zero_at_25_m_s() -> None:
     for speed, share in ((0.0, 1.0), (12.5, 0.5), (-12.5, 0.5), (30.0, 0.0)):
         with simkit.load(vehicle(MOTORS, step=STEP).replace("0 0 -9.8", "0 0 0")) as sim:
