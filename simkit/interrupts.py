@@ -10,7 +10,18 @@ from types import FrameType
 from typing import Final
 
 ReceivedSignals = list[tuple[int, FrameType | None]]
+_stop_requests = [0]
 _SIGNALS: Final = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGALRM") if hasattr(signal, name)]
+
+
+def note_stop_request() -> None:
+    """Count a request of the user to stop the run, so that waits for other programs end early."""
+    _stop_requests[0] += 1
+
+
+def stop_requests() -> int:
+    """Return the number of requests to stop a run, in this process."""
+    return _stop_requests[0]
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Protocol
 from simkit.cli.terminal.blocked_plugins import describe_blocking_plugin
 from simkit.cli.terminal.output import print_status
 from simkit.cli.wall_time_limit import SignalHandler
+from simkit.interrupts import note_stop_request
 
 if TYPE_CHECKING:
     from simkit.bridges.live.server import Server
@@ -268,5 +269,6 @@ class Interrupts:
             found = describe_blocking_plugin(frame)
             raise KeyboardInterrupt(f"in the middle of {found[1]}" if found else "")
         self.exit_code = 128 + number
+        note_stop_request()
         if self._noted is not None:
             self._noted()

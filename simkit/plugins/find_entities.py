@@ -10,7 +10,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.options import Options, text
-from simkit.scene import SceneJoint, SceneLink, SceneModel
+from simkit.scene import SceneJoint, SceneLink, SceneModel, SceneSensor
 
 T = TypeVar("T")
 _TWO_AXES = ("universal", "revolute2")
@@ -42,6 +42,15 @@ def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
     found = _find_by_suffix(scene.scoped, name, {link.scoped: link for link in links})
     if found is None:
         _report_unknown("link", name, scene, (link.name for link in links), params)
+    return found
+
+
+def find_sensor(scene: SceneModel, name: str, params: Params) -> SceneSensor | None:
+    """Return a sensor of the model; None after an error. The name is plain, or scoped from the world or the model."""
+    sensors = scene.all_sensors()
+    found = _find_by_suffix(scene.scoped, name, {sensor.scoped: sensor for sensor in sensors})
+    if found is None:
+        _report_unknown("sensor", name, scene, (sensor.name for sensor in sensors), params)
     return found
 
 

@@ -228,6 +228,25 @@ def _motions(path: Path) -> None:
     found.raise_if_errors()
 
 
+def _packets(path: Path) -> None:
+    """The file is what an autopilot sends: damaged packets give no message, and do not stay in memory."""
+    from simkit.plugins.autopilots.mavlink import MavlinkDecoder
+    from simkit.plugins.autopilots.servo_packet import ServoPacket, decode_servo_packet
+
+    data, decoder = path.read_bytes(), MavlinkDecoder()
+    for size in (1, 40, 72, 997):
+        for start in range(0, len(data), size):
+            piece = data[start : start + size]
+            for message in decoder.feed(piece):
+                assert all(isinstance(value, (int, float, tuple)) for value in message.fields.values())
+            assert len(decoder._waiting) < 300
+            for channels in (16, 32):
+                packet = decode_servo_packet(piece, channels)
+                assert isinstance(packet, str) or (
+                    isinstance(packet, ServoPacket) and len(packet.pulse_widths) == channels
+                )
+
+
 def _scenario(path: Path) -> None:
     from simkit.testing.scenarios.scenario_file import read_scenario
 
@@ -316,5 +335,5 @@ def _calls(path: Path) -> None:
 OPENERS: dict[str, Callable[[Path], object]] = {
     "bag": _bag, "script": _script, "world": _world, "motions": _motions, "scenario": _scenario, "exercise": _exercise,
     "scenario_run": _scenario_run, "exercise_run": _exercise_run, "golden": _golden, "bundle": _bundle,
-    "condition": _condition, "calls": _calls,
+    "condition": _condition, "calls": _calls, "packets": _packets,
 }  # fmt: skip

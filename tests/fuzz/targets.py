@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import struct
 import tempfile
 import zipfile
 from collections.abc import Mapping
@@ -125,6 +126,7 @@ def targets() -> tuple[Target, ...]:
                 ("golden", "check", "golden", "--html", "new.html", "--junit", "new.xml"),
             ),
         ),
+        Target("packets", {"p.bin": packets()}, ("p.bin",), (("*packets", "p.bin"),)),
         Target(
             "condition",
             {**WORLD_FILES, "c.lines": intact("conditions.lines")},
@@ -141,6 +143,16 @@ def targets() -> tuple[Target, ...]:
             for line in COMMANDS
         ),
     )
+
+
+def packets() -> bytes:
+    """Packets of ArduPilot with 16 and 32 channels, and frames of PX4."""
+    from simkit.plugins.autopilots.mavlink import encode
+
+    servo = struct.pack("<HHI16H", 18458, 400, 1, *[1500] * 16) + struct.pack("<HHI32H", 29569, 400, 2, *[1500] * 32)
+    names = ("HEARTBEAT", "HIL_SENSOR", "HIL_GPS", "HIL_STATE_QUATERNION", "HIL_ACTUATOR_CONTROLS")
+    fields = {"time_usec": 1234567, "controls": (0.5,) * 16, "mode": 129, "xacc": 1.0, "lat": 473977420}
+    return servo + b"".join(encode(name, fields, number) for number, name in enumerate(names)) * 3
 
 
 def bag_targets(made: Files) -> tuple[Target, ...]:

@@ -1,4 +1,4 @@
-"""Bags, scripts, parameter files, motions, scenarios, exercises, bundles, golden runs, conditions and command lines.
+"""Bags, scripts, parameter files, motions, scenarios, exercises, bundles, golden runs, packets and command lines.
 
 Each is opened by the command line or by its reader, and answered with a result or with an error that has a code: no
 traceback, no other exit code, no control character on the terminal, no file, process or connection outside its folder.
@@ -20,7 +20,7 @@ from test_broken_files import SECONDS, SEED, complaint
 
 KINDS = (
     "bag", "bag folder", "sqlite bag", "script", "parameters", "motions", "scenario", "exercise", "bundle",
-    "bundle with code", "golden", "condition", "command",
+    "bundle with code", "golden", "condition", "command", "packets",
 )  # fmt: skip
 MOST = int(os.environ.get("SIMKIT_FUZZ_INPUTS", "1000000"))  # inputs of a kind; SECONDS ends it, too
 QUICK = 5  # inputs of a kind that are always tried

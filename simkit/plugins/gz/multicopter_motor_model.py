@@ -15,7 +15,7 @@ of the physics resolves its motion.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
@@ -72,7 +72,7 @@ class MulticopterMotorModel(ModelPlugin):
     endpoints = (listens("/{model}/command/motor_speed", ACTUATORS, named_by=("commandSubTopic",)),)
     options = OptionsOf(MotorModelOptions)
     filenames = ("gz-sim-multicopter-motor-model-system",)
-    names = ("gz::sim::systems::MulticopterMotorModel",)
+    names: ClassVar[tuple[str, ...]] = ("gz::sim::systems::MulticopterMotorModel",)
     drives = True
     reads_at_load = ("inertial", "axes")  # the effort follows from the inertia of the propeller
 
@@ -142,6 +142,10 @@ class MulticopterMotorModel(ModelPlugin):
         self._filtered = left * self._filtered + (1 - left) * self._input
         self._joint.turn(self._sign * self._filtered / options.slowdown)
 
+    def inflow_factor(self, speed: float) -> float:
+        """Return the share of the thrust that is left while the rotor moves along its axis [m/s]."""
+        return 1.0
+
     def _apply_forces(self, speed: float) -> None:
         if not self._links.is_current:
             self._links = PushedLinks(self.sim, (self._link, self._parent))
@@ -157,10 +161,11 @@ class MulticopterMotorModel(ModelPlugin):
         jx, jy, jz = data.xaxis[self.sim.mj_model.dof_jntid[self._joint.axis.dof]].tolist()
         along = vx * jx + vy * jy + vz * jz
         vx, vy, vz = vx - along * jx, vy - along * jy, vz - along * jz
-        thrust = self._sign * speed * abs(speed) * options.thrust_factor
+        force = self._sign * speed * abs(speed) * options.thrust_factor
+        thrust = force * self.inflow_factor(along)
         drag = -abs(speed) * options.drag_factor
         wrenches = {0: (xz * thrust + drag * vx, yz * thrust + drag * vy, zz * thrust + drag * vz, 0.0, 0.0, 0.0)}
         if len(links.names) > 1:
-            twist, roll = -self._sign * thrust * options.torque_factor, -abs(speed) * options.rolling_factor
+            twist, roll = -self._sign * force * options.torque_factor, -abs(speed) * options.rolling_factor
             wrenches[1] = (0.0, 0.0, 0.0, xz * twist + roll * vx, yz * twist + roll * vy, zz * twist + roll * vz)
         links.push_some(data, wrenches)

@@ -287,6 +287,24 @@ WORLDS: dict[str, str] = {
     ),
     "MulticopterMotorModel": lab(model=MOTORS),
     "MulticopterVelocityControl": lab(model=MOTORS + FLIGHT),
+    "ArduPilotPlugin": lab(
+        model=plugin("libArduPilotPlugin.so", tags(imuName="s", fdm_port_in=0), "ArduPilotPlugin"),
+        sensor='<sensor name="s" type="imu"/>',
+    ),
+    "GazeboMavlinkInterface": lab(
+        model=plugin("libgazebo_mavlink_interface.so", tags(mavlink_tcp_port=0, use_tcp=1, enable_lockstep=1))
+    ),
+    "GazeboMotorModel": lab(
+        model=MOTORS.replace("gz-sim-multicopter-motor-model-system", "libgazebo_motor_model.so").replace(
+            "gz::sim::systems::MulticopterMotorModel", "motor"
+        )
+    ),
+    "MultirotorBase": lab(model=plugin("libgazebo_multirotor_base_plugin.so", tags(linkName="base"))),
+    "Px4Imu": lab(model=plugin("libgazebo_imu_plugin.so", tags(linkName="base"))),
+    "Px4Magnetometer": lab(model=plugin("libgazebo_magnetometer_plugin.so")),
+    "Px4Barometer": lab(model=plugin("libgazebo_barometer_plugin.so")),
+    "Px4Gps": lab(model=plugin("libgazebo_gps_plugin.so", tags(gpsNoise=1, update_rate=50))),
+    "Px4GroundTruth": lab(model=plugin("libgazebo_groundtruth_plugin.so")),
     "Thruster": lab(model=gz("thruster", tags(joint_name="rl_joint", velocity_control="true"), "Thruster")),
     "Hydrodynamics": lab(
         model=gz("hydrodynamics", tags(link_name="base", xU=-5, xDotU=-3, default_current="1 0 0"), "Hydrodynamics")
@@ -546,6 +564,10 @@ IDLE: dict[str, Idle] = {
     "CreateWheelDrop": Idle("sees no wheel that has dropped here; its test moves a wheel"),
     "MimicJoint": Idle("couples joints, when the world is loaded"),
     "GraspFix": Idle("attaches nothing here; its test lifts a cube"),
+    "ArduPilotPlugin": Idle("waits for an autopilot here; its test plays one"),
+    "GazeboMavlinkInterface": Idle("waits for an autopilot here; its test plays one"),
+    "MultirotorBase": Idle("stands for a plugin of PX4 that only publishes"),
+    "Px4GroundTruth": Idle("stands for a plugin of PX4 that only publishes"),
     "BuiltInSystem": Idle("stands for what simkit does anyway"),
     "MagnetometerSystem": Idle("tells sensors how they measure, when the world is loaded"),
     "SensorsSystem": Idle("sets colours of the sky, when the world is loaded"),

@@ -1,0 +1,1 @@
+"""Connections to autopilots: protocols, sockets with bounded waits, and channels that move joints."""
