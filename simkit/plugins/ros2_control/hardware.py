@@ -256,16 +256,18 @@ class Hardware(SharedByCopies):
         values = self.states.values.copy(), self.commands.values.copy()
         own = (*values, dict(self.owners), self._sources.copy(), self._read_interfaces)
         actuated = self.actuated
-        return own, (actuated.modes.copy(), actuated.targets.copy(), actuated.integrals.copy())
+        shares = None if actuated.gravity_shares is None else actuated.gravity_shares.copy()
+        return own, (actuated.modes.copy(), actuated.targets.copy(), actuated.integrals.copy()), shares
 
     def set_state(self, state: Any) -> None:
         """Restore a state from `get_state`."""
-        (states, commands, owners, sources, self._read_interfaces), drives = state
+        (states, commands, owners, sources, self._read_interfaces), drives, shares = state
         self.states.values, self.commands.values = states.copy(), commands.copy()
         self.owners, self._sources = dict(owners), sources.copy()
         self._unclaimed = np.flatnonzero(sources < 0)
         self._model = None
         self.actuated.modes, self.actuated.targets, self.actuated.integrals = (values.copy() for values in drives)
+        self.actuated.gravity_shares = None if shares is None else shares.copy()
         self._group_joints()
 
 
@@ -283,7 +285,7 @@ def _hardware_joint(described: JointDescription, joint: SceneJoint) -> HardwareJ
         scoped=joint.scoped,
         is_continuous=joint.type in ("revolute", "continuous") and is_unlimited,
         initial=described.initial,
-        leader=described.leader or (axis.mimic.joint if axis.mimic else ""),
+        leader=described.leader or (axis.mimic.joint.rpartition("::")[2] if axis.mimic else ""),
         multiplier=axis.mimic.multiplier if axis.mimic else described.multiplier,
         offset=axis.mimic.offset if axis.mimic else described.offset,
     )

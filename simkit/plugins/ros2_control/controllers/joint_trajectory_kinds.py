@@ -16,7 +16,7 @@ class PositionJointTrajectoryController(JointTrajectoryController):
     types = ("position_controllers/JointTrajectoryController",)
     default_commands: ClassVar[tuple[str, ...]] = ("position",)
     default_states = ("position", "velocity")
-    topics = ("~/command", "~/joint_trajectory")
+    topics: ClassVar[tuple[str, ...]] = ("~/command", "~/joint_trajectory")
     may_end_moving = True
 
 
