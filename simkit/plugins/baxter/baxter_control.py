@@ -282,7 +282,7 @@ class BaxterControl(GazeboRosControl):
     def prepare_trajectory(self, side: str) -> str:
         """Let the trajectory controller drive an arm; return the reason to refuse that, or an empty text."""
         if not self.enabled:
-            return f"The robot is not enabled: publish true on {self.ros.topic('set_super_enable')}."
+            return f"the robot is not enabled; publish true on {self.ros.topic('set_super_enable')}"
         self._modes[side] = HOLD
         self._switch_controllers()
         return ""

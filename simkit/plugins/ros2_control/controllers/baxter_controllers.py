@@ -22,7 +22,7 @@ from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
 from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 
 if TYPE_CHECKING:
-    from simkit.msgs import EndEffectorCommand
+    from simkit.msgs import EndEffectorCommand, JointTrajectory
     from simkit.pose import Vector
     from simkit.runtime.communication.action_server import GoalHandle
 
@@ -190,6 +190,12 @@ class BaxterTrajectoryController(PositionJointTrajectoryController):
     def topic(self, name: str) -> str:
         side = self.name.partition("_")[0]
         return super().topic(name.replace("~/", f"limb/{side}/", 1))
+
+    def _on_trajectory(self, message: JointTrajectory) -> None:
+        refusal = self.plugin.prepare_trajectory(self.name.partition("_")[0])  # type: ignore[attr-defined]
+        if refusal:
+            self._warnings.warn("SK-CONTROL-020", refusal, f"a trajectory is ignored: {refusal}")
+        super()._on_trajectory(message)
 
     def _on_goal(self, goal: GoalHandle) -> None:
         refusal = self.plugin.prepare_trajectory(self.name.partition("_")[0])  # type: ignore[attr-defined]
