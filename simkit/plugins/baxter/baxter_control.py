@@ -90,7 +90,8 @@ class BaxterControl(GazeboRosControl):
     """Drives the arms, the head and the grippers of Baxter by the topics of the robot; see `docs/baxter.md`.
 
     The robot ignores commands until `true` arrives on `/robot/set_super_enable`, or from the start with
-    `<simkit:enabled>`. While it is disabled, it holds its position.
+    `<simkit:enabled>`. While it is disabled, it holds its position; with `<hold_joints>` false, its arms fall, as in
+    Gazebo.
 
     Attributes:
         enabled: true if the robot follows commands.
@@ -113,6 +114,7 @@ class BaxterControl(GazeboRosControl):
         super().prepare(scene, params, builder)
         arms = {joint for side in self._sides for joint in limb_joints(side)}
         actuated = self.hardware.actuated
+        self.hardware.is_limp = not self.hardware.holds_position
         actuated.gravity_shares = np.array([float(joint.name in arms) for joint in actuated.joints])
 
     def _default_to_model_namespace(self, model: str, params: Params) -> None:

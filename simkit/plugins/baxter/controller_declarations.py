@@ -44,6 +44,7 @@ def baxter_endpoints() -> Iterator[Endpoint]:
         yield listens(f"{limb}/joint_command_timeout", FLOAT)
         yield listens(f"{limb}/set_speed_ratio", FLOAT)
         yield listens(f"{limb}/suppress_gravity_compensation", EMPTY)
+        yield listens(f"{limb}/joint_trajectory", "trajectory_msgs/msg/JointTrajectory")
         yield acts(f"{limb}/follow_joint_trajectory", "control_msgs/action/FollowJointTrajectory")
         yield publishes(f"{limb}/endpoint_state", f"{_CORE}EndpointState")
         yield publishes(f"{limb}/gravity_compensation_torques", f"{_CORE}SEAJointState")

@@ -49,6 +49,7 @@ class Hardware(SharedByCopies):
         owners: name of the claiming controller, by the name of the command interface.
         springs: kp and kd by joint, by the name of a controller that simulates springs at its joints.
         holds_position: true if an unclaimed joint holds its position, whatever interfaces it has.
+        is_limp: true if an unclaimed joint moves freely, whatever interfaces it has.
     """
 
     joints: dict[str, HardwareJoint] = field(default_factory=dict)
@@ -61,6 +62,7 @@ class Hardware(SharedByCopies):
     owners: dict[str, str] = field(default_factory=dict)
     springs: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
     holds_position: bool = True
+    is_limp: bool = False
     _sim: Simulation = field(init=False, repr=False)
     _sources: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
     # indices of joints without a claimed interface
@@ -176,6 +178,8 @@ class Hardware(SharedByCopies):
         """Return the mode of an unclaimed joint; a mimic joint has the mode of its leader's claimed interface."""
         if leader_interface:
             return _MODES[leader_interface] if leader_interface in joint.command_interfaces else FREE
+        if self.is_limp:
+            return FREE
         return POSITION_MODE if self.holds_position or POSITION in joint.command_interfaces else FREE
 
     # ------------------------------------------------------------------ run time

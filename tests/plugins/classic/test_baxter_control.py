@@ -120,6 +120,18 @@ def test_a_stop_needs_a_reset_before_the_robot_is_enabled_again(sim: simkit.Simu
     assert seen == [on, stopped, stopped, off, on, off]
 
 
+def test_without_holding_the_arms_of_a_disabled_robot_fall() -> None:
+    text = (Path(__file__).resolve().parents[3] / "assets" / "baxter" / "model.sdf").read_text(encoding="utf-8")
+    options = "<hold_joints>false</hold_joints><enabled>true</enabled><initial_positions>"
+    with simkit.load(text.replace("<initial_positions>", options), model_world="ground", overrides=[STEP]) as sim:
+        place(sim, NEUTRAL)
+        drive(sim, TORQUE, {"s0": 0.0}, 0.3)
+        assert positions(sim) == pytest.approx(NEUTRAL, abs=5e-3)
+        enable(sim, False)
+        sim.run(0.5)
+        assert positions(sim)[1] > NEUTRAL[1] + 0.2
+
+
 # ------------------------------------------------------------------ modes of an arm
 
 
