@@ -278,6 +278,27 @@ class SEAJointState:
     hyst_state: float
     __msgtype__: ClassVar[str]
 
+@dataclass
+class SolvePositionIK_Request:
+    """`baxter_core_msgs/srv/SolvePositionIK_Request`"""
+    pose_stamp: list[PoseStamped]
+    seed_angles: list[JointState]
+    seed_mode: int
+    SEED_AUTO: ClassVar[int] = 0
+    SEED_USER: ClassVar[int] = 1
+    SEED_CURRENT: ClassVar[int] = 2
+    SEED_NS_MAP: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SolvePositionIK_Response:
+    """`baxter_core_msgs/srv/SolvePositionIK_Response`"""
+    joints: list[JointState]
+    is_valid: NDArray[np.bool_]
+    result_type: NDArray[np.uint8]
+    RESULT_INVALID: ClassVar[int] = 0
+    __msgtype__: ClassVar[str]
+
 # builtin_interfaces
 
 @dataclass

@@ -36,7 +36,8 @@ from simkit.plugins.baxter.controller_declarations import (
     declaration,
     kind_of,
 )
-from simkit.plugins.baxter.robot_states import BaxterStates
+from simkit.plugins.baxter.inverse_kinematics import IK_SERVICE, IK_TYPE, ArmInverseKinematics
+from simkit.plugins.baxter.robot_states import BaxterStates, tip_of
 from simkit.plugins.options import Options, OptionsOf, block, boolean
 from simkit.plugins.ros2_control.control_plugin import ControlOptions, GazeboRosControl
 from simkit.plugins.ros2_control.controllers.baxter_controllers import (
@@ -201,6 +202,11 @@ class BaxterControl(GazeboRosControl):
             problem = self.manager.load(name) or self.manager.configure(name)
             if problem:
                 self.log.error("%s", problem)
+        for side in self._sides:
+            joints = [self.hardware.joints[joint] for joint in limb_joints(side)]
+            solver = ArmInverseKinematics(self.sim, parent, side, joints, tip_of(parent, side))
+            prefix = "/" if self.ros.namespace == "/robot" else ""  # another robot's services have its namespace
+            self.offer(f"{prefix}{IK_SERVICE.format(side)}", IK_TYPE, solver.solve_all)
         self._states = BaxterStates(self, parent, self._sides, self._gripper_sides, has_head=self._has_head)
         self._open_topics()
         self.enabled = self.options.enabled

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import Final
 
 from simkit.diagnostics import Where
-from simkit.plugins.endpoints import Endpoint, acts, listens, publishes
+from simkit.plugins.baxter.inverse_kinematics import IK_SERVICE, IK_TYPE
+from simkit.plugins.endpoints import Endpoint, acts, listens, offers, publishes
 from simkit.plugins.ros2_control.controllers.baxter_controllers import limb_joints
 from simkit.plugins.ros_parameter_files import Entry
 
@@ -46,6 +47,7 @@ def baxter_endpoints() -> Iterator[Endpoint]:
         yield listens(f"{limb}/suppress_gravity_compensation", EMPTY)
         yield listens(f"{limb}/joint_trajectory", "trajectory_msgs/msg/JointTrajectory")
         yield acts(f"{limb}/follow_joint_trajectory", "control_msgs/action/FollowJointTrajectory")
+        yield offers(f"/{IK_SERVICE.format(side)}", IK_TYPE)
         yield publishes(f"{limb}/endpoint_state", f"{_CORE}EndpointState")
         yield publishes(f"{limb}/gravity_compensation_torques", f"{_CORE}SEAJointState")
         yield listens(f"{gripper}/command", GRIPPER)

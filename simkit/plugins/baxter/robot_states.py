@@ -156,16 +156,12 @@ class BaxterStates(SharedByCopies):
             gravity_only=gravity,
         )
 
-    def _tip(self, side: str) -> Link:
-        links = self._model.links
-        return next(links[name.format(side)] for name in _TIPS if name.format(side) in links)
-
     def _base_pose(self) -> Pose:
         links = self._model.links
         return links["base"].pose if "base" in links else self._model.pose
 
     def _endpoint(self, side: str) -> Message:
-        tip, into_base = self._tip(side), self._base_pose().inverse()
+        tip, into_base = tip_of(self._model, side), self._base_pose().inverse()
         pose = into_base @ tip.pose
         turn = Pose(quaternion=into_base.quaternion)
         linear, angular = turn.transform(tip.linear_velocity), turn.transform(tip.angular_velocity)
@@ -236,6 +232,13 @@ class BaxterStates(SharedByCopies):
             product="SDK End Effector",
             **dict.fromkeys(able, True),
         )
+
+
+def tip_of(model: Model, side: str) -> Link:
+    """Return the link at the end of an arm: between the tips of the fingers, or the hand of a robot without them."""
+    names = [name.format(side) for name in _TIPS]
+    last = model.joints[f"{side}_w2"].scene.child_link
+    return next(model.links[name] for name in (*names, last.rpartition("::")[2]) if name in model.links)
 
 
 def _xyz(values: Vector) -> dict[str, float]:
