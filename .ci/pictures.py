@@ -55,17 +55,36 @@ def script(name: str) -> Callable[[Path], None]:
 
 def tiago(path: Path) -> None:
     """TIAGo from the front, from its left and from behind."""
-    views: list[Any] = []
     with simkit.load("empty", spawn=["tiago:0,0,0"]) as sim:
         sim.run(2.0)
-        subject = find_subject(sim, [])
-        look = Look(400, 500)
-        sights = [line_of_sight(math.radians(turn), math.radians(12.0)) for turn in (-30.0, 65.0, 150.0)]
-        cameras = [frame_points(subject.robots, sight, look.width, look.height) for sight in sights]
-        distance = max(camera.distance for camera in cameras)
-        for sight, found in zip(sights, cameras, strict=True):
-            camera = Camera(found.target - distance * sight, found.target, look.width, look.height)
-            views.append(draw_frame(sim, render_view, camera, look, Marks(), subject))
+        three_views(sim, path)
+
+
+def baxter(path: Path) -> None:
+    """Baxter in its neutral pose, from the front, from its left and from behind."""
+    neutral = {"s0": 0.0, "s1": -0.55, "e0": 0.0, "e1": 0.75, "w0": 0.0, "w1": 1.26, "w2": 0.0}
+    with simkit.load("empty", spawn=["baxter:0,0,0"]) as sim:
+        sim.publish("/robot/set_super_enable", {"data": True})
+        sim.run(0.1)
+        for side in ("left", "right"):
+            names = [f"{side}_{joint}" for joint in neutral]
+            command = {"mode": 1, "names": names, "command": list(neutral.values())}
+            sim.publish(f"/robot/limb/{side}/joint_command", command)
+        sim.run(6.0)
+        three_views(sim, path)
+
+
+def three_views(sim: simkit.Simulation, path: Path) -> None:
+    """Draw the robot from three sides, at one scale."""
+    views: list[Any] = []
+    subject = find_subject(sim, [])
+    look = Look(400, 500)
+    sights = [line_of_sight(math.radians(turn), math.radians(12.0)) for turn in (-30.0, 65.0, 150.0)]
+    cameras = [frame_points(subject.robots, sight, look.width, look.height) for sight in sights]
+    distance = max(camera.distance for camera in cameras)
+    for sight, found in zip(sights, cameras, strict=True):
+        camera = Camera(found.target - distance * sight, found.target, look.width, look.height)
+        views.append(draw_frame(sim, render_view, camera, look, Marks(), subject))
     Image.fromarray(np.hstack(views)).save(path, optimize=True)
 
 
@@ -75,6 +94,8 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "office.png": run("simple_office_with_people", "--spawn", "tiago:0,0,0", "--duration", "20"),
     "tiago_table.png": run("tiago_table", "--duration", "2"),
     "tiago.png": tiago,
+    "baxter.png": baxter,
+    "baxter_table.png": run("baxter_table", "--script", "worlds/baxter_table_pick.yaml", "--duration", "11"),
     "tiago_carry.png": script("examples/tiago/carry.py"),
     "visual_servoing.png": script("examples/visual_servoing/servo.py"),
     "graph.svg": graph,

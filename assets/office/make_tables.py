@@ -1,4 +1,4 @@
-"""Writes the worlds with a table in front of TIAGo, and the box with the marker.
+"""Writes the worlds with a table in front of TIAGo or Baxter, and the box with the marker.
 
     python assets/office/make_tables.py
 
@@ -138,6 +138,16 @@ THINGS = (
     on_table("pencil", "box", (0.012, 0.16, 0.012), 0.02, 0.72, -0.32, (0.95, 0.80, 0.20), 0.7),
 )
 
+BAXTER_THINGS = (
+    on_table("cube", "box", (0.045, 0.045, 0.045), 0.1, 0.72, 0.26, (0.85, 0.20, 0.18)),
+    on_table("post", "box", (0.04, 0.04, 0.12), 0.15, 0.72, -0.26, (0.20, 0.42, 0.72)),
+    on_table("can", "cylinder", (0.024, 0.10), 0.2, 0.78, 0.10, (0.16, 0.52, 0.30)),
+    on_table("ball", "sphere", (0.025,), 0.05, 0.76, -0.08, (0.92, 0.55, 0.12)),
+    on_table("milk", "box", (0.065, 0.065, 0.20), 0.5, 0.95, 0.0, (0.93, 0.93, 0.95)),
+    on_table("book", "box", (0.15, 0.21, 0.03), 0.4, 1.05, 0.32, (0.46, 0.25, 0.48), 0.6, 0.3),
+)
+"""The gripper of Baxter grasps what is 16 to 57 mm wide: the first four."""
+
 HEAD = """<?xml version="1.0"?>
 <!--
   {about}
@@ -180,7 +190,7 @@ HEAD = """<?xml version="1.0"?>
     </model>
 
     <include>
-      <uri>model://tiago</uri>
+      <uri>model://{robot}</uri>
     </include>
 
 """
@@ -188,9 +198,9 @@ HEAD = """<?xml version="1.0"?>
 WHAT = "TIAGo at the origin looks along x at a table, 0.78 m high, "
 
 
-def world(name: str, about: str, blocks: Iterable[Iterable[str]]) -> None:
+def world(name: str, about: str, blocks: Iterable[Iterable[str]], robot: str = "tiago") -> None:
     lines = [f"    {line}" for block in blocks for line in (*block, "")]
-    text = HEAD.format(name=name, about=about) + "\n".join([*lines, "  </world>", "</sdf>", ""])
+    text = HEAD.format(name=name, about=about, robot=robot) + "\n".join([*lines, "  </world>", "</sdf>", ""])
     (WORLDS / f"{name}.sdf").write_text(text, encoding="utf-8")
 
 
@@ -278,3 +288,5 @@ if __name__ == "__main__":
     about = WHAT + f"and on it at a box with an ArUco marker ({MARKER_ID}, {MARKER} m wide)."
     box = include_lines(0.86, 0.0, HEIGHT + BOX[2] / 2, math.pi - 0.55)
     world("tiago_aruco", about, [table, box])
+    about = "Baxter at the origin looks along x at a table, 0.78 m high, with objects of several shapes and weights."
+    world("baxter_table", about, [table, *map(thing_lines, BAXTER_THINGS)], "baxter")

@@ -43,7 +43,8 @@ class Limit:
 
     Attributes:
         soft: how far inside the ends the safety controller begins.
-        k_position, k_velocity: gains of the safety controller; it is described, the physics does not use it.
+        k_position, k_velocity: gains of the safety controller; it is described, the physics does not use it. There is
+            none where both are 0.
     """
 
     effort: float
@@ -68,7 +69,8 @@ class Link:
         rpy: how the link is turned in its parent's frame.
         axis: of the joint, in the link's frame.
         limit: of a moving joint; None where nothing holds it.
-        mimic: the joint that this one follows one to one; empty where it moves by itself.
+        mimic: the joint that this one follows; empty where it moves by itself.
+        multiplier: how far it moves for one unit of that joint.
         damping: viscous, of the joint.
         friction: dry, of the joint.
         mass: of the part; a frame weighs a milligram.
@@ -88,6 +90,7 @@ class Link:
     axis: Vector = (0.0, 0.0, 1.0)
     limit: Limit | None = None
     mimic: str = ""
+    multiplier: float = 1.0
     damping: float = 0.0
     friction: float = 0.0
     mass: float = 1e-6
@@ -108,7 +111,13 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """A robot: `control` is its `<ros2_control>` element, line by line."""
+    """A robot: `control` is its `<ros2_control>` element or its transmissions, line by line.
+
+    Attributes:
+        origin: where the model's origin is.
+        height: of the origin above the ground [m].
+        package: the folder that the meshes' URIs name.
+    """
 
     name: str
     title: str
@@ -116,6 +125,9 @@ class Robot:
     links: tuple[Link, ...]
     plugins: tuple[Plugin, ...] = field(default=())
     control: tuple[str, ...] = ()
+    origin: str = "base_footprint: on the ground, midway between the wheels"
+    height: float = 0.0
+    package: str = PACKAGE
 
 
 def box(x: float, y: float, z: float) -> Shape:
@@ -148,6 +160,6 @@ ORANGE = Look("orange", (0.91, 0.42, 0.10), 0.4)
 GLASS = Look("glass", (0.09, 0.12, 0.21), 0.9)
 
 
-def drawn(*parts: tuple[str, str, Look]) -> tuple[Visual, ...]:
+def drawn(*parts: tuple[str, str, Look], package: str = PACKAGE) -> tuple[Visual, ...]:
     """Visuals of meshes: (name, file without suffix, look) each."""
-    return tuple(Visual(name, Shape("mesh", mesh=f"{PACKAGE}/meshes/{file}.obj"), look) for name, file, look in parts)
+    return tuple(Visual(name, Shape("mesh", mesh=f"{package}/meshes/{file}.obj"), look) for name, file, look in parts)

@@ -12,7 +12,7 @@ HEADER = """<?xml version="1.0"?>
   {title}. {about}
 
   Written by make_models.py; the URDF file of the same name is written from the same numbers. The model's origin is
-  base_footprint: on the ground, midway between the wheels, x forward, y left, z up. Lengths m, masses kg, inertias
+  {origin}, x forward, y left, z up. Lengths m, masses kg, inertias
   kg m^2, angles rad.
 -->"""
 
@@ -20,8 +20,9 @@ MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
 def sdf_text(robot: Robot) -> str:
-    lines = [HEADER.format(title=robot.title, about=robot.about), '<sdf version="1.12">']
+    lines = [HEADER.format(title=robot.title, about=robot.about, origin=robot.origin), '<sdf version="1.12">']
     lines.append(f'  <model name="{robot.name}" canonical_link="{robot.links[0].name}">')
+    lines += indented(pose_lines((0, 0, robot.height), ZERO), 2)
     for link in robot.links:
         lines += ["", *indented(_link(link), 2)]
         if link.joint:
@@ -77,7 +78,7 @@ def _joint(link: Link) -> Iterator[str]:
         yield f"    <xyz>{numbers(link.axis)}</xyz>"
         yield from indented(_limit(link), 2)
         if link.mimic:
-            ratio = "<multiplier>1</multiplier><offset>0</offset><reference>0</reference>"
+            ratio = f"<multiplier>{number(link.multiplier)}</multiplier><offset>0</offset><reference>0</reference>"
             yield f'    <mimic joint="{link.mimic}">{ratio}</mimic>'
         damping, friction = number(link.damping), number(link.friction)
         yield f"    <dynamics><damping>{damping}</damping><friction>{friction}</friction></dynamics>"

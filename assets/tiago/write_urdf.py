@@ -13,12 +13,13 @@ HEADER = """<?xml version="1.0"?>
   {title}. {about}
 
   Written by make_models.py; the SDF file of the same name is written from the same numbers. Fixed joints are preserved,
-  so that every frame keeps its name. The package "tiago" that the meshes name is the folder of this file.
+  so that every frame keeps its name. The package "{package}" that the meshes name is the folder of this file.
 -->"""
 
 
 def urdf_text(robot: Robot) -> str:
-    lines = [HEADER.format(title=robot.title, about=robot.about), f'<robot name="{robot.name}">', ""]
+    header = HEADER.format(title=robot.title, about=robot.about, package=robot.package)
+    lines = [header, f'<robot name="{robot.name}">', ""]
     looks = dict.fromkeys(visual.look for link in robot.links for visual in link.visuals)
     lines += indented((urdf_material(look) for look in looks), 1)
     for link in robot.links:
@@ -64,7 +65,7 @@ def _joint(link: Link) -> Iterator[str]:
         yield f'  <axis xyz="{numbers(link.axis)}"/>'
         yield from indented(_limits(link), 1)
         if link.mimic:
-            yield f'  <mimic joint="{link.mimic}" multiplier="1" offset="0"/>'
+            yield f'  <mimic joint="{link.mimic}" multiplier="{number(link.multiplier)}" offset="0"/>'
         yield f'  <dynamics damping="{number(link.damping)}" friction="{number(link.friction)}"/>'
     yield "</joint>"
 
@@ -79,6 +80,8 @@ def _limits(link: Link) -> Iterator[str]:
         return
     lower, upper = limit.lower, limit.upper
     yield f'<limit lower="{number(lower)}" upper="{number(upper)}" {force}/>'
+    if not (limit.k_position or limit.k_velocity):
+        return
     gains = f'k_position="{number(limit.k_position)}" k_velocity="{number(limit.k_velocity)}"'
     soft = f'soft_lower_limit="{number(lower + limit.soft)}" soft_upper_limit="{number(upper - limit.soft)}"'
     yield f"<safety_controller {gains} {soft}/>"

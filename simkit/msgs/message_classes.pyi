@@ -118,6 +118,187 @@ class aruco_msgs__msg__MarkerArray:
     markers: list[aruco_msgs__msg__Marker]
     __msgtype__: ClassVar[str]
 
+# baxter_core_msgs
+
+@dataclass
+class AssemblyState:
+    """`baxter_core_msgs/msg/AssemblyState`"""
+    ready: bool
+    enabled: bool
+    stopped: bool
+    error: bool
+    estop_button: int
+    estop_source: int
+    ESTOP_BUTTON_UNPRESSED: ClassVar[int] = 0
+    ESTOP_BUTTON_PRESSED: ClassVar[int] = 1
+    ESTOP_BUTTON_UNKNOWN: ClassVar[int] = 2
+    ESTOP_BUTTON_RELEASED: ClassVar[int] = 3
+    ESTOP_SOURCE_NONE: ClassVar[int] = 0
+    ESTOP_SOURCE_USER: ClassVar[int] = 1
+    ESTOP_SOURCE_UNKNOWN: ClassVar[int] = 2
+    ESTOP_SOURCE_FAULT: ClassVar[int] = 3
+    ESTOP_SOURCE_BRAIN: ClassVar[int] = 4
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EndEffectorCommand:
+    """`baxter_core_msgs/msg/EndEffectorCommand`"""
+    id: int
+    command: str
+    args: str
+    sender: str
+    sequence: int
+    CMD_NO_OP: ClassVar[str] = 'no_op'
+    CMD_SET: ClassVar[str] = 'set'
+    CMD_CONFIGURE: ClassVar[str] = 'configure'
+    CMD_REBOOT: ClassVar[str] = 'reboot'
+    CMD_RESET: ClassVar[str] = 'reset'
+    CMD_CALIBRATE: ClassVar[str] = 'calibrate'
+    CMD_CLEAR_CALIBRATION: ClassVar[str] = 'clear_calibration'
+    CMD_PREPARE_TO_GRIP: ClassVar[str] = 'prepare_to_grip'
+    CMD_GRIP: ClassVar[str] = 'grip'
+    CMD_RELEASE: ClassVar[str] = 'release'
+    CMD_GO: ClassVar[str] = 'go'
+    CMD_STOP: ClassVar[str] = 'stop'
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EndEffectorProperties:
+    """`baxter_core_msgs/msg/EndEffectorProperties`"""
+    id: int
+    ui_type: int
+    manufacturer: str
+    product: str
+    serial_number: str
+    hardware_rev: str
+    firmware_rev: str
+    firmware_date: str
+    has_calibration: bool
+    controls_grip: bool
+    senses_grip: bool
+    reverses_grip: bool
+    controls_force: bool
+    senses_force: bool
+    controls_position: bool
+    senses_position: bool
+    properties: str
+    NO_GRIPPER: ClassVar[int] = 0
+    SUCTION_CUP_GRIPPER: ClassVar[int] = 1
+    ELECTRIC_GRIPPER: ClassVar[int] = 2
+    PASSIVE_GRIPPER: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EndEffectorState:
+    """`baxter_core_msgs/msg/EndEffectorState`"""
+    timestamp: Time
+    id: int
+    enabled: int
+    calibrated: int
+    ready: int
+    moving: int
+    gripping: int
+    missed: int
+    error: int
+    reverse: int
+    position: float
+    force: float
+    state: str
+    command: str
+    command_sender: str
+    command_sequence: int
+    STATE_FALSE: ClassVar[int] = 0
+    STATE_TRUE: ClassVar[int] = 1
+    STATE_UNKNOWN: ClassVar[int] = 2
+    POSITION_CLOSED: ClassVar[float] = 0.0
+    POSITION_OPEN: ClassVar[float] = 100.0
+    FORCE_MIN: ClassVar[float] = 0.0
+    FORCE_MAX: ClassVar[float] = 100.0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EndpointState:
+    """`baxter_core_msgs/msg/EndpointState`"""
+    header: Header
+    pose: Pose
+    twist: Twist
+    wrench: Wrench
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class HeadPanCommand:
+    """`baxter_core_msgs/msg/HeadPanCommand`"""
+    target: float
+    speed_ratio: float
+    enable_pan_request: int
+    MAX_SPEED_RATIO: ClassVar[float] = 1.0
+    MIN_SPEED_RATIO: ClassVar[float] = 0.0
+    REQUEST_PAN_DISABLE: ClassVar[int] = 0
+    REQUEST_PAN_ENABLE: ClassVar[int] = 1
+    REQUEST_PAN_VOID: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class HeadState:
+    """`baxter_core_msgs/msg/HeadState`"""
+    pan: float
+    is_turning: bool
+    is_nodding: bool
+    is_pan_enabled: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointCommand:
+    """`baxter_core_msgs/msg/JointCommand`"""
+    mode: int
+    command: NDArray[np.float64]
+    names: list[str]
+    POSITION_MODE: ClassVar[int] = 1
+    VELOCITY_MODE: ClassVar[int] = 2
+    TORQUE_MODE: ClassVar[int] = 3
+    RAW_POSITION_MODE: ClassVar[int] = 4
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SEAJointState:
+    """`baxter_core_msgs/msg/SEAJointState`"""
+    header: Header
+    name: list[str]
+    commanded_position: NDArray[np.float64]
+    commanded_velocity: NDArray[np.float64]
+    commanded_acceleration: NDArray[np.float64]
+    commanded_effort: NDArray[np.float64]
+    actual_position: NDArray[np.float64]
+    actual_velocity: NDArray[np.float64]
+    actual_effort: NDArray[np.float64]
+    gravity_model_effort: NDArray[np.float64]
+    gravity_only: NDArray[np.float64]
+    hysteresis_model_effort: NDArray[np.float64]
+    crosstalk_model_effort: NDArray[np.float64]
+    hyst_state: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SolvePositionIK_Request:
+    """`baxter_core_msgs/srv/SolvePositionIK_Request`"""
+    pose_stamp: list[PoseStamped]
+    seed_angles: list[JointState]
+    seed_mode: int
+    SEED_AUTO: ClassVar[int] = 0
+    SEED_USER: ClassVar[int] = 1
+    SEED_CURRENT: ClassVar[int] = 2
+    SEED_NS_MAP: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SolvePositionIK_Response:
+    """`baxter_core_msgs/srv/SolvePositionIK_Response`"""
+    joints: list[JointState]
+    is_valid: NDArray[np.bool_]
+    result_type: NDArray[np.uint8]
+    RESULT_INVALID: ClassVar[int] = 0
+    __msgtype__: ClassVar[str]
+
 # builtin_interfaces
 
 @dataclass

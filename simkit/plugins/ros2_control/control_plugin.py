@@ -30,6 +30,7 @@ from simkit.plugins.ros_parameter_substitution import substitute_arguments
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.plugins.ros2_control.hardware_description import ComponentDescription
     from simkit.plugins.ros_parameter_files import ParameterFile
     from simkit.runtime import Model
     from simkit.scene import SceneModel
@@ -81,14 +82,14 @@ class ControlPlugin(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         transmissions = transmissions_of(scene, [*scene.controls, *params.all("ros2_control")])
-        self.hardware = Hardware.of(describe_hardware(scene, params), scene, params.diagnostics, transmissions)
+        self.hardware = Hardware.of(self.describe_joints(scene, params), scene, params.diagnostics, transmissions)
         renamed = self.ros.node if self.ros.node != self.name else "controller_manager"
         self._manager_name = self.options.controller_manager_name or renamed
         run_files = [entry.file for entry in builder.parameter_files if entry.is_for(scene)]
         find = partial(find_plugin_file, self, builder=builder, places=_CONFIG_FOLDERS)
         argument_files = self.ros.arguments.parameter_files(find, params.diagnostics)
         files = [
-            *self._read_files(params, builder, has_other_files=bool(run_files or argument_files)),
+            *self.read_files(params, builder, has_other_files=bool(run_files or argument_files)),
             *argument_files,
             *self._adapted_run_files(run_files, params),
         ]
@@ -103,6 +104,10 @@ class ControlPlugin(ModelPlugin):
         self.hardware.prepare(builder, self.name, self.read_pids())
 
     # ------------------------------------------------------------------ the plugin's element and its files
+
+    def describe_joints(self, scene: SceneModel, params: Params) -> list[ComponentDescription]:
+        """Return the joints and sensors that the controllers may use."""
+        return describe_hardware(scene, params)
 
     def mark_ignored_elements(self, params: Params) -> None:
         """Mark elements that only Gazebo uses as read, so that they are not reported as unknown."""
@@ -179,7 +184,8 @@ class ControlPlugin(ModelPlugin):
             namespace, name = self.ros.namespace, self._manager_name
             yield adapt_to_manager(file, namespace, name, params.diagnostics, is_ros_1=self.is_ros_1)
 
-    def _read_files(self, params: Params, builder: SpecBuilder, *, has_other_files: bool) -> Iterator[ParameterFile]:
+    def read_files(self, params: Params, builder: SpecBuilder, *, has_other_files: bool) -> Iterator[ParameterFile]:
+        """Yield the parameter files that the plugin's element names; without any, report it."""
         elements = params.all("parameters")
         for element in elements:
             for uri in [element.value] if element.value.startswith("$(") else element.value.split():
@@ -211,7 +217,7 @@ class ControlPlugin(ModelPlugin):
         offer_services(self.manager)
         declared = self.manager.declared()
         report_unused_parameters(self.manager, params.diagnostics)
-        chosen = list(declared) if not self._chosen_controllers else []
+        chosen = self.controllers_to_start(declared) if not self._chosen_controllers else []
         for name, element in self._chosen_controllers:
             if name in declared:
                 chosen.append(name)
@@ -221,6 +227,10 @@ class ControlPlugin(ModelPlugin):
             params.diagnostics.error("SK-CONTROL-013", message, element.where, near)
         self.manager.start(chosen)
         report_high_rates(self.manager, self.before_step_rate, params.diagnostics)
+
+    def controllers_to_start(self, declared: Mapping[str, str]) -> list[str]:
+        """Return the controllers that start with the robot if `<simkit:controllers>` does not name any."""
+        return list(declared)
 
     def _choose_free_namespace(self, model: str, params: Params) -> None:
         """Append the model's name to the namespace if another robot's manager has the same name."""

@@ -49,6 +49,7 @@ class Hardware(SharedByCopies):
         owners: name of the claiming controller, by the name of the command interface.
         springs: kp and kd by joint, by the name of a controller that simulates springs at its joints.
         holds_position: true if an unclaimed joint holds its position, whatever interfaces it has.
+        is_limp: true if an unclaimed joint moves freely, whatever interfaces it has.
     """
 
     joints: dict[str, HardwareJoint] = field(default_factory=dict)
@@ -61,6 +62,7 @@ class Hardware(SharedByCopies):
     owners: dict[str, str] = field(default_factory=dict)
     springs: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
     holds_position: bool = True
+    is_limp: bool = False
     _sim: Simulation = field(init=False, repr=False)
     _sources: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
     # indices of joints without a claimed interface
@@ -176,6 +178,8 @@ class Hardware(SharedByCopies):
         """Return the mode of an unclaimed joint; a mimic joint has the mode of its leader's claimed interface."""
         if leader_interface:
             return _MODES[leader_interface] if leader_interface in joint.command_interfaces else FREE
+        if self.is_limp:
+            return FREE
         return POSITION_MODE if self.holds_position or POSITION in joint.command_interfaces else FREE
 
     # ------------------------------------------------------------------ run time
@@ -256,16 +260,18 @@ class Hardware(SharedByCopies):
         values = self.states.values.copy(), self.commands.values.copy()
         own = (*values, dict(self.owners), self._sources.copy(), self._read_interfaces)
         actuated = self.actuated
-        return own, (actuated.modes.copy(), actuated.targets.copy(), actuated.integrals.copy())
+        shares = None if actuated.gravity_shares is None else actuated.gravity_shares.copy()
+        return own, (actuated.modes.copy(), actuated.targets.copy(), actuated.integrals.copy()), shares
 
     def set_state(self, state: Any) -> None:
         """Restore a state from `get_state`."""
-        (states, commands, owners, sources, self._read_interfaces), drives = state
+        (states, commands, owners, sources, self._read_interfaces), drives, shares = state
         self.states.values, self.commands.values = states.copy(), commands.copy()
         self.owners, self._sources = dict(owners), sources.copy()
         self._unclaimed = np.flatnonzero(sources < 0)
         self._model = None
         self.actuated.modes, self.actuated.targets, self.actuated.integrals = (values.copy() for values in drives)
+        self.actuated.gravity_shares = None if shares is None else shares.copy()
         self._group_joints()
 
 
@@ -283,7 +289,7 @@ def _hardware_joint(described: JointDescription, joint: SceneJoint) -> HardwareJ
         scoped=joint.scoped,
         is_continuous=joint.type in ("revolute", "continuous") and is_unlimited,
         initial=described.initial,
-        leader=described.leader or (axis.mimic.joint if axis.mimic else ""),
+        leader=described.leader or (axis.mimic.joint.rpartition("::")[2] if axis.mimic else ""),
         multiplier=axis.mimic.multiplier if axis.mimic else described.multiplier,
         offset=axis.mimic.offset if axis.mimic else described.offset,
     )

@@ -52,6 +52,8 @@ class JointActuators(SharedByCopies):
         targets: references of the servos [rad or m]; these positions are held if there is no command.
         integrals: integral parts of the PID loops [N·m or N].
         groups: number of the controller that has claimed each joint; 0 for an unclaimed joint.
+        gravity_shares: part of the effort against gravity that does not count for the effort limit of each joint, from
+            0 to 1; None if the limits are those of the whole efforts, as in Gazebo.
     """
 
     def __init__(
@@ -63,6 +65,7 @@ class JointActuators(SharedByCopies):
         self.joints, self.actuators, self.pids = tuple(joints), tuple(actuators), pids
         self.modes = self.groups = np.zeros(0, np.intp)
         self.targets = self.integrals = np.zeros(0)
+        self.gravity_shares: Vector | None = None
         self._is_loaded = False
         self._model: mujoco.MjModel | None = None
         self._cached: ActiveModes | None = None
@@ -177,7 +180,9 @@ class JointActuators(SharedByCopies):
     def _limit_efforts(self, now: ActiveModes) -> None:
         """Set the effort limits of the current modes in the engine."""
         is_bound = np.isfinite(now.lowest) | np.isfinite(now.highest)
-        if is_bound.any():
+        if self.gravity_shares is not None:  # `write` limits these efforts, because their limits change at every step
+            is_bound[:] = False
+        if is_bound.any() or self.gravity_shares is not None:
             limited, ranges = (
                 self._sim.engine.touch("actuator_forcelimited"),
                 self._sim.engine.touch("actuator_forcerange"),
@@ -225,6 +230,10 @@ class JointActuators(SharedByCopies):
             state += self._integrate(now, reference, rate, period)
         if now.has_effort:
             state += now.effort_share * commands
+        if self.gravity_shares is not None:
+            shift = self.gravity_shares * weight
+            effort = state - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
+            state += np.minimum(np.maximum(effort, now.lowest + shift), now.highest + shift) - effort
         if not np.vdot(state, state) < _LARGEST_CONTROL**2:
             state = np.minimum(np.maximum(state, -_LARGEST_CONTROL), _LARGEST_CONTROL)
         data.act[self._states] = state
@@ -295,5 +304,7 @@ class JointActuators(SharedByCopies):
         """Return the current effort of each actuator [N·m or N]."""
         now, data = self._active_modes(), self._sim.engine.physics.data
         force = data.act[self._states] - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
+        if self.gravity_shares is not None:
+            return np.asarray(force)
         effort: Vector = np.minimum(np.maximum(force, now.lowest), now.highest)
         return effort

@@ -14,6 +14,7 @@ from proof_lab import BOX, HEAVY, LIGHT, gz, lab, plugin, ros, sensed, tags
 
 import simkit
 
+ROOT = Path(__file__).resolve().parents[3]
 REAR = tags(left_joint="rl_joint", right_joint="rr_joint", wheel_separation=0.4)
 STEERED = tags(left_steering_joint="fl_steering", right_steering_joint="fr_steering")
 FOUR = tags(front_left_joint="fl_joint", front_right_joint="fr_joint")
@@ -539,11 +540,17 @@ def _log(kind: str) -> Callable[[Path], simkit.Simulation]:
     return lambda folder: simkit.load(lab(world=gz("log", f"<{tag}>{folder / 'log'}</{tag}>", kind)))
 
 
+def _baxter(folder: Path) -> simkit.Simulation:
+    text = (ROOT / "assets" / "baxter" / "model.sdf").read_text(encoding="utf-8")
+    return simkit.load(text.replace("<initial_positions>", "<enabled>true</enabled><initial_positions>"))
+
+
 OPENED: dict[str, Callable[[Path], simkit.Simulation]] = {
     "GazeboRos2Control": _control(control_robots.CLASSIC),
     "GzRos2Control": _control("libgz_ros2_control-system.so"),
     "GazeboRosControl": _ros_1,
     "FetchGazeboPlugin": _fetch,
+    "BaxterControl": _baxter,
     "PlayMotion": _motion,
     "PythonSystemLoader": _python_system,
     "LogRecord": _log("LogRecord"),
