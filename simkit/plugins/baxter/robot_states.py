@@ -189,8 +189,7 @@ class BaxterStates(SharedByCopies):
         point = np.array(tip.pose.position, float)
         mujoco.mj_jac(model, data, jacobian[:3], jacobian[3:], point, names.link(tip.scoped).body)
         unexplained = gravity - effort + model.dof_damping[dofs] * velocity
-        wrench: Vector = np.linalg.lstsq(jacobian[:, dofs].T, unexplained, rcond=1e-3)[0]
-        return wrench
+        return np.asarray(np.linalg.lstsq(jacobian[:, dofs].T, unexplained, rcond=1e-3)[0], float)
 
     # ------------------------------------------------------------------ grippers
 
