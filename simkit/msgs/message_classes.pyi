@@ -1754,6 +1754,98 @@ class Mouse:
     last_squal: int
     __msgtype__: ClassVar[str]
 
+# kobuki_msgs
+
+@dataclass
+class kobuki_msgs__msg__BumperEvent:
+    """`kobuki_msgs/msg/BumperEvent`"""
+    bumper: int
+    state: int
+    LEFT: ClassVar[int] = 0
+    CENTER: ClassVar[int] = 1
+    RIGHT: ClassVar[int] = 2
+    RELEASED: ClassVar[int] = 0
+    PRESSED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__CliffEvent:
+    """`kobuki_msgs/msg/CliffEvent`"""
+    sensor: int
+    state: int
+    bottom: int
+    LEFT: ClassVar[int] = 0
+    CENTER: ClassVar[int] = 1
+    RIGHT: ClassVar[int] = 2
+    FLOOR: ClassVar[int] = 0
+    CLIFF: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__MotorPower:
+    """`kobuki_msgs/msg/MotorPower`"""
+    state: int
+    OFF: ClassVar[int] = 0
+    ON: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__WheelDropEvent:
+    """`kobuki_msgs/msg/WheelDropEvent`"""
+    wheel: int
+    state: int
+    LEFT: ClassVar[int] = 0
+    RIGHT: ClassVar[int] = 1
+    RAISED: ClassVar[int] = 0
+    DROPPED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+# kobuki_ros_interfaces
+
+@dataclass
+class BumperEvent:
+    """`kobuki_ros_interfaces/msg/BumperEvent`"""
+    bumper: int
+    state: int
+    LEFT: ClassVar[int] = 0
+    CENTER: ClassVar[int] = 1
+    RIGHT: ClassVar[int] = 2
+    RELEASED: ClassVar[int] = 0
+    PRESSED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CliffEvent:
+    """`kobuki_ros_interfaces/msg/CliffEvent`"""
+    sensor: int
+    state: int
+    bottom: int
+    LEFT: ClassVar[int] = 0
+    CENTER: ClassVar[int] = 1
+    RIGHT: ClassVar[int] = 2
+    FLOOR: ClassVar[int] = 0
+    CLIFF: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MotorPower:
+    """`kobuki_ros_interfaces/msg/MotorPower`"""
+    state: int
+    OFF: ClassVar[int] = 0
+    ON: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WheelDropEvent:
+    """`kobuki_ros_interfaces/msg/WheelDropEvent`"""
+    wheel: int
+    state: int
+    LEFT: ClassVar[int] = 0
+    RIGHT: ClassVar[int] = 1
+    RAISED: ClassVar[int] = 0
+    DROPPED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
 # lifecycle_msgs
 
 @dataclass
