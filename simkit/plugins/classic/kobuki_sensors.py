@@ -1,17 +1,19 @@
 """Sensors of the Kobuki base in Gazebo Classic: bumper, cliff and wheel drop events, and the IMU.
 
 Topics, thresholds, the three zones of the bumper and the conversion of a distance to the value of the analog-digital
-converter are those of `gazebo_ros_kobuki_updates.cpp` in kobuki_gazebo_plugins. Three differences are deliberate. An
+converter are those of `gazebo_ros_kobuki_updates.cpp` in kobuki_gazebo_plugins. Four differences are deliberate. An
 angle of the bumper is wrapped to ±180°; Gazebo's plugin loses contacts when the robot looks along -x of the world. The
-IMU is published once for each reading, not at every step. The wheel drop is simkit's own, because Gazebo's plugin has
-none: a wheel has dropped while it touches nothing.
+rays of the cliff sensors pass through the own model; in the published description they start inside the collision of
+the base, and Gazebo's cliff events never come (yujinrobot/kobuki#431). The IMU is published once for each reading, not
+at every step. The wheel drop is simkit's own, because Gazebo's plugin has none: a wheel has dropped while it touches
+nothing.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Model, Publisher
     from simkit.scene import SceneModel
     from simkit.sensors.base import Sensor
+    from simkit.sensors.rays.lidar_measurement import LidarMeasurement
 
 PACKAGES: Final = ("kobuki_ros_interfaces", "kobuki_msgs")
 BUMPER, CLIFF, WHEEL_DROP = (f"{PACKAGES[0]}/msg/{name}Event" for name in ("Bumper", "Cliff", "WheelDrop"))
@@ -99,6 +102,9 @@ class KobukiSensors(ModelPlugin):
         self._imu = self.sim.sensor(self._imu_name) if self._imu_name else None
         self._bumper = self.sim.sensor(self._bumper_name) if self._bumper_name else None
         self._cliffs = tuple(self.sim.sensor(name) if name else None for name in self._cliff_names)
+        for cliff in self._cliffs:
+            if cliff is not None and not self.sim.world.gazebo_quirks:
+                cast("LidarMeasurement", cliff).ignore_own_model()
         self._pressed, self._over_cliff = [False] * 3, [False] * 3
         self._dropped, self._last_touch_ns = [False] * 2, [self.sim.time_ns] * 2
         self._was_heard = False

@@ -38,7 +38,7 @@ CASTERS = "".join(
 )
 
 
-def load(pose: str = "0 0 0 0 0 0", scenery: str = "", **values: object) -> simkit.Simulation:
+def load(pose: str = "0 0 0 0 0 0", scenery: str = "", inner: str = "", **values: object) -> simkit.Simulation:
     """Load a base on a floor that ends at x = 1 m; below the end is nothing."""
     base = f"""<link name='base'><pose>0 0 0.05 0 0 0</pose><inertial><pose>-0.01 0 -0.04 0 0 0</pose><mass>2.4</mass>
     <inertia><ixx>0.02</ixx><iyy>0.02</iyy><izz>0.04</izz></inertia></inertial><collision name='base'>
@@ -47,7 +47,7 @@ def load(pose: str = "0 0 0 0 0 0", scenery: str = "", **values: object) -> simk
     plugin = element("plugin", {**SETTINGS, **values}, "name='kobuki' filename='libgazebo_ros_kobuki.so'")
     floor = """<model name='floor'><static>true</static><pose>-2 0 -0.5 0 0 0</pose><link name='l'><collision name='c'>
     <geometry><box><size>6 6 1</size></box></geometry></collision></link></model>"""
-    robot = f"<model name='kobuki'><pose>{pose}</pose>{base}{wheels}{plugin}</model>"
+    robot = f"<model name='kobuki'><pose>{pose}</pose>{base}{wheels}{inner}{plugin}</model>"
     step = "<physics type='ode'><max_step_size>0.002</max_step_size></physics>"
     return simkit.load(f"<sdf version='1.9'><world name='w'>{step}{floor}{scenery}{robot}</world></sdf>")
 
@@ -188,3 +188,20 @@ def test_a_snapshot_keeps_the_states_of_the_sensors() -> None:
         before = len(events.messages)
         drive(sim, -0.2, 1.0)
         assert [(m.bumper, m.state) for m in events.messages][before:] == first == [(1, 0)]
+
+
+def test_the_cliff_sensors_look_through_the_base_around_them() -> None:
+    """In the published description, the sensors are links of their own inside the cylinder of the base."""
+    inner = "".join(
+        f"<link name='{side}'><pose>{x} {y} 0.03 0 1.5707963267948966 0</pose><inertial><mass>1e-4</mass></inertial>"
+        f"{CLIFF.format(side, 0, 0).replace('0 0 -0.02 0 1.5707963267948966 0', '0 0 0 0 0 0')}</link>"
+        f"<joint name='{side}_joint' type='fixed'><parent>base</parent><child>{side}</child></joint>"
+        for side, x, y in (("inner_left", 0.08, 0.13), ("inner_center", 0.15, 0.0))
+    )
+    names = {"cliff_sensor_left_name": "cliff_inner_left", "cliff_sensor_center_name": "cliff_inner_center"}
+    with load("0.9 0 0 0 0 0", inner=inner, **names) as sim:
+        events = sim.subscribe(f"{EVENTS}/cliff")
+        sim.run(0.2)
+        assert [(m.sensor, m.state) for m in events.messages] == [(1, 1)]
+        left = sim.sensor("kobuki::inner_left::cliff_inner_left").latest
+        assert left.ranges[0] == pytest.approx(0.03, abs=0.001)
