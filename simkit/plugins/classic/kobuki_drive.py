@@ -75,9 +75,10 @@ class GazeboRosKobuki(KobukiSensors, GazeboRosDiffDrive):
     also on `/tf`: the distance is from the wheels, and the heading from the IMU `<imu_name>`. Without an IMU, or with
     `<odometry_noise>`, the heading is from the wheels, too. `mobile_base/commands/reset_odometry` sets the pose to
     zero. The states of the wheels are on `joint_states`. The IMU is on `mobile_base/sensors/imu_data`; the changes of
-    the bumper, of the cliff sensors and of the wheel drops are on `mobile_base/events/…`.
+    the bumper, of the cliff sensors and of the wheel drops are on `mobile_base/events/…`, and the present states of all
+    sensors on `mobile_base/sensors/core`.
 
-    `<base_prefix>` replaces `mobile_base`. `<message_package>` is the package of the events:
+    `<base_prefix>` replaces `mobile_base`. `<message_package>` is the package of these messages:
     `kobuki_ros_interfaces` (ROS 2) or `kobuki_msgs` (ROS 1).
     """
 
@@ -137,6 +138,9 @@ class GazeboRosKobuki(KobukiSensors, GazeboRosDiffDrive):
             self._erring.covariance = np.zeros((3, 3))
 
     # ------------------------------------------------------------------ odometry
+
+    def read_encoders(self) -> tuple[float, float]:
+        return self._first_angles()
 
     def _advance(self) -> None:
         """Advance the odometry: the distance from the wheels, the turn from the IMU."""

@@ -6,11 +6,13 @@ angle of the bumper is wrapped to ±180°; Gazebo's plugin loses contacts when t
 rays of the cliff sensors pass through the own model; in the published description they start inside the collision of
 the base, and Gazebo's cliff events never come (yujinrobot/kobuki#431). The IMU is published once for each reading, not
 at every step. The wheel drop is simkit's own, because Gazebo's plugin has none: a wheel has dropped while it touches
-nothing.
+nothing. The states of all sensors together are those that the driver of the real base publishes; the angle of an
+encoder's tick is from `diff_drive.cpp` in kobuki_core.
 """
 
 from __future__ import annotations
 
+import abc
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
 
 PACKAGES: Final = ("kobuki_ros_interfaces", "kobuki_msgs")
 BUMPER, CLIFF, WHEEL_DROP = (f"{PACKAGES[0]}/msg/{name}Event" for name in ("Bumper", "Cliff", "WheelDrop"))
+STATE: Final = f"{PACKAGES[0]}/msg/SensorState"
 IMU: Final = "sensor_msgs/msg/Imu"
 PREFIX: Final = "mobile_base"
 _RAYS: Final = ("ray", "gpu_ray", "lidar", "gpu_lidar")
@@ -43,6 +46,9 @@ _ZONE: Final = math.pi / 6  # half of the angle of the bumper's middle zone [rad
 _DROP_TIME_NS: Final = 100_000_000  # a shorter flight, as over the joint of a floor, is no wheel drop
 _CONVERTER: Final = 76123.0, 0.995  # of the cliff sensors: factor, and distance in metres
 _WORD: Final = 1 << 16  # a value of the converter has 16 bits
+_TICK: Final = 0.002436916871363930  # of a wheel's encoder [rad]
+_STATE_RATE: Final = 50.0  # of the real base [Hz]
+_NOMINAL_BATTERY: Final = 148  # [0.1 V]; there is no model of the battery
 _UNKNOWN: Final = 1e6  # variance of the axes that a Kobuki does not measure
 _YAW_VARIANCE: Final = 0.05
 
@@ -76,6 +82,7 @@ class KobukiSensors(ModelPlugin):
         publishes(f"{PREFIX}/events/bumper", BUMPER, named_by=("base_prefix",)),
         publishes(f"{PREFIX}/events/cliff", CLIFF, named_by=("base_prefix",)),
         publishes(f"{PREFIX}/events/wheel_drop", WHEEL_DROP, named_by=("base_prefix",)),
+        publishes(f"{PREFIX}/sensors/core", STATE, named_by=("base_prefix",)),
         publishes(f"{PREFIX}/sensors/imu_data", IMU, named_by=("base_prefix",)),
     )
     _imu: Sensor | None = None
@@ -96,6 +103,10 @@ class KobukiSensors(ModelPlugin):
         collisions = {link.scoped: [c.scoped for c in link.collisions] for link in scene.all_links()}
         self._wheel_collisions = tuple(tuple(collisions.get(wheel, ())) for wheel in wheels)
 
+    @abc.abstractmethod
+    def read_encoders(self) -> tuple[float, float]:
+        """Return the angles of the left and the right wheel [rad]."""
+
     def open_sensors(self, parent: Model, options: KobukiSensorOptions) -> None:
         """Open the topics of the sensors that were found."""
         self._model, self._threshold = parent, options.cliff_detection_threshold
@@ -109,8 +120,8 @@ class KobukiSensors(ModelPlugin):
         self._dropped, self._last_touch_ns = [False] * 2, [self.sim.time_ns] * 2
         self._was_heard = False
         package = options.message_package
-        types = (f"{package}/msg/{name.rpartition('/')[2]}" for name in (BUMPER, CLIFF, WHEEL_DROP))
-        self._bumper_type, self._cliff_type, self._drop_type = types
+        types = (f"{package}/msg/{name.rpartition('/')[2]}" for name in (BUMPER, CLIFF, WHEEL_DROP, STATE))
+        self._bumper_type, self._cliff_type, self._drop_type, self._state_type = types
         events: list[Publisher] = []
         if self._bumper is not None:
             self._bumper_out = self.advertise(options.topic("events/bumper"), self._bumper_type)
@@ -120,6 +131,8 @@ class KobukiSensors(ModelPlugin):
             events.append(self._cliff_out)
         self._drop_out = self.advertise(options.topic("events/wheel_drop"), self._drop_type)
         watch_while_subscribed(self, (*events, self._drop_out), "publish_events")
+        self._state_out = self.advertise(options.topic("sensors/core"), self._state_type)
+        publish_while_subscribed(self, self._state_out, _STATE_RATE, "publish_state")
         if self._imu is not None:
             self._imu_out = self.advertise(options.topic("sensors/imu_data"), IMU)
             publish_while_subscribed(self, self._imu_out, self._imu.update_rate, "publish_imu")
@@ -194,7 +207,28 @@ class KobukiSensors(ModelPlugin):
         table = collision_table(self.sim.engine.compiled)
         return tuple(table.mask(names) for names in self._wheel_collisions)
 
-    # ------------------------------------------------------------------ IMU
+    # ------------------------------------------------------------------ all states, and the IMU
+
+    def publish_state(self) -> None:
+        """Publish the present states of all sensors, as the driver of the real base does."""
+        now, distances = self.sim.time_ns, [_first_range(cliff) for cliff in self._cliffs]
+        left, right = (round(angle / _TICK) % _WORD for angle in self.read_encoders())
+        cliffs = [distance is not None and distance >= self._threshold for distance in distances]
+        message = msgs.make(
+            self._state_type,
+            header=msgs.header(now, ""),
+            time_stamp=now // 1_000_000 % _WORD,
+            bumper=_bits(self._pressed_zones()),
+            wheel_drop=_bits([not touches for touches in self._wheel_touches()]),
+            cliff=_bits(cliffs),
+            left_encoder=left,
+            right_encoder=right,
+            battery=_NOMINAL_BATTERY,
+            bottom=[0 if distance is None else converter_value(distance) for distance in reversed(distances)],
+            current=[0, 0],
+            analog_input=[0, 0, 0, 0],
+        )
+        self._state_out.publish(message)
 
     def publish_imu(self) -> None:
         """Publish the newest reading of the IMU, with the covariances and the frame of the Kobuki's plugin."""
@@ -225,6 +259,11 @@ def converter_value(distance: float) -> int:
     """Return the 16-bit value of a cliff sensor's converter for a distance to the floor [m]."""
     factor, scale = _CONVERTER
     return int(factor * math.atan2(scale, distance)) % _WORD
+
+
+def _bits(states: Sequence[bool]) -> int:
+    """Return states from left to right as one number; the lowest bit is the rightmost state."""
+    return sum(1 << place for place, state in enumerate(reversed(states)) if state)
 
 
 def _first_range(sensor: Any) -> float | None:

@@ -205,3 +205,27 @@ def test_the_cliff_sensors_look_through_the_base_around_them() -> None:
         assert [(m.sensor, m.state) for m in events.messages] == [(1, 1)]
         left = sim.sensor("kobuki::inner_left::cliff_inner_left").latest
         assert left.ranges[0] == pytest.approx(0.03, abs=0.001)
+
+
+def test_the_state_contains_all_sensors_as_bits_and_ticks() -> None:
+    with load("-2 0 0 0 0 0", wall(-1.6, 0, 0)) as sim:
+        states = sim.subscribe("/mobile_base/sensors/core")
+        drive(sim, 0.2, 1.0)
+        wheels = [sim.joint(f"kobuki::wheel_{side}_joint").position for side in ("left", "right")]
+        state = states.messages[-1]
+        assert len(states.messages) == 50
+        assert (state.bumper, state.cliff, state.wheel_drop, state.time_stamp) == (2, 0, 0, 1000)
+        ticks = [state.left_encoder, state.right_encoder]
+        assert ticks == pytest.approx([angle / 0.002436916871363930 for angle in wheels], abs=1)
+        sim.model("kobuki").set_pose(simkit.Pose((-2, 0, 0.5)))
+        sim.run(0.1)
+        state = states.messages[-1]
+        assert (state.bumper, state.cliff, state.wheel_drop) == (0, 7, 3)
+        assert list(state.bottom) == [converter_value(0.15)] * 3
+
+
+def test_a_wheel_that_turns_backwards_counts_down_from_65536() -> None:
+    with load("-2 0 0 0 0 0") as sim:
+        states = sim.subscribe("/mobile_base/sensors/core", keep=1)
+        drive(sim, -0.1, 0.5)
+        assert 65536 - 0.06 / 0.035 / 0.0024369 < states.messages[-1].left_encoder < 65536
