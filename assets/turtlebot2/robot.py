@@ -283,6 +283,7 @@ def drive() -> Plugin:
         "<cliff_detection_threshold>0.04</cliff_detection_threshold>",
         "<bumper_name>bumpers</bumper_name>",
         "<imu_name>imu</imu_name>",
+        "<dock_model>kobuki_dock</dock_model>",
     )
     return Plugin("kobuki_controller", "libgazebo_ros_kobuki.so", lines)
 

@@ -1782,6 +1782,19 @@ class kobuki_msgs__msg__CliffEvent:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class kobuki_msgs__msg__DockInfraRed:
+    """`kobuki_msgs/msg/DockInfraRed`"""
+    header: Header
+    data: NDArray[np.uint8]
+    NEAR_LEFT: ClassVar[int] = 1
+    NEAR_CENTER: ClassVar[int] = 2
+    NEAR_RIGHT: ClassVar[int] = 4
+    FAR_CENTER: ClassVar[int] = 8
+    FAR_LEFT: ClassVar[int] = 16
+    FAR_RIGHT: ClassVar[int] = 32
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class kobuki_msgs__msg__MotorPower:
     """`kobuki_msgs/msg/MotorPower`"""
     state: int
@@ -1871,6 +1884,19 @@ class CliffEvent:
     RIGHT: ClassVar[int] = 2
     FLOOR: ClassVar[int] = 0
     CLIFF: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DockInfraRed:
+    """`kobuki_ros_interfaces/msg/DockInfraRed`"""
+    header: Header
+    data: NDArray[np.uint8]
+    NEAR_LEFT: ClassVar[int] = 1
+    NEAR_CENTER: ClassVar[int] = 2
+    NEAR_RIGHT: ClassVar[int] = 4
+    FAR_CENTER: ClassVar[int] = 8
+    FAR_LEFT: ClassVar[int] = 16
+    FAR_RIGHT: ClassVar[int] = 32
     __msgtype__: ClassVar[str]
 
 @dataclass

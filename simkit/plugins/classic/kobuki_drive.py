@@ -78,7 +78,8 @@ class GazeboRosKobuki(KobukiSensors, GazeboRosDiffDrive):
     the bumper, of the cliff sensors and of the wheel drops are on `mobile_base/events/…`, and the present states of all
     sensors on `mobile_base/sensors/core`.
 
-    `<base_prefix>` replaces `mobile_base`. `<message_package>` is the package of these messages:
+    With `<dock_model>`, the infrared signals of that docking station are on `mobile_base/sensors/dock_ir`.
+    `<base_prefix>` replaces `mobile_base`. `<message_package>` is the package of all these messages:
     `kobuki_ros_interfaces` (ROS 2) or `kobuki_msgs` (ROS 1).
     """
 

@@ -20,15 +20,18 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from simkit import msgs
+from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.classic.kobuki_docking import CHARGING, RECEIVERS, KobukiDockOptions, is_docked, signals
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.find_entities import find_named_sensor
-from simkit.plugins.options import Options, choice, number, text
+from simkit.plugins.options import choice, number, text
 from simkit.plugins.publish_on_demand import publish_while_subscribed, watch_while_subscribed
 from simkit.runtime.contact.collision_contacts import Bools, collision_table, find_contacts
 
 if TYPE_CHECKING:
+    from simkit.pose import Pose
     from simkit.runtime import Model, Publisher
     from simkit.scene import SceneModel
     from simkit.sensors.base import Sensor
@@ -36,7 +39,7 @@ if TYPE_CHECKING:
 
 PACKAGES: Final = ("kobuki_ros_interfaces", "kobuki_msgs")
 BUMPER, CLIFF, WHEEL_DROP = (f"{PACKAGES[0]}/msg/{name}Event" for name in ("Bumper", "Cliff", "WheelDrop"))
-STATE: Final = f"{PACKAGES[0]}/msg/SensorState"
+STATE, DOCK = f"{PACKAGES[0]}/msg/SensorState", f"{PACKAGES[0]}/msg/DockInfraRed"
 IMU: Final = "sensor_msgs/msg/Imu"
 PREFIX: Final = "mobile_base"
 _RAYS: Final = ("ray", "gpu_ray", "lidar", "gpu_lidar")
@@ -53,7 +56,7 @@ _UNKNOWN: Final = 1e6  # variance of the axes that a Kobuki does not measure
 _YAW_VARIANCE: Final = 0.05
 
 
-class KobukiSensorOptions(Options):
+class KobukiSensorOptions(KobukiDockOptions):
     """Options of `KobukiSensors`."""
 
     imu_name: str = text()
@@ -83,6 +86,7 @@ class KobukiSensors(ModelPlugin):
         publishes(f"{PREFIX}/events/cliff", CLIFF, named_by=("base_prefix",)),
         publishes(f"{PREFIX}/events/wheel_drop", WHEEL_DROP, named_by=("base_prefix",)),
         publishes(f"{PREFIX}/sensors/core", STATE, named_by=("base_prefix",)),
+        publishes(f"{PREFIX}/sensors/dock_ir", DOCK, named_by=("base_prefix",)),
         publishes(f"{PREFIX}/sensors/imu_data", IMU, named_by=("base_prefix",)),
     )
     _imu: Sensor | None = None
@@ -120,8 +124,8 @@ class KobukiSensors(ModelPlugin):
         self._dropped, self._last_touch_ns = [False] * 2, [self.sim.time_ns] * 2
         self._was_heard = False
         package = options.message_package
-        types = (f"{package}/msg/{name.rpartition('/')[2]}" for name in (BUMPER, CLIFF, WHEEL_DROP, STATE))
-        self._bumper_type, self._cliff_type, self._drop_type, self._state_type = types
+        types = (f"{package}/msg/{name.rpartition('/')[2]}" for name in (BUMPER, CLIFF, WHEEL_DROP, STATE, DOCK))
+        self._bumper_type, self._cliff_type, self._drop_type, self._state_type, self._dock_type = types
         events: list[Publisher] = []
         if self._bumper is not None:
             self._bumper_out = self.advertise(options.topic("events/bumper"), self._bumper_type)
@@ -133,9 +137,23 @@ class KobukiSensors(ModelPlugin):
         watch_while_subscribed(self, (*events, self._drop_out), "publish_events")
         self._state_out = self.advertise(options.topic("sensors/core"), self._state_type)
         publish_while_subscribed(self, self._state_out, _STATE_RATE, "publish_state")
+        self._open_dock(options)
         if self._imu is not None:
             self._imu_out = self.advertise(options.topic("sensors/imu_data"), IMU)
             publish_while_subscribed(self, self._imu_out, self._imu.update_rate, "publish_imu")
+
+    def _open_dock(self, options: KobukiSensorOptions) -> None:
+        """Open the topic of the infrared signals, if the file names a docking station; it may be spawned later."""
+        self._dock_options = options
+        name, models = options.dock_model, self.sim.models
+        if not name:
+            return
+        if name not in models:
+            message = f"there is no model {name!r} yet; the base gets no infrared signals until it exists"
+            where = self.params.block("dock_model").where
+            self.params.diagnostics.note("SK-PLUGIN-003", message, where, did_you_mean(name, models))
+        self._dock_out = self.advertise(options.topic("sensors/dock_ir"), self._dock_type)
+        publish_while_subscribed(self, self._dock_out, _STATE_RATE, "publish_dock_signals")
 
     # ------------------------------------------------------------------ events
 
@@ -214,6 +232,7 @@ class KobukiSensors(ModelPlugin):
         now, distances = self.sim.time_ns, [_first_range(cliff) for cliff in self._cliffs]
         left, right = (round(angle / _TICK) % _WORD for angle in self.read_encoders())
         cliffs = [distance is not None and distance >= self._threshold for distance in distances]
+        in_dock = self._pose_in_dock()
         message = msgs.make(
             self._state_type,
             header=msgs.header(now, ""),
@@ -223,12 +242,27 @@ class KobukiSensors(ModelPlugin):
             cliff=_bits(cliffs),
             left_encoder=left,
             right_encoder=right,
+            charger=CHARGING if in_dock is not None and is_docked(in_dock) else 0,
             battery=_NOMINAL_BATTERY,
             bottom=[0 if distance is None else converter_value(distance) for distance in reversed(distances)],
             current=[0, 0],
             analog_input=[0, 0, 0, 0],
         )
         self._state_out.publish(message)
+
+    def publish_dock_signals(self) -> None:
+        """Publish the signals that the three receivers get from the docking station."""
+        robot = self._pose_in_dock()
+        data = [0] * len(RECEIVERS) if robot is None else signals(robot, self._dock_options)
+        header = msgs.header(self.sim.time_ns, "base_link")
+        self._dock_out.publish(msgs.make(self._dock_type, header=header, data=data))
+
+    def _pose_in_dock(self) -> Pose | None:
+        """Return the pose of the robot in the frame of the docking station; None without a station."""
+        name = self._dock_options.dock_model
+        if not name or name not in self.sim.models:
+            return None
+        return self.sim.model(name).pose.inverse() @ self._model.pose
 
     def publish_imu(self) -> None:
         """Publish the newest reading of the IMU, with the covariances and the frame of the Kobuki's plugin."""

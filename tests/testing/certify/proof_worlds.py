@@ -104,7 +104,7 @@ WORLDS: dict[str, str] = {
             "kobuki",
             tags(left_wheel_joint_name="rl_joint", right_wheel_joint_name="rr_joint", wheel_separation=0.4, torque=5)
             + tags(wheel_diameter=0.2, velocity_command_timeout=0.05, publish_tf="true", bumper_name="s", imu_name="i")
-            + tags(cliff_sensor_left_name="r", cliff_detection_threshold=0.05),
+            + tags(cliff_sensor_left_name="r", cliff_detection_threshold=0.05, dock_model="wall"),
         ),
         sensor=KOBUKI,
     ),
