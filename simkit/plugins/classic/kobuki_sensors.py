@@ -78,7 +78,8 @@ class KobukiSensorOptions(KobukiDockOptions):
 class KobukiSensors(ModelPlugin):
     """Base class of the Kobuki's plugin: finds the sensors and publishes the events and the IMU.
 
-    An event is a change of state since the previous step, and is published only while an events topic has a subscriber.
+    An event is a change of state since the previous reading, and is published only while an events topic has a
+    subscriber.
     """
 
     sensor_endpoints = (
@@ -134,7 +135,10 @@ class KobukiSensors(ModelPlugin):
             self._cliff_out = self.advertise(options.topic("events/cliff"), self._cliff_type)
             events.append(self._cliff_out)
         self._drop_out = self.advertise(options.topic("events/wheel_drop"), self._drop_type)
-        watch_while_subscribed(self, (*events, self._drop_out), "publish_events")
+        rates = [sensor.update_rate for sensor in (self._bumper, *self._cliffs) if sensor is not None]
+        # the states change only when a sensor samples; a rate of 0 is every step
+        rate = None if 0 in rates else max([_STATE_RATE, *rates])
+        watch_while_subscribed(self, (*events, self._drop_out), "publish_events", rate)
         self._state_out = self.advertise(options.topic("sensors/core"), self._state_type)
         publish_while_subscribed(self, self._state_out, _STATE_RATE, "publish_state")
         self._open_dock(options)
@@ -168,7 +172,7 @@ class KobukiSensors(ModelPlugin):
             self._over_cliff[index] = distance is not None and distance >= self._threshold
 
     def publish_events(self) -> None:
-        """Publish the changes since the previous step."""
+        """Publish the changes since the previous readings."""
         pressed = self._pressed_zones()
         for zone, (before, now) in enumerate(zip(self._pressed, pressed, strict=True)):
             if before != now:
