@@ -53,11 +53,15 @@ def script(name: str) -> Callable[[Path], None]:
     return draw
 
 
-def tiago(path: Path) -> None:
-    """TIAGo from the front, from its left and from behind."""
-    with simkit.load("empty", spawn=["tiago:0,0,0"]) as sim:
-        sim.run(2.0)
-        three_views(sim, path)
+def three_views(model: str, width: int, height: int) -> Callable[[Path], None]:
+    """Return a function that draws a robot from the front, from its left and from behind."""
+
+    def draw(path: Path) -> None:
+        with simkit.load("empty", spawn=[f"{model}:0,0,0"]) as sim:
+            sim.run(2.0)
+            draw_three_views(sim, path, Look(width, height))
+
+    return draw
 
 
 def baxter(path: Path) -> None:
@@ -71,14 +75,13 @@ def baxter(path: Path) -> None:
             command = {"mode": 1, "names": names, "command": list(neutral.values())}
             sim.publish(f"/robot/limb/{side}/joint_command", command)
         sim.run(6.0)
-        three_views(sim, path)
+        draw_three_views(sim, path, Look(400, 500))
 
 
-def three_views(sim: simkit.Simulation, path: Path) -> None:
+def draw_three_views(sim: simkit.Simulation, path: Path, look: Look) -> None:
     """Draw the robot from three sides, at one scale."""
     views: list[Any] = []
     subject = find_subject(sim, [])
-    look = Look(400, 500)
     sights = [line_of_sight(math.radians(turn), math.radians(12.0)) for turn in (-30.0, 65.0, 150.0)]
     cameras = [frame_points(subject.robots, sight, look.width, look.height) for sight in sights]
     distance = max(camera.distance for camera in cameras)
@@ -93,9 +96,10 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "house.png": run("turtlebot3_house", "--script", "worlds/turtlebot3_house_drive.yaml", "--duration", "72"),
     "office.png": run("simple_office_with_people", "--spawn", "tiago:0,0,0", "--duration", "20"),
     "tiago_table.png": run("tiago_table", "--duration", "2"),
-    "tiago.png": tiago,
+    "tiago.png": three_views("tiago", 400, 500),
     "baxter.png": baxter,
     "baxter_table.png": run("baxter_table", "--script", "worlds/baxter_table_pick.yaml", "--duration", "11"),
+    "turtlebot2.png": three_views("turtlebot2", 400, 440),
     "tiago_carry.png": script("examples/tiago/carry.py"),
     "visual_servoing.png": script("examples/visual_servoing/servo.py"),
     "graph.svg": graph,

@@ -69,11 +69,15 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
+    """A robot; `module` holds its numbers, and `packages` says where the packages of its URDF file's meshes lie."""
+
     name: str
     title: str
     about: str
     links: tuple[Link, ...]
     plugins: tuple[Plugin, ...] = field(default=())
+    module: str = "robots.py"
+    packages: str = "The packages that the meshes name lie in the folder above this one."
 
 
 # ------------------------------------------------------------------ looks

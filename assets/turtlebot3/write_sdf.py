@@ -11,7 +11,7 @@ HEADER = """<?xml version="1.0"?>
 <!--
   {title}. {about}
 
-  Written by make_models.py from the numbers in robots.py; the URDF file of the same name is written from them as well.
+  Written by make_models.py from the numbers in {module}; the URDF file of the same name is written from them as well.
   The model's origin is base_footprint: on the ground, midway between the wheels, x forward, y left, z up. Every link
   has its own frame where its part is. Lengths m, masses kg, inertias kg m^2, angles rad.
 -->"""
@@ -20,7 +20,7 @@ JOINTS = {"fixed": "fixed", "wheel": "continuous", "caster": "ball"}
 
 
 def sdf_text(robot: Robot) -> str:
-    lines = [HEADER.format(title=robot.title, about=robot.about), '<sdf version="1.12">']
+    lines = [HEADER.format(title=robot.title, about=robot.about, module=robot.module), '<sdf version="1.12">']
     lines.append(f'  <model name="{robot.name}" canonical_link="{robot.links[0].name}">')
     for link in robot.links:
         lines += ["", *indented(_link(link), 2)]

@@ -11,16 +11,17 @@ HEADER = """<?xml version="1.0"?>
 <!--
   {title}. {about}
 
-  Written by make_models.py from the numbers in robots.py; model.sdf is written from them as well, and both mean the
+  Written by make_models.py from the numbers in {module}; model.sdf is written from them as well, and both mean the
   same robot. URDF has no ball joint: a caster is fixed here, and its ball slides without friction. Fixed joints are
-  preserved, so that every frame keeps its name. The packages that the meshes name lie in the folder above this one.
+  preserved, so that every frame keeps its name. {packages}
 -->"""
 
 JOINTS = {"fixed": "fixed", "wheel": "continuous", "caster": "fixed"}
 
 
 def urdf_text(robot: Robot) -> str:
-    lines = [HEADER.format(title=robot.title, about=robot.about), f'<robot name="{robot.name}">', ""]
+    header = HEADER.format(title=robot.title, about=robot.about, module=robot.module, packages=robot.packages)
+    lines = [header, f'<robot name="{robot.name}">', ""]
     looks = dict.fromkeys(visual.look for link in robot.links for visual in link.visuals)
     lines += indented((urdf_material(look) for look in looks), 1)
     for link in robot.links:

@@ -1999,6 +1999,216 @@ class Mouse:
     last_squal: int
     __msgtype__: ClassVar[str]
 
+# kobuki_msgs
+
+@dataclass
+class kobuki_msgs__msg__BumperEvent:
+    """`kobuki_msgs/msg/BumperEvent`"""
+    bumper: int
+    state: int
+    LEFT: ClassVar[int] = 0
+    CENTER: ClassVar[int] = 1
+    RIGHT: ClassVar[int] = 2
+    RELEASED: ClassVar[int] = 0
+    PRESSED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__CliffEvent:
+    """`kobuki_msgs/msg/CliffEvent`"""
+    sensor: int
+    state: int
+    bottom: int
+    LEFT: ClassVar[int] = 0
+    CENTER: ClassVar[int] = 1
+    RIGHT: ClassVar[int] = 2
+    FLOOR: ClassVar[int] = 0
+    CLIFF: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__DockInfraRed:
+    """`kobuki_msgs/msg/DockInfraRed`"""
+    header: Header
+    data: NDArray[np.uint8]
+    NEAR_LEFT: ClassVar[int] = 1
+    NEAR_CENTER: ClassVar[int] = 2
+    NEAR_RIGHT: ClassVar[int] = 4
+    FAR_CENTER: ClassVar[int] = 8
+    FAR_LEFT: ClassVar[int] = 16
+    FAR_RIGHT: ClassVar[int] = 32
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__MotorPower:
+    """`kobuki_msgs/msg/MotorPower`"""
+    state: int
+    OFF: ClassVar[int] = 0
+    ON: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__SensorState:
+    """`kobuki_msgs/msg/SensorState`"""
+    header: Header
+    time_stamp: int
+    bumper: int
+    wheel_drop: int
+    cliff: int
+    left_encoder: int
+    right_encoder: int
+    left_pwm: int
+    right_pwm: int
+    buttons: int
+    charger: int
+    battery: int
+    bottom: NDArray[np.uint16]
+    current: NDArray[np.uint8]
+    over_current: int
+    digital_input: int
+    analog_input: NDArray[np.uint16]
+    BUMPER_RIGHT: ClassVar[int] = 1
+    BUMPER_CENTRE: ClassVar[int] = 2
+    BUMPER_LEFT: ClassVar[int] = 4
+    WHEEL_DROP_RIGHT: ClassVar[int] = 1
+    WHEEL_DROP_LEFT: ClassVar[int] = 2
+    CLIFF_RIGHT: ClassVar[int] = 1
+    CLIFF_CENTRE: ClassVar[int] = 2
+    CLIFF_LEFT: ClassVar[int] = 4
+    BUTTON0: ClassVar[int] = 1
+    BUTTON1: ClassVar[int] = 2
+    BUTTON2: ClassVar[int] = 4
+    DISCHARGING: ClassVar[int] = 0
+    DOCKING_CHARGED: ClassVar[int] = 2
+    DOCKING_CHARGING: ClassVar[int] = 6
+    ADAPTER_CHARGED: ClassVar[int] = 18
+    ADAPTER_CHARGING: ClassVar[int] = 22
+    OVER_CURRENT_LEFT_WHEEL: ClassVar[int] = 1
+    OVER_CURRENT_RIGHT_WHEEL: ClassVar[int] = 2
+    OVER_CURRENT_BOTH_WHEELS: ClassVar[int] = 3
+    DIGITAL_INPUT0: ClassVar[int] = 1
+    DIGITAL_INPUT1: ClassVar[int] = 2
+    DIGITAL_INPUT2: ClassVar[int] = 4
+    DIGITAL_INPUT3: ClassVar[int] = 8
+    DB25_TEST_BOARD_CONNECTED: ClassVar[int] = 64
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__WheelDropEvent:
+    """`kobuki_msgs/msg/WheelDropEvent`"""
+    wheel: int
+    state: int
+    LEFT: ClassVar[int] = 0
+    RIGHT: ClassVar[int] = 1
+    RAISED: ClassVar[int] = 0
+    DROPPED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+# kobuki_ros_interfaces
+
+@dataclass
+class BumperEvent:
+    """`kobuki_ros_interfaces/msg/BumperEvent`"""
+    bumper: int
+    state: int
+    LEFT: ClassVar[int] = 0
+    CENTER: ClassVar[int] = 1
+    RIGHT: ClassVar[int] = 2
+    RELEASED: ClassVar[int] = 0
+    PRESSED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CliffEvent:
+    """`kobuki_ros_interfaces/msg/CliffEvent`"""
+    sensor: int
+    state: int
+    bottom: int
+    LEFT: ClassVar[int] = 0
+    CENTER: ClassVar[int] = 1
+    RIGHT: ClassVar[int] = 2
+    FLOOR: ClassVar[int] = 0
+    CLIFF: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DockInfraRed:
+    """`kobuki_ros_interfaces/msg/DockInfraRed`"""
+    header: Header
+    data: NDArray[np.uint8]
+    NEAR_LEFT: ClassVar[int] = 1
+    NEAR_CENTER: ClassVar[int] = 2
+    NEAR_RIGHT: ClassVar[int] = 4
+    FAR_CENTER: ClassVar[int] = 8
+    FAR_LEFT: ClassVar[int] = 16
+    FAR_RIGHT: ClassVar[int] = 32
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MotorPower:
+    """`kobuki_ros_interfaces/msg/MotorPower`"""
+    state: int
+    OFF: ClassVar[int] = 0
+    ON: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SensorState:
+    """`kobuki_ros_interfaces/msg/SensorState`"""
+    header: Header
+    time_stamp: int
+    bumper: int
+    wheel_drop: int
+    cliff: int
+    left_encoder: int
+    right_encoder: int
+    left_pwm: int
+    right_pwm: int
+    buttons: int
+    charger: int
+    battery: int
+    bottom: NDArray[np.uint16]
+    current: NDArray[np.uint8]
+    over_current: int
+    digital_input: int
+    analog_input: NDArray[np.uint16]
+    BUMPER_RIGHT: ClassVar[int] = 1
+    BUMPER_CENTRE: ClassVar[int] = 2
+    BUMPER_LEFT: ClassVar[int] = 4
+    WHEEL_DROP_RIGHT: ClassVar[int] = 1
+    WHEEL_DROP_LEFT: ClassVar[int] = 2
+    CLIFF_RIGHT: ClassVar[int] = 1
+    CLIFF_CENTRE: ClassVar[int] = 2
+    CLIFF_LEFT: ClassVar[int] = 4
+    BUTTON0: ClassVar[int] = 1
+    BUTTON1: ClassVar[int] = 2
+    BUTTON2: ClassVar[int] = 4
+    DISCHARGING: ClassVar[int] = 0
+    DOCKING_CHARGED: ClassVar[int] = 2
+    DOCKING_CHARGING: ClassVar[int] = 6
+    ADAPTER_CHARGED: ClassVar[int] = 18
+    ADAPTER_CHARGING: ClassVar[int] = 22
+    OVER_CURRENT_LEFT_WHEEL: ClassVar[int] = 1
+    OVER_CURRENT_RIGHT_WHEEL: ClassVar[int] = 2
+    OVER_CURRENT_BOTH_WHEELS: ClassVar[int] = 3
+    DIGITAL_INPUT0: ClassVar[int] = 1
+    DIGITAL_INPUT1: ClassVar[int] = 2
+    DIGITAL_INPUT2: ClassVar[int] = 4
+    DIGITAL_INPUT3: ClassVar[int] = 8
+    DB25_TEST_BOARD_CONNECTED: ClassVar[int] = 64
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WheelDropEvent:
+    """`kobuki_ros_interfaces/msg/WheelDropEvent`"""
+    wheel: int
+    state: int
+    LEFT: ClassVar[int] = 0
+    RIGHT: ClassVar[int] = 1
+    RAISED: ClassVar[int] = 0
+    DROPPED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
 # lifecycle_msgs
 
 @dataclass

@@ -16,7 +16,15 @@ from simkit.msgs.definition_parser import PARTS, MessageDefinition, parse_interf
 
 _FOLDER: Final = os.path.join(os.path.dirname(__file__), "definitions")  # noqa: PTH118, PTH120 (pathlib takes 3 ms)
 PACKAGES_WITH_LONG_NAMES: Final = frozenset(
-    ("example_interfaces", "nav2_msgs", "osrf_gear", "simulation_interfaces", "turtlesim", "turtlesim_msgs")
+    (
+        "example_interfaces",
+        "kobuki_msgs",
+        "nav2_msgs",
+        "osrf_gear",
+        "simulation_interfaces",
+        "turtlesim",
+        "turtlesim_msgs",
+    )
 )
 """Packages that repeat names of other packages, such as `Trigger`; a class of another package has the short name."""
 NO_FIELD: Final = "structure_needs_at_least_one_member"

@@ -69,6 +69,21 @@ def find_named_joint(scene: SceneModel, element: str, params: Params) -> SceneJo
     return None if named is None else find_axis_joint(scene, name, named)
 
 
+def find_named_sensor(scene: SceneModel, element: str, kinds: Sequence[str], params: Params) -> str:
+    """Return the scoped name of the sensor that an optional element names; empty without the element or after an error.
+
+    The sensor is one of the model's sensors of the given kinds, by its plain name or a scoped name.
+    """
+    named = params.child(element)
+    if named is None or not named.value:
+        return ""
+    sensors = {sensor.scoped: sensor.name for sensor in scene.all_sensors() if sensor.kind in kinds}
+    found = _find_by_suffix(scene.scoped, named.value, {scoped: scoped for scoped in sensors})
+    if found is None:
+        _report_unknown(f"{kinds[0]} sensor", named.value, scene, sensors.values(), named)
+    return found or ""
+
+
 def read_required_name(params: Params, element: str) -> str:
     """Return the text of a required element; empty after an error. An empty element is an error, too."""
     name = params.text(element, required=True)

@@ -58,11 +58,19 @@ class Watcher(Protocol):
         """Store the present state for the comparison after the next step."""
 
 
-def watch_while_subscribed(plugin: Watcher, publishers: Sequence[Publisher], method: str) -> None:
-    """Call a method of a plugin after every step while one of its publishers has subscribers.
+def watch_while_subscribed(
+    plugin: Watcher, publishers: Sequence[Publisher], method: str, rate: float | None = None
+) -> None:
+    """Call a method of a plugin after steps while one of its publishers has subscribers.
 
     When the first subscriber connects, `plugin.begin()` is called. An event in the next step is therefore published,
     and the events do not depend on the time of the subscription.
+
+    Args:
+        plugin: plugin with the method.
+        publishers: publishers that the method uses.
+        method: name of the method, which has no arguments.
+        rate: rate of the calls in simulated time [Hz]; None for every step.
     """
     sim = plugin.sim
 
@@ -75,4 +83,4 @@ def watch_while_subscribed(plugin: Watcher, publishers: Sequence[Publisher], met
 
     for publisher in publishers:
         sim.communication.bus.on_readers_change(publisher.topic, sim.communication.on_demand.look)
-    sim.communication.on_demand.add(has_subscribers, None, sim.engine.faults.task(plugin, method))
+    sim.communication.on_demand.add(has_subscribers, rate, sim.engine.faults.task(plugin, method))

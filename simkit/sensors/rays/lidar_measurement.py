@@ -101,6 +101,7 @@ class LidarMeasurement(Sensor):
     ray_noise: UniformNoise | None = None
     range_noise: Noise | None = None
     point_noise: UniformNoise | None = None
+    _ignores_own_model = False
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
@@ -167,10 +168,20 @@ class LidarMeasurement(Sensor):
         self._is_moved = bool(self._offset_position.any())
         self._is_turned = not np.array_equal(self._offset_rotation, np.eye(3))
         hidden = hidden_geoms(self.options.visibility_mask, names) if self.sees_visuals else []
+        if self._ignores_own_model:
+            model = self.scene.parent.split("::")[0] + "::"
+            links = [part for scoped, part in names.links.items() if scoped.startswith(model)]
+            hidden += [geom for part in links for geom in (part.visuals if self.sees_visuals else part.ray_geoms)]
         self._fan.bind(compiled.model, names, self._body, own, hidden=hidden, offset=self._offset)
         kind = "visuals" if self.sees_visuals else "collisions"
         self._retro = names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
         self._names = names.shared("scoped names of geoms", lambda: _scoped_names(compiled))
+
+    def ignore_own_model(self) -> None:
+        """Let the rays pass through all links of the sensor's model, as real sensors look out of their housing."""
+        self._ignores_own_model = True
+        self.batch = None  # the sensor samples alone until the batches are formed again
+        self.bind(self.sim.engine.compiled)
 
     def _reflectances(self, compiled: Compiled) -> Vector | None:
         """Return `laser_retro` by geom id (the last entry, index -1, means no hit), or None if all are 0."""

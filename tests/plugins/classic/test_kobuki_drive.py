@@ -55,7 +55,41 @@ def test_the_base_stops_after_the_timeout_of_the_command() -> None:
         assert place[0] == pytest.approx(0.12, abs=0.01)
 
 
-def test_sensors_whose_events_are_not_published_are_reported() -> None:
-    with kobuki(bumper_name="bumpers", cliff_sensor_left_name="left") as sim:
-        found = [d.message for d in sim.diagnostics if d.code == "SK-PARAM-003"]
-    assert ["<bumper_name>" in found[0], "<cliff_sensor_left_name>" in found[1]] == [True, True]
+def test_a_sensor_that_the_model_does_not_have_is_an_error() -> None:
+    with pytest.raises(simkit.InputError, match=r"SK-PLUGIN-003: model 'kobuki' has no contact sensor 'bumpers'"):
+        kobuki(bumper_name="bumpers")
+
+
+def test_without_power_the_motors_stop_and_wait_for_the_next_command() -> None:
+    with kobuki(velocity_command_timeout=10) as sim:
+        sim.publish(TOPIC, {"linear": {"x": 0.2}})
+        sim.run(0.5)
+        sim.publish("/mobile_base/commands/motor_power", {"state": 0})
+        sim.run(0.5)
+        place = sim.model("kobuki").pose.position[0]
+        sim.publish("/mobile_base/commands/motor_power", {"state": 1})
+        sim.run(0.5)
+        assert sim.model("kobuki").pose.position[0] == pytest.approx(place, abs=1e-3)
+        sim.publish(TOPIC, {"linear": {"x": 0.2}})
+        sim.run(0.5)
+        assert sim.model("kobuki").pose.position[0] == pytest.approx(place + 0.1, abs=0.01)
+
+
+def test_a_message_sets_the_pose_of_the_odometry_to_zero() -> None:
+    with kobuki() as sim:
+        odometry = sim.subscribe("/odom", keep=1)
+        sim.publish(TOPIC, {"linear": {"x": 0.2}, "angular": {"z": 0.5}})
+        sim.run(0.5)
+        place = odometry.messages[-1].pose.pose.position
+        assert math.hypot(place.x, place.y) == pytest.approx(0.1, abs=0.01)
+        sim.publish("/mobile_base/commands/reset_odometry", {})
+        sim.step()
+        pose = odometry.messages[-1].pose.pose
+        assert math.hypot(pose.position.x, pose.position.y) < 1e-3 and abs(pose.orientation.z) < 1e-3
+
+
+def test_the_prefix_of_the_topics_can_be_empty() -> None:
+    with kobuki(base_prefix="") as sim:
+        sim.publish("/commands/velocity", {"linear": {"x": 0.2}})
+        sim.run(0.5)
+        assert sim.model("kobuki").pose.position[0] == pytest.approx(0.1, abs=0.01)

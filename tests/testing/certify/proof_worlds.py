@@ -45,6 +45,11 @@ REALSENSE = "".join(
 )
 BALL = '<model name="load"><pose>0 -2 0.2 0 0 0</pose><link name="l">' + LIGHT + "</link></model>"
 FINGER = "<virtualJoint><name>arm</name><scale_factor>0.5</scale_factor></virtualJoint>"
+DOWN = "<pose>0.3 0 -0.05 0 1.57 0</pose><update_rate>50</update_rate>"
+KOBUKI = (
+    f'{CONTACT.format("")}<sensor name="i" type="imu">{DOWN}</sensor><sensor name="r" type="ray">{DOWN}<ray><range>'
+    "<min>0.01</min><max>0.15</max></range></ray></sensor>"
+)
 FIVE = "".join(tags(left_joint=n) for n in ("fl_joint", "rl_joint")) + "".join(
     tags(right_joint=n) for n in ("fr_joint", "rr_joint")
 )
@@ -104,8 +109,10 @@ WORLDS: dict[str, str] = {
         model=ros(
             "kobuki",
             tags(left_wheel_joint_name="rl_joint", right_wheel_joint_name="rr_joint", wheel_separation=0.4, torque=5)
-            + tags(wheel_diameter=0.2, velocity_command_timeout=0.05, publish_tf="true"),
-        )
+            + tags(wheel_diameter=0.2, velocity_command_timeout=0.05, publish_tf="true", bumper_name="s", imu_name="i")
+            + tags(cliff_sensor_left_name="r", cliff_detection_threshold=0.05, dock_model="wall"),
+        ),
+        sensor=KOBUKI,
     ),
     "GazeboRosSkidSteerDrive": lab(
         model=ros(
