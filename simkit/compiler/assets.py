@@ -14,7 +14,6 @@ from weakref import WeakKeyDictionary
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from simkit.compiler.meshes.companion_files import Pixels, read_pixels
 from simkit.compiler.meshes.convex_decomposition import ConvexBodies
@@ -26,6 +25,7 @@ AssetKey = tuple[str, str]
 
 _names: WeakKeyDictionary[MeshPart, dict[bool, str]] = WeakKeyDictionary()
 _body_names: WeakKeyDictionary[ConvexBodies, list[str]] = WeakKeyDictionary()
+_tile_digests: WeakKeyDictionary[ConvexBodies, str] = WeakKeyDictionary()
 
 
 class Assets:
@@ -133,23 +133,42 @@ class Assets:
         """Check by its name whether a material has a texture."""
         return material.endswith("#textured")
 
-    def heights(
-        self, rows: npt.NDArray[np.float64], size: tuple[float, float, float], base: float | None = None
-    ) -> str:
+    def heights(self, rows: Floats, size: tuple[float, float, float]) -> str:
         """Add a height field and return its name.
+
+        The field is solid down to a twentieth of its height, at least 0.1 m, below its lowest point.
 
         Args:
             rows: heights from 0 to 1, ordered from -y to +y.
             size: extent along x and y, and greatest height [m].
-            base: thickness below the lowest point [m]; None for a twentieth of the height, at least 0.1.
         """
-        name = "heights#" + _digest(rows, size, *(() if base is None else (base,)))
+        name = "heights#" + _digest(rows, size)
         if self._is_new("hfield", name):
-            field = self.spec.add_hfield(name=name)
-            field.nrow, field.ncol = rows.shape
-            field.size = (size[0] / 2, size[1] / 2, max(size[2], 1e-6), base or max(0.1, 0.05 * size[2]))
-            field.userdata = np.ascontiguousarray(rows, np.float32).reshape(-1)
+            self._add_field(name, rows, size, max(0.1, 0.05 * size[2]))
         return name
+
+    def tiles(self, bodies: ConvexBodies) -> list[str]:
+        """Add the height fields of a mesh and return their names, which contain one hash of all of them."""
+        digest = _tile_digests.get(bodies)
+        if digest is None:
+            values = [value for t in bodies.tiles for value in (t.cell, t.heights, np.array(t.base))]
+            shapes = [t.heights.shape for t in bodies.tiles]
+            digest = _digest(np.concatenate([value.reshape(-1) for value in values]), shapes)
+            _tile_digests[bodies] = digest
+        names = [f"heights#{digest}_{number}" for number in range(len(bodies.tiles))]
+        for name, tile in zip(names, bodies.tiles, strict=True):
+            if self._is_new("hfield", name):
+                rows, columns = tile.heights.shape
+                high = float(tile.heights.max())
+                size = (float(tile.cell[0]) * (columns - 1), float(tile.cell[1]) * (rows - 1), high)
+                self._add_field(name, tile.heights / max(high, 1e-12), size, tile.base)
+        return names
+
+    def _add_field(self, name: str, rows: Floats, size: tuple[float, float, float], base: float) -> None:
+        field = self.spec.add_hfield(name=name)
+        field.nrow, field.ncol = rows.shape
+        field.size = (size[0] / 2, size[1] / 2, max(size[2], 1e-6), base)
+        field.userdata = np.ascontiguousarray(rows, np.float32).reshape(-1)
 
     def drop(self, keys: set[AssetKey]) -> None:
         """Delete unused assets. Materials are deleted first, because they refer to textures."""

@@ -15,9 +15,8 @@ from simkit.compiler.assets import Assets, geom_colours
 from simkit.compiler.contact_friction import contact_properties
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
 from simkit.compiler.meshes.companion_files import Pixels
-from simkit.compiler.meshes.convex_decomposition import convex_bodies, convex_hull
-from simkit.compiler.meshes.height_tiles import HeightTile
-from simkit.compiler.meshes.mesh_part import Colour, MeshFileError, MeshPart, has_area, join_parts
+from simkit.compiler.meshes.convex_decomposition import ConvexBodies, convex_bodies, convex_hull
+from simkit.compiler.meshes.mesh_part import Colour, Floats, MeshFileError, MeshPart, has_area, join_parts
 from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
 from simkit.compiler.meshes.surface_patches import TRIANGLES_FROM
 from simkit.compiler.name_map import GeomOwner, ModelRecord
@@ -100,13 +99,18 @@ class GeomWriter:
         self._count: Counter[str] = Counter()
 
     def _add(self, parent: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> None:
+        local = parent.offset @ pose
+        self._add_at(parent, owner, local.position, local.quaternion, **settings)
+
+    def _add_at(
+        self, parent: GeomParent, owner: GeomOwner, position: Floats, quaternion: Floats, **settings: Any
+    ) -> None:
         base = owner.scoped + ("#v" if owner.is_visual else "#")
         name = f"{base}{self._count[base]}"
         self._count[base] += 1
         self.record.geoms[name] = owner
-        local = parent.offset @ pose
         add = self._world.add if parent.is_world else parent.body.add_geom
-        add(name=name, pos=local.position, quat=local.quaternion, mass=0.0, **settings)
+        add(name=name, pos=position, quat=quaternion, mass=0.0, **settings)
 
     # ------------------------------------------------------------------ collisions
 
@@ -182,24 +186,29 @@ class GeomWriter:
         settings = solid if bodies.is_exact else {**solid, "group": COLLISION_CONTACT}
         for name in self.assets.convex_bodies(bodies):
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
-        for tile in bodies.tiles:
-            self._tile(parent, owner, collision.pose_link, tile, settings)
+        self._tiles(parent, owner, collision.pose_link, bodies, settings)
         if not bodies.is_exact:
             drawn: GeomSettings = {"contype": 0, "conaffinity": 0, "group": COLLISION_RAY}
             is_shared = len(parts) == 1 and len(faces) > TRIANGLES_FROM  # with the visual of the same file
             name = self.assets.part(parts[0], False) if is_shared else self.assets.surface(vertices, faces)
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **drawn)
 
-    def _tile(self, parent: GeomParent, owner: GeomOwner, pose: Pose, tile: HeightTile, settings: GeomSettings) -> None:
-        """Add one height field of a large surface."""
-        rows, columns = tile.heights.shape
-        extent = tile.cell * (columns - 1, rows - 1)
-        high, quaternion = float(tile.heights.max()), np.zeros(4)
-        mujoco.mju_mat2Quat(quaternion, tile.axes.reshape(9))
-        at = pose @ Pose(tile.origin + tile.axes[:, :2] @ (0.5 * extent), quaternion)
-        size = (float(extent[0]), float(extent[1]), high)
-        name = self.assets.heights(tile.heights / max(high, 1e-12), size, tile.base)
-        self._add(parent, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
+    def _tiles(
+        self, parent: GeomParent, owner: GeomOwner, pose: Pose, bodies: ConvexBodies, settings: GeomSettings
+    ) -> None:
+        """Add the height fields of a large surface; a `Pose` for each would take as long as everything else."""
+        if not bodies.tiles:
+            return
+        frame, rotation = parent.offset @ pose, np.zeros(9)
+        mujoco.mju_quat2Mat(rotation, frame.quaternion)
+        turn = rotation.reshape(3, 3)
+        for tile, name in zip(bodies.tiles, self.assets.tiles(bodies), strict=True):
+            middle = 0.5 * tile.cell * (tile.heights.shape[1] - 1, tile.heights.shape[0] - 1)
+            quaternion = np.zeros(4)
+            mujoco.mju_mat2Quat(quaternion, (turn @ tile.axes).reshape(9))
+            at = frame.position + turn @ (tile.origin + tile.axes[:, :2] @ middle)
+            kind = mujoco.mjtGeom.mjGEOM_HFIELD
+            self._add_at(parent, owner, at, quaternion, type=kind, hfieldname=name, **settings)
 
     def _wheel(
         self, parent: GeomParent, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, solid: GeomSettings

@@ -36,7 +36,7 @@ from simkit.compiler.meshes.convex_pieces import (
 from simkit.compiler.meshes.height_tiles import HeightTile
 from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.meshes.mesh_part import Floats, Ints
-from simkit.compiler.meshes.surface_patches import is_large, large_surface_pieces
+from simkit.compiler.meshes.surface_patches import LEAST_TOLERANCE, TRIANGLES_FROM, is_large, large_surface_pieces
 
 THRESHOLD: Final = 0.05
 """Concavity of CoACD, relative to the size of the mesh, below which a piece counts as convex."""
@@ -128,7 +128,7 @@ LARGEST_ERROR: Final = 0.005
 """Largest error [m] of the contacts of a large static mesh that is not reported as a warning."""
 
 _REPORTS: Final = (
-    6  # version of the bodies and of the texts of their findings, which are cached: raise it with every change
+    7  # version of the bodies and of the texts of their findings, which are cached: raise it with every change
 )
 _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
 _KEPT: Final = 128
@@ -231,8 +231,9 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
 def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
     findings: list[CollisionFinding] = []
     tiles: list[HeightTile] = []
-    if is_large(vertices, faces):
-        pieces, tiles, error = large_surface_pieces(vertices, faces)
+    large = large_surface_pieces(vertices, faces) if len(faces) > TRIANGLES_FROM else None
+    if large is not None and (large.error <= LEAST_TOLERANCE or is_large(vertices, faces)):
+        pieces, tiles, error = large
         kind = f"{sum(not p.exact for p in pieces)} patches of"
         shapes = tuple((p.points, np.zeros((0, 3), np.int32)) for p in pieces)
         if error > LARGEST_ERROR:

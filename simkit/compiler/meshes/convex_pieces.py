@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.meshes.connected_triangles import members_of, part_numbers
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 
 HULLS_MOST: Final = 64
@@ -51,13 +52,7 @@ def hull_volume(vertices: Floats) -> float:
 
 def connected_pieces(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
     """Return the connected pieces of a mesh, in the order of their first face."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    n = len(vertices)
-    row, column = faces[:, [0, 1]].reshape(-1), faces[:, [1, 2]].reshape(-1)
-    _, label = connected_components(coo_matrix((np.ones(len(row), bool), (row, column)), shape=(n, n)), directed=False)
-    of_face = label[faces[:, 0]]
+    of_face = part_numbers(faces)
     pieces = []
     for piece in dict.fromkeys(of_face.tolist()):
         used, inverse = np.unique(faces[of_face == piece], return_inverse=True)
@@ -88,25 +83,17 @@ def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
     return pieces
 
 
-def closed_convex_parts(vertices: Floats, faces: Ints) -> tuple[list[Floats], Ints]:
-    """Return the points of each closed convex part that is no cavity, and the faces of all other parts."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    n = len(vertices)
-    row, column = faces[:, [0, 1]].reshape(-1), faces[:, [1, 2]].reshape(-1)
-    graph = coo_matrix((np.ones(len(row), bool), (row, column)), shape=(n, n))
-    count, label = connected_components(graph, directed=False)
-    of_face = label[faces[:, 0]]
-    order = np.argsort(of_face, kind="stable")
-    parts = np.split(order, np.flatnonzero(np.diff(of_face[order])) + 1)
+def closed_convex_parts(vertices: Floats, faces: Ints) -> tuple[list[Floats], npt.NDArray[np.bool_]]:
+    """Return the points of each closed convex part that is no cavity, and a mask of the faces of all other parts."""
+    of_face = part_numbers(faces)
+    parts = members_of(of_face)
     corners = vertices[faces]
     volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
-    inverted = np.bincount(of_face, volumes, count)[[of_face[p[0]] for p in parts]] < 0.0
+    inverted = np.bincount(of_face, volumes)[[of_face[p[0]] for p in parts]] < 0.0
     low = np.array([corners[p].min(axis=(0, 1)) for p in parts])
     high = np.array([corners[p].max(axis=(0, 1)) for p in parts])
     closed: list[Floats] = []
-    rest: list[Ints] = []
+    is_rest = np.ones(len(faces), bool)
     for i, part in enumerate(parts):
         hollow = inverted & (low > low[i]).all(axis=1) & (high < high[i]).all(axis=1) if inverted.any() else inverted
         used, inverse = np.unique(faces[part], return_inverse=True)
@@ -118,9 +105,8 @@ def closed_convex_parts(vertices: Floats, faces: Ints) -> tuple[list[Floats], In
             and _is_closed_convex(vertices[used], local.astype(np.int32))
         ):
             closed.append(vertices[used])
-        else:
-            rest.append(faces[part])
-    return closed, np.concatenate(rest) if rest else faces[:0]
+            is_rest[part] = False
+    return closed, is_rest
 
 
 def _is_closed_convex(vertices: Floats, faces: Ints) -> bool:

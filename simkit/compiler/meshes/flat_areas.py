@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from simkit.compiler.meshes.connected_triangles import members_of, part_numbers
 from simkit.compiler.meshes.mesh_part import Floats, Indices
 
 _LEAST_AREA: Final = 8.0
@@ -38,7 +39,7 @@ def flat_areas(corners: Floats, normals: Floats) -> list[Indices]:
     chosen = np.flatnonzero((np.bincount(planes, sizes)[planes] >= least) & (np.bincount(planes)[planes] > 1))
     if not len(chosen):
         return []
-    areas = [chosen[area] for area in _connected(points.reshape(-1, 3)[chosen])]
+    areas = [chosen[area] for area in members_of(part_numbers(points.reshape(-1, 3)[chosen]))]
     return [area for area in areas if len(area) > 1 and sizes[area].sum() >= least]
 
 
@@ -53,21 +54,7 @@ def connected_areas(corners: Floats, sides: Indices) -> list[Indices]:
         return []
     size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     point = np.rint(corners.reshape(-1, 3) / (1e-6 * size))
-    return _connected(_numbers(np.column_stack([np.repeat(sides, 3), point])).reshape(-1, 3))
-
-
-def _connected(ends: Indices) -> list[Indices]:
-    """Return the triangles of each connected set; `ends` are the numbers of their corners, shape (n, 3)."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    row, column = ends[:, (0, 1)].reshape(-1), ends[:, (1, 2)].reshape(-1)
-    count = int(ends.max()) + 1
-    graph = coo_matrix((np.ones(len(row), bool), (row, column)), shape=(count, count))
-    _, label = connected_components(graph, directed=False)
-    of_set = label[ends[:, 0]]
-    order = np.argsort(of_set, kind="stable")
-    return np.split(order, np.flatnonzero(np.diff(of_set[order])) + 1)
+    return members_of(part_numbers(_numbers(np.column_stack([np.repeat(sides, 3), point])).reshape(-1, 3)))
 
 
 def _numbers(rows: Floats) -> Indices:

@@ -8,15 +8,23 @@ moved inwards have one convex hull. The patch with the largest error is cut in t
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from simkit.compiler.meshes.convex_pieces import ConvexPiece, closed_convex_parts, layer_depths, prism_count
+from simkit.compiler.meshes.curved_tiles import curved_tiles
 from simkit.compiler.meshes.flat_areas import connected_areas, dividing_line, flat_areas
-from simkit.compiler.meshes.height_tiles import HeightTile, height_tiles
-from simkit.compiler.meshes.mesh_part import Floats, Ints
+from simkit.compiler.meshes.height_tiles import HeightTile, Mask, height_tiles
+from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
+from simkit.compiler.meshes.patch_division import (
+    Patch,
+    area_vectors,
+    best_plane,
+    divide,
+    middle_plane,
+    plane_between_layers,
+)
 
 TRIANGLES_FROM: Final = 4000
 """Number of triangles up to which a static mesh is divided into prisms, which are exact, instead of patches."""
@@ -32,11 +40,14 @@ TOLERANCE: Final = 1e-4
 LEAST_TOLERANCE: Final = 0.5e-3
 """Least value of this error [m]."""
 
+_TILE_ERROR: Final = 8e-4
+"""Largest error of a height field on a curved surface, relative to the size of the mesh."""
+
+_LEAST_TILE_ERROR: Final = 1e-3
+"""Least value of this error [m]."""
+
 _MOST_TRIANGLES: Final = 128
 """Number of triangles from which a curved patch is cut without computing its hull."""
-
-_FEW_TRIANGLES: Final = 6
-"""Number of triangles up to which a patch is divided between triangles, and never through one: a triangle is exact."""
 
 _FEW_POINTS: Final = 16
 """Number of points up to which a patch keeps all of them."""
@@ -48,36 +59,13 @@ _SNAP: Final = 1e-7
 """Distance to a plane, relative to the size of the mesh, below which a corner lies in the plane."""
 
 _THIN: Final = 1e-6
-"""Height of a triangle, relative to the size of the mesh, below which it is left out."""
+"""Height of a triangle, relative to its largest coordinate, below which it is left out."""
 
 _STEEP: Final = 1e-3
 """Sine of the slope from which a side of a piece belongs to its top or bottom."""
 
 _LEAST_SHARE: Final = 0.25
 """Least thickness at the edge of a curved patch, relative to the layer below the surface."""
-
-
-@dataclass(eq=False, slots=True)
-class _Patch:
-    """Triangles of one side of the surface.
-
-    Attributes:
-        corners: corners of the triangles [m], shape (n, 3, 3).
-        normals: unit normals, shape (n, 3).
-        depths: largest depth of a piece below each triangle [m], shape (n,).
-        error: largest distance between the piece and the layer below the triangles [m]; infinite if it is not computed.
-        cut: normal and offset of the plane that divides the patch.
-        deepest: point of the triangles that is deepest below the piece [m]; None if another error is larger.
-        piece: corners of the convex piece [m], shape (n, 3).
-    """
-
-    corners: Floats
-    normals: Floats
-    depths: Floats
-    error: float = np.inf
-    cut: tuple[Floats, float] | None = None
-    deepest: Floats | None = None
-    piece: Floats | None = None
 
 
 def is_large(vertices: Floats, faces: Ints) -> bool:
@@ -108,52 +96,99 @@ def large_surface_pieces(vertices: Floats, faces: Ints) -> LargeSurface:
     patches.
     """
     vertices = np.asarray(vertices, float)
-    closed, rest = closed_convex_parts(vertices, faces)
+    closed, is_rest = closed_convex_parts(vertices, faces)
     pieces = [ConvexPiece(points, True) for points in closed]
-    if not len(rest):
+    if not is_rest.any():
         return LargeSurface(pieces, [], 0.0)
-    tiles, is_left = height_tiles(vertices, faces, vertices[rest], LEAST_TOLERANCE)
+    tiles, is_left = height_tiles(vertices, faces, vertices[faces[is_rest]], LEAST_TOLERANCE)
     if not is_left.any():
         return LargeSurface(pieces, tiles, LEAST_TOLERANCE)
-    rest = rest[is_left]
-    corners = vertices[rest]
+    rest = np.flatnonzero(is_rest)[is_left]
+    corners = vertices[faces[rest]]
+    rest = rest[_have_area(corners)]
+    if not len(rest):
+        return LargeSurface(pieces, tiles, LEAST_TOLERANCE if tiles else 0.0)
+    corners = vertices[faces[rest]]
     depths, _ = layer_depths(vertices, faces, corners)
     most = min(_PIECES_MOST, len(rest) // _TRIANGLES_PER_PIECE)
-    patches, error = _nearly_convex_patches(corners, depths, most)
-    return LargeSurface([*pieces, *(ConvexPiece(points, False) for points in patches)], tiles, error)
+    groups, flat_count = _groups(corners, most)
+    curved = np.flatnonzero(groups >= flat_count)
+    size = _usual_size(corners)
+    limit = max(_LEAST_TILE_ERROR, _TILE_ERROR * size)
+    fields = curved_tiles(vertices, faces, rest[curved], depths[curved], groups[curved], limit)
+    is_left = np.ones(len(rest), bool)
+    is_left[curved[~fields.is_left]] = False
+    few = min(most, int(is_left.sum()) // _TRIANGLES_PER_PIECE)
+    patches, error = _nearly_convex_patches(corners[is_left], depths[is_left], groups[is_left], (few, 4 * most), size)
+    pieces += [ConvexPiece(points, False) for points in patches]
+    return LargeSurface(pieces, [*tiles, *fields.tiles], max(error, fields.error))
 
 
-def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[list[Floats], float]:
+def _have_area(corners: Floats) -> Mask:
+    """Return a mask of the triangles that are higher than the rounding of their corners."""
+    # the normal of a triangle that is thinner than the rounding of its corners may have any direction
+    longest = np.linalg.norm(corners - corners[:, (1, 2, 0)], axis=2).max(axis=1)
+    least = _THIN * np.abs(corners).max(axis=(1, 2))
+    has_area: Mask = np.linalg.norm(area_vectors(corners), axis=1) > least * longest
+    return has_area
+
+
+def _usual_size(corners: Floats) -> float:
+    """Return the largest extent of triangles [m], at most ten times that of 98 % of them: a corner may be far away."""
+    middles = corners.mean(axis=1)
+    low, high = np.percentile(middles, (1.0, 99.0), axis=0)
+    return float(min(np.ptp(corners.reshape(-1, 3), axis=0).max(), max(10.0 * float((high - low).max()), 1e-3)))
+
+
+def _groups(corners: Floats, most: int) -> tuple[Indices, int]:
+    """Return the number of the area of each triangle, and the number of flat areas, which come first.
+
+    Args:
+        corners: corners of the triangles [m], shape (n, 3, 3).
+        most: number of pieces of a quarter of which the connected areas are separate.
+    """
+    normals = area_vectors(corners)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    axis = np.abs(normals).argmax(axis=1)
+    side = 2 * axis + (normals[np.arange(len(axis)), axis] < 0.0)
+    areas = flat_areas(corners, normals)
+    groups = np.full(len(corners), -1, np.int64)
+    for number, area in enumerate(areas):
+        groups[area] = number
+    curved = np.flatnonzero(groups < 0)
+    parts = connected_areas(corners[curved], side[curved])
+    # parts of one patch would be joined by its hull until cuts have separated them
+    if len(parts) > 4 * most:
+        groups[curved] = len(areas) + side[curved]
+    else:
+        for number, part in enumerate(parts, len(areas)):
+            groups[curved[part]] = number
+    return groups, len(areas)
+
+
+def _nearly_convex_patches(
+    corners: Floats, depths: Floats, groups: Indices, most: tuple[int, int], size: float
+) -> tuple[list[Floats], float]:
     """Return the points of pieces that cover triangles, and their largest error [m].
 
     Args:
         corners: corners of the triangles, counter-clockwise from outside [m], shape (n, 3, 3).
         depths: thickness of the layer below each triangle [m], shape (n,).
-        most: number of pieces from which only patches with ten times the tolerance are cut. Four times as many pieces
-            are the limit.
+        groups: number of the first patch of each triangle.
+        most: number of pieces from which only patches with ten times the tolerance are cut, and the limit of pieces.
+        size: largest extent of most triangles [m].
     """
-    normals = _area_vectors(corners)
-    lengths = np.linalg.norm(normals, axis=1)
-    size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
-    # the normal of a triangle that is thinner than the rounding of its corners may have any direction
-    longest = np.linalg.norm(corners - corners[:, (1, 2, 0)], axis=2).max(axis=1)
-    has_area = lengths > _THIN * size * longest
-    if not has_area.any():
+    if not len(corners):
         return [], 0.0
-    corners, depths, normals = corners[has_area], depths[has_area], normals[has_area] / lengths[has_area, None]
+    normals = area_vectors(corners)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
     tolerance = max(LEAST_TOLERANCE, TOLERANCE * size)
     coarse = 10.0 * tolerance
-    axis = np.abs(normals).argmax(axis=1)
-    side = 2 * axis + (normals[np.arange(len(axis)), axis] < 0.0)
-    areas = flat_areas(corners, normals)
-    side[np.concatenate([np.zeros(0, int), *areas])] = -1
-    curved = np.flatnonzero(side >= 0)
-    parts = [curved[part] for part in connected_areas(corners[curved], side[curved])]
-    # parts of one patch would be joined by its hull until cuts have separated them
-    groups = [*areas, *(parts if len(parts) <= 4 * most else (np.flatnonzero(side == k) for k in range(6)))]
-    waiting = [_Patch(corners[group], normals[group], depths[group]) for group in groups if len(group)]
-    heap: list[tuple[float, int, _Patch]] = []
-    done: list[_Patch] = []
+    order = np.argsort(groups, kind="stable")
+    members = np.split(order, np.flatnonzero(np.diff(groups[order])) + 1)
+    waiting = [Patch(corners[group], normals[group], depths[group]) for group in members]
+    heap: list[tuple[float, int, Patch]] = []
+    done: list[Patch] = []
     count = 0
     while True:
         _measure(waiting, tolerance)
@@ -164,22 +199,22 @@ def _nearly_convex_patches(corners: Floats, depths: Floats, most: int) -> tuple[
             else:
                 done.append(patch)
         number, worst = len(heap) + len(done), -heap[0][0] if heap else 0.0
-        if not heap or (number >= most and worst <= coarse) or (number >= 4 * most and worst < np.inf):
+        if not heap or (number >= most[0] and worst <= coarse) or (number >= most[1] and worst < np.inf):
             break
         waiting = []
         # patches with a similar error are measured together; none is cut that could stay
-        least, room = max(0.5 * worst, coarse if number >= most else 0.0), _BATCH
+        least, room = max(0.5 * worst, coarse if number >= most[0] else 0.0), _BATCH
         if worst <= coarse:
-            room = min(room, most - number)
+            room = min(room, most[0] - number)
         while room and heap and (not waiting or -heap[0][0] >= least):
-            waiting += _cut(heapq.heappop(heap)[2], _SNAP * size)
+            waiting += divide(heapq.heappop(heap)[2], _SNAP * size)
             room -= 1
     done += [patch for _, _, patch in sorted(heap, key=lambda item: item[1])]
     pieces = [(p.piece, p.error) for p in done if p.piece is not None]
     return [points for points, _ in pieces], max((error for _, error in pieces), default=0.0)
 
 
-def _measure(patches: list[_Patch], tolerance: float) -> None:
+def _measure(patches: list[Patch], tolerance: float) -> None:
     """Compute the pieces of patches, their errors, and the planes that would divide them best.
 
     Sums over the triangles of all patches are computed together, because calls of NumPy for few triangles are slow.
@@ -189,7 +224,7 @@ def _measure(patches: list[_Patch], tolerance: float) -> None:
     corners, normals = (np.concatenate([getattr(p, name) for p in patches]) for name in ("corners", "normals"))
     counts = np.array([len(p.corners) for p in patches])
     starts = np.append(0, np.cumsum(counts))
-    areas = 0.5 * np.linalg.norm(_area_vectors(corners), axis=1)
+    areas = 0.5 * np.linalg.norm(area_vectors(corners), axis=1)
     ups = np.add.reduceat(normals * areas[:, None], starts[:-1])
     ups /= np.maximum(np.linalg.norm(ups, axis=1), 1e-300)[:, None]
     up_of_face = np.repeat(ups, counts, axis=0)
@@ -205,18 +240,18 @@ def _measure(patches: list[_Patch], tolerance: float) -> None:
         width = float(np.ptp(flat, axis=0).max())
         if counts[i] > _MOST_TRIANGLES and heights[i] > tolerance:
             points = patch.corners.reshape(-1, 3)
-            patch.cut = _between_layers(levels[of], ups[i], width) or _middle(points, patch.corners)
+            patch.cut = plane_between_layers(levels[of], ups[i], width) or middle_plane(points, patch.corners)
             continue
         # between its corners, a triangle may be further below the piece than at its corners
         _measure_hull(patch, ups[i], middles[of].reshape(-1, 3), float(covered[i]), tolerance)
         if patch.error > tolerance and patch.cut is None:
             is_flat = heights[i] <= tolerance
             patch.cut = (
-                dividing_line(patch.corners, ups[i]) if is_flat else _between_layers(levels[of], ups[i], width)
-            ) or (_best_cut(patch, ups[i], areas[of]))
+                dividing_line(patch.corners, ups[i]) if is_flat else plane_between_layers(levels[of], ups[i], width)
+            ) or (best_plane(patch, ups[i], areas[of]))
 
 
-def _measure_hull(patch: _Patch, up: Floats, middles: Floats, covered: float, tolerance: float) -> None:
+def _measure_hull(patch: Patch, up: Floats, middles: Floats, covered: float, tolerance: float) -> None:
     """Compute the piece of a patch and its error.
 
     Args:
@@ -250,7 +285,7 @@ def _measure_hull(patch: _Patch, up: Floats, middles: Floats, covered: float, to
     lows = (points @ planes[is_bottom].T + (offsets[is_bottom] - depth * slopes[is_bottom])).max(axis=1)
     low = max(0.0, -float(lows.min()))
     triangles = hull.points[hull.simplices]
-    shadow = 0.25 * float(np.abs(_area_vectors(triangles) @ up).sum())  # the hull has two sides
+    shadow = 0.25 * float(np.abs(area_vectors(triangles) @ up).sum())  # the hull has two sides
     flat = points - (points @ up)[:, None] * up
     sides = flat.max(axis=0) - flat.min(axis=0)
     gap = max(0.0, shadow - covered) / max(2.0 * float(np.sqrt(sides @ sides)), 1e-300)
@@ -289,100 +324,3 @@ def _distinct(points: Floats) -> Floats:
     ordered = points[np.lexsort(points.T)]
     distinct: Floats = ordered[np.append(True, (ordered[1:] != ordered[:-1]).any(axis=1))]
     return distinct
-
-
-def _area_vectors(corners: Floats) -> Floats:
-    """Return the normals of triangles with twice their areas as lengths; `np.cross` is slow for few triangles."""
-    (ax, ay, az), (bx, by, bz) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
-    return np.column_stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
-
-
-def _between_layers(levels: Floats, up: Floats, width: float) -> tuple[Floats, float] | None:
-    """Return the plane in the widest gap between layers of triangles; None without a wide gap.
-
-    Args:
-        levels: heights of the corners of each triangle along `up` [m], shape (n, 3).
-        up: normal of the patch.
-        width: extent of the patch across the normal [m].
-    """
-    low, high = levels.min(axis=1), levels.max(axis=1)
-    order = low.argsort(kind="stable")
-    gaps = low[order][1:] - np.maximum.accumulate(high[order])[:-1]
-    height = float(high.max() - low.min())
-    # a stack of many even layers, higher than it is wide, has no wide gap, but no other cut would separate the layers
-    least = 0.3 if height < width else 0.3 / len(low)
-    if not len(gaps) or gaps.max() <= least * height:
-        return None
-    widest = int(gaps.argmax())
-    return up, float(low[order][widest + 1] - 0.5 * gaps[widest])
-
-
-def _middle(points: Floats, corners: Floats) -> tuple[Floats, float]:
-    """Return the plane across the longest side of a patch, through the median of its triangles."""
-    along = np.eye(3)[int(np.ptp(points, axis=0).argmax())]
-    low, high = (corners @ along).min(), (corners @ along).max()
-    at = float(np.median(corners.mean(axis=1) @ along))
-    return along, float(np.clip(at, low + 0.2 * (high - low), high - 0.2 * (high - low)))
-
-
-def _best_cut(patch: _Patch, up: Floats, areas: Floats) -> tuple[Floats, float]:
-    """Return the plane across the bend through the deepest point, or through the middle."""
-    points = patch.corners.reshape(-1, 3)
-    if patch.deepest is not None:
-        across = patch.normals - (patch.normals @ up)[:, None] * up
-        values, vectors = np.linalg.eigh((across * areas[:, None]).T @ across)
-        direction = vectors[:, 2]
-        places = points @ direction
-        at, start, end = float(patch.deepest @ direction), places.min(), places.max()
-        if values[2] > 0.0 and start + 0.15 * (end - start) < at < end - 0.15 * (end - start):
-            return direction, float(at)
-    flat = points - (points @ up)[:, None] * up
-    flat -= flat.mean(axis=0)
-    _, vectors = np.linalg.eigh(flat.T @ flat)
-    direction = vectors[:, 2]
-    places = points @ direction
-    return direction, float(0.5 * (places.min() + places.max()))
-
-
-def _cut(patch: _Patch, snap: float) -> list[_Patch]:
-    """Return the parts of a patch on both sides of its plane; triangles across the plane are divided."""
-    assert patch.cut is not None
-    normal, offset = patch.cut
-    sides = patch.corners @ normal - offset
-    if len(sides) <= _FEW_TRIANGLES:
-        places = sides.mean(axis=1)
-        is_above = places >= 0.0
-        if is_above.all() or not is_above.any():
-            is_above = places >= np.sort(places)[len(places) // 2]
-        sides = np.where(is_above, 1.0, -1.0)[:, None] * np.ones(3)
-    sides[np.abs(sides) <= snap] = 0.0
-    above, below = (sides >= 0.0).all(axis=1), (sides <= 0.0).all(axis=1) & ~(sides >= 0.0).all(axis=1)
-    parts: dict[bool, list[tuple[Floats, Floats, Floats]]] = {
-        True: [(patch.corners[above], patch.normals[above], patch.depths[above])],
-        False: [(patch.corners[below], patch.normals[below], patch.depths[below])],
-    }
-    crossing = np.flatnonzero(~above & ~below)
-    if len(crossing):
-        s = sides[crossing]
-        # the first corner is alone on its side, or its side has one corner and the plane passes through another
-        alone = np.where((s > 0.0).sum(axis=1) == 1, (s > 0.0).argmax(axis=1), (s < 0.0).argmax(axis=1))
-        order = (alone[:, None] + np.arange(3)) % 3
-        c = np.take_along_axis(patch.corners[crossing], order[:, :, None], axis=1)
-        s = np.take_along_axis(s, order, axis=1)
-        n, d = patch.normals[crossing], patch.depths[crossing]
-        p, q = (c[:, 0] + (s[:, 0] / (s[:, 0] - s[:, k]))[:, None] * (c[:, k] - c[:, 0]) for k in (1, 2))
-        positive = s[:, 0] > 0.0
-        pieces = ((c[:, 0], p, q), (p, c[:, 1], c[:, 2]), (p, c[:, 2], q))
-        for k, piece in enumerate(pieces):
-            t = np.stack(piece, axis=1)
-            for which in (True, False):
-                here = (positive if k == 0 else ~positive) == which
-                parts[which].append((t[here], n[here], d[here]))
-    result = []
-    for which in (True, False):
-        corners, normals, depths = (np.concatenate([part[k] for part in parts[which]]) for k in range(3))
-        areas = np.linalg.norm(_area_vectors(corners), axis=1)
-        keep = areas > snap * snap
-        if keep.any():
-            result.append(_Patch(corners[keep], normals[keep], depths[keep]))
-    return result

@@ -29,10 +29,8 @@ class HeightFieldContacts:
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
-        self._fields: dict[int, int] = {
-            geom: int(model.geom_dataid[geom])
-            for geom in np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_HFIELD).tolist()
-        }
+        geoms = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_HFIELD)
+        self._fields: dict[int, int] = dict(zip(geoms.tolist(), model.geom_dataid[geoms].tolist(), strict=True))
 
     def __bool__(self) -> bool:
         return bool(self._fields)

@@ -5,7 +5,6 @@ All bounds are computed once from the compiled model. Indices of geoms and degre
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import Final
 
 import mujoco
@@ -65,12 +64,14 @@ def allowed_travel(model: mujoco.MjModel, half: Floats, geoms: Ints) -> Floats:
     that meets moving geoms may travel half its own thickness. A geom that meets only static geoms may travel further,
     by half the thickness of the thinnest static geom.
     """
-    kinds: dict[tuple[int, int], list[int]] = defaultdict(list)  # masks -> geoms
-    for geom in np.flatnonzero(can_collide(model)).tolist():
-        kinds[int(model.geom_contype[geom]), int(model.geom_conaffinity[geom])].append(geom)
+    solid = np.flatnonzero(can_collide(model))
     tree = model.body_treeid[model.geom_bodyid]
-    static_least = {key: _minimum(half[[g for g in own if tree[g] < 0]]) for key, own in kinds.items()}
-    trees = {key: {int(tree[g]) for g in own} - {-1} for key, own in kinds.items()}
+    masks = np.column_stack([model.geom_contype[solid], model.geom_conaffinity[solid]])
+    kinds: dict[tuple[int, int], Ints] = {}  # masks -> geoms
+    for first, second in dict.fromkeys(map(tuple, masks.tolist())):
+        kinds[first, second] = solid[(masks[:, 0] == first) & (masks[:, 1] == second)]
+    static_least = {key: _minimum(half[own[tree[own] < 0]]) for key, own in kinds.items()}
+    trees = {key: set(np.unique(tree[own]).tolist()) - {-1} for key, own in kinds.items()}
     touchy: dict[int, bool] = {}
     allowed = np.empty(len(geoms))
     by_kind: dict[tuple[int, int, int], float] = {}

@@ -29,6 +29,16 @@ def grid(heights, step, keep=None):
     return vertices, np.vstack([lower, np.column_stack([a, a + columns + 1, a + 1])]).astype(np.int32)
 
 
+def tile_surface(tile):
+    """Return the upper surface of a height field as a mesh."""
+    rows, columns = tile.heights.shape
+    x, y = np.meshgrid(np.arange(columns) * tile.cell[0], np.arange(rows) * tile.cell[1])
+    local = np.stack([x, y, tile.heights], axis=-1).reshape(-1, 3)
+    _, faces = grid(tile.heights.T, 1.0)
+    order = np.arange(rows * columns).reshape(rows, columns).T.reshape(-1)
+    return trimesh.Trimesh(tile.origin + local @ tile.axes.T, order[faces], process=False)
+
+
 def hills(x, y):
     return 0.3 * np.sin(0.9 * x) * np.sin(1.1 * y)
 
@@ -49,28 +59,27 @@ def settle(make, compiled, tmp_path, mesh, *bodies, steps=1500):
     return c
 
 
-def test_hills_become_few_pieces_within_their_error(ground):
+def test_hills_become_few_bodies_within_their_error(ground):
     vertices, faces = ground
-    pieces, _, error = large_surface_pieces(vertices, faces)
-    assert len(pieces) < 0.3 * len(faces)
+    pieces, tiles, error = large_surface_pieces(vertices, faces)
+    assert len(pieces) + len(tiles) < 0.2 * len(faces)
     assert error <= 0.006  # 0.001 of the size of 6 m, from which no patch is cut any more
     hulls = [trimesh.convex.convex_hull(p.points) for p in pieces]
-    whole = trimesh.util.concatenate(hulls)
+    whole = trimesh.util.concatenate([*hulls, *(tile_surface(tile) for tile in tiles)])
     at = np.random.default_rng(0).uniform(0.2, 5.8, (400, 2))
     down = np.tile([0.0, 0.0, -1.0], (400, 1))
     start = np.column_stack([at, np.full(400, 5.0)])
     tops, rays, _ = whole.ray.intersects_location(start, down, multiple_hits=False)
     true, _, _ = trimesh.Trimesh(vertices, faces).ray.intersects_location(start, down, multiple_hits=False)
     assert len(rays) == 400
-    difference = tops[:, 2] - true[:, 2]
-    assert difference.min() > -1e-3
-    assert difference.max() < 1.1 * error
+    assert np.abs(tops[:, 2] - true[:, 2]).max() < 1.1 * error
 
 
 def test_a_mesh_gives_the_same_pieces_every_time():
     x, y = np.meshgrid(np.linspace(0, 4, 11), np.linspace(0, 4, 11), indexing="ij")
-    first, second = (large_surface_pieces(*grid(hills(x, y), 0.4))[0] for _ in range(2))
-    assert [p.points.tobytes() for p in first] == [p.points.tobytes() for p in second]
+    first, second = (large_surface_pieces(*grid(hills(x, y), 0.4)) for _ in range(2))
+    assert [p.points.tobytes() for p in first.pieces] == [p.points.tobytes() for p in second.pieces]
+    assert [t.heights.tobytes() for t in first.tiles] == [t.heights.tobytes() for t in second.tiles]
 
 
 def test_a_large_flat_floor_keeps_its_hole(make, compiled, tmp_path):
@@ -155,3 +164,15 @@ def test_a_turtlebot_drives_over_patches_as_over_a_plane(tmp_path):
             travels.append(robot.pose.position[0] - start)
     assert travels[0] == pytest.approx(1.0, abs=0.03)
     assert travels[1] == pytest.approx(travels[0], rel=0.01)
+
+
+@pytest.mark.parametrize("far", [1e3, 1e5])
+def test_a_corner_far_away_leaves_the_collisions_of_all_other_triangles(far):
+    ball = trimesh.creation.icosphere(subdivisions=4, radius=1.0)
+    vertices = np.vstack([ball.vertices, (far, far, far)])
+    faces = np.vstack([ball.faces[1:], (*ball.faces[0, :2], len(ball.vertices))]).astype(np.int32)
+    bodies = convex_bodies(vertices, faces, fixed=True)
+    points = np.vstack([p for p, _ in bodies.shapes] + [tile_surface(t).vertices for t in bodies.tiles])
+    distances = np.linalg.norm(points[:, None] - ball.vertices[None, ::40], axis=2).min(axis=0)
+    assert distances.max() < 0.2  # every place of the ball is covered
+    assert len(bodies.shapes) + len(bodies.tiles) > 100
