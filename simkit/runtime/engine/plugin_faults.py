@@ -71,6 +71,7 @@ class PluginFaults:
     ) -> None:
         self._engine, self._reschedule, self.on_error = engine, reschedule, on_error
         self._disabled: dict[int, AttachedPlugin] = {}
+        self._tasks: dict[tuple[int, str], tuple[Callable[[], object], Callable[[int], None]]] = {}
 
     # ------------------------------------------------------------------ enabled plugins
 
@@ -108,8 +109,13 @@ class PluginFaults:
         return call
 
     def task(self, plugin: object, hook: str) -> Callable[[int], None]:
-        """Return a hook without arguments as a task of the scheduler."""
+        """Return a hook without arguments as a task of the scheduler; the same task for the same hook."""
         disabled, key, method = self._disabled, id(plugin), getattr(plugin, hook)
+        known = self._tasks.get((key, hook))
+        if known is not None and known[0] == method:
+            return known[1]
+        if len(self._tasks) > _MOST_TASKS:  # those of plugins that were removed
+            self._tasks.clear()
 
         def call(_: int = 0) -> None:
             if key in disabled:
@@ -119,6 +125,7 @@ class PluginFaults:
             except Exception as error:  # noqa: BLE001 - a plugin may raise anything
                 self.meet(plugin, hook, error)
 
+        self._tasks[key, hook] = method, call
         return call
 
     def meet(self, plugin: Any, hook: str, error: Exception) -> None:
@@ -251,6 +258,7 @@ def active_plugin_calls(frame: FrameType | None) -> list[PluginCall]:
 
 
 _MAX_EXPLANATIONS = 3
+_MOST_TASKS = 10_000
 
 
 def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged) -> None:
