@@ -181,6 +181,11 @@ class Light(Handle):
         self._redraw()
         self.draw()
 
+    def replace_scene(self, scene: SceneLight) -> None:
+        """Replace the description of a light of the world, whose numbers the compiled model has already."""
+        state = LightState(scene.pose_world, scene.on, scene.irradiance)
+        self.scene, self.motion = scene, LightMotion(state, self.motion.course)
+
     def switch(self, on: bool) -> None:
         """Switch the light on or off. The setting replaces an earlier motion, for example that of a sun."""
         self._check()
