@@ -26,7 +26,7 @@ class StreamKey(ISeedSequence):
     def __init__(self, seed: int, name: tuple[int, ...]) -> None:
         self._key = np.asarray(np.random.SeedSequence((seed, *name)).generate_state(2, np.uint64), dtype=np.uint64)
 
-    def generate_state(self, n_words: int, dtype: object = np.uint64) -> npt.NDArray[np.uint64]:  # noqa: ARG002
+    def generate_state(self, n_words: int, dtype: object = np.uint64) -> npt.NDArray[np.uint64]:
         """Return the key, two words; Philox asks for nothing else."""
         return self._key
 

@@ -134,6 +134,7 @@ def fill_schedule(
         joints: all joints with a velocity limit.
         exact_limits: joints whose velocity limit is enforced at every step.
     """
+    engine.faults.begin_schedule()
     if engine.physics.sleep.watches:
         scheduler.every(sleep.RATE, engine.look_for_rest, "after")
     _schedule_velocity_limits(engine, scheduler, joints, exact_limits)
@@ -156,6 +157,7 @@ def fill_schedule(
             scheduler.every(None, engine.faults.task(plugin, "update_step"), "before")
     for rate, task in hook_tasks(engine.faults, plugins, "after_step"):
         scheduler.every(rate, task, "after")
+    engine.faults.end_schedule()
 
 
 def _schedule_velocity_limits(
@@ -164,12 +166,14 @@ def _schedule_velocity_limits(
     moving = [joint for joint in joints if joint.mj_dofs]
     exact = [joint for joint in moving if joint in exact_limits]
     coasting = [joint for joint in moving if joint not in exact_limits and joint.least_velocity_limit < _NO_LIMIT]
+    last, scheduler.limiters = scheduler.limiters, {}
     for rate, limited in ((None, exact), (_LIMIT_RATE, coasting)):
         if limited:
             model, dofs = engine.physics.model, limited_dofs(limited)
-            known = scheduler.limiters.get(rate)
+            known = last.get(rate)
             if known is None or known[0] is not model or known[1] != dofs:
-                known = scheduler.limiters[rate] = model, dofs, velocity_limiter(engine.physics, dofs)
+                known = model, dofs, velocity_limiter(engine.physics, dofs)
+            scheduler.limiters[rate] = known
             scheduler.every(rate, known[2], "sense")
 
 
