@@ -6,10 +6,14 @@ import errno
 import os
 import re
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from importlib.abc import Loader
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from simkit.errors import InstallationError
 
@@ -65,6 +69,7 @@ def import_mujoco() -> None:
 
 def _import() -> Any:
     with nullcontext() if "mujoco" in sys.modules else _safe_path():
+        _defer_glfw()
         try:
             import mujoco
         except Exception:
@@ -78,6 +83,46 @@ def _import() -> Any:
             finally:
                 os.environ["MUJOCO_GL"] = renderer
     return mujoco
+
+
+class _DeferredModule(ModuleType):
+    """Module that is executed when one of its names is read first; Python's `LazyLoader` executes it at `import`."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") and name != "__all__":
+            raise AttributeError(name)
+        with _DEFERRED_LOCK:
+            if type(self) is _DeferredModule:
+                loader = self.__loader__
+                assert isinstance(loader, Loader)
+                self.__class__ = cast(Any, ModuleType)
+                try:
+                    with _safe_path():
+                        loader.exec_module(self)
+                except BaseException:
+                    self.__class__ = _DeferredModule
+                    raise
+        return getattr(self, name)
+
+
+_DEFERRED_LOCK: Final = threading.RLock()
+
+
+def _defer_glfw() -> None:
+    """Load GLFW at its first use instead of with MuJoCo.
+
+    GLFW starts a Python process to look for its library, which takes a third of the time of `import mujoco`. Only
+    windows need it.
+    """
+    if "glfw" in sys.modules or "mujoco" in sys.modules:
+        return
+    spec = find_spec("glfw")
+    if spec is None or spec.loader is None or spec.submodule_search_locations is None:
+        return
+    module = _DeferredModule("glfw")
+    module.__spec__, module.__loader__, module.__file__ = spec, spec.loader, spec.origin
+    module.__package__, module.__path__ = "glfw", spec.submodule_search_locations
+    sys.modules["glfw"] = module
 
 
 @contextmanager

@@ -127,3 +127,18 @@ def test_files_named_as_modules_of_the_standard_library_disturb_nothing(tmp_path
 def test_the_requirement_is_that_of_the_package() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert mujoco_import.REQUIREMENT in project["dependencies"]
+
+
+def test_the_window_library_is_loaded_at_its_first_use(tmp_path: Path) -> None:
+    pytest.importorskip("glfw")
+    code = """
+import sys
+from simkit.mujoco_import import import_mujoco
+import_mujoco()
+import glfw, mujoco
+assert "glfw.library" not in sys.modules and not hasattr(glfw, "__wrapped__")
+from glfw import get_version_string, init
+assert "glfw.library" in sys.modules and get_version_string()[:2] == b"3." and init is glfw.init
+"""
+    done = run("-c", code, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr

@@ -27,7 +27,9 @@ def check_possible() -> None:
             f"SK-CLI-015 --view: there is no display (DISPLAY is not set)\n    help: {_HELP}", "SK-CLI-015"
         )
     try:
-        import glfw  # noqa: F401
+        import glfw
+
+        _ = glfw.init  # the first use loads the library
     except ImportError as error:
         text = (
             f"SK-CLI-015 --view: the window library is missing ({error})\n    help: pip install 'simkit-robotics[view]'"

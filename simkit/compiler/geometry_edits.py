@@ -1,4 +1,4 @@
-"""Changes of poses and sizes in the specification of a world, which is then compiled again without its files."""
+"""Changes of poses, sizes and lights in a world's specification, which is then compiled again without its files."""
 
 from __future__ import annotations
 
@@ -8,14 +8,33 @@ import mujoco
 
 from simkit.compiler import shape_geometry
 from simkit.compiler.kinematic_tree import WORLD
+from simkit.compiler.lights import report_light, write_light
 from simkit.compiler.name_map import ModelRecord
+from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY, Vector
-from simkit.scene import Mesh, SceneCollision, SceneLink, SceneModel, SceneVisual
+from simkit.scene import Mesh, SceneCollision, SceneLink, SceneModel, SceneVisual, SceneWorld
+from simkit.scene.differences import EntityChange
 
 SpecEdit = Callable[[mujoco.MjSpec], None]
 """Function that writes one change to a specification."""
 
 _MESH = mujoco.mjtGeom.mjGEOM_MESH
+
+
+def plan_light(world: SceneWorld, change: EntityChange) -> list[SpecEdit] | None:
+    """Return functions that write a light of the world; None if the world must be built anew.
+
+    A light on a link is written with its model, and another type of light draws the surfaces differently.
+    """
+    old, new = change.old, change.new
+    if change.owner is not None or world.mjcf is not None or "type" in change.fields:
+        return None
+    found = Diagnostics()
+    for light in (old, new):
+        report_light(light, world, found)
+    if list(found):
+        return None  # a new load reports the problems
+    return [lambda spec: write_light(spec.light(new.scoped), new, new.pose_world, world.surroundings.shadows)]
 
 
 def plan_shape(

@@ -43,7 +43,11 @@ def drawn_position(light: SceneLight, position: npt.ArrayLike) -> npt.NDArray[np
 
 def add_light(body: mujoco.MjsBody, light: SceneLight, pose: Pose, shadows: bool) -> None:
     """Add a light at `pose` in the frame of `body`."""
-    made = body.add_light(name=light.scoped)
+    write_light(body.add_light(name=light.scoped), light, pose, shadows)
+
+
+def write_light(made: mujoco.MjsLight, light: SceneLight, pose: Pose, shadows: bool) -> None:
+    """Write all properties of a light at `pose` in the frame of its body."""
     kinds = mujoco.mjtLightType
     # the renderer has no point lights: a spot with a cutoff of 180° replaces one
     made.type = kinds.mjLIGHT_DIRECTIONAL if light.type == "directional" else kinds.mjLIGHT_SPOT

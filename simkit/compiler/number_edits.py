@@ -16,7 +16,7 @@ import mujoco
 from simkit.compiler.bodies import add_body, is_massless
 from simkit.compiler.contact_friction import STIFF_KP, contact_properties, has_directional_friction
 from simkit.compiler.engine_options import apply_options, set_extent
-from simkit.compiler.geometry_edits import SpecEdit, is_plain_obstacle, plan_moved_link, plan_shape
+from simkit.compiler.geometry_edits import SpecEdit, is_plain_obstacle, plan_light, plan_moved_link, plan_shape
 from simkit.compiler.joints import is_valid_axis, write_dynamics
 from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.model_compilation import apply_velocity_decay
@@ -26,7 +26,17 @@ from simkit.compiler.servo_gains import tune_servos
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY
-from simkit.scene import Inertial, SceneCollision, SceneJoint, SceneLink, SceneModel, SceneVisual, SceneWorld, Surface
+from simkit.scene import (
+    Inertial,
+    SceneCollision,
+    SceneJoint,
+    SceneLight,
+    SceneLink,
+    SceneModel,
+    SceneVisual,
+    SceneWorld,
+    Surface,
+)
 from simkit.scene.differences import EntityChange
 
 Edit = Callable[[], None]
@@ -78,11 +88,15 @@ def plan_number_edits(compiled: Compiled, world: SceneWorld, changes: Sequence[E
     numbers: list[Edit] = []
     shapes: list[SpecEdit] = []
     for change in changes:
-        is_shape = change.fields <= {"pose_world", "pose_link", "geometry"}
-        found = _plan_shape(compiled, change) if is_shape else _plan(compiled, world, change)
+        is_light = isinstance(change.new, SceneLight)
+        is_shape = is_light or change.fields <= {"pose_world", "pose_link", "geometry"}
+        if is_light:
+            found: Any = plan_light(world, change)
+        else:
+            found = _plan_shape(compiled, change) if is_shape else _plan(compiled, world, change)
         if found is None:
             return None
-        (shapes if is_shape else numbers).extend(found)  # type: ignore[arg-type]  # each list has its own kind
+        (shapes if is_shape else numbers).extend(found)
     return NumberEdits(tuple(numbers), tuple(shapes))
 
 

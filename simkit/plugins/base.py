@@ -60,6 +60,8 @@ class Plugin(abc.ABC):
         parent_kind: kind, or kinds, of entities that the plugin can be attached to; the base classes set it.
         lets_sleep: true if the model may sleep at rest without an effect on what the plugin reads or does.
         option_types: classes of options in addition to the class of `options`; see `simkit.plugins.options`.
+        only_publishes: true if the plugin only publishes or waits for requests; a batch of environments then leaves its
+            hooks out. The attribute does not hold for derived classes.
         endpoints: topics, services and actions whose names are not literals in `load`.
         before_step_rate, after_step_rate: rates of these hooks [Hz]; set in the class, or on the instance in `load`.
         on_error: "stop" ends the run after an exception in the plugin; "disable" continues without the plugin.
@@ -78,6 +80,7 @@ class Plugin(abc.ABC):
     names: ClassVar[tuple[str, ...]] = ()
     parent_kind: ClassVar[ParentKind | tuple[ParentKind, ...]]
     lets_sleep: ClassVar[bool] = False
+    only_publishes: ClassVar[bool] = False
     option_types: ClassVar[tuple[type[Options], ...]] = ()
     endpoints: ClassVar[tuple[Endpoint, ...]] = ()
     drives: ClassVar[bool] = False  # true if the plugin moves joints; it is then ignored in a static model

@@ -111,6 +111,7 @@ class GazeboRosJointStatePublisher(JointStates):
 
     options = OptionsOf(GazeboRosJointStatePublisherOptions)
     filenames = ("libgazebo_ros_joint_state_publisher.so",)
+    only_publishes = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         names = [c.value for c in params.all("joint_name")]
@@ -142,6 +143,7 @@ class JointStatePublisher(JointStates):
     options = OptionsOf(JointStatePublisherOptions)
     filenames = ("gz-sim-joint-state-publisher-system",)
     names = ("gz::sim::systems::JointStatePublisher",)
+    only_publishes = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         named = params.all("joint_name")

@@ -13,6 +13,7 @@ from simkit.compiler.name_map import NameMap
 from simkit.compiler.number_edits import plan_number_edits, replace_scenes
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
+from simkit.scene import SceneLight
 from simkit.scene.differences import EntityChange, entity_changes
 from simkit.scene.overrides import Overrides, override_texts, xacro_overrides
 
@@ -84,6 +85,8 @@ def _is_read(engine: Engine, change: EntityChange) -> bool:
     if change.fields & _SHAPE_FIELDS and parts is not None and (parts.sensors or parts.plugins):
         return True
     for item in (*structure.all_plugins(), *structure.all_sensors()):
+        if isinstance(change.new, SceneLight) and getattr(item, "is_gz_system", False):
+            return True  # its components have copies of the lights
         read: Iterable[str] | None = getattr(item, "reads_at_load", None)
         if read is None and not type(item).__module__.startswith(_OWN_PACKAGE):
             return True
@@ -110,6 +113,7 @@ def _switch_world(sim: Simulation, world: SceneWorld, compiled: Compiled) -> Non
     builder.world = engine.world = sim.control.loaded_world = world
     names = NameMap.of(builder.records.values(), compiled.model)
     sim.contents.handles.replace_scenes(structure.models, models)
+    sim.contents.handles.replace_lights(world.lights)
     sim.contents.spawner.adopt(
         replace(
             structure,

@@ -217,6 +217,8 @@ class Noise:
         self._has_density = any(m.noise_density > 0 for m in models)
         self.evolves = bool(self._bias_drift.drifts) or self._has_density
         self._intervals: dict[float, NoiseInterval] = {}
+        self._start: NoiseState | None = None
+        self._has_fixed_start = self._drawn_bias is None and self._sign is None and not self._bias_drift.drifts
         self.restart()
         # noise without any effect is skipped
         self.is_silent = not (
@@ -233,6 +235,9 @@ class Noise:
 
     def restart(self) -> None:
         """Return to t = 0, and draw the constant biases again."""
+        if self._start is not None and self._start.interval is self._of(self._nominal):
+            self.state = self._start
+            return
         bias = self._bias_mean.copy()
         if self._drawn_bias is not None:
             bias += self._bias_stddev * self._drawn_bias.normal(0)
@@ -243,6 +248,8 @@ class Noise:
         if self._is_dynamic.any():
             biases = (biases[0] + np.where(self._is_dynamic, bias, 0.0), *biases[1:])
         self._replace(self._of(self._nominal), biases)
+        if self._has_fixed_start:
+            self._start = self.state
 
     def evolve(self, index: int, dt: float) -> None:
         """Advance by `dt` [s] to sample `index`; `dt` is 0 for the first sample."""

@@ -78,6 +78,7 @@ class SampleTimes:
     ) -> None:
         self._clock, self._in_milliseconds = clock, in_milliseconds
         self._phase, self._spread = exact_fraction(options.phase), exact_fraction(options.jitter)
+        self._last: tuple[float, Timetable | None] | None = None
         self._jitter = None
         if options.jitter > 0:
             stream = streams.stream(scoped, "jitter")
@@ -98,7 +99,10 @@ class SampleTimes:
 
     def grid(self, rate: float) -> Timetable | None:
         """Return the ticks of a rate [Hz]; None for every step."""
-        return self._clock.samples(SampleTiming(self.period(rate), self._phase, self._spread, self._jitter))
+        if self._last is None or self._last[0] != rate:  # a reset asks for the same rate, and fractions are slow
+            timing = SampleTiming(self.period(rate), self._phase, self._spread, self._jitter)
+            self._last = rate, self._clock.samples(timing)
+        return self._last[1]
 
 
 class DelayedReadings:

@@ -216,7 +216,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         if self._delayed is not None:
             self._delayed.samples.clear()
             self._delayed.samples.extend(flight)
-        self._apply_rate(rate)
+        if rate != self.update_rate:
+            self._apply_rate(rate)
         self.remember(memory)
 
     # ------------------------------------------------------------------ helpers
@@ -315,8 +316,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         if self._sample is not None:
             yield self._sample
         if self._delayed is not None:
-            for _, sample in self._delayed.samples:
-                yield sample
+            yield from (sample for _, sample in self._delayed.samples)
 
     def _drop_samples(self) -> None:
         """Drop all samples."""

@@ -77,6 +77,8 @@ def form_batches(
     groups: dict[Hashable, list[Member]] = {}
     for sensor in sensors:
         sensor.batch = None
+        if len(sensors) < MIN_MEMBERS:
+            continue
         own_key = key(sensor) if sensor.keeps_to_grid else None
         if own_key is not None:
             groups.setdefault((own_key, sensor.update_rate, sensor.timing.phase, sensor.count), []).append(sensor)

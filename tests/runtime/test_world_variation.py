@@ -37,6 +37,7 @@ def model_numbers(sim: simkit.Simulation) -> dict[str, bytes]:
             "arena::pillars::pillar_2.radius=0.2",
         ],
         ["arena.pose=-0.1 0.2 0 0 0 0.3", "turtlebot3::base_link.mass=2"],
+        ["sun.intensity=0.5", "sun.diffuse=1 0.5 0.2 1", "sun.pose=3 4 20 0.3 0.1 0", "sun.cast_shadows=false"],
     ],
 )
 def test_numbers_that_are_set_in_a_loaded_world_give_the_bits_of_a_load(overrides: list[str]) -> None:
@@ -51,6 +52,33 @@ def test_numbers_that_are_set_in_a_loaded_world_give_the_bits_of_a_load(override
         assert apply_overrides(varied, [])
         with simkit.load("turtlebot3_world") as base:
             assert model_numbers(varied) == model_numbers(base)
+
+
+def test_a_light_of_a_loaded_world_has_the_values_and_pictures_of_a_load() -> None:
+    overrides = {"sun.intensity": 0.4, "sun.diffuse": (1, 0.5, 0.2, 1), "sun.pose": (3, 4, 20, 0.5, 0.1, 0)}
+    pictures = []
+    with simkit.load("turtlebot3_world", overrides=overrides) as loaded, simkit.load("turtlebot3_world") as varied:
+        varied.run(0.1)
+        assert apply_overrides(varied, overrides)
+        varied.light("sun").intensity = 3.0
+        varied.reset()
+        for sim in (loaded, varied):
+            light = sim.light("sun")
+            assert light.intensity == 0.4 and tuple(light.pose.position) == (3.0, 4.0, 20.0)
+            sim.run(0.1)
+            pictures.append(sim.sensor(f"{_ROBOT}::camera_rgb_frame::camera").latest.data)
+        assert np.array_equal(*pictures) and np.ptp(pictures[0]) > 50
+        assert apply_overrides(varied, [])
+        assert varied.light("sun").intensity == 1.0
+
+
+def test_a_light_on_a_robot_and_another_type_of_light_need_a_new_load() -> None:
+    lamp = '<light name="lamp" type="spot"><pose>0 0 2 0 0 0</pose></light>'
+    link = f'<link name="l">{lamp}</link>'
+    world = f'<sdf version="1.9"><world name="w">{lamp}<model name="m">{link}</model></world></sdf>'
+    with simkit.load(world) as sim:
+        assert not apply_overrides(sim, {"m::l::lamp.intensity": 0.5})
+        assert sim.light("m::l::lamp").intensity == 1.0
 
 
 def test_a_snapshot_from_before_other_overrides_is_refused() -> None:

@@ -28,27 +28,6 @@ Floats = npt.NDArray[np.float64]
 Ids = npt.NDArray[np.intp]
 Read = Callable[[Ids], Any]
 
-PUBLISHERS: Final = frozenset(
-    [
-        "ClassicServices",
-        "ClockPublisher",
-        "GazeboRosCamera",
-        "GazeboRosImuSensor",
-        "GazeboRosJointStatePublisher",
-        "GazeboRosP3D",
-        "GazeboRosRaySensor",
-        "JointStatePublisher",
-        "OdometryPublisher",
-        "PosePublisher",
-        "SimulationInterfaces",
-        "SolarSensor",
-        "StaticTransforms",
-        "WorldServices",
-        "WorldStats",
-    ]
-)
-"""Classes of plugins that only publish, or only wait for requests."""
-
 _TWISTS: Final = frozenset(("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"))
 _HOOKS: Final = ("before_step", "after_step")
 
@@ -75,7 +54,7 @@ def world_obstacles(sim: Simulation) -> list[str]:
             obstacle = DiffDriveArrays.obstacle(plugin)
             if obstacle:
                 found.append(f"{obstacle} of plugin {name}")
-        elif not (name in PUBLISHERS and type(plugin).__module__.startswith("simkit.plugins.")):
+        elif not vars(type(plugin)).get("only_publishes", False):
             acts = (
                 any(map(plugin.has_hook, _HOOKS))
                 or hasattr(plugin, "move_scenery")

@@ -364,6 +364,8 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
     @property
     def _uses_variables(self) -> bool:
         """True if expressions contain variables, whose values are new in each episode."""
+        if not self._variables:
+            return False
         spec = self.spec_of_env
         texts = str((spec.observation, spec.reward, spec.terminated, spec.success))
         return any("{" + name + "}" in texts for name in self._variables)

@@ -77,8 +77,8 @@ def optimise_sweep(
     fingerprint = f"{spec.fingerprint()} {'max' if maximise else 'min'} {metric}"
     store.begin(fingerprint, trials * len(seeds), {**description_of(spec), "search": metric})
     with locked_blocks(folder, store.blocks):
-        runner = check_sweep(spec)
         finished = {row["run"]: row for row in store.rows()}
+        runner = check_sweep(spec)
         most = min(_TOGETHER, trials) * len(seeds)
         with make_executor(spec, jobs, cluster, most, runner, always_processes=always_processes) as executor:
             with progress.task("searching", trials) as task:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import copy
 import time
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
@@ -159,6 +159,15 @@ class RowRunner:
             with suppress(Exception):  # a plugin may raise while it is closed
                 sim.close()
 
+    @contextmanager
+    def closed_on_error(self) -> Iterator[None]:
+        """Close the world if the block raises an exception."""
+        try:
+            yield
+        except BaseException:
+            self.close()
+            raise
+
     def _open_bag(self, sim: Simulation, path: Path) -> Any:
         if not self._spec.bag_topics:
             return None
@@ -222,7 +231,7 @@ def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> tuple[RowRunner, SweepR
     """
     runner = RowRunner(spec)
     failures: list[InputError] = []
-    try:
+    with runner.closed_on_error():
         for row in rows:
             try:
                 sim = runner._world(spec.row_spec(row))
@@ -231,11 +240,7 @@ def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> tuple[RowRunner, SweepR
             else:
                 _check_expressions(spec, row, sim)
                 return runner, row
-    except BaseException:
-        runner.close()
-        raise
-    runner.close()
-    raise failures[0]
+        raise failures[0]
 
 
 def _check_expressions(spec: SweepSpec, row: SweepRow, sim: Simulation) -> None:

@@ -293,7 +293,8 @@ def check_sweep(spec: SweepSpec) -> RowRunner:
         except InputError:
             raise_problems(path_problems(spec, rows, spec.design.names))
             raise
-        raise_problems(path_problems(spec, rows, [name for name in spec.design.names if name not in loaded.values]))
+        with runner.closed_on_error():
+            raise_problems(path_problems(spec, rows, [name for name in spec.design.names if name not in loaded.values]))
     return runner
 
 
@@ -324,20 +325,15 @@ def make_executor(
     always_processes: bool,
 ) -> Executor:
     """Return the executor for a number of processes or a cluster; only that of the present process uses a runner."""
-    if cluster is not None:
-        if runner is not None:
-            runner.close()
-        return RayExecutor(spec, cluster)
-    if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
-        raise InputError(f"{INVALID} jobs: found {jobs!r}; expected a whole number of at least 1", INVALID)
-    if jobs is None:
-        jobs = usable_cores()
-    jobs = min(jobs, min_tasks)
-    if jobs == 1 and not always_processes:
-        return SerialExecutor(runner or RowRunner(spec))
-    if runner is not None:
-        runner.close()
-    return ProcessExecutor(spec, jobs)
+    runner = runner or RowRunner(spec)
+    with runner.closed_on_error():
+        if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
+            raise InputError(f"{INVALID} jobs: found {jobs!r}; expected a whole number of at least 1", INVALID)
+    jobs = min(usable_cores() if jobs is None else jobs, min_tasks)
+    if cluster is None and jobs == 1 and not always_processes:
+        return SerialExecutor(runner)
+    runner.close()
+    return ProcessExecutor(spec, jobs) if cluster is None else RayExecutor(spec, cluster)
 
 
 def runs_to_keep(spec: SweepSpec, store: ResultStore, blocks: Iterable[int]) -> list[int]:

@@ -267,8 +267,7 @@ def raise_problems(problems: Sequence[str]) -> None:
 
 def _duration_problems(duration: Any, has_end: bool) -> list[str]:
     """Return a message for a duration that is no number of seconds, or that never ends."""
-    is_number = isinstance(duration, (int, float)) or getattr(duration, "dtype", None) is not None
-    if not is_number or isinstance(duration, bool) or not duration >= 0:
+    if not isinstance(duration, (int, float)) or isinstance(duration, bool) or not duration >= 0:
         return [f"{INVALID} duration: found {duration!r:.60}; expected a number of seconds of at least 0"]
     if math.isinf(duration) and not has_end:
         return [f"{INVALID} duration: found {duration!r}; an endless run needs until"]
@@ -288,6 +287,8 @@ def metric_problems(metrics: Any) -> list[str]:
 
 def spec_of_world(world: Any, duration: float | None, until: str) -> RunSpec:
     """Return the run specification of a world, or of a specification with another duration and end condition."""
+    if getattr(duration, "shape", None) == ():  # a number of NumPy
+        duration = cast(Any, duration).item()
     problems = [] if duration is None else _duration_problems(duration, bool(until or getattr(world, "until", "")))
     if not isinstance(world, (str, os.PathLike, RunSpec)):
         problems.append(f"{INVALID} world: found {world!r:.60}; expected a file, a bare name, XML text or a RunSpec")

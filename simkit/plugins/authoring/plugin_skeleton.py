@@ -21,7 +21,7 @@ DEEPEST = 3  # deeper blocks are not read in `load`
 _NAMES_OF_PLUGIN = """
 sim name scoped params where ros log source period parent_kind filenames names before_step after_step reset load
 prepare close advertise listen offer act declare random get_state set_state before_step_rate after_step_rate
-lets_sleep drives reads_parameter_files has_hook
+lets_sleep only_publishes drives reads_parameter_files has_hook
 """
 _OWN = frozenset(_NAMES_OF_PLUGIN.split())
 """Names of attributes that the base class of plugins already has."""

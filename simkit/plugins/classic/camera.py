@@ -49,6 +49,7 @@ class GazeboRosCamera(CameraPlugin):
     )
     options = OptionsOf(GazeboRosCameraOptions)
     filenames = ("libgazebo_ros_camera.so",)
+    only_publishes = True
 
     def load(self, parent: Any, params: Params) -> None:
         if hasattr(parent, "eyes"):

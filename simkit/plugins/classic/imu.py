@@ -139,6 +139,7 @@ class GazeboRosImuSensor(SensorPlugin):
     endpoints = (publishes("~/out", "sensor_msgs/msg/Imu", named_by=("topicName",)),)
     options = OptionsOf(GazeboRosImuSensorOptions)
     filenames = ("libgazebo_ros_imu_sensor.so",)
+    only_publishes = True
 
     def load(self, parent: ImuMeasurement, params: Params) -> None:
         topic = self.ros.topic(self.options.topic_name or "~/out")

@@ -68,6 +68,7 @@ class GazeboRosP3D(ModelPlugin):
     endpoints = (publishes("odom", ODOMETRY, named_by=("topicName",)),)
     options = OptionsOf(GazeboRosP3DOptions)
     filenames = ("libgazebo_ros_p3d.so",)
+    only_publishes = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         is_old = is_ros_1(params, _ROS_1)

@@ -59,6 +59,7 @@ class GazeboRosRaySensor(SensorPlugin):
     )
     options = OptionsOf(GazeboRosRaySensorOptions)
     filenames = ("libgazebo_ros_ray_sensor.so",)
+    only_publishes = True
 
     def load(self, parent: Lidar, params: Params) -> None:
         output = _OUTPUTS[self.options.output_type]

@@ -54,6 +54,7 @@ class ClassicServices(WorldPlugin):
     """
 
     on_error = "stop"
+    only_publishes = True
 
     def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
         self._is_ros_1 = any(_is_of_ros_1(plugin) for plugin in _plugins(scene))

@@ -88,6 +88,7 @@ class SolarSensor(ModelPlugin):
     )
     options = OptionsOf(SolarSensorOptions)
     filenames = ("libsolar_sensor.so",)
+    only_publishes = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         frame, body = self.options.frame_name, self.options.body_name

@@ -50,6 +50,7 @@ class StaticTransforms(WorldPlugin):
     """
 
     after_step_rate = 1.0
+    only_publishes = True
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._static = self.advertise("/tf_static", TRANSFORMS, latched=True)

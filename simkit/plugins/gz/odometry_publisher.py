@@ -49,6 +49,7 @@ class OdometryPublisher(ModelPlugin):
     options = OptionsOf(OdometryPublisherOptions)
     filenames = ("gz-sim-odometry-publisher-system",)
     names = ("gz::sim::systems::OdometryPublisher",)
+    only_publishes = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._canonical = scene.canonical_link

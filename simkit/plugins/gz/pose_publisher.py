@@ -75,6 +75,7 @@ class PosePublisher(ModelPlugin):
     options = OptionsOf(PosePublisherOptions)
     filenames = ("gz-sim-pose-publisher-system",)
     names = ("gz::sim::systems::PosePublisher",)
+    only_publishes = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._published_kinds = {

@@ -78,6 +78,8 @@ class WorldStats(WorldPlugin):
     only if the user names them. All topics except the statistics are listed only while they have subscribers.
     """
 
+    only_publishes = True
+
     def load(self, parent: Simulation, params: Params) -> None:
         sim, prefix = self.sim, valid_topic(f"/world/{self.sim.world.name}")
         self._wall = WallClock(sim)
@@ -156,6 +158,7 @@ class ClockPublisher(WorldPlugin):
     """Publishes `rosgraph_msgs/msg/Clock` on `/clock` at 100 Hz of simulated time; every world has this plugin."""
 
     after_step_rate = 100.0
+    only_publishes = True
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._clock = self.advertise("/clock", CLOCK)

@@ -70,6 +70,7 @@ class SimulationInterfaces(WorldPlugin):
     """
 
     on_error = "stop"
+    only_publishes = True
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._is_stopped = False

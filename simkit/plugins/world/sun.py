@@ -58,6 +58,7 @@ class Sun(WorldPlugin):
     light moves, by default 10. Sensors that measure the light use the sun's exact position at their own time.
     """
 
+    reads_at_load = ("direction", "direction_world", "irradiance", "on")
     options = OptionsOf(SunOptions)
     names = ("simkit::Sun",)
     filenames = ("simkit-sun",)

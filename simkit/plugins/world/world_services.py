@@ -54,6 +54,7 @@ class WorldServices(WorldPlugin):
     """
 
     on_error = "stop"
+    only_publishes = True
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._prefix = prefix = valid_topic(f"/world/{self.sim.world.name}")

@@ -102,6 +102,11 @@ class Engine(EngineState):
         """Apply changed rates, sensors and plugins; within a hook, after the other tasks of the tick."""
         self.loop.reschedule()
 
+    def look_for_rest(self, _tick: int) -> None:
+        """Let bodies at rest sleep."""
+        if not self.physics.sleep.rests:
+            self.physics.sleep.look(self.physics.fresh())
+
     def set_control(self, actuator: ActuatorRef, value: float) -> None:
         """Write the control of an actuator that a plugin added; the next step uses it.
 

@@ -47,6 +47,9 @@ class PersistentWrenches:
 
         The wrenches of a removed plugin are dropped. If a restore brings the plugin back, its state sets them again.
         """
+        if not self._by_owner:
+            self._engine.physics.set_persistent_wrenches({}, are_applied=are_applied)
+            return
         living = set(map(id, self._faults.living(self._engine.structure)))
         self._by_owner = {key: owned for key, owned in self._by_owner.items() if key in living}
         links = self._engine.names.links

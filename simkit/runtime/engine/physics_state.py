@@ -241,6 +241,8 @@ class PhysicsState:
             are_applied: True if the data already contain the wrenches (a restored state).
         """
         before = self.persistent_wrenches
+        if not (wrenches or before.any()):
+            return
         self.persistent_wrenches = np.zeros_like(before)
         for body, wrench in wrenches.items():
             self.persistent_wrenches[body] = wrench

@@ -71,6 +71,8 @@ class PluginFaults:
     ) -> None:
         self._engine, self._reschedule, self.on_error = engine, reschedule, on_error
         self._disabled: dict[int, AttachedPlugin] = {}
+        self._tasks: dict[tuple[int, str], tuple[Callable[[], object], Callable[[int], None]]] = {}
+        self._new_tasks: dict[tuple[int, str], tuple[Callable[[], object], Callable[[int], None]]] | None = None
 
     # ------------------------------------------------------------------ enabled plugins
 
@@ -107,9 +109,25 @@ class PluginFaults:
 
         return call
 
+    def begin_schedule(self) -> None:
+        """Keep the tasks that are made from now on for the next schedule."""
+        self._new_tasks = {}
+
+    def end_schedule(self) -> None:
+        """Forget the tasks that are not in the new schedule, such as those of removed plugins."""
+        self._tasks, self._new_tasks = self._new_tasks or {}, None
+
     def task(self, plugin: object, hook: str) -> Callable[[int], None]:
-        """Return a hook without arguments as a task of the scheduler."""
+        """Return a hook without arguments as a task of the scheduler.
+
+        The next schedule gets the same task for the same hook, so that it is recognised as equal.
+        """
         disabled, key, method = self._disabled, id(plugin), getattr(plugin, hook)
+        known = self._tasks.get((key, hook))
+        if known is not None and known[0] == method:
+            if self._new_tasks is not None:
+                self._new_tasks[key, hook] = known
+            return known[1]
 
         def call(_: int = 0) -> None:
             if key in disabled:
@@ -119,6 +137,8 @@ class PluginFaults:
             except Exception as error:  # noqa: BLE001 - a plugin may raise anything
                 self.meet(plugin, hook, error)
 
+        if self._new_tasks is not None:
+            self._new_tasks[key, hook] = method, call
         return call
 
     def meet(self, plugin: Any, hook: str, error: Exception) -> None:

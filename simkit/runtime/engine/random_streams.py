@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import weakref
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from numpy.random.bit_generator import ISeedSequence
 
 from simkit.in_process import InProcess
 
@@ -14,50 +16,91 @@ Values = npt.NDArray[np.float64]
 _BLOCK_VALUES = 8192
 
 
-def _stream_key(seed: int, scoped: str, channel: str) -> npt.NDArray[np.uint64]:
+class StreamKey(ISeedSequence):
+    """Key of a stream in the form that NumPy's generators take.
+
+    A generator that gets the key as a number draws another one from the operating system first, which takes longer than
+    the samples of an IMU.
+    """
+
+    def __init__(self, seed: int, name: tuple[int, ...]) -> None:
+        self._key = np.asarray(np.random.SeedSequence((seed, *name)).generate_state(2, np.uint64), dtype=np.uint64)
+
+    def generate_state(self, n_words: int, dtype: object = np.uint64) -> npt.NDArray[np.uint64]:
+        """Return the key, two words; Philox asks for nothing else."""
+        return self._key
+
+
+def _name_words(scoped: str, channel: str) -> tuple[int, ...]:
+    """Return the hash of a stream's name as four numbers of 32 bits."""
     name = hashlib.blake2b(f"{scoped}\0{channel}".encode(), digest_size=16).digest()
-    entropy = (seed, *(int.from_bytes(name[i : i + 4], "little") for i in range(0, 16, 4)))
-    return np.asarray(np.random.SeedSequence(entropy).generate_state(2, np.uint64), dtype=np.uint64)
+    return tuple(int.from_bytes(name[i : i + 4], "little") for i in range(0, 16, 4))
 
 
 class RandomStream(InProcess):
     """Random numbers for the samples of one channel.
 
     Samples are drawn in blocks, each from its own counter. Any index can be drawn without the previous ones, while
-    consecutive indices cost a table look-up.
+    consecutive indices cost a table look-up. The first samples of a block are drawn without the others, because many
+    episodes of learning need only a few; the numbers are the same.
     """
 
     def __init__(self, seed: int, scoped: str, channel: str, width: int) -> None:
         self.scoped, self.channel, self.width = scoped, channel, int(width)
         self._rows = max(1, _BLOCK_VALUES // max(1, self.width))
+        self._first = max(1, self._rows // 16)
+        self._seed: int | None = None
+        self._key: StreamKey | None = None
+        self._name: tuple[int, ...] = ()
+        self._drawn = 0
         self.reseed(seed)
 
     def reseed(self, seed: int) -> None:
-        self._key = _stream_key(seed, self.scoped, self.channel)
-        self._normal_block = self._uniform_block = -1
+        """Set another seed; the same seed keeps the numbers that are drawn already."""
+        if seed != self._seed:
+            self._seed, self._key = seed, None
+            self._normal_block = self._uniform_block = -1
 
     def generator(self, index: int, purpose: int = 0) -> np.random.Generator:
         """Return a new generator for one index."""
+        if self._key is None:  # many streams of a world are never drawn from
+            assert self._seed is not None
+            self._name = self._name or _name_words(self.scoped, self.channel)
+            self._key = StreamKey(self._seed, self._name)
         counter = np.array((0, 0, index, purpose), dtype=np.uint64)
-        return np.random.Generator(np.random.Philox(key=self._key, counter=counter))
+        key: Any = self._key  # NumPy's type hints name only one class of the interface
+        return np.random.Generator(np.random.Philox(key, counter=counter))
 
     def normal(self, index: int) -> Values:
         """Return the standard normal numbers of a sample, shape (width,); a view that must not be written to."""
         block, row = divmod(index, self._rows)
-        if block != self._normal_block:
-            self._normals = self.generator(block, 1).standard_normal((self._rows, self.width))
-            self._normal_block = block
+        if block != self._normal_block or row >= self._drawn:
+            self._draw_normals(block, row)
         values: Values = self._normals[row]
         return values
+
+    def _draw_normals(self, block: int, row: int) -> None:
+        """Draw the numbers of a block up to a row, or to its end."""
+        if block != self._normal_block:
+            self._normals, self._drawn = np.empty((self._rows, self.width)), 0
+            self._normal_generator = self.generator(block, 1)
+            self._normal_block = block
+        end = self._rows
+        if self._drawn == 0 and row < self._first:
+            end = self._first
+        self._normal_generator.standard_normal(out=self._normals[self._drawn : end])
+        self._drawn = end
 
     def normals(self, index: int, most: int) -> Values:
         """Return the standard normal numbers of up to `most` samples from `index` on, shape (count, width).
 
         The result ends at the end of the block.
         """
-        self.normal(index)
-        row = index % self._rows
-        return self._normals[row : row + most]
+        block, row = divmod(index, self._rows)
+        last = min(row + most, self._rows) - 1
+        if block != self._normal_block or last >= self._drawn:
+            self._draw_normals(block, last)
+        return self._normals[row : last + 1]
 
     def uniform(self, index: int) -> Values:
         """Return the numbers of a sample, uniform within ±1, shape (width,); a view that must not be written to."""

@@ -31,14 +31,16 @@ class Agenda:
     """
 
     def __init__(self) -> None:
+        self._tasks: list[tuple[Task, Timetable | None]] = []
+        self._cycle = 0
+        self._plan: dict[int, tuple[list[Task], int]] = {}
         self.clear()
 
     def clear(self) -> None:
-        self._tasks: list[tuple[Task, Timetable | None]] = []
+        """Remove every task; the plan of due tasks stays for the case that equal tasks are added again."""
+        self._planned_tasks, self._tasks = self._tasks, []
         self.every: list[Task] = []
         self._heap: list[tuple[int, int]] = []
-        self._cycle = 0
-        self._plan: dict[int, tuple[list[Task], int]] = {}
         self.next = NEVER
 
     def add(self, task: Task, grid: Timetable | None) -> None:
@@ -50,7 +52,10 @@ class Agenda:
         self._heap = [(grid.next(tick), order) for order, (_, grid) in enumerate(self._tasks) if grid is not None]
         heapq.heapify(self._heap)
         self.next = self._heap[0][0] if self._heap else NEVER
-        self._cycle, self._plan = _common_cycle([grid for _, grid in self._tasks if grid is not None]), {}
+        if self._tasks != self._planned_tasks:
+            self._cycle = _common_cycle([grid for _, grid in self._tasks if grid is not None])
+            self._plan = {}
+            self._planned_tasks = self._tasks
 
     def due(self, tick: int) -> list[Task]:
         """Return every task due at `tick`, in order of addition; periodic tasks advance to their next tick."""
@@ -98,11 +103,18 @@ def _common_cycle(timetables: Sequence[Timetable]) -> int:
 
 
 class Scheduler:
-    """Tasks before a step, and tasks of sensors and hooks after it."""
+    """Tasks before a step, and tasks of sensors and hooks after it.
+
+    Attributes:
+        checked_topics: sensors and their topics that were searched for shared topics.
+        limiters: velocity limiters by rate, with what they were made from.
+    """
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
         self.before, self.sense, self.after = Agenda(), Agenda(), Agenda()
+        self.checked_topics: object = None
+        self.limiters: dict[float | None, tuple[object, list[tuple[int, float]], Task]] = {}
 
     def clear(self) -> None:
         """Remove every task."""

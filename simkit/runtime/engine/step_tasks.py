@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.runtime.engine import sleep, velocity_servos
 from simkit.runtime.engine.scheduler import Scheduler, Task
-from simkit.runtime.engine.velocity_limits import LimitedJoint, velocity_limiter
+from simkit.runtime.engine.velocity_limits import LimitedJoint, limited_dofs, velocity_limiter
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
@@ -134,18 +134,16 @@ def fill_schedule(
         joints: all joints with a velocity limit.
         exact_limits: joints whose velocity limit is enforced at every step.
     """
-    resting = engine.physics.sleep
-
-    def look_for_rest(_tick: int) -> None:
-        if not engine.physics.sleep.rests:
-            engine.physics.sleep.look(engine.physics.fresh())
-
-    if resting.watches:
-        scheduler.every(sleep.RATE, look_for_rest, "after")
+    engine.faults.begin_schedule()
+    if engine.physics.sleep.watches:
+        scheduler.every(sleep.RATE, engine.look_for_rest, "after")
     _schedule_velocity_limits(engine, scheduler, joints, exact_limits)
     if engine.velocity_servos.are_there:  # before the commands of the step, which have had no time to take effect
         scheduler.every(velocity_servos.RATE, engine.velocity_servos.correct, "before")
-    _report_shared_topics(engine)
+    topics = [(sensor, *sensor._topics.items()) for sensor in engine.structure.all_sensors()]
+    if topics != scheduler.checked_topics:
+        _report_shared_topics(engine)
+        scheduler.checked_topics = topics
     _group_sensors(engine)
     plugins = [plugin for plugin in engine.structure.all_plugins() if not engine.faults.is_disabled(plugin)]
     _schedule_scenery(engine, scheduler, plugins)
@@ -159,6 +157,7 @@ def fill_schedule(
             scheduler.every(None, engine.faults.task(plugin, "update_step"), "before")
     for rate, task in hook_tasks(engine.faults, plugins, "after_step"):
         scheduler.every(rate, task, "after")
+    engine.faults.end_schedule()
 
 
 def _schedule_velocity_limits(
@@ -167,9 +166,15 @@ def _schedule_velocity_limits(
     moving = [joint for joint in joints if joint.mj_dofs]
     exact = [joint for joint in moving if joint in exact_limits]
     coasting = [joint for joint in moving if joint not in exact_limits and joint.least_velocity_limit < _NO_LIMIT]
+    last, scheduler.limiters = scheduler.limiters, {}
     for rate, limited in ((None, exact), (_LIMIT_RATE, coasting)):
         if limited:
-            scheduler.every(rate, velocity_limiter(engine.physics, limited), "sense")
+            model, dofs = engine.physics.model, limited_dofs(limited)
+            known = last.get(rate)
+            if known is None or known[0] is not model or known[1] != dofs:
+                known = model, dofs, velocity_limiter(engine.physics, dofs)
+            scheduler.limiters[rate] = known
+            scheduler.every(rate, known[2], "sense")
 
 
 def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[Any]) -> None:

@@ -33,13 +33,17 @@ class LimitedJoint(Protocol):
         """Return the velocity limit of an axis [rad/s or m/s]."""
 
 
-def velocity_limiter(physics: ForwardPass, joints: Sequence[LimitedJoint]) -> Callable[[int], None]:
-    """Return one task that enforces the velocity limits of joints.
+def limited_dofs(joints: Sequence[LimitedJoint]) -> list[tuple[int, float]]:
+    """Return the degrees of freedom of joints and their velocity limits [rad/s or m/s]."""
+    return [(dof, _axis_limit(joint, axis)) for joint in joints for axis, dof in enumerate(joint.mj_dofs)]
+
+
+def velocity_limiter(physics: ForwardPass, limited: Sequence[tuple[int, float]]) -> Callable[[int], None]:
+    """Return one task that enforces velocity limits of degrees of freedom.
 
     A scalar product shows quickly that no joint is near its limit. Setting a limit makes a new schedule.
     """
-    dofs = np.array([dof for joint in joints for dof in joint.mj_dofs], dtype=np.intp)
-    limits = np.array([_axis_limit(joint, axis) for joint in joints for axis in range(len(joint.mj_dofs))])
+    dofs, limits = np.array([dof for dof, _ in limited], dtype=np.intp), np.array([limit for _, limit in limited])
     shares = np.zeros(physics.model.nv)
     shares[dofs] = 1.0 / np.maximum(limits, 1e-9)
 

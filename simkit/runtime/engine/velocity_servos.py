@@ -83,6 +83,12 @@ class _ServoState:
     unrest: float = 0.0
     tick: int = _NEVER
 
+    def become(self, other: _ServoState) -> None:
+        """Take over the state of another servo."""
+        self.command, self.correction = other.command, other.correction
+        self.position, self.velocity, self.last_command = other.position, other.velocity, other.last_command
+        self.unrest, self.tick = other.unrest, other.tick
+
 
 @dataclass(frozen=True, slots=True)
 class _BoundServo:
@@ -229,8 +235,12 @@ class VelocityServos:
 
     def set_state(self, state: Mapping[str, _ServoState]) -> None:
         """Restore a state from `get_state`; a servo that the state does not contain starts again."""
-        self.servos = {name: replace(servo) for name, servo in state.items()}
-        self._model = None
+        if state.keys() == self.servos.keys():
+            for name, servo in self.servos.items():
+                servo.become(state[name])
+        else:
+            self.servos = {name: replace(servo) for name, servo in state.items()}
+            self._model = None
 
 
 def _uncompensated_load(row: _BoundServo, mean: float, velocity: float) -> float:

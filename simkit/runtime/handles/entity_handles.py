@@ -12,7 +12,7 @@ from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.link import Link
 from simkit.runtime.handles.model import Model
 from simkit.runtime.handles.visual import Labels, Temperatures, Visual
-from simkit.scene import SceneLink, SceneModel
+from simkit.scene import SceneLight, SceneLink, SceneModel
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
@@ -111,6 +111,13 @@ class EntityHandles:
             _, model, lights = self._by_scene.pop(id(old[name]))
             self._by_scene[id(scene)] = (scene, model, lights)
             model.replace_scene(scene)
+
+    def replace_lights(self, lights: Iterable[SceneLight]) -> None:
+        """Make the handles of the world's lights refer to changed descriptions."""
+        for scene in lights:
+            light = (self._world_lights or {}).get(scene.name)
+            if light is not None and light.scene is not scene:
+                light.replace_scene(scene)
 
     def _lights(self, scene: SceneModel) -> dict[str, Light]:
         lights = self._model_handles(scene)[1]

@@ -263,7 +263,7 @@ class Joint(TunableJoint):
     @effort_limit.setter
     def effort_limit(self, value: float) -> None:
         self._check()
-        self._effort_limit[:] = _checked_limits(value, "effort_limit", len(self._effort_limit))
+        self._effort_limit = np.array(_checked_limits(value, "effort_limit", len(self._effort_limit)))
         self._engine.numbers.keep("joint", self.scoped, "effort_limit", self._effort_limit.tolist())
 
     @property
@@ -275,26 +275,28 @@ class Joint(TunableJoint):
     @velocity_limit.setter
     def velocity_limit(self, value: float) -> None:
         self._check()
-        self._velocity_limit[:] = _checked_limits(value, "velocity_limit", len(self._velocity_limit))
+        self._velocity_limit = np.array(_checked_limits(value, "velocity_limit", len(self._velocity_limit)))
         self._engine.numbers.keep("joint", self.scoped, "velocity_limit", self._velocity_limit.tolist())
         self._handles.limit_velocity(self)
 
     @property
     def least_velocity_limit(self) -> float:
         """Least velocity limit of the joint's axes [rad/s or m/s]."""
-        return float(self._velocity_limit.min())
+        least: float = min(self._velocity_limit.tolist())  # faster than NumPy for a few numbers
+        return least
 
     def axis_velocity_limit(self, axis: int) -> float:
         """Return the velocity limit of an axis [rad/s or m/s]."""
-        return float(self._velocity_limit[axis])
+        limit: float = self._velocity_limit.item(axis)
+        return limit
 
     def get_state(self) -> tuple[Vector, Vector]:
-        """Return the limits for a snapshot."""
-        return self._effort_limit.copy(), self._velocity_limit.copy()
+        """Return the limits for a snapshot; their arrays are replaced by a change and never written to."""
+        return self._effort_limit, self._velocity_limit
 
     def set_state(self, state: tuple[Vector, Vector]) -> None:
         """Restore limits from `get_state`."""
-        self._effort_limit, self._velocity_limit = state[0].copy(), state[1].copy()
+        self._effort_limit, self._velocity_limit = state
 
     # ------------------------------------------------------------------ inside
 

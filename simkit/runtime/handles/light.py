@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import mujoco
 
@@ -57,6 +57,10 @@ def _checked_colour(colour: object, name: str) -> Colour:
     if not all(0.0 <= part <= 1.0 for part in (r, g, b, a)):
         raise wrong_value(name, "numbers from 0 to 1", colour)
     return r, g, b, a
+
+
+_DRAWN_FIELDS: Final = frozenset({"light_pos", "light_dir", "light_active"})
+"""Fields of MuJoCo's model that `Light.draw` writes."""
 
 
 class Light(Handle):
@@ -177,6 +181,11 @@ class Light(Handle):
         self._redraw()
         self.draw()
 
+    def replace_scene(self, scene: SceneLight) -> None:
+        """Replace the description of a light of the world, whose numbers the compiled model has already."""
+        state = LightState(scene.pose_world, scene.on, scene.irradiance)
+        self.scene, self.motion = scene, LightMotion(state, self.motion.course)
+
     def switch(self, on: bool) -> None:
         """Switch the light on or off. The setting replaces an earlier motion, for example that of a sun."""
         self._check()
@@ -209,6 +218,9 @@ class Light(Handle):
 
     def set_state(self, state: tuple[LightMotion, SceneLight]) -> None:
         is_another = state[1] is not self.scene
+        is_same = not is_another and state[0] is self.motion and self.motion.course is None
+        if is_same and not _DRAWN_FIELDS & self._engine.originals.keys():
+            return  # the light has never moved
         self.motion, self.scene = state
         if is_another:
             self._redraw()

@@ -218,7 +218,12 @@ class ImuMeasurement(Sensor):
 
     def remember(self, memory: Memory) -> None:
         super().remember(memory[0])
+        if memory[1] is self.reference:
+            self._make_pending_messages()
+            self.batch = None
+            return
         self.set_orientation_reference(memory[1])
+        self.reference = memory[1]  # the array is replaced by a change and never written to
 
     def covariances(self) -> list[Vector]:
         """Return the covariances of orientation, rate and force; recompute them if the sample interval changes."""

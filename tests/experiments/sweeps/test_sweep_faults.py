@@ -6,8 +6,9 @@ import json
 import multiprocessing
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
+import numpy as np
 import pytest
 from sweep_worlds import BOX, SLOPE
 from typer.testing import CliRunner
@@ -23,7 +24,7 @@ from simkit.experiments.sweeps.optimisation import optimise_sweep
 from simkit.experiments.sweeps.parameter_space import parameter_space
 from simkit.experiments.sweeps.row_runner import RowRunner
 from simkit.experiments.sweeps.sweep import run_sweep
-from simkit.experiments.sweeps.sweep_spec import SweepSpec
+from simkit.experiments.sweeps.sweep_spec import SweepSpec, spec_of_world
 from simkit.plugins import WorldPlugin
 
 G = RunSpec(BOX, duration=0.02, overrides=("world.gravity=0 0 {g}",))
@@ -48,6 +49,9 @@ def test_parts_of_different_divisions_cannot_write_the_same_block(tmp_path: Path
         with locked_blocks(tmp_path, [0, 2]):
             with pytest.raises(InputError, match="SK-SWEEP-010"), locked_blocks(tmp_path, [1, 2]):
                 pass
+            for file in tmp_path.rglob("*"):
+                if file.is_file():
+                    file.read_bytes()  # a backup in this process opens and closes the files, and the locks stay
             assert pool.apply(take_block, (tmp_path,)) == "SK-SWEEP-010"
         assert pool.apply(take_block, (tmp_path,)) == "free"
 
@@ -62,6 +66,43 @@ def test_a_part_leaves_the_rows_of_other_parts_alone_and_keeps_its_own_failed_ru
     assert [path.name for path in (tmp_path / "runs").glob("*")] == ["000004.zip"]
     run_sweep(spec, tmp_path, jobs=1, shard=(1, 2))
     assert sorted(path.name for path in (tmp_path / "runs").glob("*")) == ["000001.zip", "000004.zip"]
+
+
+class Closing(WorldPlugin):
+    """Counts its loads and closes in all worlds."""
+
+    open_worlds = 0
+
+    def load(self, sim: simkit.Simulation, params: Any) -> None:
+        Closing.open_worlds += 1
+
+    def close(self) -> None:
+        Closing.open_worlds -= 1
+
+
+@pytest.mark.parametrize(("names", "jobs"), [(["mass", "mas"], 1), (["mass"], 0)])
+def test_a_sweep_that_a_check_refuses_closes_its_world(names: list[str], jobs: int, tmp_path: Path) -> None:
+    before = Closing.open_worlds
+    spaces = tuple(parameter_space(f"box::l.inertial.{name}", [1.0]) for name in names)
+    with pytest.raises(InputError, match="SK-SWEEP-00[12]"):
+        run_sweep(SweepSpec(RunSpec(BOX, duration=0.02, plugins=(Closing(),)), Design(spaces)), tmp_path, jobs=jobs)
+    assert Closing.open_worlds == before
+
+
+def test_a_part_of_a_sweep_that_cannot_write_its_locks_says_so(tmp_path: Path) -> None:
+    make_folder(tmp_path)
+    (tmp_path / "locks" / "000003.lock").mkdir()
+    with pytest.raises(InputError, match="SK-CLI-016 cannot write"), locked_blocks(tmp_path, [1, 3]):
+        pass
+    with locked_blocks(tmp_path, [1]):
+        pass
+
+
+def test_a_duration_may_be_a_number_of_numpy() -> None:
+    for number in (np.float32(0.5), np.array(0.5), np.float64(0.5)):
+        assert type(spec_of_world(BOX, cast("float", number), "").duration) is float
+    with pytest.raises(InputError, match=r"SK-SWEEP-001 duration: found array\(\[1., 2.\]\)"):
+        spec_of_world(BOX, cast("float", np.array([1.0, 2.0])), "")
 
 
 class Weigher(WorldPlugin):

@@ -54,3 +54,15 @@ def test_reseeding_changes_existing_streams_too():
     stream.normal(0)
     streams.reseed(9)
     np.testing.assert_array_equal(stream.normal(0), RandomStreams(9).stream("a", "x", 2).normal(0))
+
+
+def test_a_part_of_a_block_has_the_numbers_of_the_whole_block_after_any_seeds():
+    whole = RandomStreams(5).stream("a", "x", 3).normals(0, 10_000).copy()
+    streams = RandomStreams(5)
+    stream = streams.stream("a", "x", 3)
+    np.testing.assert_array_equal(stream.normals(0, 7), whole[:7])
+    for seed in (5, 6, 5):
+        streams.reseed(seed)
+    for index in (3, len(whole) - 1, 0):
+        np.testing.assert_array_equal(stream.normal(index), whole[index])
+    np.testing.assert_array_equal(stream.normals(100, 10_000), whole[100:])

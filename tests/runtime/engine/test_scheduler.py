@@ -61,3 +61,28 @@ def test_after_a_rewind_the_schedule_continues_from_that_tick() -> None:
         assert tick < first <= tick + 5
         assert scheduler.sense.due(first)
         assert first < scheduler.sense.next <= first + 5
+
+
+def test_a_schedule_that_is_filled_again_has_the_ticks_of_its_present_rates() -> None:
+    scheduler = Scheduler(Clock(0.001))
+    called: list[tuple[int, int]] = []
+    tasks = [partial(_record_call, called, number) for number in range(2)]
+
+    def ticks(rates: tuple[float, float], begin: int) -> list[tuple[int, int]]:
+        scheduler.clear()
+        for rate, task in zip(rates, tasks, strict=True):
+            scheduler.every(rate, task, "after")
+        scheduler.rewind(begin)
+        called.clear()
+        for tick in range(begin + 1, begin + 61):
+            for task in scheduler.after.due(tick) if scheduler.after.next <= tick else ():
+                task(tick)
+        return list(called)
+
+    def expected(periods: tuple[int, int], begin: int) -> list[tuple[int, int]]:
+        times = range(begin + 1, begin + 61)
+        return [(tick, n) for tick in times for n, period in enumerate(periods) if tick % period == 0]
+
+    for begin in (0, 30, 0):
+        for rates in ((100.0, 50.0), (100.0, 50.0), (50.0, 200.0)):
+            assert ticks(rates, begin) == expected((round(1000 / rates[0]), round(1000 / rates[1])), begin)
