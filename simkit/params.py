@@ -18,7 +18,7 @@ T = TypeVar("T")
 LARGEST = 1e100
 """Largest accepted magnitude of a vector's component or standard deviation; squares of larger numbers may overflow."""
 _FARTHEST = 1e15  # [m] largest coordinate of a pose; sums of larger poses would lose their precision
-_TRUE, _FALSE = {"true", "1"}, {"false", "0"}
+_TRUTHS = {"true": True, "1": True, "false": False, "0": False}
 _NOT, _READ, _WHOLLY = range(3)  # element unread; read; read with all its children
 
 
@@ -116,10 +116,7 @@ class Params:
         return found
 
     def each(self, name: str) -> list[Params]:
-        """Return a block for each child of that name, with only that child.
-
-        Example: `[b.number("gain") for b in p.each("gain")]`.
-        """
+        """Return a block for each child of that name, with only that child."""
         single = ((c,) for c in self.all(name))
         return [Params(self.name, children=c, where=c[0].where, diagnostics=self.diagnostics) for c in single]
 
@@ -183,9 +180,11 @@ class Params:
         except ValueError:
             pass
         allowed = "a number" + _range_text(minimum, maximum)
-        return self._value(
-            name, default, 0.0, required, lambda p: _number(" ".join(p.first_of(1)), minimum, maximum, finite), allowed
-        )
+
+        def parse(p: Params) -> float:
+            return _number(self._numeral(p, " ".join(p.first_of(1))), minimum, maximum, finite)
+
+        return self._value(name, default, 0.0, required, parse, allowed)
 
     def integer(
         self,
@@ -201,7 +200,7 @@ class Params:
         """
 
         def parse(p: Params) -> int:
-            number = _number(p.value, minimum, maximum, True)
+            number = _number(self._numeral(p, p.value), minimum, maximum, True)
             if number != int(number):
                 message = f"<{name}>{p.value}</{name}> is not a whole number, {int(number)} is used"
                 p.diagnostics.warning("SK-PARAM-005", message, p.where)
@@ -346,13 +345,20 @@ class Params:
             self._bad(self._as_written(name, found.value), allowed, found.where)
             return fallback if default is None else default
 
+    def _numeral(self, found: Params, text: str) -> str:
+        """Return the text of a number; sdformat reads `true` and `false` as 1 and 0."""
+        number = {"true": "1", "false": "0"}.get(text.lower())
+        if number is not None:
+            message = f"{self._as_written(found.name, text)} is not a number, {number} is used"
+            self.diagnostics.warning("SK-PARAM-005", message, found.where)
+        return number or text
+
     def _as_written(self, name: str, value: str) -> str:
         """Return an element as it is written in the file, for messages."""
         return f"<{name}>{value}</{name}>"
 
     def _near(self, name: str) -> str:
-        # a child that was read is not misspelled
-        return did_you_mean(name, [c.name for c in self.children if not c.was_read])
+        return did_you_mean(name, [c.name for c in self.children if not c.was_read])  # a read child is not misspelled
 
     def _bad(self, text: str, allowed: str, where: Where) -> None:
         shown = text if len(text) <= 200 else text[:200] + "..."
@@ -373,10 +379,8 @@ def number_or_nan(text: str) -> float:
 
 
 def _range_text(minimum: float | None, maximum: float | None) -> str:
-    if minimum is not None and maximum is not None:
-        return f" from {minimum:g} to {maximum:g}"
     if minimum is not None:
-        return f" of at least {minimum:g}"
+        return f" of at least {minimum:g}" if maximum is None else f" from {minimum:g} to {maximum:g}"
     return f" of at most {maximum:g}" if maximum is not None else ""
 
 
@@ -390,9 +394,7 @@ def _number(text: str, minimum: float | None, maximum: float | None, finite: boo
 
 
 def _boolean(text: str) -> bool:
-    folded = text.strip().lower()
-    if folded in _TRUE:
-        return True
-    if folded in _FALSE:
-        return False
-    raise ValueError(text)
+    truth = _TRUTHS.get(text.strip().lower())
+    if truth is None:
+        raise ValueError(text)
+    return truth

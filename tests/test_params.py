@@ -41,6 +41,18 @@ def test_an_invalid_number_is_an_error_and_returns_the_default(text):
     assert problems(p) == [("SK-PARAM-002", "")]
 
 
+def test_a_truth_value_for_a_number_is_one_or_zero_with_a_warning():
+    p = block("<a>false</a><b>True</b><c>false</c><d>yes</d>")
+    assert (p.number("a", 5.0), p.integer("b"), p.number("c", 2.0, minimum=1.0), p.number("d", 3.0)) == (
+        0.0,
+        1,
+        2.0,
+        3.0,
+    )
+    assert [d.code for d in p.diagnostics] == ["SK-PARAM-005"] * 3 + ["SK-PARAM-002"] * 2
+    assert "<a>false</a> is not a number, 0 is used" in [d.message for d in p.diagnostics]
+
+
 def test_the_error_for_a_number_out_of_range_has_the_range():
     p = block("\n<a>-1</a>")
     p.number("a", minimum=0, maximum=2)

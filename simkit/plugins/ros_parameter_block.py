@@ -82,6 +82,9 @@ class ParameterBlock(Params):
         alone = Params(self.name, children=[whole], where=self.where, diagnostics=self.diagnostics)
         return alone.vector(name, size, default, required)
 
+    def _numeral(self, found: Params, text: str) -> str:
+        return text  # ROS refuses a truth value for a number
+
     def _as_written(self, name: str, value: str) -> str:
         return f"{name}: {value}" if value else f"{name} without a value"
 

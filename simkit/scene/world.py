@@ -9,7 +9,7 @@ from typing import Any, Final
 from simkit.diagnostics import NOWHERE, Where
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Vec3
-from simkit.scene.model import Colour, SceneFrame, SceneJoint, SceneLight, SceneModel, ScenePlugin
+from simkit.scene.model import Colour, SceneFrame, SceneJoint, SceneLight, SceneModel, ScenePlugin, SceneVisual
 
 CONTACT_LAWS = ("simkit", "mujoco")
 
@@ -124,6 +124,7 @@ class SceneActor:
         skin: URI of the mesh; empty if there is none.
         loop, delay_start, auto_start: playback of its script; the delay in seconds.
         person: appearance of simkit's own figure of a person, which replaces the skin; None derives it from the name.
+        visuals: visuals of the actor's own links, in the actor's frame; such an actor is rigid and no person.
     """
 
     name: str
@@ -138,6 +139,7 @@ class SceneActor:
     plugins: tuple[ScenePlugin, ...] = ()
     where: Where = NOWHERE
     person: PersonLook | None = None
+    visuals: tuple[SceneVisual, ...] = ()
 
 
 ENTITY_SERVICES: Final = ("auto", "classic", "standard")

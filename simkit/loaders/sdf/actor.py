@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from simkit.loaders.resources.uris import is_small_integer
+from simkit.loaders.sdf.entity_names import named_elements, scoped
+from simkit.loaders.sdf.frames import Frame, Scope
+from simkit.loaders.sdf.link import read_visuals
+from simkit.loaders.sdf.load_context import EntitySource, NamedElement, Workspace
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.params import Params
 from simkit.pose import Pose
-from simkit.scene import Animation, PersonLook, SceneActor, Trajectory, Waypoint
+from simkit.scene import Animation, PersonLook, SceneActor, SceneVisual, Trajectory, Waypoint
 
 _LATEST: Final = 1e15  # [s]; the number of rows of later times overflows
 
 
-def read_actor(element: Params, name: str, pose_world: Pose) -> SceneActor:
+def read_actor(source: EntitySource, pose_world: Pose, scope: Scope, workspace: Workspace) -> SceneActor:
     """Return an actor; its pose in the world is already known."""
+    element, name = source.element, source.name
     element.child("pose")
     skin, script = element.block("skin"), element.block("script")
     return SceneActor(
@@ -30,7 +36,21 @@ def read_actor(element: Params, name: str, pose_world: Pose) -> SceneActor:
         plugins=read_plugins(element.all("plugin"), name),
         where=element.where,
         person=_person(element.block("person")) if element.has("person") else None,
+        visuals=() if element.has("skin") else tuple(_link_visuals(source, scope, workspace)),
     )
+
+
+def _link_visuals(source: EntitySource, scope: Scope, workspace: Workspace) -> list[SceneVisual]:
+    """Return the visuals of the links of an actor without a skin, with their poses in the actor's frame."""
+    found: list[SceneVisual] = []
+    links, owner = source.element.all("link"), f"actor {source.name!r}"
+    for name, link in named_elements(links, owner, workspace.diagnostics, source.file.version, "left out"):
+        pose, own = link.pose("pose"), scoped(source.name, name)
+        part = NamedElement(name, link, Frame(name, "link", own, scope, pose, where=link.where), scope, source.file)
+        for visual in read_visuals(part, own, workspace):
+            own_name = visual.name if len(links) == 1 else f"{name}_{visual.name}"
+            found.append(replace(visual, name=own_name, pose_link=pose @ visual.pose_link))
+    return found
 
 
 def _person(element: Params) -> PersonLook:

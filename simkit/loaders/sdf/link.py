@@ -37,7 +37,6 @@ def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspa
     read = [_collision(part, c, name, own, workspace) for name, c in part.named("collision")]
     collisions = tuple(c for c, _ in read if c is not None)
     densities = [density for c, density in read if c is not None]
-    visuals = [_visual(part, v, name, own, workspace) for name, v in part.named("visual")]
     return SceneLink(
         name=part.name,
         scoped=own,
@@ -47,7 +46,7 @@ def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspa
         kinematic=element.boolean("kinematic", False),
         self_collide=element.boolean("self_collide", False),
         collisions=collisions,
-        visuals=tuple(v for v in visuals if v is not None),
+        visuals=read_visuals(part, own, workspace),
         sensors=read_sensors(part, own, pose),
         lights=read_lights(part, own, pose),
         plugins=read_plugins(element.all("plugin"), own),
@@ -55,6 +54,12 @@ def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspa
         velocity_decay=_velocity_decay(element),
         enable_wind=element.boolean("enable_wind", windy),
     )
+
+
+def read_visuals(part: NamedElement, link: str, workspace: Workspace) -> tuple[SceneVisual, ...]:
+    """Return the visuals of a link, with the scoped name of the link in front of their names."""
+    found = (_visual(part, element, name, link, workspace) for name, element in part.named("visual"))
+    return tuple(visual for visual in found if visual is not None)
 
 
 def _velocity_decay(element: Params) -> tuple[float, float]:

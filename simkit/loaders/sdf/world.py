@@ -102,7 +102,9 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         where=element.where,
         wind=element.block("wind").vector3("linear_velocity", (0.0, 0.0, 0.0)),
         atmosphere=read_atmosphere(element),
-        actors=tuple(read_actor(s.element, s.name, _pose_of(s, "actor", content.scope)) for s in content.actors),
+        actors=tuple(
+            read_actor(s, _pose_of(s, "actor", content.scope), content.scope, workspace) for s in content.actors
+        ),
     )
 
 

@@ -56,6 +56,8 @@ def actor_model(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics
     """Return an actor's model at its start pose; the model's `moved_by` is an `AnimatedActor`."""
     if is_led_by_plugin(actor):  # as in gz, the script does not move an actor that a plugin moves
         actor = replace(actor, trajectories=())
+    if actor.visuals:
+        return _rigid(actor, Script(actor))
     skinned = skinned_actor_model(actor, find_file, diagnostics)
     return skinned if skinned is not None else _person(actor, Script(actor))
 
@@ -71,6 +73,14 @@ def _check(actor: SceneActor, diagnostics: Diagnostics) -> None:
         text = f"actor {actor.name!r} waits for its start (<auto_start> is false)"
         hint = f"call the service /{actor.name}/play (std_srvs/srv/SetBool)"
         diagnostics.note("SK-ACTOR-004", text, actor.where, hint)
+
+
+def _rigid(actor: SceneActor, script: Script) -> SceneModel:
+    """Return the model of an actor whose file gives links with visuals instead of a skin."""
+    pose, scoped = script.pose(0.0), f"{actor.name}::{ROOT_LINK}"
+    visuals = tuple(replace(visual, scoped=f"{scoped}::{visual.name}") for visual in actor.visuals)
+    link = SceneLink(ROOT_LINK, scoped, pose, visuals=visuals, where=actor.where)
+    return scripted_model(actor, pose, [link], AnimatedActor(actor.name, script, None, is_led_by_plugin(actor)))
 
 
 def _person(actor: SceneActor, script: Script) -> SceneModel:

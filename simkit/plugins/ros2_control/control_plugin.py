@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
@@ -29,7 +29,7 @@ from simkit.plugins.ros_parameter_files import ParameterFiles, read_parameter_fi
 from simkit.plugins.ros_parameter_substitution import substitute_arguments
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit.compiler import ActuatorRef, SpecBuilder
     from simkit.plugins.ros2_control.hardware_description import ComponentDescription
     from simkit.plugins.ros_parameter_files import ParameterFile
     from simkit.runtime import Model
@@ -170,13 +170,32 @@ class ControlPlugin(ModelPlugin):
         return next((bounds for get in getters if get is not None and (bounds := get(topic)) is not None), None)
 
     def _report_driven_twice(self, builder: SpecBuilder) -> None:
-        """Report joints that are also driven by another plugin."""
-        driven = {ref.joint: ref.owner for record in builder.records.values() for ref in record.actuators}
+        """Report joints that a plugin earlier in the file drives too."""
+        refs = [ref for record in builder.records.values() for ref in record.actuators]
+        self._earlier = {ref.name for ref in refs}
+        self._report_shared_joints(refs, "already")
+
+    def _report_driven_later(self) -> None:
+        """Report joints that a plugin later in the file drives too; another plugin of ros_control reports itself."""
+        structure = self.sim.engine.structure
+        others = {p.name for p in structure.all_plugins() if isinstance(p, ControlPlugin)}
+        refs = [ref for record in structure.builder.records.values() for ref in record.actuators]
+        later = [ref for ref in refs if ref.name not in self._earlier and ref.owner not in others]
+        self._report_shared_joints(later, "also")
+
+    def _report_shared_joints(self, refs: Iterable[ActuatorRef], when: str) -> None:
+        """Report the joints of the hardware that these actuators drive, in one warning for each other plugin."""
+        driven = {ref.joint: ref.owner for ref in refs}
+        shared: dict[str, list[str]] = {}
         for joint in self.hardware.joints.values():
             if joint.command_interfaces and joint.scoped in driven:
-                message = f"joint {joint.name!r} is already driven by plugin {driven[joint.scoped]!r}: both act on it"
-                hint = "remove one of the two plugins, or remove the joint from <ros2_control>"
-                self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
+                shared.setdefault(driven[joint.scoped], []).append(joint.name)
+        for owner, names in shared.items():
+            listed, many = ", ".join(map(repr, names)), len(names) > 1
+            what = f"joints {listed} are" if many else f"joint {listed} is"
+            message = f"{what} {when} driven by plugin {owner!r}: both act on {'them' if many else 'it'}"
+            hint = "remove one of the two plugins, or remove the joint from <ros2_control> or <transmission>"
+            self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
 
     def _adapted_run_files(self, run_files: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
         """Adapt the parameter files of the run to the node names that this manager expects."""
@@ -210,6 +229,7 @@ class ControlPlugin(ModelPlugin):
     # ------------------------------------------------------------------ run time
 
     def load(self, parent: Model, params: Params) -> None:
+        self._report_driven_later()
         self.hardware.load(self.sim)
         self.manager = self.manager_class(self, self.hardware, self.files, self._manager_name, params.diagnostics)
         self._choose_free_namespace(parent.scoped.partition("::")[0], params)

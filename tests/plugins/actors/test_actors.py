@@ -47,6 +47,34 @@ def test_an_actor_has_the_poses_of_its_script() -> None:
         np.testing.assert_allclose(sim.model("anna").pose.position, (-2, 0, 0), atol=1e-9)  # and anew
 
 
+MOVER = f"""<actor name="mover"><pose>0 1 0 0 0 0</pose><link name="box"><pose>0 0 1 0 0 0</pose><visual name="v">
+  <geometry><box><size>0.4 0.6 0.8</size></box></geometry></visual><collision name="c"><geometry><box>
+  <size>0.4 0.6 0.8</size></box></geometry></collision></link><link name="ball"><visual name="v">
+  <pose>0 0 0.1 0 0 0</pose><geometry><sphere><radius>0.1</radius></sphere></geometry></visual></link>{WAYS}</actor>"""
+
+
+def test_an_actor_of_links_is_drawn_as_written_and_moves_along_its_script() -> None:
+    with simkit.load(world(MOVER, lidar("lidar"))) as sim:
+        assert [d.code for d in sim.diagnostics if "mover" in d.message or d.code == "SK-SDF-012"] == ["SK-SDF-012"]
+        actor = sim.engine.structure.models["mover"]
+        visuals = {visual.name: visual for link in actor.links for visual in link.visuals}
+        assert sorted(visuals) == ["ball_v", "box_v"]
+        np.testing.assert_allclose(visuals["box_v"].pose_link.position, (0, 0, 1))
+        np.testing.assert_allclose(visuals["ball_v"].pose_link.position, (0, 0, 0.1))
+        scan = sim.subscribe("/scan")
+        sim.run(0.1)
+        assert np.isinf(scan.latest.ranges).all()  # the box is 2 m beside the beam
+        sim.run(1.9)
+        assert scan.latest.ranges[1] == pytest.approx(3 + 1 - 0.3, abs=1e-6)
+        np.testing.assert_allclose(sim.model("mover").pose.position, (0, 1, 0), atol=1e-9)
+
+
+def test_links_of_an_actor_with_a_skin_have_no_effect_and_are_reported() -> None:
+    skin = "<skin><filename>nothing.dae</filename></skin><script>"
+    with simkit.load(world(MOVER.replace("<script>", skin))) as sim:
+        assert any(d.code == "SK-SDF-011" and "<link>" in d.message for d in sim.diagnostics)
+
+
 def test_one_foot_of_a_walking_person_is_on_the_ground_and_does_not_slide() -> None:
     with simkit.load(world(ANNA)) as sim:
         scale = None

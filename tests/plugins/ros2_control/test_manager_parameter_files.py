@@ -118,7 +118,17 @@ def test_an_invalid_character_is_reported_with_its_line(tmp_path: Path, more: by
 def test_two_control_plugins_on_one_robot_are_a_warning(tmp_path: Path) -> None:
     again = '<gazebo><plugin filename="libgazebo_ros2_control.so" name="second"/></gazebo>'
     with opened(tmp_path, arm().replace("</robot>", f"{again}</robot>")) as sim:
-        assert "joint 'j1' is already driven by plugin 'control'" in reported_messages(sim, "SK-CONTROL-004")[0]
+        (message,) = reported_messages(sim, "SK-CONTROL-004")
+        assert message.startswith("joints 'j1', 'j2' are already driven by plugin 'control'")
+
+
+def test_a_drive_after_the_control_plugin_is_a_warning_too(tmp_path: Path) -> None:
+    drive = """<gazebo><plugin filename="libgazebo_ros_diff_drive.so" name="drive"><left_joint>j1</left_joint>
+      <right_joint>j2</right_joint><wheel_separation>1</wheel_separation><wheel_diameter>1</wheel_diameter></plugin>
+      </gazebo></robot>"""
+    with opened(tmp_path, arm().replace("</robot>", drive)) as sim:
+        (message,) = reported_messages(sim, "SK-CONTROL-004")
+        assert message.startswith("joints 'j1', 'j2' are also driven by plugin 'drive'")
 
 
 def test_a_manager_without_controllers_gets_no_suggestion_of_its_own_name(tmp_path: Path) -> None:
