@@ -84,6 +84,12 @@ def entries() -> Iterator[Entry]:
         yield Entry(name, f"{folders.get(first, first)}/{tail}", kind, tuple(rest[0].split()) if rest else ())
 
 
+def file_of(entry: Entry, folder: Path) -> Path:
+    """Return the file of an entry: below the folder of files, or below the repository for simkit's own robots."""
+    first, _, tail = entry.file.partition("/")
+    return ROOT / tail if first == "simkit" else (folder / entry.file).resolve()
+
+
 def unpack_packages(folder: Path) -> None:
     """Download and unpack the packages that the folder does not contain."""
     for name, version in PACKAGES.items():
@@ -365,15 +371,16 @@ def main() -> None:
     arguments = parser.parse_args()
     chosen = [e for e in entries() if not arguments.names or e.name in arguments.names]
     if arguments.one:
-        print(json.dumps(measure(chosen[0], arguments.files / chosen[0].file)))
+        print(json.dumps(measure(chosen[0], file_of(chosen[0], arguments.files))))
         return
     IMAGES.mkdir(parents=True, exist_ok=True)
     arguments.files.mkdir(parents=True, exist_ok=True)
-    unpack_packages(arguments.files)
+    if any(not entry.file.startswith("simkit/") for entry in chosen):
+        unpack_packages(arguments.files)
     store = IMAGES / "results.json"
     results = json.loads(store.read_text()) if store.is_file() else {}
     for entry in chosen:
-        file = (arguments.files / entry.file).resolve()
+        file = file_of(entry, arguments.files)
         if not file.is_file():
             print(f"{entry.name}: {file} is missing; the entry is left out")
             continue
