@@ -106,14 +106,19 @@ def copy_attributes(
 def restore_attributes(owner: object, left_out: Collection[str], state: Mapping[str, Any]) -> None:
     """Restore a state from `copy_attributes`; later attributes are deleted, except those that cannot be copied."""
     own = vars(owner)
-    if not isinstance(state, AttributeState):
-        state = AttributeState(state)
-    if not state.is_divided:
-        state.divide(owner)
-        state.kept = state.keys() | set(left_out)
-    if not own.keys() <= state.kept:
-        for key in own.keys() - state.kept - {"_uncopied", *own.get("_uncopied", ())}:
+    if isinstance(state, AttributeState):
+        if not state.is_divided:
+            state.divide(owner)
+            state.kept = state.keys() | set(left_out)
+        kept = state.kept
+    else:
+        kept = state.keys() | set(left_out)
+    if not own.keys() <= kept:
+        for key in own.keys() - kept - {"_uncopied", *own.get("_uncopied", ())}:
             delattr(owner, key)
+    if not isinstance(state, AttributeState):  # a plugin has made its own state
+        own.update(copy.deepcopy(dict(state), {id(owner): owner}))
+        return
     own.update(state)
     for key, copied in state.shallow:
         own[key] = copied()

@@ -14,6 +14,7 @@ from simkit.errors import InputError
 gymnasium = pytest.importorskip("gymnasium", reason="pip install 'simkit-robotics[experiments]'")
 
 import simkit.gym  # noqa: E402
+from simkit.experiments.environments.array_bindings import world_obstacles  # noqa: E402
 from simkit.gym import Batched, Observation  # noqa: E402
 
 TWIST = {"/cmd_vel": {"linear.x": (0.0, 0.26), "angular.z": (-1.5, 1.5)}}
@@ -223,3 +224,23 @@ def test_wrong_calls_of_a_batch_are_errors_with_codes() -> None:
         envs.reset(seed=[1, 2, 3])
     envs.close()
     envs.close()
+
+
+class Speaker(simkit.WorldPlugin):
+    only_publishes = True
+
+    def load(self, sim: simkit.Simulation, params: Any) -> None:
+        """Do nothing."""
+
+    def after_step(self) -> None:
+        """Publish."""
+
+
+class Mover(Speaker):
+    """May do more than its base class."""
+
+
+def test_a_plugin_of_the_user_can_be_part_of_a_batch_if_it_only_publishes() -> None:
+    for plugin, found in ((Speaker, []), (Mover, ["plugin Mover"])):
+        with simkit.load(CART, plugins=[plugin()]) as sim:
+            assert world_obstacles(sim) == found
