@@ -175,6 +175,8 @@ class SceneLink:
     Attributes:
         velocity_decay: fraction of the linear and of the angular velocity that is lost at every step.
         enable_wind: true if the wind of the world acts on the link.
+        fluid_added_mass: upper triangle of the added mass matrix of a fluid, row by row, in the link's frame: xx, xy,
+            …, rr [kg, kg·m, kg·m²]; empty if the file has none.
     """
 
     name: str
@@ -192,6 +194,7 @@ class SceneLink:
     where: Where = NOWHERE
     velocity_decay: tuple[float, float] = (0.0, 0.0)
     enable_wind: bool = False
+    fluid_added_mass: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 
 from simkit.diagnostics import NOWHERE
+from simkit.loaders.sdf.inertial import ADDED_MASS_NAMES
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import (
@@ -39,14 +40,18 @@ UriOf = Callable[[Path, str], str]
 """Function that returns the URI to write, given a file and its original URI."""
 
 
-def inertial(value: Inertial) -> Params | None:
-    """Return `<inertial>`; None for the format's default."""
-    if not value.given and value.mass == 1.0 and value.inertia == (1.0, 1.0, 1.0, 0.0, 0.0, 0.0):
+def inertial(value: Inertial, added_mass: Sequence[float] = ()) -> Params | None:
+    """Return `<inertial>` with its `<fluid_added_mass>`; None for the format's default."""
+    if not added_mass and not value.given and value.mass == 1.0 and value.inertia == (1.0, 1.0, 1.0, 0.0, 0.0, 0.0):
         return None
     ixx, iyy, izz, ixy, ixz, iyz = value.inertia
     moments = {"ixx": ixx, "ixy": ixy, "ixz": ixz, "iyy": iyy, "iyz": iyz, "izz": izz}
     inertia = element("inertia", [text_element(k, v) for k, v in moments.items()])
-    return element("inertial", [pose(Pose(value.com)), text_element("mass", value.mass), inertia])
+    children = [pose(Pose(value.com)), text_element("mass", value.mass), inertia]
+    if added_mass:
+        names = zip(ADDED_MASS_NAMES, added_mass, strict=True)
+        children.append(element("fluid_added_mass", [text_element(name, number) for name, number in names]))
+    return element("inertial", children)
 
 
 def geometry(shape: shapes.Geometry, uri_of: UriOf) -> Params:

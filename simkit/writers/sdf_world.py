@@ -143,7 +143,7 @@ class _Writer:
         inverse = link.pose_world.inverse()
         children = [
             pose(here.inverse() @ link.pose_world),
-            parts.inertial(self._written_inertia(link)),
+            parts.inertial(self._written_inertia(link), link.fluid_added_mass),
             *changed_elements(link, "gravity", "kinematic", "self_collide", "enable_wind"),
             decay if linear or angular else None,
             *(parts.collision(c, self.uri_of) for c in link.collisions),

@@ -19,6 +19,9 @@ Moments = tuple[float, float, float, float, float, float]
 """ixx, iyy, izz, ixy, ixz, iyz [kg·m²]."""
 
 MOMENT_NAMES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+ADDED_MASS_NAMES = tuple(f"{a}{b}" for i, a in enumerate("xyzpqr") for b in "xyzpqr"[i:])
+"""Elements of `<fluid_added_mass>`: the upper triangle of the matrix, row by row."""
+
 _WATER = 1000.0  # density [kg/m³], the default of the format
 _MAX_MOMENT = 1e15  # [kg] and [kg·m²]; products of larger numbers overflow
 
@@ -52,6 +55,14 @@ def read_inertial(
     values = [moments.number(k, float(k[1] == k[2]), minimum=-_MAX_MOMENT, maximum=_MAX_MOMENT) for k in MOMENT_NAMES]
     _check(name, mass, values, block, static)
     return Inertial(mass, vec3(pose.position), rotated_moments(values, pose), True)
+
+
+def read_fluid_added_mass(link: Params) -> tuple[float, ...]:
+    """Return the values of `<fluid_added_mass>` in the order of `ADDED_MASS_NAMES`; empty without this element."""
+    block = link.block("inertial").block("fluid_added_mass")
+    if not block.children:
+        return ()
+    return tuple(block.number(name, 0.0, minimum=-_MAX_MOMENT, maximum=_MAX_MOMENT) for name in ADDED_MASS_NAMES)
 
 
 def rotated_moments(values: Sequence[float], pose: Pose) -> Moments:

@@ -8,7 +8,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.entity_names import scoped
 from simkit.loaders.sdf.frames import world_pose
 from simkit.loaders.sdf.geometry import read_geometry
-from simkit.loaders.sdf.inertial import read_inertial
+from simkit.loaders.sdf.inertial import read_fluid_added_mass, read_inertial
 from simkit.loaders.sdf.light import read_lights
 from simkit.loaders.sdf.load_context import NamedElement, Workspace
 from simkit.loaders.sdf.material import read_material, read_transparency
@@ -53,6 +53,7 @@ def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspa
         where=element.where,
         velocity_decay=_velocity_decay(element),
         enable_wind=element.boolean("enable_wind", windy),
+        fluid_added_mass=read_fluid_added_mass(element),
     )
 
 

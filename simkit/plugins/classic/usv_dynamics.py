@@ -13,7 +13,7 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.classic.ocean_waves import waves_of
 from simkit.plugins.find_entities import find_link
-from simkit.plugins.fluids.boat_drag import BoatDragBase, DragOptions
+from simkit.plugins.fluids.boat_drag import BoatDragBase, DragOptions, report_negative
 from simkit.plugins.fluids.hull_points import hull_wrench
 from simkit.plugins.fluids.link_forces import moving_data
 from simkit.plugins.options import OptionsOf, integer, number, text
@@ -47,6 +47,7 @@ class UsvDynamicsPlugin(BoatDragBase):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         o = self.options.read_all()
+        report_negative(o)
         links = scene.all_links()
         link = find_link(scene, o.body_name, params.block("bodyName")) if o.body_name else next(iter(links), None)
         self._link = "" if link is None else link.scoped

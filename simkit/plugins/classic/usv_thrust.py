@@ -17,12 +17,13 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import find_axis_joint, find_link, read_required_name
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.fluids.tuple_vectors import to_world_axes
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.options import Options, OptionsOf, blocks, number, text
+from simkit.plugins.options import Options, OptionsOf, blocks, boolean, integer, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -51,8 +52,8 @@ class UsvThrusterOptions(Options):
     forward: float = number(250.0, "N", element="maxForceFwd", minimum=0, maximum=_MOST)
     backward: float = number(-100.0, "N", element="maxForceRev", minimum=-_MOST, maximum=_MOST)
     max_angle: float = number(math.pi / 2, "rad", element="maxAngle", minimum=0, maximum=2 * math.pi)
-    mapping: float = number(0, element="mappingType", minimum=0, maximum=1)
-    enable_angle: str = text("true", element="enableAngle")
+    mapping: int = integer(0, element="mappingType", minimum=0, maximum=1)
+    enable_angle: bool = boolean(True, element="enableAngle")
 
 
 class UsvThrustOptions(Options):
@@ -105,6 +106,10 @@ class UsvThrust(ModelPlugin):
     stop `<cmdTimeout>` after the last command. The joints of the propellers are published on `joint_states`.
     """
 
+    endpoints = (
+        listens("{cmdTopic}", _FLOAT, named_by=("thruster/cmdTopic",)),
+        listens("{angleTopic}", _FLOAT, named_by=("thruster/angleTopic",)),
+    )
     options = OptionsOf(UsvThrustOptions)
     filenames = ("libusv_gazebo_thrust_plugin.so",)
     drives = True
@@ -133,7 +138,7 @@ class UsvThrust(ModelPlugin):
         self._states = self.advertise("joint_states", JOINT_STATE)
         for index, thruster in enumerate(self._thrusters):
             self.listen(thruster.options.command_topic, _FLOAT, partial(self._on_command, index))
-            if thruster.options.enable_angle.strip().lower() not in ("false", "0"):
+            if thruster.options.enable_angle:
                 self.listen(thruster.options.angle_topic, _FLOAT, partial(self._on_angle, index))
 
     def _link_names(self) -> list[str]:

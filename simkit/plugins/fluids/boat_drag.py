@@ -43,6 +43,18 @@ class DragOptions(Options):
     quadratic_yaw: float = number(0.0, "N·m·s²", element="nRR", minimum=-MOST, maximum=MOST)
 
 
+def report_negative(options: DragOptions) -> None:
+    """Warn about negative drags, which have the sign of gz's `Hydrodynamics`."""
+    for name, field in options.fields().items():
+        if not name.startswith(("linear_", "quadratic_")) or getattr(options, name) >= 0:
+            continue
+        element = options.params.block(field.element)
+        found = f"<{element.name}>{element.value}</{element.name}> is negative"
+        effect = "the water accelerates the link along its velocity instead of braking it"
+        hint = f"write a positive number: <{element.name}>{element.value.lstrip('-')}</{element.name}>"
+        element.warning("SK-PLUGIN-118", f"{found}: {effect}", hint)
+
+
 class BoatDragBase(ModelPlugin):
     """Base class of plugins that apply added mass and drag to a link. A subclass calls `set_up_drag` in `prepare`."""
 

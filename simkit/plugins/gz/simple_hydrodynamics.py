@@ -8,7 +8,7 @@ import numpy as np
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.fluids.boat_drag import MOST, BoatDragBase, DragOptions
+from simkit.plugins.fluids.boat_drag import MOST, BoatDragBase, DragOptions, report_negative
 from simkit.plugins.options import OptionsOf, number, text
 
 if TYPE_CHECKING:
@@ -41,6 +41,7 @@ class SimpleHydrodynamics(BoatDragBase):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         o = self.options.read_all()
+        report_negative(o)
         self._link = find_named_link(scene, "link_name", params)
         self._limit = o.max_effort
         self.set_up_drag(

@@ -75,7 +75,7 @@ def test_a_rudder_turns_a_boat_at_the_rate_at_which_its_moment_balances_the_drag
         <cda>0</cda><fluid_density>1000</fluid_density></plugin></model></world></sdf>"""
     with simkit.load(text) as sim:
         sim.publish("/helm", {"data": angle})
-        for _ in range(30):
+        for _ in range(12):
             sim.run(0.1)
             hull = sim.link("boat::hull")
             heading = hull.pose.rpy[2]

@@ -68,6 +68,7 @@ def test_the_aeroplane_flies_straight_and_rolls_at_the_rate_of_its_ailerons() ->
         assert rolling == pytest.approx(steady, rel=0.25)
 
 
+@pytest.mark.slow  # slow: a controller in Python for 11 s of flight
 def test_the_wing_of_the_vtol_relieves_its_rotors_in_forward_flight() -> None:
     with simkit.load(px4_worlds.standard_vtol(20.0)) as sim:
         mass = 1.0 + 5 * 0.016

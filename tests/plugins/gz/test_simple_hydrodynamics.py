@@ -76,6 +76,13 @@ def test_the_effort_is_limited_and_acts_at_the_centre_of_mass() -> None:
         assert abs(hull.angular_velocity[2]) < 1e-9
 
 
+def test_a_negative_drag_is_reported_with_its_place() -> None:
+    with simkit.load(world("\n<xUU>-5</xUU><nR>0</nR>")) as sim:
+        (found,) = [found for found in sim.diagnostics if found.severity == "warning"]
+    assert (found.code, found.line) == ("SK-PLUGIN-118", 6)
+    assert "<xUU>5</xUU>" in found.hint
+
+
 def test_a_negative_added_mass_is_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
         simkit.load(world("<xDotU>-5</xDotU>"))

@@ -103,11 +103,11 @@ def test_it_drives_at_the_speed_of_its_drag_and_turns_by_different_thrusts() -> 
     with simkit.load(world()) as sim:
         for name in ("left", "right"):
             sim.publish(f"/model/wamv/joint/{name}_joint/cmd_thrust", {"data": 100.0})
-        sim.run(8.0)
+        sim.run(5.0)
         speed = (-51.3 + math.sqrt(51.3**2 + 4 * 72.4 * 200)) / (2 * 72.4)  # 72.4·u² + 51.3·u = 200
         assert sim.link("wamv::hull").linear_velocity[0] == pytest.approx(speed, rel=5e-3)
         sim.publish("/model/wamv/joint/left_joint/cmd_thrust", {"data": -100.0})
-        sim.run(8.0)
+        sim.run(6.0)
         assert sim.link("wamv::hull").angular_velocity[2] == pytest.approx(200 / 400, rel=5e-3)
 
 

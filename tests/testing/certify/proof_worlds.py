@@ -334,6 +334,14 @@ WORLDS: dict[str, str] = {
             "SpacecraftThrusterModel",
         )
     ),
+    "LighterThanAirDynamics": lab(
+        model=gz(
+            "lighter_than_air_dynamics",
+            tags(link_name="base", moment_inviscid_coeff=-1, moment_viscous_coeff=1, force_inviscid_coeff=-1)
+            + tags(force_viscous_coeff=1, eps_v=0.3, axial_drag_coeff=1),
+            "LighterThanAirDynamics",
+        )
+    ),
     "Surface": lab(
         model=plugin(
             "libSurface.so",
