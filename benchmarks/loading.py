@@ -2,9 +2,12 @@
 
 python benchmarks/loading.py [WORLD [RESOURCE_PATH ...]]
 python benchmarks/loading.py --table MANIFEST
+python benchmarks/loading.py --meshes
 
 With `--table`: first loads in new processes, without and with simkit's cache, of each world of a corpus and of simkit's
 own worlds. The manifest is a table whose columns `kind`, `path` and `roots` name the files and their resource folders.
+With `--meshes`: the same for worlds of large static meshes. Both tables list the CPU time of steps, relative to a world
+with one ball. In the worlds of meshes, the same ball falls far above them; other worlds also have moving robots.
 
 Without a world: a thousand boxes, a mesh of 90,000 triangles, and gz-sim's 3003 shapes where they lie beside the
 checkout. A first load of each is not counted: it imports what is needed and converts meshes, which later loads find in
@@ -22,17 +25,17 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+import large_meshes
 import measure  # noqa: F401 - finds simkit in the checkout
 import mujoco
-import numpy as np
-import trimesh
 
 import simkit
 from worlds import SHAPES, boxes
 
 ROUNDS = 5
+TABLE_ROUNDS = 3
 
 
 def timed(action: Callable[[], Any]) -> float:
@@ -63,73 +66,113 @@ def loading(source: str, paths: list[str]) -> str:
     return f"load {ours:.3f} s, compile alone {bare[0]:.3f} s, ratio {ours / bare[0]:.2f}{whole}"
 
 
-def terrain(folder: Path, cells: int = 212) -> str:
-    """Write a world with a static mesh of hills over 60 m and return its path."""
-    at = np.linspace(-30.0, 30.0, cells + 1)
-    x, y = np.meshgrid(at, at, indexing="ij")
-    vertices = np.stack([x, y, np.sin(0.3 * x) * np.cos(0.2 * y) + 0.3 * np.sin(x + 0.7 * y)], axis=-1).reshape(-1, 3)
-    i, j = (index.ravel() for index in np.meshgrid(np.arange(cells), np.arange(cells), indexing="ij"))
-    a = i * (cells + 1) + j
-    lower, upper = (a, a + cells + 1, a + cells + 2), (a, a + cells + 2, a + 1)
-    faces = np.vstack([np.column_stack(lower), np.column_stack(upper)])
-    trimesh.Trimesh(vertices, faces, process=False).export(folder / "terrain.stl")
-    shape = "<geometry><mesh><uri>terrain.stl</uri></mesh></geometry>"
-    world = folder / "terrain.sdf"
-    world.write_text(
-        '<sdf version="1.9"><world name="w"><model name="m"><static>true</static><link name="l">'
-        f'<collision name="c">{shape}</collision><visual name="v">{shape}</visual></link></model></world></sdf>'
-    )
-    return str(world)
-
-
 FIRST_LOAD = """import sys, time, simkit
 try:
-    start = time.process_time(); sim = simkit.load(sys.argv[1], resource_paths=sys.argv[2:])
-    print(time.process_time() - start, sim.mj_model.ngeom)
-except simkit.LoadError: pass"""
+    start = time.process_time(); sim = simkit.load(sys.argv[2], resource_paths=sys.argv[3:])
+    taken = time.process_time() - start
+except simkit.LoadError: sys.exit()
+empty = simkit.load(sys.argv[1])
+least = [1e9, 1e9]
+for _ in range(7):
+    for k, one in enumerate((sim, empty)):
+        start = time.process_time(); one.run(0.2); least[k] = min(least[k], time.process_time() - start)
+print(taken, sim.mj_model.ngeom, least[0] / least[1])"""
 
 
-def first_load(world: str, paths: list[str], cache: str) -> tuple[float, str] | None:
-    """CPU time [s] of a load in a new process and number of shapes; None if the world is refused."""
+class FirstLoad(NamedTuple):
+    """Result of a load in a new process.
+
+    Attributes:
+        seconds: CPU time of all threads [s].
+        shapes: number of shapes.
+        steps: CPU time of steps, relative to a world with one ball in the same process.
+    """
+
+    seconds: float
+    shapes: int
+    steps: float
+
+
+def first_load(world: str, paths: list[str], folder: Path, cache: str) -> FirstLoad | None:
+    """Load a world in a new process; None if the world is refused.
+
+    Args:
+        world: path or name of the world.
+        paths: resource folders.
+        folder: folder that keeps Python's compiled modules and the world with one ball.
+        cache: folder of simkit's cache.
+    """
+    empty = folder / "alone" / "world.sdf"
+    if not empty.is_file():
+        large_meshes.write_world(empty.parent, [])
     root = str(Path(__file__).resolve().parents[1])
-    environment = {**os.environ, "SIMKIT_CACHE_DIR": cache, "PYTHONPATH": root}
-    command = [sys.executable, "-c", FIRST_LOAD, world, *paths]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    seconds, *rest = done.stdout.split() or ("",)
-    return (float(seconds), rest[0]) if seconds else None
+    environment = {**os.environ, "SIMKIT_CACHE_DIR": cache, "PYTHONPATH": root, "PYTHONPYCACHEPREFIX": str(folder)}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    command = [sys.executable, "-c", FIRST_LOAD, str(empty), world, *paths]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    words = done.stdout.split()
+    return FirstLoad(float(words[-3]), int(words[-2]), float(words[-1])) if words else None
 
 
-def table(manifest: Path) -> None:
-    """Print the loads without and with the cache, the slowest first."""
+def table(sources: list[tuple[str, str, list[str]]]) -> None:
+    """Print the loads without and with the cache, the slowest first; each is the least of three.
+
+    Args:
+        sources: title, path and resource folders of each world.
+    """
+    found, refused = [], []
+    with tempfile.TemporaryDirectory() as kept:
+        first_load("empty", [], Path(kept), kept)  # writes the compiled modules
+        for title, world, paths in sources:
+            rounds: list[tuple[FirstLoad, FirstLoad]] = []
+            for _ in range(TABLE_ROUNDS):
+                with tempfile.TemporaryDirectory() as cache:
+                    first, later = (first_load(world, paths, Path(kept), cache) for _ in range(2))
+                if first is not None and later is not None:
+                    rounds.append((first, later))
+            if not rounds:
+                refused.append(title)
+                continue
+            cold, cached = (min(pair[k].seconds for pair in rounds) for k in (0, 1))
+            steps = min(pair[k].steps for pair in rounds for k in (0, 1))
+            found.append((cold, cached, rounds[0][1].shapes, steps, title))
+            print(f"  {title}: {cold:.2f} s, {cached:.2f} s", file=sys.stderr, flush=True)
+    print(
+        "| world | shapes | first load [s] | later load [s] | steps, relative to a ball alone |\n|---|---|---|---|---|"
+    )
+    for cold, cached, shapes, steps, title in sorted(found, reverse=True):
+        print(f"| {title} | {shapes} | {cold:.2f} | {cached:.2f} | {steps:.2f} |")
+    print(f"{len(found)} worlds; {len(refused)} refused: {' '.join(refused)}")
+
+
+def corpus(manifest: Path) -> list[tuple[str, str, list[str]]]:
+    """Return the worlds of a corpus and of simkit."""
     with manifest.open(newline="") as stream:
         listed = [row for row in csv.DictReader(stream, delimiter="\t") if row["kind"] == "sdf-world"]
     folder = manifest.parent
-    sources = [(str(folder / r["path"]), [str(folder / p) for p in r["roots"].split(":")]) for r in listed]
-    sources += [(file.stem, []) for file in sorted((Path(__file__).parents[1] / "worlds").glob("*.sdf"))]
-    found, refused = [], []
-    for world, paths in sources:
-        with tempfile.TemporaryDirectory() as cache:
-            loads = [first_load(world, paths, cache) for _ in range(2)]
-        if loads[0] is None or loads[1] is None:
-            refused.append(Path(world).name)
-        else:
-            found.append((loads[0][0], loads[1][0], loads[1][1], Path(world).name))
-    print("| world | shapes | first load [s] | later load [s] |\n|---|---|---|---|")
-    for cold, cached, shapes, name in sorted(found, reverse=True):
-        print(f"| {name} | {shapes} | {cold:.2f} | {cached:.2f} |")
-    print(f"{len(found)} worlds; {len(refused)} refused: {' '.join(refused)}")
+    sources = [
+        (Path(r["path"]).name, str(folder / r["path"]), [str(folder / p) for p in r["roots"].split(":")])
+        for r in listed
+    ]
+    own = sorted((Path(__file__).parents[1] / "worlds").glob("*.sdf"))
+    return sources + [(file.name, file.stem, []) for file in own]
 
 
 def main() -> None:
     if sys.argv[1:2] == ["--table"]:
-        table(Path(sys.argv[2]))
+        table(corpus(Path(sys.argv[2])))
+        return
+    if sys.argv[1:2] == ["--meshes"]:
+        with tempfile.TemporaryDirectory() as folder:
+            worlds = large_meshes.write_worlds(Path(folder) / "worlds")
+            table([(title, str(world), []) for title, world in worlds.items()])
         return
     if len(sys.argv) > 1:
         print(sys.argv[1], loading(sys.argv[1], sys.argv[2:]))
         return
     print("1000 boxes:", loading(boxes(1000), []), flush=True)
     with tempfile.TemporaryDirectory() as folder:
-        world = terrain(Path(folder))
+        world = str(large_meshes.write_world(Path(folder) / "terrain", [large_meshes.terrain()]))
         print(f"terrain: first load {timed(lambda: simkit.load(world)):.1f} s, later", loading(world, []), flush=True)
     if SHAPES.is_file():
         print("3003 shapes:", loading(str(SHAPES), []), "  aim <= 2")

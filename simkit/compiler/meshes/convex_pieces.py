@@ -150,11 +150,16 @@ def surface_prisms(vertices: Floats, faces: Ints) -> list[Floats]:
     return out
 
 
-def prism_count(vertices: Floats, faces: Ints) -> int:
-    """Return the number of prisms on the surface of a mesh."""
+def has_more_prisms(vertices: Floats, faces: Ints, most: int) -> bool:
+    """Check whether the surface of a mesh has more than a number of prisms."""
     import trimesh
 
-    return len(_patches(trimesh.Trimesh(vertices, faces, process=False)))
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    facets = mesh.facets
+    # without a hull: the prisms if each flat area were convex
+    if len(faces) - sum(map(len, facets)) + len(facets) > most:
+        return True
+    return len(_patches(mesh)) > most
 
 
 def layer_depths(vertices: Floats, faces: Ints, corners: Floats, up: Floats | None = None) -> tuple[Floats, Floats]:

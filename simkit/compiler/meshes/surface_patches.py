@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simkit.compiler.meshes.convex_pieces import ConvexPiece, closed_convex_parts, layer_depths, prism_count
+from simkit.compiler.meshes.convex_pieces import ConvexPiece, closed_convex_parts, has_more_prisms, layer_depths
 from simkit.compiler.meshes.curved_tiles import curved_tiles
 from simkit.compiler.meshes.flat_areas import connected_areas, dividing_line, flat_areas
 from simkit.compiler.meshes.height_tiles import HeightTile, Mask, height_tiles
@@ -72,7 +72,7 @@ def is_large(vertices: Floats, faces: Ints) -> bool:
     """Check whether a mesh is divided into patches. Coplanar triangles can share one prism and count once."""
     if len(faces) <= TRIANGLES_FROM or len(faces) > _COUNTED_MOST:
         return len(faces) > TRIANGLES_FROM
-    return prism_count(vertices, faces) > TRIANGLES_FROM
+    return has_more_prisms(vertices, faces, TRIANGLES_FROM)
 
 
 class LargeSurface(NamedTuple):
@@ -118,7 +118,7 @@ def large_surface_pieces(vertices: Floats, faces: Ints) -> LargeSurface:
     fields = curved_tiles(vertices, faces, rest[curved], depths[curved], groups[curved], limit)
     is_left = np.ones(len(rest), bool)
     is_left[curved[~fields.is_left]] = False
-    few = min(most, int(is_left.sum()) // _TRIANGLES_PER_PIECE)
+    few = min(most, max(int(is_left.sum()) // _TRIANGLES_PER_PIECE, most // 4))
     patches, error = _nearly_convex_patches(corners[is_left], depths[is_left], groups[is_left], (few, 4 * most), size)
     pieces += [ConvexPiece(points, False) for points in patches]
     return LargeSurface(pieces, [*tiles, *fields.tiles], max(error, fields.error))

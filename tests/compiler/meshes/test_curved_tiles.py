@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
+import simkit
 from simkit.compiler.meshes.box_overlaps import overlaps
 from simkit.compiler.meshes.surface_patches import large_surface_pieces
 from simkit.pose import Pose
@@ -110,6 +111,31 @@ def test_a_ball_falls_through_a_hole_in_a_curved_surface(make, compiled, tmp_pat
     c = loaded(make, compiled, tmp_path, (vertices, faces), over, beside, steps=1200)
     assert c.data.body("over::link").xpos[2] < -3.0
     assert c.data.body("beside::link").xpos[2] == pytest.approx(0.2, abs=0.006)
+
+
+def test_a_ball_rolls_down_an_irregular_channel_as_in_theory(tmp_path):
+    x, y = np.meshgrid(np.linspace(0, 12, 71), np.linspace(-3, 3, 71), indexing="ij")
+    moved = np.random.default_rng(0).uniform(-0.03, 0.03, (2, *x.shape))
+    x, y = x + moved[0], y + moved[1]
+    vertices = np.stack([x, y, 0.03 * y * y - 0.2 * x], axis=-1).reshape(-1, 3)
+    i, j = (k.ravel() for k in np.meshgrid(np.arange(70), np.arange(70), indexing="ij"))
+    a = i * 71 + j
+    faces = np.vstack([np.column_stack([a, a + 71, a + 72]), np.column_stack([a, a + 72, a + 1])]).astype(np.int32)
+    trimesh.Trimesh(vertices, faces, process=False).export(tmp_path / "channel.stl")
+    (tmp_path / "world.sdf").write_text(
+        '<sdf version="1.9"><world name="w"><model name="channel"><static>true</static><link name="l">'
+        '<collision name="c"><geometry><mesh><uri>channel.stl</uri></mesh></geometry></collision></link></model>'
+        '<model name="ball"><pose>1 0 0.004 0 0 0</pose><link name="l"><inertial auto="true"/><collision name="c">'
+        "<geometry><sphere><radius>0.2</radius></sphere></geometry></collision></link></model></world></sdf>"
+    )
+    slope = float(np.arctan(0.2))
+    with simkit.load(tmp_path / "world.sdf") as sim:
+        assert sim.mj_model.nhfield > 300
+        sim.run(2.5)
+        x, y, z = sim.model("ball").pose.position
+    travel = 0.5 * 5.0 / 7.0 * 9.8 * np.sin(slope) * np.cos(slope) * 2.5**2
+    assert x - 1.0 == pytest.approx(travel, rel=0.002)
+    assert (z + 0.2 * x - 0.03 * y * y) * np.cos(slope) == pytest.approx(0.2, abs=1e-3)
 
 
 def test_overlapping_boxes_are_those_that_a_comparison_of_all_pairs_finds():
