@@ -73,9 +73,12 @@ def start(
             ignored = shutil.ignore_patterns("__pycache__")
             shutil.copytree(source / _SOLUTION, stage, dirs_exist_ok=True, ignore=ignored)
         stage.chmod(0o755)
-        if target.exists():
-            target.rmdir()
-        stage.rename(target)
+        if target.exists():  # it may be the folder of the user's shell, so it stays
+            for item in sorted(stage.iterdir()):
+                item.rename(target / item.name)
+            stage.rmdir()
+        else:
+            stage.rename(target)
     except OSError as error:
         raise _not_writable(folder, error.strerror or str(error)) from None
     print_line(f"{folder}: {', '.join(sorted(path.name for path in target.iterdir()))}")

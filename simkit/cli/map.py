@@ -46,7 +46,7 @@ def map(
     base: options.Base = "auto",
     json_: options.Json = False,
 ) -> None:
-    """Write the true occupancy map of a world as the files of map_server."""
+    """Write the true occupancy map of a world as PGM and YAML."""
     from simkit.build import load
     from simkit.sensors.occupancy_map import parse_place
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -20,11 +21,13 @@ FREE: Final = 0
 OCCUPIED: Final = 100
 UNKNOWN: Final = -1
 _PIXELS: Final = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}  # those of map_server's `map_saver`
+_FREE_LIMIT: Final = 0.196  # grey 205 is 0.19608 occupied: unknown for map_server
 _MARGIN: Final = 0.5  # [m] around the collisions
 _MOST_CELLS: Final = 100_000_000
 _PLANE: Final = int(mujoco.mjtGeom.mjGEOM_PLANE)
 _FIELD: Final = int(mujoco.mjtGeom.mjGEOM_HFIELD)
 _OVERLAP: Final = 1e-6  # [m]; a wall that only touches the border of a cell does not occupy the cell
+_ROWS: Final = 64  # of cells that are sampled at a time
 _FINE: Final = 4  # samples along each side of a cell on height fields
 
 _CUBE: Final[Floats] = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
@@ -60,7 +63,7 @@ class OccupancyMap:
         return (
             f"image: {image}\nmode: trinary\nresolution: {self.resolution:.9g}\n"
             f"origin: [{x:.9g}, {y:.9g}, {yaw:.9g}]\n"
-            "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
+            f"negate: 0\noccupied_thresh: 0.65\nfree_thresh: {_FREE_LIMIT}\n"
         )
 
 
@@ -108,8 +111,7 @@ def make_map(
         grid.fill_where(field.outline, field.is_inside)
         grid.mark(field.surface_points())  # a thin sheet may lie between two samples
     for geom in by_kind[_PLANE]:
-        normal, point = data.geom_xmat[geom].reshape(3, 3)[:, 2], data.geom_xpos[geom]
-        grid.fill_where(grid.corners, lambda p, n=normal, o=point: (p - o) @ n < -_OVERLAP, height)
+        grid.fill_below(data.geom_xmat[geom].reshape(3, 3)[:, 2], data.geom_xpos[geom], height)
     if start is not None:
         grid.keep_reachable(start)
     return OccupancyMap(grid.cells, resolution, Pose((*grid.origin, 0.0)))
@@ -139,7 +141,6 @@ class _Grid:
         self._side = resolution
         self.origin = float(low[0]), float(low[1])
         self.cells = np.full((int(rows), int(columns)), FREE, np.int8)
-        self.corners = np.array([low, low + resolution * np.array((columns, rows))])
 
     def fill(self, polygon: Floats) -> None:
         """Mark the cells that a convex polygon overlaps: no edge of either separates the two."""
@@ -162,22 +163,29 @@ class _Grid:
         columns, rows = np.floor((points - self.origin) / self._side).astype(int).T
         self.cells[rows, columns] = OCCUPIED
 
-    def fill_where(self, outline: Floats, is_inside: Any, height: float | None = None) -> None:
-        """Mark the cells around an outline in which a sample is inside.
+    def fill_where(self, outline: Floats, is_inside: Callable[[Floats], npt.NDArray[np.bool_]]) -> None:
+        """Mark the cells around an outline [m], shape (n, 2), in which a sample is inside.
 
         Args:
-            outline: x and y [m], shape (n, 2).
-            is_inside: function of points [m], shape (m, 2), or (m, 3) with a height.
-            height: z of the points [m].
+            outline: x and y of points that contain the shape [m], shape (n, 2).
+            is_inside: function of points [m], shape (m, 2).
         """
         (top, left), samples = self._centres(outline, _FINE)
-        points = samples.reshape(-1, 2)
-        if height is not None:
-            points = np.column_stack((points, np.full(len(points), height)))
-        inside = np.asarray(is_inside(points)).reshape(samples.shape[:2])
-        rows, columns = len(inside) // _FINE, len(inside.T) // _FINE
-        is_occupied = inside.reshape(rows, _FINE, columns, _FINE).any(axis=(1, 3))
-        self.cells[top : top + rows, left : left + columns][is_occupied] = OCCUPIED
+        for begin in range(0, len(samples), _FINE * _ROWS):  # in blocks, because a map may have 10⁸ cells
+            block = samples[begin : begin + _FINE * _ROWS]
+            inside = is_inside(block.reshape(-1, 2)).reshape(block.shape[:2])
+            rows, columns = len(inside) // _FINE, len(inside.T) // _FINE
+            is_occupied = inside.reshape(rows, _FINE, columns, _FINE).any(axis=(1, 3))
+            first = top + begin // _FINE
+            self.cells[first : first + rows, left : left + columns][is_occupied] = OCCUPIED
+
+    def fill_below(self, normal: Floats, point: Floats, height: float) -> None:
+        """Mark the cells that reach below a plane, which has a point and a normal, at the height of the slice [m]."""
+        rows, columns = len(self.cells), len(self.cells.T)
+        x, y = (self.origin[axis] + self._side * (np.arange(n) + 0.5) for axis, n in ((0, columns), (1, rows)))
+        reach = np.abs(normal[:2]).sum() * self._side / 2 - _OVERLAP
+        along = (x - point[0]) * normal[0] + (height - point[2]) * normal[2]
+        self.cells[(y - point[1])[:, None] * normal[1] + along < reach] = OCCUPIED
 
     def keep_reachable(self, start: tuple[float, float]) -> None:
         """Make the free cells unknown that no way along free cells connects with a place."""
@@ -232,7 +240,7 @@ def _edges(model: mujoco.MjModel, geom: int) -> tuple[Floats, Ints]:
     kind = int(model.geom_type[geom])
     if kind == kinds.mjGEOM_BOX:
         return _CUBE * size, _CUBE_EDGES
-    if kind == kinds.mjGEOM_MESH:
+    if kind in (int(kinds.mjGEOM_MESH), int(kinds.mjGEOM_SDF)):  # an SDF is within the hull of its mesh
         return _hull_edges(model, int(model.geom_dataid[geom]))
     shapes: dict[int, Geometry] = {
         int(kinds.mjGEOM_SPHERE): Sphere(size[0]),

@@ -13,6 +13,8 @@ from typer.testing import CliRunner
 
 import simkit
 from simkit.cli import app
+from simkit.plugins.world.map_server import read_map
+from simkit.pose import Pose
 from simkit.sensors.occupancy_map import OccupancyMap, make_map
 
 BALL = (
@@ -145,3 +147,21 @@ def test_a_map_that_cannot_be_made_is_an_error_and_writes_nothing(
     assert found.exit_code == 2
     assert "SK-CLI-054" in found.stderr and problem in found.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_map_server_reads_the_cells_that_were_written(tmp_path: Path) -> None:
+    cells = np.array([[100, 0, -1], [0, -1, 100]], np.int8)
+    written = OccupancyMap(cells, 0.1, Pose((-1.0, 2.0, 0.0)))
+    (tmp_path / "m.pgm").write_bytes(written.image())
+    (tmp_path / "m.yaml").write_text(written.description("m.pgm"), "utf-8")
+    found = read_map(tmp_path / "m.yaml")
+    assert found.cells.tolist() == cells.tolist()
+    np.testing.assert_allclose(found.origin.position, [-1.0, 2.0, 0.0])
+
+
+@pytest.mark.parametrize(("tilt", "height", "expected"), [(0.0, 0.25, 0.0), (0.0, 0.15, 1.0), (0.5, 0.2, 0.5)])
+def test_cells_below_a_plane_are_occupied(tilt: float, height: float, expected: float) -> None:
+    plane = solid("<plane><normal>0 0 1</normal><size>9 9</size></plane>", f"0 0 0.2 0 {tilt} 0")
+    post = solid("<box><size>0.1 0.1 9</size></box>", "0 0 0 0 0 0").replace('"m"', '"post"')
+    found = true_map(world(plane, post), height)
+    assert (found.cells == 100).mean() == pytest.approx(expected, abs=0.07)  # the post is 1 % of the map

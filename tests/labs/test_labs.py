@@ -95,6 +95,12 @@ def test_a_folder_with_files_is_not_overwritten(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
 
+def test_a_lab_is_started_in_an_empty_folder_that_stays(tmp_path: Path) -> None:
+    before = tmp_path.stat().st_ino
+    assert lab("start", LABS[0], tmp_path).exit_code == 0
+    assert (tmp_path.stat().st_ino, (tmp_path / "README.md").is_file()) == (before, True)
+
+
 def test_an_unknown_lab_and_a_folder_without_one_are_errors(tmp_path: Path) -> None:
     found = lab("start", "01_turtelsim", tmp_path / "a")
     assert found.exit_code == 2 and "did you mean '01_turtlesim'" in found.stderr

@@ -174,6 +174,8 @@ class HilLink(AutopilotLink):
         self._is_answer_due = True
         if self._unsent:
             self._flush()
+            if not self.is_connected:
+                return
         if self._unsent:
             self._once.warn("SK-PILOT-004", "full", "PX4 does not read; states are dropped")
             return

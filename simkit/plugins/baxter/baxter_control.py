@@ -8,6 +8,7 @@ the page "Arm Control Modes" of its SDK describes them; baxter_simulator has non
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -124,7 +125,7 @@ class BaxterControl(GazeboRosControl):
 
     def describe_joints(self, scene: SceneModel, params: Params) -> list[ComponentDescription]:
         """Return the joints of the file's description, and Baxter's own joints with all interfaces."""
-        present = {joint.name for joint in scene.all_joints()}
+        present = {joint.name for joint in scene.all_joints() if joint.axes}
         self._sides = [side for side in SIDES if present.issuperset(limb_joints(side))]
         self._gripper_sides = [side for side in self._sides if finger_joint(side) in present]
         self._has_head = "head_pan" in present
@@ -314,7 +315,7 @@ class BaxterControl(GazeboRosControl):
         for name in names:
             if name not in joints:
                 near = did_you_mean(name, joints) or f"the joints are {', '.join(joints)}"
-                self._once.left_out(f"joint {name}", f"the {side} arm has no joint {name[:100]!r}: it is ignored", near)
+                self._once.left_out(f"joint {side}", f"the {side} arm has no joint {name[:100]!r}: it is ignored", near)
         self._modes[side] = mode
         self._last_commands[side] = self.sim.time_ns
         self._switch_controllers()
@@ -360,7 +361,8 @@ class BaxterControl(GazeboRosControl):
         gripper: BaxterGripperController = self.controller(f"{side}_gripper_controller")
         problem, hint = gripper.execute(message)
         if problem:
-            self._once.left_out(f"gripper {problem}", f"{problem}; the command is ignored", hint)
+            kind = re.sub("'[^']*'", "", problem)  # without the sender's texts, which may differ in each message
+            self._once.left_out(kind, f"{problem}; the command is ignored", hint)
 
 
 def _fingers(side: str) -> tuple[str, str]:

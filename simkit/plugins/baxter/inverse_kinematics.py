@@ -83,7 +83,7 @@ class ArmInverseKinematics(SharedByCopies):
         place, turn = stamped.pose.position, stamped.pose.orientation
         numbers = np.array([place.x, place.y, place.z, turn.w, turn.x, turn.y, turn.z], float)
         frame, links = str(stamped.header.frame_id).lstrip("/") or "base", self._robot.links
-        if not np.isfinite(numbers).all() or np.linalg.norm(numbers[3:]) < 1e-3:
+        if not np.isfinite(numbers).all() or not 1e-3 < np.abs(numbers[3:]).max() < 1e6:
             return None
         pose = Pose(numbers[:3], numbers[3:] / np.linalg.norm(numbers[3:]))
         if frame == "world":

@@ -215,7 +215,7 @@ class BaxterStates(SharedByCopies):
             gripping=int(is_gripping),
             missed=int(is_missed),
             position=100.0 * opening,
-            force=min(100.0, 100.0 * abs(effort) / joint.max_effort),
+            force=min(100.0, 100.0 * abs(effort) / joint.max_effort) if joint.max_effort > 0.0 else 0.0,
             command=command,
             command_sender=sender,
             command_sequence=sequence,

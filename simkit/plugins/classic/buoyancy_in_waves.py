@@ -68,7 +68,7 @@ class BuoyancyInWaves(ModelPlugin):
         links, options = self._links, self.options
         if not len(links):
             return
-        data, time, waves = moving_data(self.sim), self.sim.time, waves_of(self.sim, options.wave_model)
+        data, time, waves = moving_data(self.sim), self.sim.time, waves_of(self, options.wave_model)
         weight = -options.fluid_density * float(self.sim.mj_model.opt.gravity[2])  # of a cubic metre of water [N]
         forces, velocities = np.zeros((len(links), 3)), links.velocities(data)
         for row, (name, (x, y, z)) in enumerate(zip(links.names, data.xpos[links.bodies].tolist(), strict=True)):

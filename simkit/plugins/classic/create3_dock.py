@@ -14,7 +14,7 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.options import Options, OptionsOf, number, text
+from simkit.plugins.options import Options, OptionsOf, number, text, without_effect
 from simkit.plugins.publish_on_demand import publish_while_subscribed, watch_while_subscribed
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ Polar = tuple[float, float]
 class CreateDockOptions(Options):
     """Options of both plugins."""
 
-    robot_model_name: str = text()
+    robot_model_name: bool = without_effect()  # the robot is the model of the plugin
     receiver_link_name: str = text(None, required=True)
     dock_model_name: str = text("standard_dock")
     emitter_link_name: str = text("halo_link")

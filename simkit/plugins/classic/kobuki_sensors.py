@@ -310,4 +310,4 @@ def _first_range(sensor: Any) -> float | None:
     if scan is None or not len(scan.ranges):
         return None
     distance = float(scan.ranges[0])
-    return float(scan.range_max) if math.isnan(distance) else min(distance, float(scan.range_max))
+    return float(scan.range_max) if math.isnan(distance) else max(0.0, min(distance, float(scan.range_max)))

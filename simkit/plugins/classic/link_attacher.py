@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.endpoints import offers
+from simkit.plugins.joints.run_time_welds import close_weld, open_weld
 from simkit.plugins.world.service_entities import RequestRefused, find_entity
 
 if TYPE_CHECKING:
@@ -58,37 +59,29 @@ class GazeboLinkAttacher(WorldPlugin):
             first, second = self._link(*pair[:2]), self._link(*pair[2:])
             if first == second:
                 raise RequestRefused(f"link {first!r} cannot be attached to itself")
+            links, fixed_to = self.sim.engine.names.links, self.sim.mj_model.body_weldid
+            if not any(fixed_to[links[link].body] for link in (first, second)):
+                raise RequestRefused(f"links {first!r} and {second!r} are both static")
         except RequestRefused as error:
             self.log.warning("%s", error)
             return str(error)
         weld = f"#attached {first} {second}"
-        if not self._is_there(weld):
-            self.sim.contents.add_weld(weld, first, second)
-        self.sim.contents.set_weld(weld, True)
+        close_weld(self.sim, weld, first, second)
         self._welds = {**self._welds, pair: weld}
         return ""
 
     def _detach(self, pair: LinkPair) -> str:
         """Detach two links; return the reason if they were not attached."""
-        weld = self._welds.get(pair, "")
-        if not self._is_there(weld):
+        if not open_weld(self.sim, self._welds.get(pair, "")):
             error = f"{'::'.join(pair[:2])} and {'::'.join(pair[2:])} were not attached by these names, in this order"
             self.log.warning("%s", error)
             return error
-        self.sim.contents.set_weld(weld, False)
         return ""
 
     def _link(self, model: str, link: str) -> str:
         """Return the scoped name of a link of a model."""
         scoped = find_entity(self.sim, model, ("model",))[1]
         return find_entity(self.sim, link if link.startswith(f"{scoped}::") else f"{scoped}::{link}", ("link",))[1]
-
-    def _is_there(self, weld: str) -> bool:
-        try:
-            self.sim.engine.names.equality(weld)
-        except KeyError:  # a removed model takes its welds along
-            return False
-        return True
 
 
 class GazeboRosLinkAttacher(GazeboLinkAttacher):

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from simkit.diagnostics import did_you_mean
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import ModelPlugin, Plugin
 from simkit.plugins.fluids.wave_field import WaveField, WaveOptions
 from simkit.plugins.options import Options, OptionsOf, block, choice, number, without_effect
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model, Simulation
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -56,18 +57,22 @@ class WavefieldModelPlugin(ModelPlugin):
         """Do nothing."""
 
 
-def waves_of(sim: Simulation, model: str) -> WaveField:
-    """Return the waves that a model sets; calm water if there is no such model.
+def waves_of(plugin: Plugin, model: str) -> WaveField:
+    """Return the waves that a model sets; calm water, with a warning, if there is no such model.
 
     Args:
-        sim: Simulation.
+        plugin: Plugin that needs the waves.
         model: Name of the model; empty for the only model with waves.
     """
+    sim = plugin.sim
 
     def find() -> WaveField:
         fields = {p.scoped: p.field for p in sim.engine.structure.all_plugins() if isinstance(p, WavefieldModelPlugin)}
         if not model:
             return next(iter(fields.values()), WaveField())
+        if model not in fields:
+            message = f"there is no model {model!r} with waves, so the water is calm"
+            plugin._once.warn("SK-PLUGIN-140", "waves", message, did_you_mean(model, fields))
         return fields.get(model, WaveField())
 
     return sim.engine.names.shared(f"waves of {model}", find)

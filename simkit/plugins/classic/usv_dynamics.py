@@ -76,7 +76,7 @@ class UsvDynamicsPlugin(BoatDragBase):
             options.hull_radius,
             options.water_density * options.length / options.parts,
             options.water_level,
-            waves_of(self.sim, options.wave_model),
+            waves_of(self, options.wave_model),
             self.sim.time,
             self.sim.mj_model.opt.gravity.tolist(),
         )

@@ -183,7 +183,8 @@ class UsvThrust(ModelPlugin):
         self._links.push_some(data, wrenches)
         for axis, thruster in self._joints:
             is_turning = abs(thruster.command) > _LEAST_TURNING
-            axis.push(thruster.command * _PROPELLER_EFFORT if is_turning else 0.0)
+            effort = max(-1.0, min(1.0, thruster.command)) * _PROPELLER_EFFORT
+            axis.push(effort if is_turning else 0.0)
 
     def after_step(self) -> None:
         """Publish the states of the propellers."""

@@ -1,10 +1,11 @@
 """Wind on boats: `vrx::USVWind` of VRX, and its plugin `libusv_gazebo_wind_plugin.so` for Gazebo Classic.
 
 The speed of the wind is its mean plus a first-order process: with the gain K, the time constant τ, the step dt and a
-standard normal number N, the variable part v changes by (-v + K·√(2τ/dt)·N)·dt/τ in each step. Its standard deviation
-is K. With the velocity (u, v) of the air relative to a link, in the axes of the link, the force is
-(c_x·u·|u|, c_y·v·|v|) and the torque about z is -2·c_z·u·v (A. Sarda, H. Qu, I. Bertaska and K. von Ellenrieder,
-"Station-keeping control of an unmanned surface vehicle exposed to current and wind disturbances", 2016).
+standard normal number N, the variable part of the next step is v·exp(-dt/τ) + K·√(1 - exp(-2dt/τ))·N. Its standard
+deviation is K for every step; VRX uses an approximation that diverges for τ < dt/2. With the velocity (u, v) of the air
+relative to a link, in the axes of the link, the force is (c_x·u·|u|, c_y·v·|v|) and the torque about z is -2·c_z·u·v
+(A. Sarda, H. Qu, I. Bertaska and K. von Ellenrieder, "Station-keeping control of an unmanned surface vehicle exposed to
+current and wind disturbances", 2016).
 """
 
 from __future__ import annotations
@@ -100,10 +101,9 @@ class UsvWindBase(WorldPlugin):
         """Change the speed of the wind, and push the links for the next step."""
         options, step = self.options, self.period
         if options.gain:
-            noise = (
-                options.gain * math.sqrt(2 * options.time_constant / step) * float(self._draw.normal(self.sim.tick)[0])
-            )
-            self._gust += (noise - self._gust) * step / options.time_constant
+            ratio = step / options.time_constant
+            noise = options.gain * math.sqrt(-math.expm1(-2 * ratio)) * float(self._draw.normal(self.sim.tick)[0])
+            self._gust = math.exp(-ratio) * self._gust + noise
         if not self._links.is_current:
             self._bind()
         links = self._links

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.plugins.find_entities import find_axis_joint
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.options import Options, number
-from simkit.plugins.rmf.motion_profile import GuidedJoint, MotionLimits
+from simkit.plugins.rmf.motion_profile import GuidedJoint, read_limits
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef, SpecBuilder
@@ -31,7 +31,7 @@ class DoorOptions(Options):
     v_max_door: float = number(0.2, "m/s or rad/s", minimum=1e-6)
     a_max_door: float = number(0.2, "m/s² or rad/s²", minimum=1e-6)
     a_nom_door: float = number(0.08, "m/s² or rad/s²", minimum=1e-6)
-    dx_min_door: float = number(0.01, "m or rad", minimum=0.0)
+    dx_min_door: float = number(0.01, "m or rad", minimum=1e-4)
     f_max_door: float = number(100.0, "N or N·m", minimum=0.0)
 
 
@@ -107,7 +107,8 @@ class DoorMotion:
 
     def __init__(self, name: str, leaves: tuple[Leaf, ...], options: DoorOptions, sim: Simulation) -> None:
         self.name, self._leaves = name, leaves
-        limits = MotionLimits(options.v_max_door, options.a_nom_door, options.a_max_door)
+        accelerations = options.a_nom_door, options.a_max_door
+        limits = read_limits(options.params, options.v_max_door, *accelerations, "a_max_door")
         self._joints = [
             GuidedJoint(JointAxis(sim.joint(leaf.joint)), leaf.servo, limits, options.dx_min_door) for leaf in leaves
         ]

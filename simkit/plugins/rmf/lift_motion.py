@@ -12,7 +12,7 @@ from simkit.plugins.find_entities import find_named_joint
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.options import Options, number, text
 from simkit.plugins.rmf.door_motion import CLOSED, MOVING, OPEN, DoorMotion
-from simkit.plugins.rmf.motion_profile import GuidedJoint, MotionLimits
+from simkit.plugins.rmf.motion_profile import GuidedJoint, read_limits
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef, SpecBuilder
@@ -32,7 +32,7 @@ class LiftOptions(Options):
     v_max_cabin: float = number(0.2, "m/s", minimum=1e-6)
     a_max_cabin: float = number(0.2, "m/s²", minimum=1e-6)
     a_nom_cabin: float = number(0.08, "m/s²", minimum=1e-6)
-    dx_min_cabin: float = number(0.01, "m", minimum=0.0)
+    dx_min_cabin: float = number(0.01, "m", minimum=1e-4)
     f_max_cabin: float = number(100.0, "N", minimum=0.0)
     cabin_joint_name: str = text(required=True)
     initial_floor: str = text()
@@ -86,6 +86,14 @@ def read_lift(scene: SceneModel, params: Params, builder: SpecBuilder, owner: st
         params.child_or_self("initial_floor").error("SK-PARAM-002", message)
     if joint is None or not floors:
         return None
+    axis = joint.axes[0]
+    for floor, element in zip(floors, elements, strict=True):
+        if names.count(floor.name) > 1:
+            element.error("SK-PARAM-002", f"the floor {floor.name!r} is listed twice; expected a name for each floor")
+        if not axis.lower <= floor.elevation <= axis.upper:
+            message = f"floor {floor.name!r} is at {floor.elevation:g} m"
+            reach = f"joint {joint.name!r} reaches {axis.lower:g} to {axis.upper:g} m"
+            element.error("SK-PARAM-002", f"{message}, but {reach}")
     servo = builder.add_position_servo(joint.scoped, max_effort=options.f_max_cabin, owner=owner)
     return LiftDescription(joint.scoped, servo, tuple(floors), names.index(initial) if initial in names else 0)
 
@@ -119,7 +127,8 @@ class LiftMotion:
 
     def __init__(self, name: str, lift: LiftDescription, options: LiftOptions, sim: Simulation) -> None:
         self.name, self._lift = name, lift
-        limits = MotionLimits(options.v_max_cabin, options.a_nom_cabin, options.a_max_cabin)
+        accelerations = options.a_nom_cabin, options.a_max_cabin
+        limits = read_limits(options.params, options.v_max_cabin, *accelerations, "a_max_cabin")
         self._cabin = GuidedJoint(JointAxis(sim.joint(lift.joint)), lift.servo, limits, options.dx_min_cabin)
         self._target, self._doors_shall = lift.floors[lift.initial], CLOSED
         self._session = ""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef
+    from simkit.params import Params
     from simkit.plugins.joints.joint_axis import JointAxis
 
 _LEAD: Final = 0.05
@@ -31,6 +32,24 @@ class MotionLimits:
     speed: float
     nominal: float
     most: float
+
+
+def read_limits(params: Params, speed: float, nominal: float, most: float, element: str) -> MotionLimits:
+    """Return limits; with a warning, the largest deceleration is the nominal one if the file has a smaller one.
+
+    Args:
+        params: parameters of the plugin.
+        speed: largest speed.
+        nominal: acceleration of a normal motion.
+        most: largest deceleration.
+        element: element with the largest deceleration.
+    """
+    if most < nominal:
+        message = f"<{element}> is {most:g}, below the nominal acceleration of {nominal:g}, which is used instead"
+        params.child_or_self(element).warning(
+            "SK-PLUGIN-111", message, "without it, the motion could not brake in time"
+        )
+    return MotionLimits(speed, nominal, max(most, nominal))
 
 
 def speed_to_target(remaining: float, speed: float, limits: MotionLimits, step: float) -> float:

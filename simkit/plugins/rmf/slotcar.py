@@ -15,7 +15,7 @@ from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, text, without_effect
 from simkit.plugins.publish_on_demand import count_instants, publish_while_subscribed
 from simkit.plugins.rmf.building import RmfBuildingPlugin
-from simkit.plugins.rmf.motion_profile import MotionLimits, drive_speed
+from simkit.plugins.rmf.motion_profile import MotionLimits, drive_speed, read_limits
 from simkit.plugins.rmf.path_following import Displacement, Point, lookahead_point, turn_towards, wrap
 from simkit.plugins.rmf.slotcar_battery import BatteryModel
 from simkit.pose import Pose, quat_from_rpy
@@ -95,11 +95,15 @@ class Slotcar(KinematicPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         options = self.options.read_all()
-        self._drive = MotionLimits(
-            options.nominal_drive_speed, options.nominal_drive_acceleration, options.max_drive_acceleration
-        )
-        self._turn = MotionLimits(
-            options.nominal_turn_speed, options.nominal_turn_acceleration, options.max_turn_acceleration
+        self._drive, self._turn = (
+            read_limits(
+                params,
+                getattr(options, f"nominal_{kind}_speed"),
+                getattr(options, f"nominal_{kind}_acceleration"),
+                getattr(options, f"max_{kind}_acceleration"),
+                f"max_{kind}_acceleration",
+            )
+            for kind in ("drive", "turn")
         )
         self._is_steered = options.steering == "ackermann"
         self._is_reversible = options.reversible and not self._is_steered
@@ -198,8 +202,12 @@ class Slotcar(KinematicPlugin):
         turning = drive_speed(left.turn, self._turning, turn.speed, 0.0, turn, step)
         changes = abs(speed - self._speed) / step, abs(turning - self._turning) / step
         self._speed, self._turning = speed, turning
-        used = self._battery.discharge((abs(speed), abs(turning)), changes, step)
-        self._charge, self._charge_ns = max(0.0, self._charge - used), self.sim.time_ns + round(step * 1e9)
+        if self._is_at_charger():  # paused there, with a goal
+            self._charge = min(1.0, self._charge + self._battery.recharge(step))
+        else:
+            used = self._battery.discharge((abs(speed), abs(turning)), changes, step)
+            self._charge = max(0.0, self._charge - used)
+        self._charge_ns = self.sim.time_ns + round(step * 1e9)
         level = Pose(pose.position, quat_from_rpy(0.0, 0.0, heading))
         return [VelocityTarget(self._motion, level, (speed, 0.0, 0.0), (0.0, 0.0, turning), falls=True)]
 
@@ -258,6 +266,11 @@ class Slotcar(KinematicPlugin):
             self._way, self._path, self._begin = self._way[1:], self._path[1:], (there.x, there.y)
         else:
             self._goal, self._task = None, "" if self._goal is not None else self._task
+            self._halt = ""
+            return Displacement()
+        is_paused = self._pause[0] == _PAUSE_NOW
+        self._halt = "paused" if is_paused else "waiting" if self._must_stop(place, heading, 1.0) else ""
+        if self._halt:
             return Displacement()
         near = is_last and distance < self.options.lookahead_distance
         end = (there.x, there.y)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -17,6 +19,7 @@ from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.endpoints import offers, publishes
 from simkit.plugins.find_entities import find_plugin_file
+from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text
 from simkit.pose import Pose
 from simkit.sensors.occupancy_map import OccupancyMap, make_map
@@ -49,6 +52,13 @@ class MapFileError(Exception):
         self.result = result
 
 
+@dataclass(frozen=True, eq=False)
+class _PublishedMap(SharedByCopies):
+    """Map as a message, which never changes; snapshots share it."""
+
+    message: Any
+
+
 class MapServerOptions(Options):
     """Options of `MapServer`."""
 
@@ -77,8 +87,20 @@ class MapServer(WorldPlugin):
         offers("~/load_map", "nav2_msgs/srv/LoadMap"),
     )
 
+    @property
+    def reads_at_load(self) -> tuple[str, ...]:
+        """Values that `load` reads: the true map depends on the shapes and poses of the static collisions."""
+        return () if self.options.yaml_filename else ("geometry", "pose_link", "pose_world")
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        before = self._loads
+        super().set_state(state)
+        if self._loads != before:
+            self._publisher.publish(self._map.message)
+
     def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
-        self._file: OccupancyMap | None = None
+        self._file: OccupancyMap | None = None  # until `load`
+        self._loads = 0  # number of maps that were published
         name = self.options.yaml_filename
         if not name:
             return
@@ -94,7 +116,7 @@ class MapServer(WorldPlugin):
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._publisher = self.advertise(self.options.topic_name, "nav_msgs/msg/OccupancyGrid", latched=True)
-        self.offer("~/map", "nav_msgs/srv/GetMap", lambda _: {"map": self._message})
+        self.offer("~/map", "nav_msgs/srv/GetMap", lambda _: {"map": self._map.message})
         self.offer("~/load_map", "nav2_msgs/srv/LoadMap", self._on_load_map)
         if self.options.publish_transform:
             header = {"frame_id": self.options.frame_id}
@@ -109,6 +131,7 @@ class MapServer(WorldPlugin):
             except InputError as error:
                 params.diagnostics.error("SK-MAP-001", f"plugin {self.name!r}: {error}", self.where)
                 found = OccupancyMap(np.zeros((0, 0), np.int8), self.options.resolution, Pose())
+        self._file = None
         self._publish(found)
 
     def _publish(self, found: OccupancyMap) -> None:
@@ -120,8 +143,9 @@ class MapServer(WorldPlugin):
             "info": {**info, "origin": msgs.pose_message(found.origin)},
             "data": found.cells.reshape(-1),
         }
-        self._message = msgs.from_dict(["nav_msgs/msg/OccupancyGrid"], values)
-        self._publisher.publish(self._message)
+        self._map = _PublishedMap(msgs.from_dict(["nav_msgs/msg/OccupancyGrid"], values))
+        self._loads += 1
+        self._publisher.publish(self._map.message)
 
     def _on_load_map(self, request: Any) -> dict[str, Any]:
         """Replace the map by that of a file; the files are those that a world may use."""
@@ -134,7 +158,7 @@ class MapServer(WorldPlugin):
             self.log.error("%s", error)
             return {"result": error.result}
         self._publish(found)
-        return {"map": self._message, "result": 0}
+        return {"map": self._map.message, "result": 0}
 
 
 def read_map(path: Path) -> OccupancyMap:
@@ -169,7 +193,13 @@ def read_map(path: Path) -> OccupancyMap:
     if problems:
         raise MapFileError(f"{path}: {'; '.join(problems)}", _BAD_YAML)
     assert resolution is not None and occupied is not None and free is not None
-    image = (path.parent / str(values["image"])).resolve()
+    name = values["image"]
+    try:
+        image = (path.parent / name).resolve() if isinstance(name, str) and name else None
+    except (OSError, ValueError):  # the text cannot be a file name
+        image = None
+    if image is None:
+        raise MapFileError(f"{path}: found image: {name!r:.100}; expected the name of a file", _BAD_YAML)
     if not image.is_relative_to(path.parent.resolve()):
         raise MapFileError(f"{path}: the image {values['image']!r:.100} is outside of the map's folder", _BAD_YAML)
     shade, alpha = _read_image(image)

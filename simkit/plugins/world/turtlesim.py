@@ -56,6 +56,7 @@ class Turtle:
         is_pen_down: True if the turtle draws.
         goal: active goal of the action.
         begin: heading at the goal's begin [rad].
+        is_placed: True if its model exists, so that a removed model removes the turtle.
     """
 
     x: float
@@ -70,6 +71,7 @@ class Turtle:
     is_pen_down: bool = True
     goal: GoalHandle | None = None
     begin: float = 0.0
+    is_placed: bool = False
 
 
 @dataclass(eq=False)
@@ -98,6 +100,7 @@ class TurtleSim(WorldPlugin):
         acts("<turtle>/rotate_absolute", "turtlesim/action/RotateAbsolute"),
     )
     after_step_rate = 1.0 / _PERIOD
+    reads_at_load = ("pose_world",)
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._background = [
@@ -262,7 +265,10 @@ class TurtleSim(WorldPlugin):
     # ------------------------------------------------------------------ motion
 
     def after_step(self) -> None:
-        for name, turtle in self._turtles.items():
+        for name, turtle in list(self._turtles.items()):
+            if turtle.is_placed and name not in self.sim.models:
+                self._remove(name)
+                continue
             before = turtle.x, turtle.y
             self._update(turtle)
             self._place_model(name, turtle)
@@ -304,7 +310,7 @@ class TurtleSim(WorldPlugin):
 
     def _place_model(self, name: str, turtle: Turtle) -> None:
         """Move the model of a turtle, which is spawned first if it does not exist."""
-        pose = Pose.from_rpy(turtle.x, turtle.y, 0.0, 0.0, 0.0, turtle.theta)
+        pose, turtle.is_placed = Pose.from_rpy(turtle.x, turtle.y, 0.0, 0.0, 0.0, turtle.theta), True
         if name not in self.sim.models:
             self.sim.spawn(_MODEL, name, pose)
         else:

@@ -85,6 +85,14 @@ def test_a_wrong_name_is_refused_with_the_closest_one(names: dict[str, str], rea
         assert not answer.success and "not attached" in answer.message
 
 
+def test_two_static_links_are_refused() -> None:
+    text = crane().replace("</world>", '<model name="wall"><static>true</static><link name="l"/></model></world>')
+    with simkit.load(text) as sim:
+        answer = call(sim, "ATTACH", first="floor::slab", second="wall::l")
+        assert not answer.success and "both static" in answer.message
+        sim.step()
+
+
 def test_the_node_of_ros_1_has_other_names() -> None:
     with simkit.load(crane('<plugin name="attacher" filename="libgazebo_ros_link_attacher.so"/>')) as sim:
         names = {"model_name_1": "crane", "link_name_1": "hook", "model_name_2": "load", "link_name_2": "box"}

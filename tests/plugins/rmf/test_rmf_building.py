@@ -194,6 +194,8 @@ def test_a_reset_and_a_restored_snapshot_repeat_the_ride() -> None:
         (lift('<floor name="L1" elevation="high"/>'), "SK-PARAM-002.*elevation"),
         (lift(""), "SK-PARAM-001.*floor"),
         (lift(more="<initial_floor>L7</initial_floor>"), "SK-PARAM-002.*L7"),
+        (lift().replace("<upper>1e8", "<upper>3"), "SK-PARAM-002.*'L2' is at 5 m"),
+        (lift('<floor name="L1" elevation="0"/><floor name="L1" elevation="1"/>'), "SK-PARAM-002.*listed twice"),
         (lift().replace('name="Lift"', 'name="Lyft"'), "SK-PARAM-002.*Lyft"),
     ],
 )

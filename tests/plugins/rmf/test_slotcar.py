@@ -210,3 +210,37 @@ def test_bad_requests_are_ignored_with_a_warning() -> None:
 def test_a_charger_needs_two_numbers() -> None:
     with pytest.raises(simkit.InputError, match="SK-PARAM-002.*x and y"):
         simkit.load(world("<simkit:charger>1</simkit:charger>"))
+
+
+def test_a_robot_brakes_in_time_although_its_largest_deceleration_is_too_small() -> None:
+    slow = world().replace("<max_drive_acceleration>0.75<", "<max_drive_acceleration>0.05<")
+    with simkit.load(slow) as sim:
+        assert [d.code for d in sim.diagnostics if "max_drive_acceleration" in d.message] == ["SK-PLUGIN-111"]
+        follow(sim, (0, 0, 0), (3, 0, 0))
+        sim.run(12.0)
+        assert place(sim)[0] == pytest.approx(3.0, abs=0.05)
+
+
+def test_a_paused_robot_charges_at_its_charger() -> None:
+    small = "<nominal_capacity>0.02</nominal_capacity><nominal_power>10</nominal_power>"
+    with simkit.load(world(small + "<simkit:charger>0 0</simkit:charger>")) as sim:
+        state = sim.subscribe("/robot_state")
+        sim.step()
+        follow(sim, (0, 0, 0), (3, 0, 0))
+        pause(sim, 0)
+        sim.run(10.0)
+        assert (state.messages[-1].battery_percent, place(sim)[0]) == (100.0, pytest.approx(0.0, abs=0.01))
+
+
+def test_a_steered_robot_stops_for_a_pause() -> None:
+    with simkit.load(world("<steering>ackermann</steering><lookahead_distance>1</lookahead_distance>")) as sim:
+        follow(sim, (0, 0, 0), (5, 0, 0))
+        sim.run(3.0)
+        pause(sim, 0)
+        sim.run(2.0)
+        stopped = place(sim)[0]
+        sim.run(2.0)
+        assert place(sim)[0] == pytest.approx(stopped, abs=1e-6) and stopped < 2.5
+        pause(sim, 2)
+        sim.run(8.0)
+        assert place(sim)[0] > 3.5

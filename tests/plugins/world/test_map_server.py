@@ -87,6 +87,7 @@ def test_another_map_is_loaded_during_the_run_and_a_reset_brings_back_the_first(
         assert newest.latest.info.resolution == pytest.approx(0.2)
         sim.restore(kept)
         assert sim.call("/map_server/map").map.info.resolution == pytest.approx(0.1)
+        assert newest.latest.info.resolution == pytest.approx(0.1)
         sim.call("/map_server/load_map", {"map_url": "n.yaml"})
         sim.reset()
         assert sim.call("/map_server/map").map.info.resolution == pytest.approx(0.1)
@@ -114,6 +115,8 @@ def test_a_map_that_cannot_be_loaded_leaves_the_present_one(tmp_path: Path, url:
         (YAML.replace("0.65", "0.1"), "expected 0 <= free_thresh < occupied_thresh <= 1"),
         (YAML.replace("m.pgm", "../m.pgm"), "is outside of the map's folder"),
         (YAML.replace("m.pgm", "gone.pgm"), "cannot be read"),
+        (YAML.replace("m.pgm", '"a\\0b"'), "expected the name of a file"),
+        (YAML.replace("m.pgm", "null"), "expected the name of a file"),
         ("- 1\n", "expected the keys image, resolution and origin"),
     ],
 )

@@ -210,3 +210,12 @@ def test_a_restored_snapshot_has_its_turtles_and_their_topics_again(sim: simkit.
     assert pose(sim, "turtle2")[0] == pytest.approx(3.0, abs=0.02)
     assert set(sim.models) == {"square", "turtle1", "turtle2"}
     assert not any("/leo/" in topic for topic in sim.topics())
+
+
+def test_a_removed_model_removes_its_turtle(sim: simkit.Simulation) -> None:
+    sim.call("/spawn", {"x": 2.0, "y": 3.0})
+    sim.run(0.1)
+    sim.remove("turtle2")
+    sim.run(0.1)
+    assert set(sim.models) == {"square", "turtle1"}
+    assert not any("turtle2" in topic for topic in sim.topics())

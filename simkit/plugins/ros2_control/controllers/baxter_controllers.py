@@ -77,7 +77,8 @@ class BaxterController(Controller):
         return [f"{joint}/{POSITION}" for joint in self.joints]
 
     def _max_velocities(self) -> Vector:
-        return np.array([self.hardware.joints[joint].max_velocity for joint in self.joints])
+        # an infinite limit times a speed ratio of 0 would be NaN
+        return np.array([min(self.hardware.joints[joint].max_velocity, 1e9) for joint in self.joints])
 
 
 class BaxterLimbController(BaxterController, abc.ABC):
@@ -264,7 +265,7 @@ class BaxterGripperController(BaxterController):
     def opening(self, position: float) -> float:
         """Return the share of the finger's travel, from 0 (closed) to 1 (open)."""
         lower, upper = self._range
-        return (position - lower) / (upper - lower)
+        return (position - lower) / (upper - lower) if math.isfinite(upper - lower) else 0.0
 
     def activate(self) -> None:
         self._reference = float(self.states.values[0])

@@ -93,6 +93,10 @@ class MecanumDrive(ReferenceDrive):
             message = "the wheels need collisions that are cylinders or spheres of one radius"
             self.params.error("SK-CONTROL-040", message)
             return 1.0, 1.0
+        if not sum(arms):
+            message = "the joints of the wheels are at the origin of their parent link, so the wheelbase is unknown"
+            self.params.error("SK-CONTROL-040", message)
+            return 1.0, 1.0
         return radii[0], sum(arms) / len(arms)
 
     def _read_husarion_sizes(self, params: Params) -> None:
