@@ -113,6 +113,9 @@ WORLD = f"""<sdf version="1.6"><world name="w">{MODEL}{LIGHT}{PLUGIN}<frame name
     <waypoint><time>0</time>{POSE}</waypoint></trajectory></script>{PLUGIN}
     <simkit:person><height>1.8</height><shirt>1 0 0</shirt><trousers>0 0 1</trousers><skin>1 1 1</skin>
     <hair>0 0 0</hair></simkit:person></actor>
+  <actor name="ball"><link name="l">{POSE}<visual name="v"><geometry><sphere><radius>1</radius></sphere></geometry>
+    </visual></link><script><trajectory id="0" type="roll"><waypoint><time>0</time>{POSE}</waypoint></trajectory>
+    </script></actor>
   <state world_name="w"><sim_time>1 0</sim_time><wall_time>1 0</wall_time><real_time>1 0</real_time>
     <iterations>1</iterations><insertions><model name="new"><link name="l"/></model>
     <light name="late" type="point"/><include><uri>model://box</uri><name>late_box</name></include></insertions>
