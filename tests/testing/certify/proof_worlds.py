@@ -288,6 +288,8 @@ WORLDS: dict[str, str] = {
     "RmfDoor": lab(model=plugin("libdoor.so", '<door left_joint_name="door" right_joint_name="door_0"/>')),
     "RmfLift": lab(model=plugin("liblift.so", RMF_LIFT)),
     "RmfComponents": lab(model=plugin("libregister_component.so", f'<component name="Lift">{RMF_LIFT}</component>')),
+    "GazeboLinkAttacher": lab(world=BALL + plugin("libgazebo_link_attacher.so")),
+    "GazeboRosLinkAttacher": lab(world=BALL + plugin("libgazebo_ros_link_attacher.so")),
     "MimicJoint": lab(model=plugin("libroboticsgroup_gazebo_mimic_joint_plugin.so", MIMIC)),
     "GraspFix": lab(
         world=BALL,
@@ -585,6 +587,9 @@ IDLE: dict[str, Idle] = {
     "WavefieldModelPlugin": Idle("sets the waves for the plugins of boats, when the world is loaded"),
     "CreateWheelDrop": Idle("sees no wheel that has dropped here; its test moves a wheel"),
     "MimicJoint": Idle("couples joints, when the world is loaded"),
+    "GazeboLinkAttacher": Idle("attaches nothing here; its test calls its services"),
+    "GazeboRosLinkAttacher": Idle("attaches nothing here; its test calls its services"),
+    "MapServer": Idle("publishes its map when the world is loaded; its test loads others"),
     "GraspFix": Idle("attaches nothing here; its test lifts a cube"),
     "ArduPilotPlugin": Idle("waits for an autopilot here; its test plays one"),
     "GazeboMavlinkInterface": Idle("waits for an autopilot here; its test plays one"),
