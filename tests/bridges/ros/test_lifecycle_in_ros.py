@@ -44,6 +44,10 @@ def test_a_node_of_ros_manages_a_plugin(
                 request = ChangeState.Request(transition=Transition(id=number))
                 return client.call(ChangeState, "/beacon/change_state", request).success
 
+            def is_heard():  # events before the two endpoints have found each other are lost
+                return events or not (change(Transition.TRANSITION_CONFIGURE) and change(Transition.TRANSITION_CLEANUP))
+
+            client.until(is_heard)
             changed = [change(Transition.TRANSITION_CONFIGURE), change(Transition.TRANSITION_ACTIVATE)]
             state = client.call(GetState, "/beacon/get_state").current_state
             found = client.call(GetAvailableTransitions, "/beacon/get_available_transitions").available_transitions
