@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,12 +18,14 @@ from simkit.cli.terminal.output import (
     print_note,
     report_errors_quietly,
 )
-from simkit.errors import InputError
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.sensors.occupancy_map import OccupancyMap
+
+Place = tuple[float, float]
+"""x and y in the world [m]."""
 
 _SUFFIXES = (".pgm", ".yaml")
 
@@ -48,11 +51,11 @@ def map(
 ) -> None:
     """Write the true occupancy map of a world as PGM and YAML."""
     from simkit.build import load
-    from simkit.sensors.occupancy_map import parse_place
+    from simkit.sensors.occupancy_map import map_error
 
-    place = None if start is None else parse_place(start)
+    place = None if start is None else _parse_place(start)
     if place is not None and everywhere:
-        raise InputError("SK-CLI-054 --start and --everywhere exclude each other", "SK-CLI-054")
+        raise map_error("--start and --everywhere exclude each other", "leave one of them out")
     stem = output.with_suffix("") if output.suffix.lower() in _SUFFIXES else output
     image, description = (stem.with_name(stem.name + suffix) for suffix in _SUFFIXES)
     for path in (image, description):
@@ -74,21 +77,36 @@ def map(
         print_line(f"{image}, {description}: {columns} × {rows} cells of {resolution:g} m at z = {height:g} m; {cells}")
 
 
-def _make(
-    sim: Simulation, height: float, resolution: float, start: tuple[float, float] | None, *, everywhere: bool
-) -> OccupancyMap:
+def _make(sim: Simulation, height: float, resolution: float, start: Place | None, *, everywhere: bool) -> OccupancyMap:
     """Return the map; without a start, it begins at the first model that can move and has joints, if that is free."""
-    from simkit.sensors.occupancy_map import make_map
+    from simkit.sensors.occupancy_map import make_map, map_error
 
-    data = sim.engine.physics.fresh()
-    if start is None and not everywhere:
-        robot = next((model for model in sim.models.values() if not model.static and model.joints), None)
-        if robot is not None:
-            x, y, _ = robot.pose.position.tolist()
-            try:
-                return make_map(sim.mj_model, data, height, resolution, (x, y))
-            except InputError as error:
-                if "the start" not in str(error):
-                    raise
-                print_note(f"note: {robot.name} is not in a free cell, so every cell is free that is not occupied")
-    return make_map(sim.mj_model, data, height, resolution, start)
+    robot = next((model for model in sim.models.values() if not model.static and model.joints), None)
+    is_given, begin = start is not None, start
+    if begin is None and robot is not None and not everywhere:
+        x, y, _ = robot.pose.position.tolist()
+        begin = x, y
+    contained = [begin] if begin is not None and not is_given else []
+    whole = make_map(sim.mj_model, sim.engine.physics.fresh(), height, resolution, contained)
+    if begin is None:
+        return whole
+    found = whole.reachable_from(begin)
+    if found is None and is_given:
+        message = f"the start ({begin[0]:g}, {begin[1]:g}) is occupied or outside of the map"
+        raise map_error(message, "--start X,Y chooses a free place")
+    if found is None and robot is not None:
+        print_note(f"note: {robot.name} is not in a free cell, so every cell is free that is not occupied")
+    return found or whole
+
+
+def _parse_place(text: str) -> Place:
+    """Return x and y [m] of a text `X,Y`."""
+    from simkit.sensors.occupancy_map import map_error
+
+    try:
+        x, y = (float(part) for part in text.split(","))
+    except ValueError:
+        x = y = math.nan
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise map_error(f"--start {text!r}: expected two numbers, X,Y [m]", "write for example --start 0,1.5")
+    return x, y

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import mujoco
@@ -48,6 +48,26 @@ class OccupancyMap:
     resolution: float
     origin: Pose
 
+    def reachable_from(self, place: tuple[float, float]) -> OccupancyMap | None:
+        """Return the map in which free cells are unknown that no way along free cells connects with a place.
+
+        Args:
+            place: x and y in the world [m].
+
+        Returns:
+            The map; None if the place is not in a free cell.
+        """
+        from scipy.ndimage import label
+
+        x, y, _ = self.origin.inverse().transform((*place, 0.0))
+        row, column = math.floor(y / self.resolution), math.floor(x / self.resolution)
+        rows, columns = len(self.cells), len(self.cells.T)
+        areas, _ = label(self.cells == FREE)
+        if not (0 <= row < rows and 0 <= column < columns and areas[row, column]):
+            return None
+        is_cut_off = (self.cells == FREE) & (areas != areas[row, column])
+        return replace(self, cells=np.where(is_cut_off, np.int8(UNKNOWN), self.cells))
+
     def image(self) -> bytes:
         """Return the map as a PGM image: occupied black, free white, unknown grey; the highest y is at the top."""
         pixels = np.full(self.cells.shape, _PIXELS[UNKNOWN], np.uint8)
@@ -72,7 +92,7 @@ def make_map(
     data: mujoco.MjData,
     height: float,
     resolution: float,
-    start: tuple[float, float] | None = None,
+    contained: Sequence[tuple[float, float]] = (),
 ) -> OccupancyMap:
     """Return the map of the static collisions at a height.
 
@@ -83,14 +103,13 @@ def make_map(
         data: state with the poses of the geoms.
         height: z of the slice in the world [m].
         resolution: side of a cell [m].
-        start: x and y [m] of a free place; free cells that cannot be reached from there are unknown. None makes every
-            cell free that is not occupied.
+        contained: x and y of places that the map contains, too [m].
 
     Raises:
-        InputError: no collision crosses the height, the map has too many cells, or the start is not free.
+        InputError: no collision crosses the height, or the map has too many cells.
     """
     if not math.isfinite(height):
-        raise _error(f"--height {height}: expected a finite number [m]")
+        raise map_error(f"--height {height}: expected a finite number [m]")
     static = model.body_weldid[model.geom_bodyid] == 0
     geoms = np.flatnonzero(static & ((model.geom_contype | model.geom_conaffinity) != 0)).tolist()
     by_kind: dict[int, list[int]] = {_PLANE: [], _FIELD: []}
@@ -103,8 +122,8 @@ def make_map(
     polygons = [polygon for polygon in slices if polygon is not None]
     outlines = polygons + [field.outline for field in fields]
     if not outlines:
-        raise _error(f"no collision of a static link crosses the height {height:g} m")
-    grid = _Grid(np.concatenate(outlines), resolution)
+        raise map_error(f"no collision of a static link crosses the height {height:g} m")
+    grid = _Grid(np.concatenate([*outlines, np.reshape(contained, (-1, 2))]), resolution)
     for polygon in polygons:
         grid.fill(polygon)
     for field in fields:
@@ -112,12 +131,11 @@ def make_map(
         grid.mark(field.surface_points())  # a thin sheet may lie between two samples
     for geom in by_kind[_PLANE]:
         grid.fill_below(data.geom_xmat[geom].reshape(3, 3)[:, 2], data.geom_xpos[geom], height)
-    if start is not None:
-        grid.keep_reachable(start)
     return OccupancyMap(grid.cells, resolution, Pose((*grid.origin, 0.0)))
 
 
-def _error(message: str, help: str = "simkit map WORLD --height Z chooses another height") -> InputError:
+def map_error(message: str, help: str = "simkit map WORLD --height Z chooses another height") -> InputError:
+    """Return the error of a map that cannot be made."""
     return InputError(f"SK-CLI-054 {message}\n    help: {help}", "SK-CLI-054")
 
 
@@ -134,7 +152,7 @@ class _Grid:
         columns, rows = np.ceil((points.max(axis=0) + _MARGIN - low) / resolution).tolist()
         if not rows * columns <= _MOST_CELLS:
             size = f"{columns * resolution:.5g} × {rows * resolution:.5g} m"
-            raise _error(
+            raise map_error(
                 f"the map of {size} has {rows * columns:.3g} cells; at most {_MOST_CELLS:.0e} are possible",
                 "simkit map WORLD --resolution R makes larger cells",
             )
@@ -186,18 +204,6 @@ class _Grid:
         reach = np.abs(normal[:2]).sum() * self._side / 2 - _OVERLAP
         along = (x - point[0]) * normal[0] + (height - point[2]) * normal[2]
         self.cells[(y - point[1])[:, None] * normal[1] + along < reach] = OCCUPIED
-
-    def keep_reachable(self, start: tuple[float, float]) -> None:
-        """Make the free cells unknown that no way along free cells connects with a place."""
-        from scipy.ndimage import label
-
-        column, row = (int((s - o) // self._side) for s, o in zip(start, self.origin, strict=True))
-        is_on_map = 0 <= row < self.cells.shape[0] and 0 <= column < self.cells.shape[1]
-        areas, _ = label(self.cells == FREE)
-        if not is_on_map or areas[row, column] == 0:
-            where = "occupied" if is_on_map else "outside of the map"
-            raise _error(f"the start ({start[0]:g}, {start[1]:g}) is {where}", "--start X,Y chooses a free place")
-        self.cells[(self.cells == FREE) & (areas != areas[row, column])] = UNKNOWN
 
     def _centres(self, outline: Floats, fine: int) -> tuple[tuple[int, int], Floats]:
         """Return the first row and column around an outline, and the centres of the parts of the cells from there."""
@@ -323,18 +329,3 @@ class _HeightField:
         surface = near + larger * (across - near) + smaller * (far - across)
         found: npt.NDArray[np.bool_] = inside & (z <= surface)
         return found
-
-
-def parse_place(text: str) -> tuple[float, float]:
-    """Return x and y [m] of a text `X,Y`.
-
-    Raises:
-        InputError: the text is not two finite numbers.
-    """
-    try:
-        x, y = map(float, text.split(","))
-    except ValueError:
-        x = y = math.nan
-    if not (math.isfinite(x) and math.isfinite(y)):
-        raise _error(f"--start {text!r}: expected two numbers, X,Y [m]", "write for example --start 0,1.5")
-    return x, y

@@ -134,8 +134,8 @@ def test_free_cells_behind_walls_are_unknown_unless_everywhere_is_asked(tmp_path
         (["--resolution", "0.0001"], "at most 1e+08 are possible"),
         (["--start", "0.5,0.5,1"], "expected two numbers"),
         (["--start", "nan,1"], "expected two numbers"),
-        (["--start", "1.1,0"], "the start (1.1, 0) is occupied"),
-        (["--start", "100,0"], "the start (100, 0) is outside of the map"),
+        (["--start", "1.1,0"], "the start (1.1, 0) is occupied or outside"),
+        (["--start", "100,0"], "the start (100, 0) is occupied or outside"),
         (["--start", "0,0.5", "--everywhere"], "exclude each other"),
         (["--height", "nan"], "expected a finite number"),
     ],
@@ -165,3 +165,11 @@ def test_cells_below_a_plane_are_occupied(tilt: float, height: float, expected: 
     post = solid("<box><size>0.1 0.1 9</size></box>", "0 0 0 0 0 0").replace('"m"', '"post"')
     found = true_map(world(plane, post), height)
     assert (found.cells == 100).mean() == pytest.approx(expected, abs=0.07)  # the post is 1 % of the map
+
+
+def test_the_map_contains_the_robot_although_it_stands_far_from_the_collisions(tmp_path: Path) -> None:
+    found = CliRunner().invoke(app, ["map", "turtlebot2_ball", "-o", str(tmp_path / "m"), "--json"])
+    assert found.exit_code == 0, found.output
+    assert "note: turtlebot2" not in found.stderr
+    about = yaml.safe_load((tmp_path / "m.yaml").read_text("utf-8"))
+    assert about["origin"][0] <= -0.4 and json.loads(found.stdout)["free"] > 0

@@ -18,12 +18,18 @@ from simkit.cli import app
 HERE = Path(__file__).parent
 LABS = sorted(path.parent.name for path in (HERE.parents[1] / "labs").glob("*/exercise.yaml"))
 
-HINTS = {
-    "01_turtlesim/by_time.py": {"closes the square to 1 cm"},
-    "01_turtlesim/drives_while_turning.py": {"takes no detours"},
-    "01_turtlesim/stops_publishing.py": {"has stopped"},
+MISTAKES = {
+    ("01_turtlesim", "drives by time"): ("closes the square to 1 cm", HERE / "turtle_by_time.py"),
+    ("01_turtlesim", "drives while it turns"): (
+        "takes no detours",
+        ("min(SPEED_GAIN * distance, 1.0) if abs(error) < 0.02 else 0.0", "min(SPEED_GAIN * distance, 2.0)"),
+    ),
+    ("01_turtlesim", "publishes nothing at the end"): (
+        "has stopped",
+        ("        self.command.publish", "        self.next < len(CORNERS) and self.command.publish"),
+    ),
 }
-"""Checks that each mistake fails at least."""
+"""Lab and mistake -> the check that fails, and the file, or a text of the solution and what stands there instead."""
 
 
 def lab(*arguments: object) -> Any:
@@ -60,15 +66,20 @@ def test_a_solution_gets_full_points_and_the_stub_does_not(name: str, tmp_path: 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("mistake", HINTS)
-def test_a_typical_mistake_fails_the_check_that_names_it(mistake: str, tmp_path: Path) -> None:
-    name = mistake.split("/")[0]
-    assert lab("start", name, tmp_path / "lab").exit_code == 0
+@pytest.mark.parametrize("mistake", MISTAKES, ids=" ".join)
+def test_a_typical_mistake_fails_the_check_that_names_it(mistake: tuple[str, str], tmp_path: Path) -> None:
+    check, change = MISTAKES[mistake]
+    assert lab("start", mistake[0], tmp_path / "lab", "--solution").exit_code == 0
     hand_in = next((tmp_path / "lab").glob("*.py"))
-    hand_in.write_bytes((HERE / mistake).read_bytes())
+    solution = hand_in.read_text("utf-8")
+    if isinstance(change, Path):
+        hand_in.write_bytes(change.read_bytes())
+    else:
+        assert solution.count(change[0]) == 1
+        hand_in.write_text(solution.replace(*change), "utf-8")
     found = lab("grade", tmp_path / "lab", "--json")
     assert found.exit_code == 5
-    assert HINTS[mistake] <= failed_checks(found.stdout)
+    assert check in failed_checks(found.stdout)
 
 
 def test_the_picture_of_the_turtle_is_that_of_the_solution(tmp_path: Path) -> None:
@@ -85,7 +96,7 @@ def test_the_picture_of_the_turtle_is_that_of_the_solution(tmp_path: Path) -> No
 
 
 def test_each_lab_has_three_mistakes() -> None:
-    assert {name: sum(key.startswith(f"{name}/") for key in HINTS) for name in LABS} == dict.fromkeys(LABS, 3)
+    assert {name: sum(key[0] == name for key in MISTAKES) for name in LABS} == dict.fromkeys(LABS, 3)
 
 
 def test_a_folder_with_files_is_not_overwritten(tmp_path: Path) -> None:
