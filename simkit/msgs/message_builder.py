@@ -13,6 +13,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs.definition_parser import ARRAY, BASE, INTEGER_RANGES, NAME, SEQUENCE, TEXTS, FieldNode
 from simkit.msgs.message_types import FieldValue, Message, definition_of, full_name, type_store
+from simkit.msgs.shipped_interfaces import NO_FIELD
 
 _DTYPES = {"byte": "uint8", "char": "uint8", "bool": "bool"}
 
@@ -71,9 +72,9 @@ class MessageBuilder:
             else:
                 values.append(default())
         if found != len(fields):
-            known = [name for name, _, _ in self.fields]
+            known = [name for name, _, _ in self.fields if name != NO_FIELD]
             unknown = next(name for name in fields if name not in known)
-            hint = did_you_mean(str(unknown), known) or f"its fields: {', '.join(known)}"
+            hint = did_you_mean(str(unknown), known) or f"its fields: {', '.join(known) or 'none'}"
             raise MessageError(f"{self.name} has no field {unknown!r}; {hint}")
         return self.cls(*values)
 

@@ -2489,6 +2489,477 @@ class SetMapProjections_Response:
     projected_maps_info: list[ProjectedMapInfo]
     __msgtype__: ClassVar[str]
 
+# moveit_msgs
+
+@dataclass
+class ExecuteTrajectory_Feedback:
+    """`moveit_msgs/action/ExecuteTrajectory_Feedback`"""
+    state: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ExecuteTrajectory_Goal:
+    """`moveit_msgs/action/ExecuteTrajectory_Goal`"""
+    trajectory: RobotTrajectory
+    controller_names: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ExecuteTrajectory_Result:
+    """`moveit_msgs/action/ExecuteTrajectory_Result`"""
+    error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MoveGroup_Feedback:
+    """`moveit_msgs/action/MoveGroup_Feedback`"""
+    state: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MoveGroup_Goal:
+    """`moveit_msgs/action/MoveGroup_Goal`"""
+    request: MotionPlanRequest
+    planning_options: PlanningOptions
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MoveGroup_Result:
+    """`moveit_msgs/action/MoveGroup_Result`"""
+    error_code: MoveItErrorCodes
+    trajectory_start: moveit_msgs__msg__RobotState
+    planned_trajectory: RobotTrajectory
+    executed_trajectory: RobotTrajectory
+    planning_time: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AllowedCollisionEntry:
+    """`moveit_msgs/msg/AllowedCollisionEntry`"""
+    enabled: NDArray[np.bool_]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AllowedCollisionMatrix:
+    """`moveit_msgs/msg/AllowedCollisionMatrix`"""
+    entry_names: list[str]
+    entry_values: list[AllowedCollisionEntry]
+    default_entry_names: list[str]
+    default_entry_values: NDArray[np.bool_]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AttachedCollisionObject:
+    """`moveit_msgs/msg/AttachedCollisionObject`"""
+    link_name: str
+    object: CollisionObject
+    touch_links: list[str]
+    detach_posture: JointTrajectory
+    weight: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BoundingVolume:
+    """`moveit_msgs/msg/BoundingVolume`"""
+    primitives: list[SolidPrimitive]
+    primitive_poses: list[Pose]
+    meshes: list[Mesh]
+    mesh_poses: list[Pose]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CartesianPoint:
+    """`moveit_msgs/msg/CartesianPoint`"""
+    pose: Pose
+    velocity: Twist
+    acceleration: Accel
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CartesianTrajectory:
+    """`moveit_msgs/msg/CartesianTrajectory`"""
+    header: Header
+    tracked_frame: str
+    points: list[CartesianTrajectoryPoint]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CartesianTrajectoryPoint:
+    """`moveit_msgs/msg/CartesianTrajectoryPoint`"""
+    point: CartesianPoint
+    time_from_start: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CollisionObject:
+    """`moveit_msgs/msg/CollisionObject`"""
+    header: Header
+    pose: Pose
+    id: str
+    type: ObjectType
+    primitives: list[SolidPrimitive]
+    primitive_poses: list[Pose]
+    meshes: list[Mesh]
+    mesh_poses: list[Pose]
+    planes: list[Plane]
+    plane_poses: list[Pose]
+    subframe_names: list[str]
+    subframe_poses: list[Pose]
+    operation: int
+    ADD: ClassVar[int] = 0
+    REMOVE: ClassVar[int] = 1
+    APPEND: ClassVar[int] = 2
+    MOVE: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Constraints:
+    """`moveit_msgs/msg/Constraints`"""
+    name: str
+    joint_constraints: list[JointConstraint]
+    position_constraints: list[PositionConstraint]
+    orientation_constraints: list[OrientationConstraint]
+    visibility_constraints: list[VisibilityConstraint]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GenericTrajectory:
+    """`moveit_msgs/msg/GenericTrajectory`"""
+    header: Header
+    joint_trajectory: list[JointTrajectory]
+    cartesian_trajectory: list[CartesianTrajectory]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointConstraint:
+    """`moveit_msgs/msg/JointConstraint`"""
+    joint_name: str
+    position: float
+    tolerance_above: float
+    tolerance_below: float
+    weight: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LinkPadding:
+    """`moveit_msgs/msg/LinkPadding`"""
+    link_name: str
+    padding: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LinkScale:
+    """`moveit_msgs/msg/LinkScale`"""
+    link_name: str
+    scale: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MotionPlanRequest:
+    """`moveit_msgs/msg/MotionPlanRequest`"""
+    workspace_parameters: WorkspaceParameters
+    start_state: moveit_msgs__msg__RobotState
+    goal_constraints: list[Constraints]
+    path_constraints: Constraints
+    trajectory_constraints: TrajectoryConstraints
+    reference_trajectories: list[GenericTrajectory]
+    pipeline_id: str
+    planner_id: str
+    group_name: str
+    num_planning_attempts: int
+    allowed_planning_time: float
+    max_velocity_scaling_factor: float
+    max_acceleration_scaling_factor: float
+    cartesian_speed_limited_link: str
+    max_cartesian_speed: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MotionPlanResponse:
+    """`moveit_msgs/msg/MotionPlanResponse`"""
+    trajectory_start: moveit_msgs__msg__RobotState
+    group_name: str
+    trajectory: RobotTrajectory
+    planning_time: float
+    error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MoveItErrorCodes:
+    """`moveit_msgs/msg/MoveItErrorCodes`"""
+    val: int
+    message: str
+    source: str
+    UNDEFINED: ClassVar[int] = 0
+    SUCCESS: ClassVar[int] = 1
+    FAILURE: ClassVar[int] = 99999
+    PLANNING_FAILED: ClassVar[int] = -1
+    INVALID_MOTION_PLAN: ClassVar[int] = -2
+    MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE: ClassVar[int] = -3
+    CONTROL_FAILED: ClassVar[int] = -4
+    UNABLE_TO_AQUIRE_SENSOR_DATA: ClassVar[int] = -5
+    TIMED_OUT: ClassVar[int] = -6
+    PREEMPTED: ClassVar[int] = -7
+    START_STATE_IN_COLLISION: ClassVar[int] = -10
+    START_STATE_VIOLATES_PATH_CONSTRAINTS: ClassVar[int] = -11
+    GOAL_IN_COLLISION: ClassVar[int] = -12
+    GOAL_VIOLATES_PATH_CONSTRAINTS: ClassVar[int] = -13
+    GOAL_CONSTRAINTS_VIOLATED: ClassVar[int] = -14
+    INVALID_GROUP_NAME: ClassVar[int] = -15
+    INVALID_GOAL_CONSTRAINTS: ClassVar[int] = -16
+    INVALID_ROBOT_STATE: ClassVar[int] = -17
+    INVALID_LINK_NAME: ClassVar[int] = -18
+    INVALID_OBJECT_NAME: ClassVar[int] = -19
+    FRAME_TRANSFORM_FAILURE: ClassVar[int] = -21
+    COLLISION_CHECKING_UNAVAILABLE: ClassVar[int] = -22
+    ROBOT_STATE_STALE: ClassVar[int] = -23
+    SENSOR_INFO_STALE: ClassVar[int] = -24
+    COMMUNICATION_FAILURE: ClassVar[int] = -25
+    START_STATE_INVALID: ClassVar[int] = -26
+    GOAL_STATE_INVALID: ClassVar[int] = -27
+    UNRECOGNIZED_GOAL_TYPE: ClassVar[int] = -28
+    CRASH: ClassVar[int] = -29
+    ABORT: ClassVar[int] = -30
+    NO_IK_SOLUTION: ClassVar[int] = -31
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ObjectColor:
+    """`moveit_msgs/msg/ObjectColor`"""
+    id: str
+    color: ColorRGBA
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class OrientationConstraint:
+    """`moveit_msgs/msg/OrientationConstraint`"""
+    header: Header
+    orientation: Quaternion
+    link_name: str
+    absolute_x_axis_tolerance: float
+    absolute_y_axis_tolerance: float
+    absolute_z_axis_tolerance: float
+    parameterization: int
+    weight: float
+    XYZ_EULER_ANGLES: ClassVar[int] = 0
+    ROTATION_VECTOR: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlanningOptions:
+    """`moveit_msgs/msg/PlanningOptions`"""
+    planning_scene_diff: PlanningScene
+    plan_only: bool
+    look_around: bool
+    look_around_attempts: int
+    max_safe_execution_cost: float
+    replan: bool
+    replan_attempts: int
+    replan_delay: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlanningScene:
+    """`moveit_msgs/msg/PlanningScene`"""
+    name: str
+    robot_state: moveit_msgs__msg__RobotState
+    robot_model_name: str
+    fixed_frame_transforms: list[TransformStamped]
+    allowed_collision_matrix: AllowedCollisionMatrix
+    link_padding: list[LinkPadding]
+    link_scale: list[LinkScale]
+    object_colors: list[ObjectColor]
+    world: PlanningSceneWorld
+    is_diff: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlanningSceneComponents:
+    """`moveit_msgs/msg/PlanningSceneComponents`"""
+    components: int
+    SCENE_SETTINGS: ClassVar[int] = 1
+    ROBOT_STATE: ClassVar[int] = 2
+    ROBOT_STATE_ATTACHED_OBJECTS: ClassVar[int] = 4
+    WORLD_OBJECT_NAMES: ClassVar[int] = 8
+    WORLD_OBJECT_GEOMETRY: ClassVar[int] = 16
+    OCTOMAP: ClassVar[int] = 32
+    TRANSFORMS: ClassVar[int] = 64
+    ALLOWED_COLLISION_MATRIX: ClassVar[int] = 128
+    LINK_PADDING_AND_SCALING: ClassVar[int] = 256
+    OBJECT_COLORS: ClassVar[int] = 512
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlanningSceneWorld:
+    """`moveit_msgs/msg/PlanningSceneWorld`"""
+    collision_objects: list[CollisionObject]
+    octomap: OctomapWithPose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PositionConstraint:
+    """`moveit_msgs/msg/PositionConstraint`"""
+    header: Header
+    link_name: str
+    target_point_offset: Vector3
+    constraint_region: BoundingVolume
+    weight: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PositionIKRequest:
+    """`moveit_msgs/msg/PositionIKRequest`"""
+    group_name: str
+    robot_state: moveit_msgs__msg__RobotState
+    constraints: Constraints
+    avoid_collisions: bool
+    ik_link_name: str
+    pose_stamped: PoseStamped
+    ik_link_names: list[str]
+    pose_stamped_vector: list[PoseStamped]
+    timeout: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class moveit_msgs__msg__RobotState:
+    """`moveit_msgs/msg/RobotState`"""
+    joint_state: JointState
+    multi_dof_joint_state: MultiDOFJointState
+    attached_collision_objects: list[AttachedCollisionObject]
+    is_diff: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RobotTrajectory:
+    """`moveit_msgs/msg/RobotTrajectory`"""
+    joint_trajectory: JointTrajectory
+    multi_dof_joint_trajectory: MultiDOFJointTrajectory
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TrajectoryConstraints:
+    """`moveit_msgs/msg/TrajectoryConstraints`"""
+    constraints: list[Constraints]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VisibilityConstraint:
+    """`moveit_msgs/msg/VisibilityConstraint`"""
+    target_radius: float
+    target_pose: PoseStamped
+    cone_sides: int
+    sensor_pose: PoseStamped
+    max_view_angle: float
+    max_range_angle: float
+    sensor_view_direction: int
+    weight: float
+    SENSOR_Z: ClassVar[int] = 0
+    SENSOR_Y: ClassVar[int] = 1
+    SENSOR_X: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WorkspaceParameters:
+    """`moveit_msgs/msg/WorkspaceParameters`"""
+    header: Header
+    min_corner: Vector3
+    max_corner: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApplyPlanningScene_Request:
+    """`moveit_msgs/srv/ApplyPlanningScene_Request`"""
+    scene: PlanningScene
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApplyPlanningScene_Response:
+    """`moveit_msgs/srv/ApplyPlanningScene_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetCartesianPath_Request:
+    """`moveit_msgs/srv/GetCartesianPath_Request`"""
+    header: Header
+    start_state: moveit_msgs__msg__RobotState
+    group_name: str
+    link_name: str
+    waypoints: list[Pose]
+    max_step: float
+    jump_threshold: float
+    prismatic_jump_threshold: float
+    revolute_jump_threshold: float
+    avoid_collisions: bool
+    path_constraints: Constraints
+    max_velocity_scaling_factor: float
+    max_acceleration_scaling_factor: float
+    cartesian_speed_limited_link: str
+    max_cartesian_speed: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetCartesianPath_Response:
+    """`moveit_msgs/srv/GetCartesianPath_Response`"""
+    start_state: moveit_msgs__msg__RobotState
+    solution: RobotTrajectory
+    fraction: float
+    error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMotionPlan_Request:
+    """`moveit_msgs/srv/GetMotionPlan_Request`"""
+    motion_plan_request: MotionPlanRequest
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMotionPlan_Response:
+    """`moveit_msgs/srv/GetMotionPlan_Response`"""
+    motion_plan_response: MotionPlanResponse
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPlanningScene_Request:
+    """`moveit_msgs/srv/GetPlanningScene_Request`"""
+    components: PlanningSceneComponents
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPlanningScene_Response:
+    """`moveit_msgs/srv/GetPlanningScene_Response`"""
+    scene: PlanningScene
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPositionFK_Request:
+    """`moveit_msgs/srv/GetPositionFK_Request`"""
+    header: Header
+    fk_link_names: list[str]
+    robot_state: moveit_msgs__msg__RobotState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPositionFK_Response:
+    """`moveit_msgs/srv/GetPositionFK_Response`"""
+    pose_stamped: list[PoseStamped]
+    fk_link_names: list[str]
+    error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPositionIK_Request:
+    """`moveit_msgs/srv/GetPositionIK_Request`"""
+    ik_request: PositionIKRequest
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPositionIK_Response:
+    """`moveit_msgs/srv/GetPositionIK_Response`"""
+    solution: moveit_msgs__msg__RobotState
+    error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
 # nav2_msgs
 
 @dataclass
@@ -3290,6 +3761,15 @@ class SetMap_Response:
     success: bool
     __msgtype__: ClassVar[str]
 
+# object_recognition_msgs
+
+@dataclass
+class ObjectType:
+    """`object_recognition_msgs/msg/ObjectType`"""
+    key: str
+    db: str
+    __msgtype__: ClassVar[str]
+
 # octomap_msgs
 
 @dataclass
@@ -3905,7 +4385,7 @@ class RobotMode:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class RobotState:
+class rmf_fleet_msgs__msg__RobotState:
     """`rmf_fleet_msgs/msg/RobotState`"""
     name: str
     model: str
@@ -3985,6 +4465,20 @@ class ParticipantEntitiesInfo:
     """`rmw_dds_common/msg/ParticipantEntitiesInfo`"""
     gid: Gid
     node_entities_info_seq: list[NodeEntitiesInfo]
+    __msgtype__: ClassVar[str]
+
+# robot_localization
+
+@dataclass
+class SetPose_Request:
+    """`robot_localization/srv/SetPose_Request`"""
+    pose: PoseWithCovarianceStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetPose_Response:
+    """`robot_localization/srv/SetPose_Response`"""
+    structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
 
 # ros_gz_interfaces

@@ -130,6 +130,11 @@ def test_planar_poses_headers_and_child_frames() -> None:
         msgs.pose_message(POSE, header=HEAD)
 
 
+def test_a_message_without_fields_names_none() -> None:
+    with pytest.raises(MessageError, match="std_msgs/msg/Empty has no field 'data'; its fields: none"):
+        msgs.make("std_msgs/msg/Empty", data=1)
+
+
 def test_yaw_takes_quaternions_of_any_length() -> None:
     half = math.radians(170) / 2
     rotation = msgs.make("geometry_msgs/msg/Quaternion", w=5 * math.cos(half), z=-5 * math.sin(half))
