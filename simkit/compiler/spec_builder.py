@@ -17,6 +17,7 @@ from simkit.compiler.bodies import remove_split_body
 from simkit.compiler.engine_options import apply_options
 from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.lights import add_light, report_light, report_lights
+from simkit.compiler.meshes.parallel_conversion import convert_meshes
 from simkit.compiler.model_compilation import compile_spec, finish_model, place_followers, report_overlaps
 from simkit.compiler.model_writer import FIRST_OWN_BIT, PAIRS_MOST, ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
@@ -82,6 +83,7 @@ class SpecBuilder:
         if own:
             self.records.update({model.scoped: ModelRecord(model) for model in own})
             mjcf_attachment.attach_world(spec, [self.records[model.scoped] for model in own], world, diagnostics)
+        convert_meshes(world.models)
         with progress.task("building models", len(world.models)) as task:
             for model in world.models:
                 if model not in own:
@@ -394,6 +396,5 @@ class SpecBuilder:
         spec = self.spec.copy()
         other._world_geoms, other.assets = self._world_geoms.copy_to(spec), Assets(spec, self.assets.known)
         other.records = {name: record.copy() for name, record in self.records.items()}
-        other._names = None
-        other._cut = list(self._cut)
+        other._names, other._cut = None, list(self._cut)
         return other
