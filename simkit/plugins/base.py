@@ -229,13 +229,13 @@ class Plugin(abc.ABC):
             maximum: upper bound of the number, or of each number of a tuple.
             choices: allowed values; empty for no restriction.
             description: meaning of the parameter, with its unit.
-            element: element of the file with the first value; `name` by default.
+            element: element with the first value; `name` by default. `a.b` is the element `<b>` in the block `<a>`.
             on_change: function called with a new value, between two steps.
 
         Returns:
             The parameter; its attribute `value` is always the current value.
         """
-        from simkit.plugins.live_parameters import declare_at
+        from simkit.plugins.live_parameters import declare_at, find_first_value
         from simkit.runtime.communication.parameter import Parameter
 
         if on_change is not None:
@@ -251,8 +251,7 @@ class Plugin(abc.ABC):
             on_change=on_change,
             owner=self,
         )
-        argument = self.ros.values_with(name, self.sim.engine.structure.builder)
-        return declare_at(self, parameter, argument or self.params, name if argument else element or name)
+        return declare_at(self, parameter, *find_first_value(self, name, element or name))
 
     def random(self, channel: str, width: int = 1) -> RandomStream:
         """Return a random stream of this plugin.

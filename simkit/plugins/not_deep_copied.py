@@ -14,3 +14,14 @@ class SharedByCopies:
 
     def __deepcopy__(self: T, memo: dict[int, object]) -> T:
         return self
+
+
+class ImmutableValue(SharedByCopies):
+    """Base class of values that never change and that a plugin replaces during the run: a pickled snapshot stores them.
+
+    A pickled snapshot has references instead of other shared objects, which exist since the plugin was loaded.
+    """
+
+    __slots__ = ()
+
+    is_immutable_value = True

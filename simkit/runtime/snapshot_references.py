@@ -143,7 +143,9 @@ _VALUES: Final = frozenset((int, float, str, bytes, bool, tuple, list, dict, set
 
 
 def _is_shared(value: object) -> bool:
-    """Check whether a deep copy shares an object instead of copying it."""
+    """Check whether a deep copy shares an object instead of copying it, and a reference leads to it."""
+    if getattr(value, "is_immutable_value", False):  # `simkit.plugins.not_deep_copied`
+        return False
     return isinstance(value, FunctionType) or getattr(type(value), "__deepcopy__", None) is not None
 
 

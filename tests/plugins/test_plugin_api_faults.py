@@ -381,6 +381,22 @@ def test_an_error_in_load_names_the_plugin() -> None:
         assert "/home" in sim.communication.services.names() and "plugin 'Second' raised in load" in warnings(sim)[0]
 
 
+def test_two_plugins_of_simkit_with_one_service_are_a_warning_and_the_first_one_answers(tmp_path: Path) -> None:
+    wall = """<model name="wall"><static>true</static><link name="l"><collision name="c"><geometry><box>
+      <size>{} 1 1</size></box></geometry></collision></link></model>"""
+    server = '<plugin filename="libsimkit_map_server.so" name="map_server"><resolution>{}</resolution></plugin>'
+    file = tmp_path / "w.sdf"
+    content = wall.format(1) + server.format(0.1) + server.format(0.5)
+    file.write_text(f'<sdf version="1.9"><world name="w">{content}</world></sdf>', "utf-8")
+    with simkit.load(file) as sim:
+        found = [d for d in sim.diagnostics if d.code == "SK-SERVICE-004"]
+        assert sim.call("/map_server/map").map.info.resolution == pytest.approx(0.1)
+    assert len(found) == 2  # ~/map and ~/load_map
+    assert "plugin 'map_server' cannot be reached: a service '/map_server/map' exists already, of plugin" in str(
+        found[0]
+    )
+
+
 def test_load_cannot_reset_the_simulation() -> None:
     class Hasty(WorldPlugin):
         def load(self, parent: Simulation, params: Params) -> None:

@@ -107,6 +107,8 @@ class LiveSubscription:
             message = self.waiting.popleft().message
             try:
                 self._callback(message)
+            except LiveClosed:  # the simulation has ended, which is no error of the callback: `spin` ends
+                raise
             except Exception as error:
                 if self.waiting:
                     self._link.callbacks.append(self._call)

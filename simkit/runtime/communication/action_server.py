@@ -265,7 +265,7 @@ class ActionTable(EndpointTable[Action]):
         engine: engine that calls plugins.
     """
 
-    kind, folder, part, error = "action", "action", "Goal", ActionError
+    article, kind, folder, part, error = "an", "action", "action", "Goal", ActionError
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         super().__init__(bus, engine)
@@ -301,8 +301,7 @@ class ActionTable(EndpointTable[Action]):
         if on_cancel is not None:
             check_function(on_cancel, "on_cancel")
         self._check_type(type_name)
-        if self._find(name) is not None:
-            raise ActionError(f"an action {name!r} exists already")
+        self._report_clash(name)
         action = Action(self, name, type_name, on_goal, on_cancel, node)
         with self._bus.passing("act", action=action):
             self._endpoints.setdefault(name, []).append(action)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from simkit import msgs
 from simkit.argument_checks import check_text
-from simkit.diagnostics import name_hint
+from simkit.diagnostics import NOWHERE, name_hint
 from simkit.errors import ActionError, ServiceError
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.message_types import interface_parts
@@ -49,6 +49,7 @@ class EndpointTable(Generic[E]):
         engine: engine that calls plugins.
     """
 
+    article: ClassVar[str]
     kind: ClassVar[str]
     folder: ClassVar[str]
     part: ClassVar[str]
@@ -99,6 +100,33 @@ class EndpointTable(Generic[E]):
         check_text(type_name, "the type")
         if interface_parts(type_name) is None or f"/{self.folder}/" not in type_name:
             msgs.full_name(f"{type_name}_{self.part}")
+
+    def _report_clash(self, name: str) -> bool:
+        """Report that another endpoint has this name already; return false if there is none.
+
+        For a plugin of simkit this is a warning, because the file names the endpoint and Gazebo continues, too. The new
+        endpoint is then reached when the other one is removed.
+
+        Raises:
+            ServiceError, ActionError: a script or a user's plugin opens an endpoint whose name is already used.
+        """
+        existing, owner = self._find(name), self._bus.owner
+        if existing is None or getattr(existing, "yields", False):
+            return False
+        other = existing.owner
+        whose = f", of type {existing.type_name}"
+        if getattr(existing, "remote", None) is not None:
+            whose = f", of another process, {existing.remote.node!r}"  # type: ignore[attr-defined]
+        elif other is not None:
+            whose = f", of plugin {getattr(other, 'name', '')!r} ({getattr(other, 'where', '')})"
+        problem = f"{self.article} {self.kind} {name!r} exists already{whose}"
+        params = getattr(owner, "params", None)
+        if params is None or not type(owner).__module__.startswith("simkit."):
+            raise self.error(problem)
+        title, where = getattr(owner, "name", ""), getattr(owner, "where", NOWHERE)
+        hint = "give the plugins different names or namespaces, or a <remapping>"
+        params.diagnostics.warning("SK-SERVICE-004", f"plugin {title!r} cannot be reached: {problem}", where, hint)
+        return True
 
     def _find(self, name: str) -> E | None:
         return next((endpoint for endpoint in self._endpoints.get(name, ()) if endpoint.active), None)

@@ -54,7 +54,7 @@ class ServiceTable(EndpointTable[Service]):
         engine: engine that calls plugins.
     """
 
-    kind, folder, part, error = "service", "srv", "Request", ServiceError
+    article, kind, folder, part, error = "a", "service", "srv", "Request", ServiceError
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         super().__init__(bus, engine)
@@ -80,14 +80,13 @@ class ServiceTable(EndpointTable[Service]):
         name = absolute_name(name)
         check_function(handler, "handler")
         self._check_type(type_name)
-        existing = self._find(name)
-        if existing is not None and not existing.yields:
-            raise ServiceError(f"a service {name!r} exists already, {_describe_owner(existing)}")
+        is_last = self._report_clash(name)
         service = Service(self, name, type_name, handler, self._bus.owner, remote)
         if service.owner is None and remote is None:
             service.handler = ScriptCallback(self._bus, handler, "service", name, service.response)
         with self._bus.passing("offer", service=service):
-            self._endpoints.setdefault(name, []).insert(0, service)
+            endpoints = self._endpoints.setdefault(name, [])
+            endpoints.insert(len(endpoints) if is_last else 0, service)
         return service
 
     def offer_by_default(self, name: str, type_name: str, handler: ServiceHandler) -> None:
@@ -257,12 +256,3 @@ class ServiceTable(EndpointTable[Service]):
         for call in calls:
             if call.is_done:
                 self._bus.enqueue(lambda call=call: self._notify(call))  # type: ignore[misc]  # a default argument
-
-
-def _describe_owner(service: Service) -> str:
-    owner = service.owner
-    if service.remote is not None:
-        return f"of another process, {service.remote.node!r}"
-    if owner is None:
-        return f"of type {service.type_name}"
-    return f"of plugin {getattr(owner, 'name', '')!r} ({getattr(owner, 'where', '')})"

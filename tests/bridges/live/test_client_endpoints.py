@@ -209,6 +209,34 @@ def test_a_goal_is_aborted_for_its_sender_when_the_server_of_the_simulation_clos
         assert not failed, "a callback that waits ends with the simulation"
 
 
+def test_a_subscriber_that_waits_for_the_simulation_ends_with_it(sockets: Path) -> None:
+    failed: list[LiveError] = []
+    waits = threading.Event()
+
+    def run(path: Path) -> None:
+        with Client(path) as client:
+
+            def wait(_: Any) -> None:
+                waits.set()
+                while True:
+                    client.receive(0.1)
+
+            client.subscribe("/clock", wait)
+            try:
+                client.spin()
+            except LiveError as error:
+                failed.append(error)
+
+    with simkit.load(BALL) as sim, Server(sim) as server:
+        thread = threading.Thread(target=run, args=(server.path,))
+        thread.start()
+        while not waits.is_set():
+            sim.step()
+            server.poll(0.01)
+    thread.join(10.0)
+    assert not thread.is_alive() and not failed
+
+
 @contextmanager
 def serving_until_the_end(path: Path, failed: list[LiveError]) -> Iterator[None]:
     """A client whose action waits until the simulation ends."""
