@@ -172,6 +172,20 @@ def test_the_scan_sees_pillars_and_walls_where_they_stand() -> None:
     np.testing.assert_allclose(np.asarray(scan.ranges)[clear], expected[clear], atol=2e-3)
 
 
+def test_the_arena_is_a_model_for_worlds_of_the_user() -> None:
+    """The layout of the course includes the model in a static model of the same name; the same scan is seen there."""
+    text = (ROOT / "worlds" / "turtlebot3_world.sdf").read_text(encoding="utf-8")
+    inner, outer = text.index('<model name="arena">'), text.index("<include>")
+    include = "<model name='turtlebot3_world'><static>1</static><include><uri>model://turtlebot3_world</uri></include></model>"
+    scans = []
+    for world in (text, text[:inner] + include + text[outer:]):
+        with simkit.load(world) as sim:
+            sim.run(0.5)
+            scans.append(np.asarray(sim.sensor("turtlebot3::base_scan::lds").truth.ranges))
+            assert [d for d in sim.diagnostics if d.severity != "note"] == []
+    np.testing.assert_allclose(scans[1], scans[0], atol=1e-6)
+
+
 def distance_to_arena(origin: np.ndarray, ray: np.ndarray) -> float:
     """Along the unit vector `ray` from `origin` (x, y) to the first pillar or wall [m]."""
     flat = float(np.hypot(ray[0], ray[1]))
@@ -320,7 +334,7 @@ def drawing(scripts: None) -> ModuleType:
     return importlib.import_module("make_meshes")
 
 
-@pytest.mark.parametrize("script", ["make_models", "make_house"])
+@pytest.mark.parametrize("script", ["make_models", "make_house", "make_arena"])
 def test_the_committed_files_are_what_the_script_writes(scripts: None, script: str) -> None:
     for path, text in importlib.import_module(script).files().items():
         assert (ROBOT_FOLDER / path).read_text(encoding="utf-8") == text, f"run assets/turtlebot3/{script}.py"

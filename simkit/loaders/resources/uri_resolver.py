@@ -261,7 +261,8 @@ class Resolver:
                     yield near / inside
         for bundle in bundled_folders("assets"):
             yield bundle / name / inside
-            yield from sorted(bundle.glob(f"*/{name}/")) if not inside and name.replace("_", "").isalnum() else ()
+            groups = sorted(bundle.glob(f"*/{name}/")) if name.replace("_", "").isalnum() else ()
+            yield from (model / inside for model in groups)
 
     def _package_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield candidates for `package://name/...` in the package of that name, then in a package of its group."""

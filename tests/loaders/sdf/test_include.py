@@ -157,6 +157,16 @@ def test_a_missing_mesh_is_a_warning_that_lists_the_searched_paths(load, write):
     )
 
 
+def test_a_file_of_a_bundled_model_in_a_group_is_found(load):
+    mesh = "<mesh><uri>model://aruco_box/meshes/marker.obj</uri></mesh>"
+    box = f"""<sdf version="1.9"><model name="m"><link name="l">
+      <visual name="v"><geometry>{mesh}</geometry></visual></link></model></sdf>"""
+    scene, found = load(box)
+    (link,) = scene.model.links
+    assert link.visuals[0].geometry.file.parts[-4:] == ("office", "aruco_box", "meshes", "marker.obj")
+    assert not [d for d in found if d.code.startswith("SK-URI")]
+
+
 def test_missing_includes_are_warnings_in_a_world_with_others(load, write):
     root = write("models/box/model.sdf", BOX).parents[1]
     missing = "".join(
