@@ -218,6 +218,16 @@ def test_a_file_that_is_being_replaced_is_waited_for(edited: Edited) -> None:
     assert not edited.reloader.poll(), "it is the same as before"
 
 
+def test_a_file_that_is_emptied_before_it_is_written_is_reloaded_once(edited: Edited) -> None:
+    text = edited.file.read_text()
+    edited.file.write_text("")
+    assert not edited.reloader.poll() and not edited.said
+    edited.file.write_text(text.replace("STEP = 1", "STEP = 2"))
+    assert edited.reloader.poll()
+    assert not edited.reloader.poll()
+    assert len(edited.said) == 1
+
+
 GZ_CLASS = """
 class Ticker:
     def configure(self, entity, sdf, ecm, event_manager):

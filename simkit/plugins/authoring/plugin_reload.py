@@ -122,7 +122,9 @@ class PluginReloader:
         vars(new).update({k: v for k, v in vars(old).items() if k in _MODULE_ATTRIBUTES})
         linecache.checkcache(str(path))
         try:
-            code = compile(path.read_bytes(), str(path), "exec")
+            watched = self._files.get(path)
+            content = path.read_bytes() if watched is None else watched.content
+            code = compile(content, str(path), "exec")
             sys.modules[name] = new
             with importable():  # the module may import gz, because it may contain a gz system
                 exec(code, vars(new))
@@ -222,7 +224,8 @@ def _file_stamp(path: Path) -> tuple[int, int] | None:
 def _has_changed(file: _WatchedFile) -> bool:
     """Check whether the content of a file has changed since the last check.
 
-    A missing file counts as unchanged, because an editor may delete the file for a moment while it saves.
+    A missing or empty file and a file that changes while it is read count as unchanged, because an editor may delete or
+    empty the file for a moment while it saves. The next check sees the whole file.
     """
     stamp = _file_stamp(file.path)
     if stamp is None or stamp == file.stamp:
@@ -230,6 +233,8 @@ def _has_changed(file: _WatchedFile) -> bool:
     try:
         content = file.path.read_bytes()
     except OSError:
+        return False
+    if not content or _file_stamp(file.path) != stamp:
         return False
     file.stamp = stamp
     if content == file.content:

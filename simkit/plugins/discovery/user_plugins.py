@@ -6,9 +6,11 @@ import ast
 import importlib.util
 import inspect
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib.metadata import EntryPoint
 from pathlib import Path
+from types import ModuleType
 
 from simkit.diagnostics import Diagnostics, closest, did_you_mean
 from simkit.input_file import TEXT_LIMIT, read_input
@@ -19,6 +21,9 @@ from simkit.plugins.plugin_folders import find_module, folder_help, is_inside, s
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
 from simkit.registry import entry_points_of
 from simkit.scene import ScenePlugin
+
+_siblings: dict[Path, dict[str, ModuleType]] = {}
+"""Modules that plugins imported from their own folders, by folder and name."""
 
 
 def find_user_plugin(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
@@ -34,19 +39,45 @@ def find_user_plugin(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Di
         if point.value.replace(" ", "") == plugin.filename:
             return _load_entry_point(point, plugin, diagnostics)
     module_name, class_name = named
-    found = find_module(module_name, paths)
-    if found is None:
-        places = "under a plugin path" if module_name.endswith(".py") else "in an entry point or under a plugin path"
-        kind = "file" if module_name.endswith(".py") else "module"
-        message = f"plugin {plugin.filename!r} is not found: no {kind} {module_name!r} {places}"
-        diagnostics.error("SK-PLUGIN-001", message, plugin.where, folder_help(module_name, plugin.where, paths))
-        return None
-    module = _import_file(module_name, found[0], plugin, diagnostics)
+    module, file = _allowed_module(module_name, plugin, paths, diagnostics)
     if module is None:
         return None
     if class_name:
-        return _named_class(module, class_name, found[0], plugin, diagnostics)
+        return _named_class(module, class_name, file, plugin, diagnostics)
     return _only_class(module, plugin, diagnostics)
+
+
+def find_user_class(named: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type | None:
+    """Return a class that need not be a plugin, such as a planner of a navigation server; None after an error.
+
+    Args:
+        named: description whose `filename` is `file.py:Class` or `package.module:Class`.
+        paths: folders whose modules the user allows.
+        diagnostics: collector of the problems.
+    """
+    module_name, _, class_name = named.filename.partition(":")
+    module, file = _allowed_module(module_name, named, paths, diagnostics)
+    found = getattr(module, class_name, None)
+    if module is None or inspect.isclass(found):
+        return found
+    names = [name for name, cls in inspect.getmembers(module, inspect.isclass) if cls.__module__ == module.__name__]
+    hint = did_you_mean(class_name, names) or ("classes: " + (", ".join(names) or "none"))
+    diagnostics.error("SK-PLUGIN-008", f"plugin {named.name!r}: {file} has no class {class_name!r}", named.where, hint)
+    return None
+
+
+def _allowed_module(
+    name: str, plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics
+) -> tuple[ModuleType | None, Path]:
+    """Return a module under a plugin path and its file; None after an error."""
+    found = find_module(name, paths)
+    if found is None:
+        places = "under a plugin path" if name.endswith(".py") else "in an entry point or under a plugin path"
+        kind = "file" if name.endswith(".py") else "module"
+        message = f"plugin {plugin.filename!r} is not found: no {kind} {name!r} {places}"
+        diagnostics.error("SK-PLUGIN-001", message, plugin.where, folder_help(name, plugin.where, paths))
+        return None, Path()
+    return _import_file(name, found[0], plugin, diagnostics), found[0]
 
 
 def _named_class(
@@ -118,7 +149,7 @@ def _string_literals(file: Path) -> set[str]:
     return {normalise(text) for text in texts if isinstance(text, str) and len(text) < 200}
 
 
-def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagnostics) -> object | None:
+def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagnostics) -> ModuleType | None:
     """Import a file under a module name made from its path, so that it never replaces another module."""
     key = f"simkit_user_plugins.{file.resolve()}"
     if key in sys.modules:
@@ -128,13 +159,35 @@ def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagno
     module = importlib.util.module_from_spec(spec)
     sys.modules[key] = module
     try:
-        spec.loader.exec_module(module)
+        with _sibling_modules(file.resolve().parent):
+            spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
         del sys.modules[key]
         message = f"plugin {plugin.filename!r}: importing {name!r} from {file} failed{line_of(error)}"
         diagnostics.error("SK-PLUGIN-008", f"{message}: {type(error).__name__}: {error}", plugin.where)
         return None
     return module
+
+
+@contextmanager
+def _sibling_modules(folder: Path) -> Iterator[None]:
+    """Let a plugin's file import the modules of its folder by their plain names, while the file is imported.
+
+    The names are removed afterwards, because another plugin's folder may have modules of the same names.
+    """
+    known = _siblings.setdefault(folder, {})
+    for name, module in known.items():
+        sys.modules.setdefault(name, module)
+    before = {name for name in sys.modules if name not in known}
+    sys.path.append(str(folder))  # the last place: no module of the folder replaces one of Python or of a package
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder))
+        for name in [name for name in sys.modules if name not in before]:
+            file = getattr(sys.modules[name], "__file__", None)
+            if file and Path(file).parent == folder:
+                known[name] = sys.modules.pop(name)
 
 
 def _classes_of(module: object) -> list[type]:

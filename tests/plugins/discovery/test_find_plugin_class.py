@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -247,3 +248,17 @@ def test_a_hook_that_is_not_overridden_does_not_count() -> None:
 def test_a_plugin_needs_a_load_method() -> None:
     with pytest.raises(TypeError, match="load"):
         SensorPlugin()  # type: ignore[abstract]
+
+
+def test_a_plugin_imports_the_modules_of_its_own_folder(tmp_path: Path) -> None:
+    """Two folders may have modules of the same name."""
+    sizes = []
+    for size in (1, 2):
+        folder = tmp_path / str(size)
+        folder.mkdir()
+        (folder / "helper_of_a_plugin.py").write_text(f"SIZE = {size}\n")
+        (folder / "hello.py").write_text("from helper_of_a_plugin import SIZE\n" + HELLO + "    size = SIZE\n")
+        found = find_plugin(named("hello.py"), [folder])
+        sizes.append(found.size)  # type: ignore[union-attr]
+        assert "helper_of_a_plugin" not in sys.modules and str(folder) not in sys.path
+    assert sizes == [1, 2]
