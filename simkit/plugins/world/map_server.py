@@ -1,4 +1,4 @@
-"""World plugin that publishes an occupancy map of a file, or the true one of the world, as Nav2's `map_server`."""
+"""Plugin that publishes an occupancy map of a file, or the true one of the world, as Nav2's `map_server`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from simkit import msgs
 from simkit.errors import InputError
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.params import Params
-from simkit.plugins.base import WorldPlugin
+from simkit.plugins.base import Plugin
 from simkit.plugins.endpoints import offers, publishes
 from simkit.plugins.find_entities import find_plugin_file
 from simkit.plugins.not_deep_copied import SharedByCopies
@@ -27,8 +27,8 @@ from simkit.yaml_reader import NotYaml, finite_number, read_yaml
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneWorld
+    from simkit.runtime import Model, Simulation
+    from simkit.scene import SceneModel, SceneWorld
 
 _LARGEST_IMAGE: Final = 256 << 20  # [bytes]
 _MOST_CELLS: Final = 100_000_000
@@ -70,7 +70,7 @@ class MapServerOptions(Options):
     publish_transform: bool = boolean(False)
 
 
-class MapServer(WorldPlugin):
+class MapServer(Plugin):
     """Publishes a map on `map` (latched), and answers `~/map` and `~/load_map`.
 
     `<yaml_filename>` is a file of map_server. Without it, the map is the true one of the world's static collisions at
@@ -79,6 +79,7 @@ class MapServer(WorldPlugin):
     """
 
     filenames = ("libsimkit_map_server.so",)
+    parent_kind = ("world", "model")
     names = ("simkit::MapServer",)
     options = OptionsOf(MapServerOptions)
     endpoints = (
@@ -93,14 +94,13 @@ class MapServer(WorldPlugin):
         return () if self.options.yaml_filename else ("geometry", "pose_link", "pose_world")
 
     def set_state(self, state: Mapping[str, Any]) -> None:
-        before = self._loads
+        before = self._map
         super().set_state(state)
-        if self._loads != before:
+        if self._map is not before:
             self._publisher.publish(self._map.message)
 
-    def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: SceneWorld | SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._file: OccupancyMap | None = None  # until `load`
-        self._loads = 0  # number of maps that were published
         name = self.options.yaml_filename
         if not name:
             return
@@ -114,7 +114,7 @@ class MapServer(WorldPlugin):
                 "SK-MAP-001", f"plugin {self.name!r}: {error}", self.where, "check <yaml_filename>"
             )
 
-    def load(self, parent: Simulation, params: Params) -> None:
+    def load(self, parent: Simulation | Model, params: Params) -> None:
         self._publisher = self.advertise(self.options.topic_name, "nav_msgs/msg/OccupancyGrid", latched=True)
         self.offer("~/map", "nav_msgs/srv/GetMap", lambda _: {"map": self._map.message})
         self.offer("~/load_map", "nav2_msgs/srv/LoadMap", self._on_load_map)
@@ -144,7 +144,6 @@ class MapServer(WorldPlugin):
             "data": found.cells.reshape(-1),
         }
         self._map = _PublishedMap(msgs.from_dict(["nav_msgs/msg/OccupancyGrid"], values))
-        self._loads += 1
         self._publisher.publish(self._map.message)
 
     def _on_load_map(self, request: Any) -> dict[str, Any]:

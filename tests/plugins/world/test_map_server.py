@@ -131,3 +131,19 @@ def test_a_missing_file_and_an_empty_world_are_errors(tmp_path: Path) -> None:
     for options in ("<yaml_filename>gone.yaml</yaml_filename>", "<height>3</height>"):
         with pytest.raises(LoadError, match="SK-MAP-001"), simkit.load(world(tmp_path, options)):
             pass
+
+
+def test_a_restore_publishes_its_map_also_after_as_many_other_maps(tmp_path: Path) -> None:
+    write_map(tmp_path)
+    write_map(tmp_path, YAML.replace("m.pgm", "n.pgm").replace("0.1", "0.2"), "n")
+    write_map(tmp_path, YAML.replace("m.pgm", "o.pgm").replace("0.1", "0.4"), "o")
+    with simkit.load(world(tmp_path, "<yaml_filename>m.yaml</yaml_filename>")) as sim:
+        maps, first = sim.subscribe("/map", keep=1), sim.snapshot()
+        sim.call("/map_server/load_map", {"map_url": "n.yaml"})
+        second = sim.snapshot()
+        sim.restore(first)
+        sim.call("/map_server/load_map", {"map_url": "o.yaml"})
+        sim.restore(second)
+        assert sim.call("/map_server/map").map.info.resolution == pytest.approx(0.2)
+        assert maps.latest.info.resolution == pytest.approx(0.2)
+        assert sim.subscribe("/map", keep=1).latest.info.resolution == pytest.approx(0.2)
