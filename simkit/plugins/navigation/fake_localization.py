@@ -1,0 +1,79 @@
+"""Plugin that publishes the true pose of a robot in place of a localisation, as ROS's `fake_localization`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from simkit import msgs
+from simkit.errors import InputError, TransformError
+from simkit.params import Params
+from simkit.plugins.base import Plugin
+from simkit.plugins.options import Options, OptionsOf, number, text
+
+if TYPE_CHECKING:
+    from simkit.runtime import Link, Model, Simulation
+
+
+class FakeLocalizationOptions(Options):
+    """Options of `FakeLocalization`."""
+
+    global_frame_id: str = text("map")
+    odom_frame_id: str = text("odom")
+    base_frame_id: str = text("base_footprint")
+    update_rate: float = number(30.0, "Hz", minimum=0.1, maximum=1000)
+
+
+class FakeLocalization(Plugin):
+    """Publishes the transform from the map to the odometry, so that the robot's pose in the map is the true one.
+
+    The frame of the map lies at the origin of the world. The true pose is that of the link `<base_frame_id>`. It is
+    also published on `amcl_pose`. A real localisation, such as AMCL, replaces this plugin.
+    """
+
+    filenames = ("libsimkit_fake_localization.so",)
+    names = ("simkit::FakeLocalization",)
+    parent_kind = ("world", "model")
+    options = OptionsOf(FakeLocalizationOptions)
+
+    def load(self, parent: Simulation | Model, params: Params) -> None:
+        self.after_step_rate = self.options.read_all().update_rate
+        self._models: tuple[str, ...] = ()
+        self._link: Link | None = None
+        self._transforms = self.advertise("/tf", "tf2_msgs/msg/TFMessage")
+        self._pose = self.advertise("amcl_pose", "geometry_msgs/msg/PoseWithCovarianceStamped")
+
+    def _find_link(self) -> Link | None:
+        """Return the only link with the name of the robot's frame; None after a warning."""
+        models = tuple(self.sim.models)
+        if models == self._models:
+            return self._link  # a search takes longer than all the rest
+        name = self.options.base_frame_id
+        found = [model.links[name] for model in self.sim.models.values() if name in model.links]
+        self._models, self._link = models, found[0] if len(found) == 1 else None
+        if self._link is None:
+            message = f"{len(found)} models have a link {name!r}, so there is no true pose"
+            self._once.warn("SK-PLUGIN-132", "link", message, "set <base_frame_id> to the name of the robot's link")
+        return self._link
+
+    def after_step(self) -> None:
+        options, link = self.options, self._find_link()
+        if link is None:
+            return
+        try:
+            odometry = self.sim.tf.lookup(options.odom_frame_id, options.base_frame_id)
+        except TransformError:
+            return  # there is no odometry yet
+        try:
+            pose = link.pose
+        except InputError:  # the robot was removed, and another one with its name was added
+            self._models = ()
+            return
+        header = msgs.header(self.sim.time_ns, options.global_frame_id)
+        placed = pose @ odometry.inverse()
+        (x, y, z), (qw, qx, qy, qz) = placed.position.tolist(), placed.quaternion.tolist()
+        transform = msgs.Transform(msgs.Vector3(x, y, z), msgs.Quaternion(qx, qy, qz, qw))
+        stamped = msgs.TransformStamped(header, options.odom_frame_id, transform)
+        self._transforms.publish(msgs.TFMessage([stamped]))
+        if self._pose.wanted:
+            fields = {"pose": msgs.pose_message(pose)}
+            self._pose.publish(msgs.make(self._pose.type_name, header=header, pose=fields))

@@ -1,0 +1,102 @@
+"""Poses in the plane, from and to messages and transforms."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.errors import ArgumentValueError, TransformError
+from simkit.pose import Pose, rpy_from_quat
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+Floats = npt.NDArray[np.float64]
+
+
+class PlanarPose(NamedTuple):
+    """Pose in the plane: x and y [m], yaw [rad]."""
+
+    x: float
+    y: float
+    yaw: float
+
+    def compose(self, other: PlanarPose) -> PlanarPose:
+        """Return a pose that is given relative to this one in the frame of this one."""
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        x, y = self.x + cos * other.x - sin * other.y, self.y + sin * other.x + cos * other.y
+        return PlanarPose(x, y, math.remainder(self.yaw + other.yaw, math.tau))
+
+    def inverse(self) -> PlanarPose:
+        """Return the pose of this pose's frame relative to this pose."""
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        return PlanarPose(-cos * self.x - sin * self.y, sin * self.x - cos * self.y, -self.yaw)
+
+    def transform(self, points: Floats) -> Floats:
+        """Return points of this pose's frame, shape (n, 2) [m], in the frame in which this pose is given."""
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        found: Floats = points @ np.array([[cos, sin], [-sin, cos]]) + (self.x, self.y)
+        return found
+
+
+def planar_of(pose: Pose) -> PlanarPose:
+    """Return the part of a pose in the plane."""
+    x, y, _ = pose.position.tolist()
+    return PlanarPose(x, y, float(pose.rpy[2]))
+
+
+def pose_of_message(message: Any) -> PlanarPose | None:
+    """Return the part of a `geometry_msgs/msg/Pose` in the plane; None if a number is NaN or infinite."""
+    place, turn = message.position, message.orientation
+    quaternion = (turn.w, turn.x, turn.y, turn.z)
+    if not all(map(math.isfinite, (place.x, place.y, *quaternion))):
+        return None
+    yaw = float(rpy_from_quat(quaternion)[2]) if any(quaternion) else 0.0
+    return PlanarPose(float(place.x), float(place.y), yaw)
+
+
+def stamped_pose(pose: PlanarPose, header: msgs.Header) -> Any:
+    """Return a `geometry_msgs/msg/PoseStamped`."""
+    return msgs.PoseStamped(header, _pose_message(pose))
+
+
+def _pose_message(pose: PlanarPose) -> Any:
+    turn = msgs.Quaternion(0.0, 0.0, math.sin(pose.yaw / 2), math.cos(pose.yaw / 2))
+    return msgs.Pose(msgs.Point(pose.x, pose.y, 0.0), turn)
+
+
+def path_message(poses: Floats, header: msgs.Header) -> Any:
+    """Return a `nav_msgs/msg/Path` of poses: x, y [m] and yaw [rad], shape (n, 3)."""
+    return msgs.Path(header, [stamped_pose(PlanarPose(*row), header) for row in poses.tolist()])
+
+
+def poses_of_path(path: Any) -> Floats | None:
+    """Return x, y [m] and yaw [rad] of the poses of a path, shape (n, 3); None if a number is NaN or infinite."""
+    found = [pose_of_message(stamped.pose) for stamped in path.poses]
+    return None if None in found else np.array(found, np.float64).reshape(-1, 3)
+
+
+def open_transforms(sim: Simulation) -> None:
+    """Receive transforms from now on, so that the first look-up knows those before it."""
+    sim.tf.frames()
+
+
+def look_up(sim: Simulation, target: str, source: str, stamp: Any = None) -> PlanarPose | None:
+    """Return the pose of the frame `source` in the frame `target`; None if it is not known.
+
+    Args:
+        sim: simulation.
+        target: frame in which the pose is given.
+        source: frame whose pose is returned.
+        stamp: time of the pose; None for the newest one.
+    """
+    if target == source:
+        return PlanarPose(0.0, 0.0, 0.0)
+    try:
+        return planar_of(sim.tf.lookup(target, source, stamp))
+    except (TransformError, ArgumentValueError):  # a message may name no frame
+        return None

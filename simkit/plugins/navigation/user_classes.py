@@ -1,0 +1,102 @@
+"""Classes that do a part of the work of a navigation server: those of simkit, and those that users write."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from simkit.params import Params
+from simkit.plugins.attribute_state import copy_attributes, restore_attributes
+from simkit.plugins.base import Plugin
+from simkit.plugins.discovery.user_plugins import find_user_class
+from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit.scene import ScenePlugin
+
+
+class _Parts(SharedByCopies):
+    """Objects by name, which a restore keeps."""
+
+    def __init__(self) -> None:
+        self.by_name: dict[str, Any] = {}
+
+
+class ServerPlugin(Plugin):
+    """Plugin whose work is done by objects of selectable classes.
+
+    A snapshot contains the attributes of these objects. A restore keeps the objects, because callbacks refer to them.
+    """
+
+    parent_kind = ("world", "model")
+    _parts = _Parts()  # of a plugin whose `load` has failed
+
+    def make_parts(
+        self,
+        names: tuple[str, ...],
+        defaults: Mapping[str, str],
+        known: Mapping[str, type[Any]],
+        methods: tuple[str, ...],
+        begin: str,
+    ) -> None:
+        """Create an object for each name of a list of Nav2, such as `<planner_plugins>`.
+
+        The block of parameters with the name contains `<plugin>`: a class of Nav2 that simkit has, or `file.py:Class`.
+        A class that is not found, or that lacks one of the methods, is reported as an error.
+
+        Args:
+            names: elements with the names of the list; empty for those of `defaults`.
+            defaults: class by name, for blocks without `<plugin>`.
+            known: classes of simkit by their name in Nav2.
+            methods: methods that the class must have.
+            begin: method that receives the plugin and the block of parameters, if the class has it.
+        """
+        self._parts = _Parts()
+        for name in _split(names) or defaults:
+            block = self.params.block(name)
+            wanted = block.text("plugin", "") or defaults.get(name, "")
+            cls = known.get(wanted.replace("/", "::")) or _user_class(self, name, wanted, known, block)
+            if cls is None:
+                continue
+            missing = [method for method in methods if not callable(getattr(cls, method, None))]
+            if missing:
+                self.params.error("SK-PLUGIN-008", f"{name}: the class {wanted!r} has no method {missing[0]!r}")
+                continue
+            part = self._parts.by_name[name] = cls()
+            if callable(getattr(part, begin, None)):
+                getattr(part, begin)(self, block)
+
+    @property
+    def parts(self) -> dict[str, Any]:
+        """Objects by name."""
+        return self._parts.by_name
+
+    def get_state(self) -> dict[str, Any]:
+        self._part_states = {
+            name: dict(copy_attributes(part, (), self._report_uncopied)) for name, part in self.parts.items()
+        }
+        return super().get_state()
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        super().set_state(state)
+        for name, part in self.parts.items():
+            restore_attributes(part, (), self._part_states[name])
+
+
+def _split(texts: tuple[str, ...]) -> list[str]:
+    """Return the names in repeated elements; an element may contain several names."""
+    return [name for text in texts for name in text.replace(",", " ").split()]
+
+
+def _user_class(
+    node: Plugin, name: str, wanted: str, known: Mapping[str, type[Any]], block: Params
+) -> type[Any] | None:
+    allowed = f"file.py:Class, or one of {', '.join(known)}"
+    if ":" not in wanted.replace("::", ""):
+        node.params.diagnostics.error(
+            "SK-PLUGIN-008",
+            f"plugin {node.name!r}: <{name}><plugin>: found {wanted!r}",
+            block.where,
+            f"write {allowed}",
+        )
+        return None
+    named = ScenePlugin(name, wanted, node.scoped, block, block.where)
+    return find_user_class(named, node.plugin_paths, node.params.diagnostics)
