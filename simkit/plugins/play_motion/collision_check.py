@@ -21,7 +21,7 @@ import mujoco
 import numpy as np
 
 from simkit.pose import Pose, Vector
-from simkit.runtime.contact.collision_contacts import collision_table
+from simkit.runtime.contact.collision_contacts import Ints, collision_table
 
 if TYPE_CHECKING:
     from simkit.runtime import Joint, Model, Simulation
@@ -55,11 +55,13 @@ class _HeldObject:
     """Free body in contact with two or more moving links.
 
     Attributes:
+        joint: Free joint of the body.
         qpos: Index of the body's position in `qpos`.
         carrier: Nearest body that carries all these links.
         pose: Pose of the free body in the frame of `carrier`; the check keeps it constant.
     """
 
+    joint: int
     qpos: int
     carrier: int
     pose: Pose
@@ -91,6 +93,23 @@ class CollisionCheck:
         self._initial_contacts = dict(self._contacts())
 
     # ------------------------------------------------------------------ queries
+
+    @property
+    def self_pairs(self) -> list[tuple[int, int]]:
+        """Pairs of geoms of the robot that must not touch."""
+        return list(zip(self._first.tolist(), self._second.tolist(), strict=True))
+
+    @property
+    def robot_geoms(self) -> Ints:
+        """Geoms of the robot."""
+        return np.nonzero(self._is_robot[:-1])[0]
+
+    @property
+    def held_geoms(self) -> dict[int, int]:
+        """Geoms of the objects in a gripper, each with the body of the robot that carries it."""
+        roots = self._model.body_rootid[self._model.geom_bodyid]
+        held = {int(self._model.dof_bodyid[self._model.jnt_dofadr[h.joint]]): h.carrier for h in self._held}
+        return {geom: held[root] for geom, root in enumerate(roots.tolist()) if root in held}
 
     def deepest_collision(self, positions: Vector) -> LinkCollision | None:
         """Return the collision with the largest depth at these joint positions; None without a collision.
@@ -222,7 +241,7 @@ class CollisionCheck:
             if len(links) < 2 or not is_free or not self._mover[carrier]:
                 continue
             inside = Pose(now.xpos[carrier], now.xquat[carrier]).inverse() @ Pose(now.xpos[root], now.xquat[root])
-            held.append(_HeldObject(int(model.jnt_qposadr[start]), carrier, inside))
+            held.append(_HeldObject(start, int(model.jnt_qposadr[start]), carrier, inside))
             of_it = np.append(model.body_rootid[model.geom_bodyid] == root, False)
             self._moves |= of_it
         return held

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from simkit.msgs.message_types import Message
 from simkit.params import Params
 from simkit.plugins.attribute_state import copy_attributes, restore_attributes
-from simkit.plugins.live_parameters import declare_at
+from simkit.plugins.live_parameters import declare_at, descend
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros2_control.hardware_interfaces import InterfaceSelection
@@ -216,10 +216,8 @@ class Controller(SharedByCopies, abc.ABC):
             description: meaning of the parameter, with its unit.
             on_change: callback for a new value, called between two steps.
         """
-        plugin, params = self.plugin, self.params
-        *blocks, last = name.split(".")
-        for block in blocks:
-            params = params.block(block)
+        plugin = self.plugin
+        params, last = descend(self.params, name)
         own, model, sim = f"{plugin.ros.namespace}/{self.name}", plugin.scoped.partition("::")[0], plugin.sim
         parameter = Parameter(
             sim.communication.node_of(plugin, own, f"/{model}/{self.name}"),

@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit.plugins.not_deep_copied import ImmutableValue
 from simkit.pose import Vector
 
 SECOND: Final = 1_000_000_000
@@ -55,7 +55,7 @@ class Setpoint(NamedTuple):
     efforts: Vector | None = None
 
 
-class Spline(SharedByCopies):
+class Spline(ImmutableValue):
     """Targets of all joints as a function of time.
 
     Attributes:
