@@ -8,6 +8,7 @@ from simkit.params import Params
 from simkit.runtime.communication.parameter import Parameter
 
 if TYPE_CHECKING:
+    from simkit.plugins.ros_names import RosNames
     from simkit.runtime import Simulation
 
 T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
@@ -17,6 +18,37 @@ class ParameterOwner(Protocol):
     """Plugin that declares a live parameter."""
 
     sim: Simulation
+
+
+class ParameterNode(ParameterOwner, Protocol):
+    """Plugin whose parameters may have values in the file and in the arguments of a ROS node.
+
+    Attributes:
+        params: parameters of the plugin in the file.
+        ros: names and arguments of the node.
+    """
+
+    params: Params
+    ros: RosNames
+
+
+def find_first_value(plugin: ParameterNode, name: str, element: str) -> tuple[Params, str]:
+    """Return the block that may contain the first value of a parameter, and the name of the value in this block.
+
+    A value in the node's arguments replaces that of the file. There, a parameter `a.b` has this name or is in a block
+    `a`, as in ROS.
+
+    Args:
+        plugin: plugin of the parameter.
+        name: name of the parameter.
+        element: path of the element in the file.
+    """
+    builder = plugin.sim.engine.structure.builder
+    argument = plugin.ros.values_with(name, builder)
+    if argument is not None:
+        return argument, name
+    block = plugin.ros.values_with(name.partition(".")[0], builder) if "." in name else None
+    return descend(plugin.params, element) if block is None else descend(block, name)
 
 
 def declare_at(plugin: ParameterOwner, parameter: Parameter[T], params: Params, element: str) -> Parameter[T]:
@@ -40,6 +72,14 @@ def declare_at(plugin: ParameterOwner, parameter: Parameter[T], params: Params, 
         with communication.bus.owned_by(plugin):
             communication.live_parameters.open_services(communication.services, parameter.node)
     return parameter
+
+
+def descend(params: Params, path: str) -> tuple[Params, str]:
+    """Return the block that contains the element of a path such as `gains.p`, and the element's name."""
+    *blocks, last = path.split(".")
+    for name in blocks:
+        params = params.block(name)
+    return params, last
 
 
 def _first_value(params: Params, element: str, parameter: Parameter[Any]) -> Any:

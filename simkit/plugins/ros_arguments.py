@@ -132,16 +132,19 @@ class RosArguments(SharedByCopies):
         return self._files
 
     def values_of(
-        self, node: str, name: str, find: Callable[[str], Path | None], diagnostics: Diagnostics
+        self, node: str, name: str | None, find: Callable[[str], Path | None], diagnostics: Diagnostics
     ) -> ParameterBlock | None:
-        """Return the parameters of a node by its full name; None if there is no value for the parameter `name`."""
+        """Return the parameters of a node by its full name; None if there is no value for the parameter `name`.
+
+        If `name` is None, one parameter of any name is enough.
+        """
         if not self._settings:
             return None
         from simkit.plugins.ros_parameter_files import ParameterFiles
 
-        self._used |= {"", name}
+        self._used |= {"", name} if name is not None else {setting.name for setting in self._settings}
         entry = ParameterFiles(self.parameter_files(find, diagnostics)).of_node(node)
-        has_value = entry is not None and name in (entry.below or {})
+        has_value = entry is not None and (name is None or name in (entry.below or {}))
         return entry.block(node, diagnostics) if entry is not None and has_value else None
 
     def report_unused(self, owner: str, diagnostics: Diagnostics) -> None:

@@ -73,8 +73,11 @@ class RosNames(SharedByCopies):
         names._set_namespace(namespace)
         return names
 
-    def values_with(self, name: str, builder: SpecBuilder) -> ParameterBlock | None:
-        """Return the parameters of the node in the arguments; None if there is no value for the parameter `name`."""
+    def values_with(self, name: str | None, builder: SpecBuilder) -> ParameterBlock | None:
+        """Return the parameters of the node in the arguments; None if there is no value for the parameter `name`.
+
+        Without a name, one parameter of any name is enough.
+        """
         if self._params is None:
             return None
         file = self._params.where.file

@@ -41,6 +41,15 @@ class ParameterBlock(Params):
         super().__init__(name, text, children=children, where=where, diagnostics=diagnostics)
         self.forms, self.is_block = forms, is_block
 
+    def joined(self, params: Params) -> ParameterBlock:
+        """Return these parameters together with elements of other names."""
+        names = {child.name for child in self.children}
+        others = [child for child in params.children if child.name not in names]
+        children = [*self.children, *others]
+        return ParameterBlock(
+            params.name, params.value, children, params.where, self.diagnostics, self.forms, is_block=True
+        )
+
     def block(self, name: str) -> Params:
         if self._has_form(name, "a block of names with values", ("nothing", "block")):
             return super().block(name)

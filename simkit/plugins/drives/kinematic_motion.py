@@ -119,7 +119,7 @@ class KinematicMover(SharedByCopies):
         data = physics.data
         touched = self._smooth_contacts(data) if data.ncon else frozenset()
         mobility = self._mobilities(data)
-        gravity, step = sim.mj_model.opt.gravity, sim.timestep
+        gravity, weightless, step = sim.mj_model.opt.gravity, sim.mj_model.body_gravcomp, sim.timestep
         for index, move in enumerate(moves):
             falls = move.falls and index not in touched
             origin, axes = move.frame.position, move.frame.matrix
@@ -131,7 +131,7 @@ class KinematicMover(SharedByCopies):
                 velocity = (target + turn @ (root - origin) - root) / step
                 lacking = -data.qacc_smooth[dof : dof + 6]
                 if falls:
-                    lacking[2] += gravity[2]
+                    lacking[2] += gravity[2] * (1.0 - weightless[body])
                     velocity[2] = data.qvel[dof + 2]
                 data.qfrc_applied[dof : dof + 6] += _solve_force(mobility[:, dof : dof + 6], lacking)
                 data.qvel[dof : dof + 3] = velocity

@@ -86,6 +86,14 @@ def test_the_model_falls_without_contact_and_lands() -> None:
         np.testing.assert_allclose(sim.model("box").pose.rpy, 0, atol=1e-4)
 
 
+def test_a_model_without_gravity_keeps_its_height() -> None:
+    floating = box(planar_move(ros=""), pose="0 0 1 0 0 0").replace("<inertial>", "<gravity>0</gravity><inertial>")
+    with simkit.load(world(GROUND, floating)) as sim:
+        sim.publish("/cmd_vel", {"linear": {"x": 1.0}})
+        sim.run(1.0)
+        assert sim.model("box").pose.position[2] == pytest.approx(1.0, abs=1e-9)
+
+
 def test_a_wall_stops_the_model_and_it_can_move_back() -> None:
     with opened(WALL) as sim:
         sim.publish("/cmd_vel", {"linear": {"x": 1.0}})
