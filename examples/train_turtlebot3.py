@@ -11,14 +11,20 @@ from __future__ import annotations
 
 import argparse
 import csv
+import importlib.util
+import sys
 import time
 from pathlib import Path
 from typing import Any
 
-import gymnasium
 import numpy as np
 
 import simkit.gym
+
+try:
+    import gymnasium
+except ModuleNotFoundError:
+    sys.exit("the training needs Gymnasium: pip install 'simkit-robotics[rl]'")
 
 ENVIRONMENT = "simkit/TurtleBot3Goal-v0"
 PERIOD = 0.2  # [s] between two actions
@@ -135,6 +141,8 @@ def main() -> None:
     options = parser.parse_args()
     if options.test_only:
         policy = dict(np.load(POLICY))
+    elif importlib.util.find_spec("stable_baselines3") is None:
+        sys.exit("the training needs Stable-Baselines3: pip install 'simkit-robotics[rl]'")
     else:
         policy = train(options.minutes, options.seed, options.curve)
         np.savez(POLICY, **policy)

@@ -7,7 +7,10 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
+try:
+    import matplotlib as mpl
+except ModuleNotFoundError:
+    sys.exit("the pictures of the sensors need matplotlib: pip install 'simkit-robotics[plot]'")
 
 mpl.use("Agg")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
 from pathlib import Path
 from typing import NamedTuple
 
@@ -38,6 +40,8 @@ class Day(NamedTuple):
 
 def run(seed: int = 0) -> dict[str, Day]:
     """Runs the world through the day; one record a panel."""
+    if importlib.util.find_spec("pvlib") is None:
+        sys.exit("the path of the sun needs pvlib: pip install 'simkit-robotics[sun]'")
     with simkit.load(FOLDER / "world.sdf", plugin_paths=[FOLDER], seed=seed) as sim:
         sensors = {name: sim.sensor(scoped) for name, scoped in SENSORS.items()}
         readings = {name: [] for name in sensors}

@@ -7,6 +7,7 @@ arm's folded place it would have to go below 0, where that joint ends; so here i
 
 from __future__ import annotations
 
+import importlib.util
 import sys
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -83,6 +84,8 @@ def draw(motion: Motion, out: Path) -> None:
 
 def main(arguments: list[str]) -> None:
     picture = picture_of(__doc__ or "", arguments)
+    if picture is not None and importlib.util.find_spec("matplotlib") is None:
+        sys.exit("the picture needs matplotlib: pip install 'simkit-robotics[plot]'")
     motion = run()
     print(f"result {motion.result.error_code} {motion.result.error_string!r}, tracked within {motion.error:.4f} rad")
     if picture is not None:

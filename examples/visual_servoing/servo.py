@@ -5,6 +5,7 @@ It knows nothing but its camera: where the orange pixels are, and what the depth
 
 from __future__ import annotations
 
+import importlib.util
 import sys
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -27,6 +28,8 @@ FEWEST = 30  # pixels that are something
 SEARCH = 0.6  # [rad/s]
 TURN = 1.5  # [rad/s for an object at the edge of the image]
 DRIVE, FASTEST = 1.2, 0.22  # [1/s], [m/s]
+
+NO_PICTURE = "the picture needs matplotlib: pip install 'simkit-robotics[plot]'"
 
 
 class Sight(NamedTuple):
@@ -188,11 +191,21 @@ def draw_distance(axes: Any, sights: list[Sight], shown: list[int]) -> None:
     axes.grid(alpha=0.3)
 
 
-if __name__ == "__main__":
-    if len(sys.argv) > 2:
+def main(arguments: list[str]) -> None:
+    if len(arguments) > 1:
         sys.exit("usage: python servo.py [OUT.png]")
+    can_draw = importlib.util.find_spec("matplotlib") is not None
+    if arguments and not can_draw:
+        sys.exit(NO_PICTURE)
     seen = run()
     if not seen or seen[-1].centroid is None:
         sys.exit("found nothing orange")
     print(f"stopped after {seen[-1].time:.1f} s, {seen[-1].distance:.3f} m before it")
-    draw(seen, Path(sys.argv[1] if len(sys.argv) == 2 else "servo.png"))
+    if can_draw:
+        draw(seen, Path(arguments[0] if arguments else "servo.png"))
+    else:
+        print(NO_PICTURE, file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -112,3 +112,17 @@ def test_a_wrong_command_line_says_how(servo: dict[str, Any], monkeypatch: pytes
     monkeypatch.setattr(sys, "argv", ["servo.py", "a.png", "b.png"])
     with pytest.raises(SystemExit, match=r"usage: .*OUT\.png"):
         runpy.run_path(str(EXAMPLE), run_name="__main__")
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("servo")
+def test_it_runs_without_matplotlib_and_tells_what_the_picture_needs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.setattr(sys, "argv", [str(EXAMPLE)])
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(EXAMPLE), run_name="__main__")
+    said = capsys.readouterr()
+    assert said.out.startswith("stopped after") and "simkit-robotics[plot]" in said.err
+    assert list(tmp_path.iterdir()) == []
