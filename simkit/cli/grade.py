@@ -29,11 +29,11 @@ def grade(
     json_: options.Json = False,
 ) -> int:
     """Run an exercise with submitted plugins and print the results."""
-    return grade_files(exercise, submissions, junit, pictures, jobs, json_=json_)
+    return grade_files([exercise], submissions, junit, pictures, jobs, json_=json_)
 
 
 def grade_files(
-    exercise: Path,
+    exercises: list[Path],
     submissions: list[Path] | None = None,
     junit: Path | None = None,
     pictures: Path | None = None,
@@ -44,34 +44,37 @@ def grade_files(
     """Grade plugins, print the results, and return the exit code; the arguments are those of the command.
 
     Raises:
-        LoadError: the exercise has problems.
+        LoadError: an exercise has problems.
         InputError: a plugin does not exist, or a file cannot be written.
     """
     from simkit.testing.scenarios.exercise import read_exercise
     from simkit.testing.scenarios.grading import grade_all, grade_json, grade_text, junit_cases
 
     check_writable(junit)
-    task = read_exercise(exercise)
-    files = _files(submissions, exercise.parent / task.hand_in if task.hand_in else None)
-    if pictures is not None:
-        pictures.mkdir(parents=True, exist_ok=True)
+    tasks = [read_exercise(exercise) for exercise in exercises]
+    files = [_files(submissions, task.file.parent / task.hand_in if task.hand_in else None) for task in tasks]
     grades = []
-    for result in grade_all(task, files, pictures, jobs):
-        grades.append(result)
-        if not json_:
-            for line in grade_text(result):
-                stdout_console().print(line)
+    for task, of_task in zip(tasks, files, strict=True):
+        folder = pictures if pictures is None or len(tasks) == 1 else pictures / task.file.stem
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+        for result in grade_all(task, of_task, folder, jobs):
+            grades.append(result)
+            if not json_:
+                for line in grade_text(result):
+                    stdout_console().print(line)
     if json_:
         print_json([grade_json(result) for result in grades])
     if junit is not None:
         from simkit.testing.junit import write_junit
 
-        write_junit(junit, task.title, [case for result in grades for case in junit_cases(result)])
+        write_junit(junit, tasks[0].title, [case for result in grades for case in junit_cases(result)])
     if len(grades) > 1 and not json_:
         stdout_console().print("")
         for result in grades:
             state = "passed" if result.passed else "not passed"
-            stdout_console().print(f"{result.points:>6g} of {result.worth:g}  {state:<11}{result.hand_in}")
+            name = result.hand_in if len(tasks) == 1 else result.exercise.title
+            stdout_console().print(f"{result.points:>6g} of {result.worth:g}  {state:<11}{name}")
     return 0 if all(result.passed for result in grades) else _FAILED
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import sys
+from importlib import metadata
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +16,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors, report_errors_quietly
 from simkit.errors import InputError
+from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.loaders.resources.bundled_models import bundled_folders
 from simkit.writers.atomic_output import remove_abandoned, unfinished_folder
 
@@ -21,6 +24,7 @@ lab = typer.Typer(help="List, start and grade the labs of the course.", no_args_
 
 _EXERCISE = "exercise.yaml"
 _SOLUTION = "solution"
+_REQUIREMENTS = "requirements.txt"  # packages that a lab needs beside simkit, one in a line
 
 
 def _labs() -> dict[str, Path]:
@@ -82,7 +86,31 @@ def start(
     except OSError as error:
         raise _not_writable(folder, error.strerror or str(error)) from None
     print_line(f"{folder}: {', '.join(sorted(path.name for path in target.iterdir()))}")
+    missing = _missing_packages(target)
+    if missing:
+        print_line(f"this lab needs {' and '.join(missing)}: {_remedy(missing)}")
     print_line(f"read {folder / 'README.md'}, then run: simkit lab grade {folder}")
+
+
+def _missing_packages(folder: Path) -> list[str]:
+    """Return the packages that a lab needs and that are not installed."""
+    file = folder / _REQUIREMENTS
+    needed = read_input(file, TEXT_LIMIT).decode("utf-8", "replace").split() if file.is_file() else []
+    return [name for name in needed if not _is_installed(name)]
+
+
+def _is_installed(package: str) -> bool:
+    try:
+        metadata.version(package)
+    except (metadata.PackageNotFoundError, ValueError):
+        return False
+    return True
+
+
+def _remedy(missing: list[str]) -> str:
+    if sys.platform == "win32" and {"pin", "coal"} & set(missing):
+        return "there are no such packages for Windows; use Linux, macOS or the Windows Subsystem for Linux"
+    return "pip install 'simkit-robotics[labs]'"
 
 
 def _not_writable(folder: Path, reason: str) -> InputError:
@@ -98,9 +126,14 @@ def grade(
     jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
     json_: options.Json = False,
 ) -> int:
-    """Grade the lab in a folder: exit code 0 for full points, 5 otherwise."""
+    """Grade the exercises of the lab in a folder: exit code 0 for full points, 5 otherwise."""
     exercise = folder / _EXERCISE
-    if not exercise.is_file():
+    exercises = sorted(folder.glob("exercise*.yaml"))
+    if exercise not in exercises:
         hint = f"simkit lab start NAME {folder}; the labs are: {', '.join(_labs())}"
         raise InputError(f"SK-SCEN-007 no file {exercise}\n    help: {hint}", "SK-SCEN-007")
-    return grade_files(exercise, pictures=pictures, jobs=jobs, json_=json_)
+    missing = _missing_packages(folder)
+    if missing:
+        message = f"SK-CLI-056 {folder}: the lab needs {' and '.join(missing)}\n    help: {_remedy(missing)}"
+        raise InputError(message, "SK-CLI-056")
+    return grade_files(exercises, pictures=pictures, jobs=jobs, json_=json_)

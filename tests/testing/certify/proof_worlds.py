@@ -11,6 +11,7 @@ import planar_arm
 import test_fetch as fetch
 import test_ros_1_control as ros_1
 from proof_lab import BOX, HEAVY, LIGHT, gz, lab, plugin, ros, sensed, tags
+from rooms import rooms
 
 import simkit
 
@@ -55,6 +56,7 @@ FIVE = "".join(tags(left_joint=n) for n in ("fl_joint", "rl_joint")) + "".join(
 )
 PUSHED = tags(wind_obj=tags(name="car", link_name="base", coeff_vector="0.5 0.5 0.3"))
 SWELL = tags(wave=tags(model="CWR", number=2, amplitude=0.1, period=0.5, tau=0.1))
+EKF = tags(odom0="/odom", odom0_config="1 1 0  0 0 1  1 1 0  0 0 1  0 0 0", base_link_frame="base", two_d_mode=1)
 DENSITY = tags(uniform_fluid_density=40)
 CREATE = plugin("libgazebo_ros_create_{}.so")
 CREATE_DOCK = tags(receiver_link_name="base", dock_model_name="crate", emitter_link_name="l")
@@ -83,6 +85,24 @@ FLIGHT = gz(
     + tags(rotorConfiguration=CONFIGURATION, linearVelocityNoiseStdDev="0.1 0.1 0.1"),
     "MulticopterVelocityControl",
 )
+NAVIGATION = (
+    plugin("libsimkit_map_server.so", tags(height=0.5), "map_server")
+    + plugin("libsimkit_fake_localization.so", tags(base_frame_id="base", update_rate=100), "fake_localization")
+    + "".join(
+        plugin(
+            "libsimkit_costmap_2d.so",
+            tags(robot_base_frame="base", update_frequency=100, publish_frequency=100, rolling_window=rolls),
+            name,
+        )
+        for name, rolls in (("global_costmap", "false"), ("local_costmap", "true"))
+    )
+    + "".join(
+        plugin(f"libsimkit_{name}.so", tags(robot_base_frame="base"), name)
+        for name in ("planner_server", "controller_server", "behavior_server")
+    )
+)
+ODOMETRY = ros("diff_drive", REAR + tags(robot_base_frame="base", publish_odom_tf="true"))
+NAVIGATOR = plugin("libsimkit_bt_navigator.so", tags(robot_base_frame="base"), "bt_navigator")
 COUNTER = """
 class Counter:
     def configure(self, entity, sdf, ecm, event_mgr):
@@ -469,7 +489,18 @@ WORLDS: dict[str, str] = {
     ),
     "SolarSensor": lab(model=plugin("libsolar_sensor.so", tags(light_name="sun", gaussian_noise=0.1, update_rate=50))),
     "MapServer": lab(world=plugin("libsimkit_map_server.so", tags(height=0.05))),
+    "MapSaver": lab(world=plugin("libsimkit_map_server.so", tags(height=0.05)) + plugin("libsimkit_map_saver.so")),
+    "Amcl": rooms("<set_initial_pose>true</set_initial_pose><initial_pose><x>1</x><y>1</y></initial_pose>"),
+    **dict.fromkeys(
+        ("BehaviorServer", "ControllerServer", "Costmap2D", "FakeLocalization", "PlannerServer"),
+        lab(world=NAVIGATION, model=ODOMETRY),
+    ),
+    "BtNavigator": lab(world=NAVIGATION + NAVIGATOR, model=ODOMETRY),
     "TurtleSim": lab(world=plugin("libsimkit_turtlesim.so")),
+    "EkfNode": lab(
+        model=ros("p3d", tags(body_name="base", frame_name="odom", gaussian_noise=0.01, update_rate=50)),
+        world=plugin("libsimkit_robot_localization.so", EKF, "ekf_filter_node"),
+    ),
     "Sun": lab(
         world=plugin("simkit-sun", tags(start="2024-06-21T10:30:00Z", time_scale=600, update_rate=50), "simkit::Sun")
     ),
@@ -546,6 +577,13 @@ def _motion(folder: Path) -> simkit.Simulation:
     return planar_arm.load(folder)
 
 
+def _motion_planning(folder: Path) -> simkit.Simulation:
+    (folder / "controllers.yaml").write_text(planar_arm.CONTROLLERS)
+    planner = plugin("libsimkit_move_group.so", name="move_group")
+    (folder / "lab.sdf").write_text(planar_arm.world(planar_arm.model(extra=planner)))
+    return simkit.load(folder / "lab.sdf")
+
+
 def _python_system(folder: Path) -> simkit.Simulation:
     (folder / "counter.py").write_text(COUNTER)
     text = lab(model=gz("python-system-loader", tags(module_name="counter"), "PythonSystemLoader"))
@@ -569,6 +607,7 @@ OPENED: dict[str, Callable[[Path], simkit.Simulation]] = {
     "FetchGazeboPlugin": _fetch,
     "BaxterControl": _baxter,
     "PlayMotion": _motion,
+    "MoveGroup": _motion_planning,
     "PythonSystemLoader": _python_system,
     "LogRecord": _log("LogRecord"),
     "LogPlayback": _log("LogPlayback"),
@@ -589,7 +628,9 @@ IDLE: dict[str, Idle] = {
     "MimicJoint": Idle("couples joints, when the world is loaded"),
     "GazeboLinkAttacher": Idle("attaches nothing here; its test calls its services"),
     "GazeboRosLinkAttacher": Idle("attaches nothing here; its test calls its services"),
+    "MapSaver": Idle("writes nothing here; its test calls its service"),
     "MapServer": Idle("publishes its map when the world is loaded; its test loads others"),
+    "MoveGroup": Idle("waits for requests here; its test plans"),
     "GraspFix": Idle("attaches nothing here; its test lifts a cube"),
     "ArduPilotPlugin": Idle("waits for an autopilot here; its test plays one"),
     "GazeboMavlinkInterface": Idle("waits for an autopilot here; its test plays one"),

@@ -21,7 +21,10 @@ pytestmark = pytest.mark.slow  # slow: many worlds
 def check_transfer(one: simkit.Simulation, other: simkit.Simulation, steps: int) -> None:
     runner, second = proof.Runner(one, steps), proof.Runner(other, steps)
     runner.run(1)
-    if "/play_motion2" in one.communication.actions.names():  # a goal is being carried out: the snapshot says so
+    if {
+        "/play_motion2",
+        "/navigate_to_pose",
+    } & one.communication.actions.names().keys():  # a goal is being carried out: the snapshot says so
         with pytest.raises(TypeError, match="GoalHandle cannot be pickled"):
             pickle.dumps(one.snapshot())
         return

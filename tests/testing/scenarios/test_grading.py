@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from simkit import LoadError
 from simkit.cli import app
+from simkit.errors import InputError, LoadError
 from simkit.testing.scenarios.exercise import read_exercise
 from simkit.testing.scenarios.grading import grade, grade_all, grade_json, grade_text, junit_cases, short_labels
 
@@ -96,6 +96,22 @@ def test_a_file_without_a_plugin_is_reported(folder):
 
 
 @pytest.mark.slow
+def test_an_error_in_a_plugin_that_the_world_names_is_one_of_the_plugin(folder):
+    world = CART.replace("</model>", '<plugin name="Push" filename="push.py"/></model>')
+    (folder / "cart.sdf").write_text(world)
+    (folder / "push.yaml").write_text(EXERCISE.replace("  robot: cart\n", "").replace("parameters: {speed: 0.1}", ""))
+    exercise = read_exercise(folder / "push.yaml")
+    hand_in(folder, "this is no Python")
+    graded = grade(exercise, folder / "push.py")
+    assert graded.points == 0.0 and "SyntaxError" in graded.outcomes[0].error
+    (folder / "push.py").write_text("import no_such_module\n")
+    graded = grade(exercise, folder / "push.py")
+    assert graded.points == 0.0 and "no_such_module" in graded.outcomes[0].error
+    (folder / "cart.sdf").write_text(world.replace("<mass>1", "<mass>-1"))
+    with pytest.raises(InputError, match="has mass -1 kg"):  # the exercise is wrong too
+        grade(exercise, folder / "push.py")
+
+
 def test_the_command_grades_several_and_writes_junit(folder):
     weak = folder / "weak.py"
     weak.write_text(PUSH.replace("BODY", "pass"))
