@@ -50,7 +50,8 @@ def test_a_short_text_that_expands_too_much_is_refused() -> None:
 
 
 def test_a_text_that_expands_too_much_by_merging_is_refused() -> None:
-    text = "a0: &a0 {x: 1}\n" + "".join(f"a{i}: &a{i} {{<<: [{f'*a{i - 1}, ' * 9}]}}\n" for i in range(1, 20))
+    base = "".join(f"  k{i}: {i}\n" for i in range(1000))
+    text = f"base: &base\n{base}" + "".join(f"a{i}: {{<<: *base}}\n" for i in range(1200))
     with pytest.raises(NotYaml, match="expands to more than") as caught:
         read_yaml(text)
     assert caught.value.line is not None
