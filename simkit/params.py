@@ -12,13 +12,13 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
+from simkit.number_text import is_number, parse_boolean, parse_number, range_text, without_units
 from simkit.pose import IDENTITY, Pose
 
 T = TypeVar("T")
 LARGEST = 1e100
 """Largest accepted magnitude of a vector's component or standard deviation; squares of larger numbers may overflow."""
 _FARTHEST = 1e15  # [m] largest coordinate of a pose; sums of larger poses would lose their precision
-_TRUTHS = {"true": True, "1": True, "false": False, "0": False}
 _NOT, _READ, _WHOLLY = range(3)  # element unread; read; read with all its children
 
 
@@ -176,13 +176,13 @@ class Params:
             return 0.0 if default is None else default
         try:  # fast path: most values are valid numbers, so the text for an error is not made yet
             if found is not None:
-                return _number(found.value, minimum, maximum, finite)
+                return parse_number(found.value, minimum, maximum, finite)
         except ValueError:
             pass
-        allowed = "a number" + _range_text(minimum, maximum)
+        allowed = "a number" + range_text(minimum, maximum)
 
         def parse(p: Params) -> float:
-            return _number(self._numeral(p, " ".join(p.first_of(1))), minimum, maximum, finite)
+            return parse_number(self._numeral(p, " ".join(p.first_of(1))), minimum, maximum, finite)
 
         return self._value(name, default, 0.0, required, parse, allowed)
 
@@ -200,17 +200,17 @@ class Params:
         """
 
         def parse(p: Params) -> int:
-            number = _number(self._numeral(p, p.value), minimum, maximum, True)
+            number = parse_number(self._numeral(p, p.value), minimum, maximum, True)
             if number != int(number):
                 message = f"<{name}>{p.value}</{name}> is not a whole number, {int(number)} is used"
                 p.diagnostics.warning("SK-PARAM-005", message, p.where)
             return int(number)
 
-        return self._value(name, default, 0, required, parse, "a whole number" + _range_text(minimum, maximum))
+        return self._value(name, default, 0, required, parse, "a whole number" + range_text(minimum, maximum))
 
     def boolean(self, name: str, default: bool | None = None, required: bool = False) -> bool:
         """Return the truth value in a child: true, false, 1 or 0."""
-        return self._value(name, default, False, required, lambda p: _boolean(p.value), "true, false, 1 or 0")
+        return self._value(name, default, False, required, lambda p: parse_boolean(p.value), "true, false, 1 or 0")
 
     def vector(
         self, name: str, size: int, default: Sequence[float] | None = None, required: bool = False
@@ -221,7 +221,7 @@ class Params:
             parts = p.first_of(size)
             if len(parts) != size:
                 raise ValueError
-            return tuple(_number(v, -LARGEST, LARGEST, True) for v in parts)
+            return tuple(parse_number(v, -LARGEST, LARGEST, True) for v in parts)
 
         fallback = None if default is None else tuple(float(v) for v in default)
         return self._value(name, fallback, (0.0,) * size, required, parse, f"{size} numbers")
@@ -260,7 +260,7 @@ class Params:
     def first_of(self, count: int) -> list[str]:
         """Return the first words of this element's text. Surplus numbers are ignored with a warning, as in Gazebo."""
         parts = self.value.split()
-        if len(parts) > count and all(map(_is_number, parts)):
+        if len(parts) > count and all(map(is_number, parts)):
             shown = self.value if len(self.value) <= 60 else self.value[:57] + "..."
             what = "number is" if count == 1 else f"{count} numbers are"
             message = f"<{self.name}>{shown}</{self.name}> has {len(parts)} numbers, the first {what} used"
@@ -274,10 +274,10 @@ class Params:
         Raises:
             ValueError: the text is not a pose.
         """
-        numbers = [_number(v, -_FARTHEST, _FARTHEST, True) for v in self.value.split()]
+        numbers = [parse_number(v, -_FARTHEST, _FARTHEST, True) for v in self.value.split()]
         if not numbers:
             return IDENTITY
-        degrees = _boolean(self.attribute("degrees", "false"))
+        degrees = parse_boolean(self.attribute("degrees", "false"))
         form = self.attribute("rotation_format", "euler_rpy") or "euler_rpy"
         if form == "quat_xyzw":
             if len(numbers) != 7 or degrees:
@@ -342,8 +342,16 @@ class Params:
         try:
             return parse(found)
         except ValueError:
-            self._bad(self._as_written(name, found.value), allowed, found.where)
+            written, found.value = found.value, without_units(found.value)
+        try:
+            value = parse(found)
+        except ValueError:
+            found.value = written
+            self._bad(self._as_written(name, written), allowed, found.where)
             return fallback if default is None else default
+        message = f"{self._as_written(name, written)} has letters after a number, {found.value} is used"
+        self.diagnostics.warning("SK-PARAM-005", message, found.where)
+        return value
 
     def _numeral(self, found: Params, text: str) -> str:
         """Return the text of a number; sdformat reads `true` and `false` as 1 and 0."""
@@ -363,38 +371,3 @@ class Params:
     def _bad(self, text: str, allowed: str, where: Where) -> None:
         shown = text if len(text) <= 200 else text[:200] + "..."
         self.diagnostics.error("SK-PARAM-002", f"found {shown}; expected {allowed}", where)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-def number_or_nan(text: str) -> float:
-    """Return the number that a text contains; NaN if the text is not a number."""
-    return float(text) if _is_number(text) else math.nan
-
-
-def _range_text(minimum: float | None, maximum: float | None) -> str:
-    if minimum is not None:
-        return f" of at least {minimum:g}" if maximum is None else f" from {minimum:g} to {maximum:g}"
-    return f" of at most {maximum:g}" if maximum is not None else ""
-
-
-def _number(text: str, minimum: float | None, maximum: float | None, finite: bool) -> float:
-    value = float(text)
-    if "_" in text or not text.isascii() or value != value or (finite and math.isinf(value)):
-        raise ValueError(text)
-    if (minimum is not None and value < minimum) or (maximum is not None and value > maximum):
-        raise ValueError(text)
-    return value
-
-
-def _boolean(text: str) -> bool:
-    truth = _TRUTHS.get(text.strip().lower())
-    if truth is None:
-        raise ValueError(text)
-    return truth

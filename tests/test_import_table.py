@@ -31,6 +31,7 @@ SMALL_MODULES = frozenset(
         "lifecycle",
         "msgs",
         "mujoco_import",
+        "number_text",
         "params",
         "pose",
     }

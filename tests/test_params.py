@@ -53,6 +53,14 @@ def test_a_truth_value_for_a_number_is_one_or_zero_with_a_warning():
     assert "<a>false</a> is not a number, 0 is used" in [d.message for d in p.diagnostics]
 
 
+def test_letters_after_a_number_are_ignored_with_a_warning_as_in_gazebo():
+    p = block("<a>1.5m</a><b>0 0 1 0 0 -1.92s</b><c>-2kg</c><d>m1</d>")
+    assert (p.number("a"), p.pose("b").rpy[2]) == (1.5, pytest.approx(-1.92))
+    assert (p.number("a"), p.number("c", 4.0, minimum=0.0), p.number("d", 3.0)) == (1.5, 4.0, 3.0)
+    assert [d.code for d in p.diagnostics] == ["SK-PARAM-005"] * 2 + ["SK-PARAM-002"] * 2
+    assert "<c>-2kg</c>" in list(p.diagnostics)[2].message
+
+
 def test_the_error_for_a_number_out_of_range_has_the_range():
     p = block("\n<a>-1</a>")
     p.number("a", minimum=0, maximum=2)

@@ -112,6 +112,8 @@ class Commands:
 def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
     """Parse `--cmd-vel LINEAR,ANGULAR`: a Twist on `/cmd_vel`, or on the world's only Twist topic.
 
+    The command is repeated until the end, because many controllers stop 0.5 s after their last command.
+
     Args:
         text: forward speed [m/s] and yaw rate [rad/s], separated by a comma.
         topics: topic -> type, for all topics of the world.
@@ -132,13 +134,22 @@ def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
     # a controller of ros2_control takes commands without a stamp on a second topic and publishes its limited commands
     companions = {f"{topic}{suffix}" for topic in twists for suffix in ("_unstamped", "_out")}
     twist_topics = [topic for topic in twists if topic not in companions]
-    topic = "/cmd_vel" if "/cmd_vel" in twist_topics else twist_topics[0] if len(twist_topics) == 1 else None
+    topic = twist_topics[0] if len(twist_topics) == 1 else _outermost_cmd_vel(twist_topics)
     if topic is None:
         found = f"several ({', '.join(twist_topics)}); choose one in a --script" if twist_topics else "none"
         raise InputError(f"SK-CLI-010 --cmd-vel needs exactly one Twist topic; found {found}", "SK-CLI-010")
     twist = {"linear": {"x": linear}, "angular": {"z": angular}}
     message = twist if topics[topic] == _TWISTS[0] else {"twist": twist}
-    return Command(0.0, topic, message, where="--cmd-vel")
+    return Command(0.0, topic, message, until=_LATEST, where="--cmd-vel")
+
+
+def _outermost_cmd_vel(topics: list[str]) -> str | None:
+    """Return the topic `cmd_vel` whose namespace contains all the other topics: a remapped topic of a controller."""
+    for topic in topics:
+        namespace, _, name = topic.rpartition("/")
+        if name == "cmd_vel" and all(other.startswith(f"{namespace}/") for other in topics):
+            return topic
+    return None
 
 
 def read_script(path: Path, topics: Mapping[str, str]) -> list[Command]:

@@ -166,3 +166,12 @@ def test_a_reader_that_ends_does_not_change_the_exit_code(tmp_path: Path) -> Non
         done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
         os.close(writer)
         assert (done.returncode, done.stderr) == (code, ""), words
+
+
+@pytest.mark.parametrize("words", [("--resource-path", "mdels"), ("--package-path", "robot=mdels")])
+def test_a_search_folder_that_does_not_exist_is_an_error(tmp_path: Path, words: tuple[str, str]) -> None:
+    path = tmp_path / "world.sdf"
+    path.write_text('<sdf version="1.9"><world name="w"/></sdf>')
+    found = CliRunner().invoke(app, ["check", str(path), *words])
+    assert found.exit_code == 2
+    assert "SK-CLI-018" in found.output and "'mdels'" in found.output

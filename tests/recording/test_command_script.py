@@ -48,6 +48,7 @@ def test_a_constant_velocity_is_sent_on_cmd_vel(text: str) -> None:
     command = steady_velocity(text, TOPICS)
     assert (command.topic, command.at) == ("/cmd_vel", 0.0)
     assert command.message == {"linear": {"x": 0.2}, "angular": {"z": 0.3}}
+    assert [command.time(index) for index in (1, 2, 36_000)] == [0.1, 0.2, 3600.0]
 
 
 def test_a_constant_velocity_is_sent_on_the_only_twist_topic() -> None:
@@ -65,6 +66,14 @@ def test_a_constant_velocity_drives_a_controller_with_a_second_input_and_an_outp
         "/base/cmd_vel_out": "geometry_msgs/msg/TwistStamped",
     }
     assert steady_velocity("1,0", topics).topic == "/base/cmd_vel"
+
+
+def test_a_constant_velocity_is_sent_on_the_remapped_topic_of_a_controller() -> None:
+    twist = "geometry_msgs/msg/Twist"
+    topics = {"/robot/base_controller/cmd_vel": twist, "/robot/cmd_vel": twist}
+    assert steady_velocity("1,0", topics).topic == "/robot/cmd_vel"
+    with pytest.raises(InputError, match="several"):
+        steady_velocity("1,0", {**topics, "/other/cmd_vel": twist})
 
 
 @pytest.mark.parametrize(

@@ -120,6 +120,7 @@ def test_a_snapshot_is_pickled_after_the_world_went_on(folder: Path) -> None:
         sim.restore(portable)
         assert end(sim) == expected
         assert (portable.tick, portable.time, portable.size) == (200, 0.2, len(portable.content))
+        assert (snapshot.time, snapshot.size) == (0.2, portable.size)
 
 
 def test_another_world_refuses_a_snapshot_and_stays_as_it_is(folder: Path) -> None:

@@ -169,7 +169,14 @@ def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
 def source_arguments(
     resource_paths: Sequence[Path], package_paths: Sequence[str], xacro_args: Sequence[str], base: str = "auto"
 ) -> SourceOptions:
-    """Return the options for reading a file as keyword arguments."""
+    """Return the options for reading a file as keyword arguments.
+
+    Raises:
+        InputError: SK-CLI-018 a folder does not exist, or another value is not allowed.
+    """
+    for folder in resource_paths:
+        if not folder.expanduser().is_dir():
+            raise InputError(f"SK-CLI-018 --resource-path: there is no folder {str(folder)!r}", "SK-CLI-018")
     return {
         "resource_paths": resource_paths,
         "package_paths": tuple(package_paths),

@@ -80,8 +80,8 @@ class Resolver:
         found += [Path(p) / "share" for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
         self.paths: tuple[Path, ...] = tuple(dict.fromkeys(absolute_path(p) for p in found))
         named, workspaces = split_package_paths(package_paths)
-        for folder in workspaces:
-            if not folder.is_dir():
+        for folder in (*workspaces, *named.values()):
+            if not Path(folder).is_dir():
                 message = f"SK-CLI-018 package path: found {str(folder)!r}; expected NAME=DIR or a folder that exists"
                 raise InputError(message, "SK-CLI-018")
         self.packages = PackageIndex(
@@ -256,7 +256,7 @@ class Resolver:
                 if ancestor.name == name and not is_private(ancestor):
                     yield ancestor / inside
             yield folder / name / inside
-            for near in (folder.parent / name, folder.parent / "models" / name):
+            for near in (folder / "models" / name, folder.parent / name, folder.parent / "models" / name):
                 if not is_private(near):
                     yield near / inside
         for bundle in bundled_folders("assets"):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
-from simkit.diagnostics import Diagnostic, Diagnostics, Where
+from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, MjcfParser
 from simkit.loaders.resources.model_folder import NEWEST_SDF, sdf_version
 from simkit.loaders.resources.uri_resolver import Resolver
@@ -206,13 +206,15 @@ class NamedElement:
     def pose_of(self, inner: Params, what: str) -> Pose:
         """Return the pose of an element inside a link (or joint) in that link's frame.
 
-        The element's `relative_to` can name another frame.
+        The element's `relative_to` can name another frame. For an unknown frame, Gazebo uses the frame of the link.
         """
         pose, base = read_pose(inner)
         if not base:
             return pose
         if self.scope.chain(base) is None:
-            self.scope.report_unknown(base, f"{what}: the frame", pose_location(inner))
+            message = f"{what}: the frame {base!r} does not exist here; the pose is used in the frame of {self.name!r}"
+            hint = did_you_mean(base, self.scope.all_names())
+            inner.diagnostics.warning("SK-SDF-040", message, pose_location(inner), hint)
             return pose
         return self.scope.resolve(self.frame).inverse() @ self.scope.pose_of(base) @ pose
 

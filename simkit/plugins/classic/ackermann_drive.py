@@ -132,11 +132,13 @@ class GazeboRosAckermannDrive(CommandedDrive):
     def _add_steering_wheel_servo(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> ActuatorRef | None:
         """Add a servo for the joint of the steering wheel.
 
-        No error is reported if the model has no joint with Classic's default name.
+        Without this joint the car drives, too: many files copy the element from a car that has a steering wheel.
         """
         name = self.options.steering_wheel_joint
-        there = any(name in (joint.name, joint.scoped) for joint in scene.all_joints())
-        if not (params.has("steering_wheel_joint") or there):
+        if not any(name in (joint.name, joint.scoped) for joint in scene.all_joints()):
+            if params.has("steering_wheel_joint"):
+                found = f"model {scene.name!r} has no joint {name!r}; the car drives without a steering wheel"
+                params.block("steering_wheel_joint").warning("SK-PLUGIN-124", found, "remove <steering_wheel_joint>")
             return None
         joint = find_drive_joint(scene, name, "steering wheel", params)
         if joint is None:

@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.msgs.topic_names import valid_topic
-from simkit.params import Params, number_or_nan
+from simkit.number_text import number_or_nan
+from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.endpoints import listens, offers
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data

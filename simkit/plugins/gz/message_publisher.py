@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from simkit.params import Params, number_or_nan
+from simkit.number_text import number_or_nan
+from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.gz.message_elements import message_kind, read_message, ros_type_of, topic_attribute
 from simkit.plugins.gz_python.msgs.message import Message

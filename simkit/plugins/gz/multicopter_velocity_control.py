@@ -95,9 +95,10 @@ class MulticopterVelocityControl(ModelPlugin):
         rows = [row for row in (self._read_rotor(scene, rotor) for rotor in options.configuration.rotors) if row]
         self._mass = sum(float(link.inertial.mass) for link in scene.all_links())
         effects = np.array(rows).reshape(-1, 4).T
+        sizes = np.linalg.norm(effects, axis=1)  # a Crazyflie's torque at 1 rad/s is only 1e-10 N·m
         if params.diagnostics.error_count > faults:
             return  # rotors that could not be read are reported already
-        if np.linalg.matrix_rank(effects, tol=1e-9) < 4:
+        if not sizes.all() or np.linalg.matrix_rank(effects / sizes[:, np.newaxis], tol=1e-6) < 4:
             found = f"<rotorConfiguration> has {len(rows)} rotors that cannot push and turn the vehicle about all axes"
             hint = "list at least four rotors that are not in one line, with both directions"
             params.error("SK-PLUGIN-116", f"{found}", hint)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Final
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs.topic_names import valid_topic
-from simkit.params import Params, number_or_nan
+from simkit.number_text import number_or_nan
+from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.gz.message_elements import (
     message_kind,

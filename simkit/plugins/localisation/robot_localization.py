@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.errors import TransformError
-from simkit.params import Params, number_or_nan
+from simkit.number_text import number_or_nan
+from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.drives.odometry import BodyTwist
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms

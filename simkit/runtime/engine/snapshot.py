@@ -56,7 +56,17 @@ class Snapshot(InProcess):
     seed: int = 0
     owner: object = None
     variant: int = 0
-    pack: Callable[[Snapshot], object] | None = None
+    pack: Callable[[Snapshot], PackedSnapshot] | None = None
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the state [s]."""
+        return self._packed().time
+
+    @property
+    def size(self) -> int:
+        """Number of bytes of the snapshot for another process; they are counted at each call."""
+        return self._packed().size
 
     @property
     def is_complete(self) -> bool:
@@ -67,13 +77,31 @@ class Snapshot(InProcess):
         return f"<Snapshot at tick {self.tick}>" if self.is_complete else "<Snapshot of a step that has not ended>"
 
     def __reduce__(self) -> Any:
+        return self._packed().__reduce__()
+
+    def _packed(self) -> PackedSnapshot:
         if not self.is_complete or self.pack is None:
             message = "the snapshot was requested in a step that has not ended; pickle it after that step"
             raise ArgumentValueError(message)
-        return self.pack(self).__reduce__()
+        return self.pack(self)
 
     def __getattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"a snapshot has no {name!r} before the end of the step in which it was requested")
+
+
+class PackedSnapshot(Protocol):
+    """Snapshot for another process."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the state [s]."""
+
+    @property
+    def size(self) -> int:
+        """Number of bytes of the state."""
+
+    def __reduce__(self) -> Any:
+        """Return the function and the arguments that create the snapshot again."""
 
 
 class Stateful(Protocol):
@@ -121,7 +149,7 @@ class Snapshots:
     ) -> None:
         self._owner, self._engine, self._parts, self._commands = owner, engine, parts, commands
         self._adopt = adopt
-        self.pack: Callable[[Snapshot], object] | None = None
+        self.pack: Callable[[Snapshot], PackedSnapshot] | None = None
         self.variant = 0
 
     def defer(self) -> tuple[Snapshot, Callable[[], None]]:

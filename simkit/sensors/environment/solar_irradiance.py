@@ -11,7 +11,8 @@ import numpy as np
 
 from simkit.compiler import Compiled
 from simkit.in_process import InProcess
-from simkit.params import LARGEST, Params, number_or_nan
+from simkit.number_text import number_or_nan
+from simkit.params import LARGEST, Params
 from simkit.pose import Vector, quat_from_rpy, quat_multiply
 from simkit.runtime.handles.light import Light, LightState
 from simkit.scene.geometry import Vec3

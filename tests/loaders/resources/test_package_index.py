@@ -203,6 +203,15 @@ def test_the_models_of_a_package_in_the_workspace_are_found(write, package):
         assert [model.name for model in sim.world.models] == ["table"]
 
 
+def test_a_model_in_the_folder_models_beside_a_world_without_a_package_is_found(write):
+    model = '<sdf version="1.9"><model name="table"><link name="l"/></model></sdf>'
+    write("downloads/models/table/model.config", "<model><sdf version='1.9'>model.sdf</sdf></model>")
+    write("downloads/models/table/model.sdf", model)
+    world = '<sdf version="1.9"><world name="w"><include><uri>model://table</uri></include></world></sdf>'
+    with simkit.load(write("downloads/w.sdf", world)) as sim:
+        assert [model.name for model in sim.world.models] == ["table"]
+
+
 @pytest.mark.parametrize("folder", ["Media/models", "media"])
 def test_a_relative_file_is_found_in_the_media_folder_of_the_package(write, used, package, folder):
     package("ws/src/mine/robot")

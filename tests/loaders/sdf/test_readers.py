@@ -217,3 +217,15 @@ def test_one_number_scales_a_mesh_along_all_axes_with_a_warning(load, tmp_path):
     assert scene.model.links[0].visuals[0].geometry.scale == (2.0, 2.0, 2.0)
     told = [(d.severity, d.hint) for d in found if d.code == "SK-MESH-017"]
     assert told == [("warning", "write <scale>2 2 2</scale>")]
+
+
+def test_a_shape_or_sensor_in_an_unknown_frame_stays_in_its_link_with_a_warning(load):
+    shape = "<geometry><sphere><radius>1</radius></sphere></geometry>"
+    inside = f"""<collision name="c"><pose relative_to="wheel">1 0 0 0 0 0</pose>{shape}</collision>
+        <sensor name="s" type="imu"><pose relative_to="ll">0 2 0 0 0 0</pose></sensor>"""
+    scene, found = load(body(inside))
+    link = scene.model.links[0]
+    assert link.collisions[0].pose_link.position.tolist() == [1, 0, 0]
+    assert link.sensors[0].pose_link.position.tolist() == [0, 2, 0]
+    warnings = sorted((d.code, d.message.split(":")[0]) for d in found if d.severity != "note")
+    assert warnings == [("SK-SDF-040", "collision 'c' of link 'l'"), ("SK-SDF-040", "sensor 's'")]

@@ -70,6 +70,13 @@ def test_without_gains_nothing_moves_and_the_steering_wheel_is_optional():
     assert not [d for d in sim.diagnostics if d.severity == "error"]
 
 
+def test_a_steering_wheel_that_the_car_does_not_have_is_a_warning():
+    sim = simkit.load(world(car(plugin("<steering_wheel_joint>wheel_of_a_bus</steering_wheel_joint>"))))
+    drive(sim, 0.5, 0.0, 2.0)
+    assert sim.model("car").pose.position[0] > 0.3
+    assert [d.code for d in sim.diagnostics if "wheel_of_a_bus" in d.message] == ["SK-PLUGIN-124"]
+
+
 def test_a_car_that_cannot_be_measured_is_refused():
     text = world(car(plugin())).replace("<sphere><radius>0.1</radius></sphere>", "<box><size>0.2 0.2 0.2</size></box>")
     with pytest.raises(simkit.LoadError) as caught:

@@ -179,6 +179,13 @@ def test_noise_of_the_estimates_is_the_same_for_one_seed() -> None:
     assert height(1) == height(1) != height(2)
 
 
+def test_rotors_of_a_vehicle_of_25_grams_can_fly() -> None:
+    """The largest torque of such a rotor at 1 rad/s is 4e-10 N·m."""
+    text = world(controller()).replace(str(THRUST), "1.3e-08").replace("0.2 ", "0.03 ")
+    with simkit.load(text) as sim:
+        assert not [found for found in sim.diagnostics if found.severity == "error"]
+
+
 def test_three_rotors_cannot_fly_and_this_is_an_error() -> None:
     with pytest.raises(simkit.InputError, match="SK-PLUGIN-116: .* 3 rotors"):
         simkit.load(world(controller(rotors=3)))
