@@ -237,7 +237,8 @@ class BtNavigator(Plugin):
         self._cancel(task.follow)
         task.follow = None
         if task.recoveries >= options.number_of_retries:
-            reason = f"{failed.reason or problem}; {task.recoveries} recoveries did not help"
+            tried = "1 recovery" if task.recoveries == 1 else f"{task.recoveries} recoveries"
+            reason = f"{failed.reason or problem}; {tried} did not help"
             self._abort(task, reason, getattr(failed.result, "error_code", 0))
             return
         task.recoveries += 1
