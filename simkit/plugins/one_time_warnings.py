@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.diagnostics import Where
     from simkit.runtime import Simulation
+
+_LEFT_OUT: Final = "SK-PLUGIN-041"
 
 
 class Reporter(Protocol):
@@ -43,8 +45,23 @@ class OneTimeWarnings(SharedByCopies):
 
     def left_out(self, cause: str, message: str, hint: str = "") -> None:
         """Warn that a command is ignored."""
-        self.warn("SK-PLUGIN-041", cause, message, hint)
+        self.warn(_LEFT_OUT, cause, message, hint)
 
     def not_finite(self, command: str = "a command") -> None:
         """Warn that a command with a NaN or infinite number is ignored."""
         self.left_out("finite", f"{command} with a NaN or infinite number is ignored")
+
+    def has_type(self, message: Any, expected: str, parameter: str, code: str = _LEFT_OUT) -> bool:
+        """Check the type of a message, and warn that a message of another type is ignored.
+
+        Args:
+            message: message.
+            expected: type that the plugin needs.
+            parameter: parameter with the name of the topic.
+            code: code of the warning.
+        """
+        found: str = message.__msgtype__
+        if found != expected:
+            text = f"messages of the type {found} on <{parameter}> are ignored; expected {expected}"
+            self.warn(code, f"type of {parameter}", text, f"check <{parameter}>")
+        return found == expected

@@ -28,6 +28,7 @@ _POSE: Final = "geometry_msgs/msg/PoseWithCovarianceStamped"
 _CLOUD: Final = "nav2_msgs/msg/ParticleCloud"
 _SCAN: Final = "sensor_msgs/msg/LaserScan"
 _GRID: Final = "nav_msgs/msg/OccupancyGrid"
+_CODE: Final = "SK-AMCL-001"
 _FARTHEST: Final = 1e9  # [m] of an initial pose and its deviation; larger numbers overflow in the filter
 _FIELD_MODELS: Final = ("likelihood_field", "likelihood_field_prob")
 _DIFFERENTIAL: Final = "nav2_amcl::DifferentialMotionModel"
@@ -164,7 +165,7 @@ class Amcl(Plugin):
         elif len(found.free):
             self._restart(found.random_poses(int(self._value("max_particles")), self._generator()))
         else:
-            self._once.warn("SK-AMCL-001", "free", "the map has no free cells, so a robot is nowhere")
+            self._once.warn(_CODE, "free", "the map has no free cells, so a robot is nowhere")
 
     def _force(self) -> None:
         self._is_forced = True
@@ -189,31 +190,23 @@ class Amcl(Plugin):
         self._begin(np.array([*pose.position[:2], pose.rpy[2]]), covariance)
 
     def _on_map(self, message: Any) -> None:
-        found = LikelihoodMap.from_message(message) if self._has_type(message, _GRID, "map_topic") else None
+        found = LikelihoodMap.from_message(message) if self._once.has_type(message, _GRID, "map_topic", _CODE) else None
         if found is None:
             text = "a map is ignored that is empty, or whose size, resolution or origin is not valid"
-            self._once.warn("SK-AMCL-001", "map values", text)
+            self._once.warn(_CODE, "map values", text)
             return
         frame, expected = message.header.frame_id.lstrip("/"), self._value("global_frame_id")
         if frame != expected:
             text = f"the map is in the frame {frame!r:.60}, <global_frame_id> is {expected!r}"
-            self._once.warn("SK-AMCL-001", "map frame", text, "give both the same name")
+            self._once.warn(_CODE, "map frame", text, "give both the same name")
         self._map = found
         if self._is_everywhere:
             self._spread()
 
-    def _has_type(self, message: Any, expected: str, parameter: str) -> bool:
-        """Check the type of a message; a message of another type is ignored after a warning."""
-        found: str = message.__msgtype__
-        if found != expected:
-            text = f"messages of the type {found} on <{parameter}> are ignored; expected {expected}"
-            self._once.warn("SK-AMCL-001", parameter, text, f"check <{parameter}>")
-        return found == expected
-
     # ------------------------------------------------------------------ scans
 
     def _on_scan(self, scan: Any) -> None:
-        if not self._has_type(scan, _SCAN, "scan_topic"):
+        if not self._once.has_type(scan, _SCAN, "scan_topic", _CODE):
             return
         if not math.isfinite(scan.angle_min + scan.angle_increment * len(scan.ranges)):
             self._once.not_finite("a scan")
@@ -235,7 +228,7 @@ class Amcl(Plugin):
             sensor = self.sim.tf.lookup(base, scan.header.frame_id, scan.header.stamp)
         except TransformError as error:
             if self.sim.time - self._waits_since > _PATIENCE:
-                self._once.warn("SK-AMCL-001", "tf", f"scans are not used: {error}", "check the names of the frames")
+                self._once.warn(_CODE, "tf", f"scans are not used: {error}", "check the names of the frames")
             return
         self._pending = None
         if self._filter is None:
@@ -245,7 +238,7 @@ class Amcl(Plugin):
             return
         if self._map is None:
             if self.sim.time > _PATIENCE:
-                self._once.warn("SK-AMCL-001", "map", "there is no map", "add a map server, or check <map_topic>")
+                self._once.warn(_CODE, "map", "there is no map", "add a map server, or check <map_topic>")
             return
         self._localise(self._filter, self._map, scan, odometry, sensor)
 

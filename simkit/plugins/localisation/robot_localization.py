@@ -213,11 +213,8 @@ class EkfNode(Plugin):
 
     def _take(self, take: Callable[[str, Any], None], type_name: str, name: str, message: Any) -> None:
         """Pass a message to its function; a message of another type is ignored after a warning."""
-        if message.__msgtype__ == type_name:
+        if self._once.has_type(message, type_name, name, "SK-EKF-001"):
             take(name, message)
-        else:
-            text = f"messages of the type {message.__msgtype__} on <{name}> are ignored; expected {type_name}"
-            self._once.warn("SK-EKF-001", name, text, f"check <{name}>")
 
     def _take_odometry(self, name: str, message: Any) -> None:
         one = self._inputs[name]

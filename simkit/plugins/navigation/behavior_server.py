@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
 from simkit.params import Params
-from simkit.plugins.base import NEVER, Plugin
+from simkit.plugins.base import NEVER
 from simkit.plugins.endpoints import listens
-from simkit.plugins.navigation.cost_grid import CostGrid, grid_of_message
+from simkit.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
 from simkit.plugins.navigation.footprint import Footprint, read_footprint
 from simkit.plugins.navigation.planar_pose import PlanarPose, look_up, open_transforms
 from simkit.plugins.options import Options, OptionsOf, number, text
@@ -32,7 +32,7 @@ class BehaviorServerOptions(Options):
     cycle_frequency: float = number(10.0, "Hz", minimum=0.1, maximum=1000)
     local_frame: str = text("odom")
     robot_base_frame: str = text("base_link")
-    costmap_topic: str = text("/local_costmap/costmap_raw")
+    costmap_topic: str = text("local_costmap/costmap_raw")
     simulate_ahead_time: float = number(2.0, "s", minimum=0)
     max_rotational_vel: float = number(1.0, "rad/s", minimum=0)
     min_rotational_vel: float = number(0.4, "rad/s", minimum=0)
@@ -68,7 +68,7 @@ class _Motion:
     turned: float = 0.0
 
 
-class BehaviorServer(Plugin):
+class BehaviorServer(CostmapReader):
     """Moves a robot without a path: actions `spin`, `backup`, `drive_on_heading` and `wait`.
 
     A motion ends as aborted before the robot touches an obstacle of the local costmap, or after its time allowance.
@@ -78,26 +78,20 @@ class BehaviorServer(Plugin):
     names = ("simkit::BehaviorServer", "behavior_server::BehaviorServer")
     parent_kind = ("world", "model")
     options = OptionsOf(BehaviorServerOptions)
-    endpoints = (listens("/local_costmap/costmap_raw", "nav2_msgs/msg/Costmap", named_by=("costmap_topic",)),)
+    endpoints = (listens("local_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),)
     before_step_rate = NEVER
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()
         open_transforms(self.sim)
         self._footprint: Footprint = read_footprint(self, options.footprint, options.robot_radius)
-        self._grid: CostGrid | None = None
         self._motion: _Motion | None = None
-        self.subscribe(options.costmap_topic, self._on_costmap)
+        self.read_costmap(options.costmap_topic)
         self._command = self.advertise("cmd_vel", "geometry_msgs/msg/Twist")
         for name, kind in _TYPES.items():
-            self.act(name, f"nav2_msgs/action/{kind}", partial(_begin, self, name), self._on_cancel)
+            self.act(name, f"nav2_msgs/action/{kind}", partial(self._begin, name), self._on_cancel)
 
-    def _on_costmap(self, message: Any) -> None:
-        grid = grid_of_message(message) if hasattr(message, "metadata") else None
-        if grid is not None:
-            self._grid = grid
-
-    def begin(self, name: str, goal: GoalHandle) -> None:
+    def _begin(self, name: str, goal: GoalHandle) -> None:
         """Begin the motion of a goal; it replaces the present motion."""
         request, pose = goal.request, self._pose()
         target = _target(name, request)
@@ -173,25 +167,15 @@ class BehaviorServer(Plugin):
 
     def _collides(self, pose: PlanarPose, speeds: tuple[float, float], remaining: float) -> bool:
         """Check whether the robot touches an obstacle ahead that it does not touch yet."""
-        grid = self._grid
+        grid = self.grid
         placed = None if grid is None else look_up(self.sim, self.options.local_frame, grid.frame)
         if grid is None or placed is None:
             return False
         seen = grid.seen_from(self.options.local_frame, placed)
         if self._footprint.collides(seen, pose):
             return False  # it is too near an obstacle already, so it must be able to leave
-        forward, turning = speeds
-        rate = abs(turning) if turning else abs(forward)
-        time = min(self.options.simulate_ahead_time, remaining / max(rate, 1e-6))
-        count = max(1, math.ceil(rate * time / (0.1 if turning else grid.resolution / 2)))
-        for part in range(1, count + 1):
-            at, way = time * part / count, forward * time * part / count
-            yaw = pose.yaw + turning * at
-            if self._footprint.collides(
-                seen, PlanarPose(pose.x + way * math.cos(pose.yaw), pose.y + way * math.sin(pose.yaw), yaw)
-            ):
-                return True
-        return False
+        time = min(self.options.simulate_ahead_time, remaining / max(map(abs, speeds)))
+        return self._footprint.collides_ahead(seen, pose, speeds, time)
 
     def _end(self, motion: _Motion, elapsed: float, code: int, reason: str = "") -> None:
         self._stop()
@@ -209,10 +193,6 @@ class BehaviorServer(Plugin):
             self._publish((0.0, 0.0))
         self._motion = None
         self._set_before_step_rate(NEVER)
-
-
-def _begin(server: BehaviorServer, name: str, goal: GoalHandle) -> None:
-    server.begin(name, goal)
 
 
 def _target(name: str, request: Any) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.errors import InputError
+from simkit.errors import InputError, TransformError
 from simkit.msgs.goal_status import GoalStatus
 from simkit.params import Params
 from simkit.plugins.base import NEVER, Plugin
@@ -18,6 +18,7 @@ from simkit.plugins.navigation.planar_pose import (
     PlanarPose,
     look_up,
     open_transforms,
+    planar_of,
     pose_of_message,
     poses_of_path,
     stamped_pose,
@@ -47,8 +48,8 @@ class BtNavigatorOptions(Options):
     wait_duration: float = number(5.0, "s", minimum=0)
     backup_dist: float = number(0.3, "m", minimum=0)
     backup_speed: float = number(0.05, "m/s", minimum=0.001)
-    global_costmap: str = text("/global_costmap")
-    local_costmap: str = text("/local_costmap")
+    global_costmap: str = text("global_costmap")
+    local_costmap: str = text("local_costmap")
     planner_id: str = text()
     controller_id: str = text()
 
@@ -118,9 +119,13 @@ class BtNavigator(Plugin):
 
     def _on_goal(self, goal: GoalHandle) -> None:
         wanted = list(goal.request.poses) if hasattr(goal.request, "poses") else [goal.request.pose]
-        targets = [self._in_map(stamped) for stamped in wanted]
-        if not targets or None in targets:
-            self._reject(goal, "the goal has no pose, or a pose that is not known in the frame of the map")
+        try:
+            targets = [self._in_map(stamped) for stamped in wanted]
+        except ValueError as error:
+            self._reject(goal, str(error))
+            return
+        if not targets:
+            self._reject(goal, "the goal has no pose")
             return
         if self._pose() is None:
             self._reject(goal, f"the pose of the robot in {self.options.global_frame!r} is not known")
@@ -138,12 +143,21 @@ class BtNavigator(Plugin):
         goal.reject(reason)
 
     def _in_map(self, stamped: Any) -> Any:
-        """Return a stamped pose in the frame of the map; None if it is not known there."""
-        frame, pose = stamped.header.frame_id or self.options.global_frame, pose_of_message(stamped.pose)
-        placed = look_up(self.sim, self.options.global_frame, frame)
-        if pose is None or placed is None:
-            return None
-        return stamped_pose(placed.compose(pose), msgs.header(self.sim.time_ns, self.options.global_frame))
+        """Return a stamped pose in the frame of the map.
+
+        Raises:
+            ValueError: the pose is not known there.
+        """
+        wanted, pose = self.options.global_frame, pose_of_message(stamped.pose)
+        if pose is None:
+            raise ValueError("the pose of the goal contains NaN or infinite numbers")
+        frame = stamped.header.frame_id or wanted
+        if frame != wanted:
+            try:
+                pose = planar_of(self.sim.tf.lookup(wanted, frame)).compose(pose)
+            except TransformError as error:
+                raise ValueError(f"the pose of the goal is not known in {wanted!r}: {error}") from None
+        return stamped_pose(pose, msgs.header(self.sim.time_ns, wanted))
 
     def _on_cancel(self, goal: GoalHandle) -> None:
         if self._task is not None and goal is self._task.goal:
@@ -192,7 +206,7 @@ class BtNavigator(Plugin):
             task.is_plan_retried, task.next_plan_ns = True, self.sim.time_ns
             self._clear(self.options.global_costmap)
         else:
-            self._recover(task, plan.reason or "there is no path")
+            self._recover(task, plan, "there is no path")
 
     def _send_path(self, task: _Task) -> None:
         request = {"path": task.path_message, "controller_id": self.options.controller_id}
@@ -215,15 +229,17 @@ class BtNavigator(Plugin):
             self._clear(self.options.local_costmap)
             self._send_path(task)
         elif follow.status is not GoalStatus.CANCELED:
-            self._recover(task, follow.reason or "the path cannot be followed")
+            self._recover(task, follow, "the path cannot be followed")
 
-    def _recover(self, task: _Task, reason: str) -> None:
-        """Begin the next recovery, or abort after too many of them."""
+    def _recover(self, task: _Task, failed: GoalHandle, problem: str) -> None:
+        """Begin the next recovery after a goal of a server has failed, or abort after too many of them."""
         options = self.options
         self._cancel(task.follow)
         task.follow = None
         if task.recoveries >= options.number_of_retries:
-            self._abort(task, f"{reason}; {task.recoveries} recoveries did not help")
+            tried = "1 recovery" if task.recoveries == 1 else f"{task.recoveries} recoveries"
+            reason = f"{failed.reason or problem}; {tried} did not help"
+            self._abort(task, reason, getattr(failed.result, "error_code", 0))
             return
         task.recoveries += 1
         task.is_plan_retried = task.is_follow_retried = False
@@ -261,7 +277,7 @@ class BtNavigator(Plugin):
 
     def _clear(self, costmap: str) -> None:
         """Clear a costmap."""
-        service = f"{costmap}/clear_entirely_{costmap.rpartition('/')[2]}"
+        service = self.ros.topic(f"{costmap}/clear_entirely_{costmap.rpartition('/')[2]}")
         if service in self.sim.communication.services.names():
             self.sim.call(service, on_done=_ignore)
 
@@ -277,11 +293,12 @@ class BtNavigator(Plugin):
         self._task = None
         self._set_before_step_rate(NEVER)
 
-    def _abort(self, task: _Task, reason: str) -> None:
+    def _abort(self, task: _Task, reason: str, code: int = 0) -> None:
+        """End a task as aborted, with the error code of the server that failed, as in Nav2."""
         if self._task is task:
             self._leave()
             self.log.error("Goal failed: %s", reason)
-            task.goal.abort(reason=reason)
+            task.goal.abort({"error_code": code}, reason)
 
     def _publish_feedback(self, task: _Task) -> None:
         pose = self._pose()

@@ -10,8 +10,10 @@ import numpy as np
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import NEVER
+from simkit.plugins.drives.odometry_messages import ODOMETRY
 from simkit.plugins.endpoints import listens
-from simkit.plugins.navigation.cost_grid import CostGrid, grid_of_message
+from simkit.plugins.navigation.cost_grid import CostGrid
+from simkit.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
 from simkit.plugins.navigation.footprint import Footprint, read_footprint
 from simkit.plugins.navigation.nodes import ControllerNode
 from simkit.plugins.navigation.planar_pose import Floats, PlanarPose, look_up, open_transforms, poses_of_path
@@ -85,13 +87,13 @@ class ControllerServerOptions(Options):
     progress_checker: ProgressCheckerOptions = block(ProgressCheckerOptions)
     general_goal_checker: GoalCheckerOptions = block(GoalCheckerOptions)
     odom_topic: str = text("odom")
-    costmap_topic: str = text("/local_costmap/costmap_raw")
+    costmap_topic: str = text("local_costmap/costmap_raw")
     robot_base_frame: str = text("base_footprint")
     robot_radius: float = number(0.1, "m", minimum=0)
     footprint: str = text("")
 
 
-class ControllerServer(ServerPlugin):
+class ControllerServer(CostmapReader, ServerPlugin):
     """Follows paths: action `follow_path`; velocities go to `cmd_vel`.
 
     Each name in `<controller_plugins>` is a controller, with a block of parameters of the same name. Its `<plugin>` is
@@ -105,8 +107,8 @@ class ControllerServer(ServerPlugin):
     options = OptionsOf(ControllerServerOptions)
     option_types = (PurePursuitOptions,)
     endpoints = (
-        listens("odom", "nav_msgs/msg/Odometry", named_by=("odom_topic",)),
-        listens("/local_costmap/costmap_raw", "nav2_msgs/msg/Costmap", named_by=("costmap_topic",)),
+        listens("odom", ODOMETRY, named_by=("odom_topic",)),
+        listens("local_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),
     )
     before_step_rate = NEVER
 
@@ -119,28 +121,22 @@ class ControllerServer(ServerPlugin):
         self.footprint: Footprint = read_footprint(self, options.footprint, options.robot_radius)
         self.make_parts(options.controller_plugins, _DEFAULT, _CONTROLLERS, _METHODS, "configure")
         self.is_at_goal_position = False
-        self._grid: CostGrid | None = None
         self._velocity: Speeds = (0.0, 0.0)
         self._goal: GoalHandle | None = None
         self._controller_name = self._frame = ""
         self._end = PlanarPose(0.0, 0.0, 0.0)
         self._valid_ns = 0  # time of the newest valid command
         self._moved = 0, self._end  # time [ns] and pose from which progress is measured
-        self.subscribe(options.costmap_topic, self._on_costmap)
+        self.read_costmap(options.costmap_topic)
         self.subscribe(options.odom_topic, self._on_odometry)
         self._command = self.advertise("cmd_vel", "geometry_msgs/msg/Twist")
         self.act("follow_path", "nav2_msgs/action/FollowPath", self._on_goal, self._on_cancel)
 
     # ------------------------------------------------------------------ messages
 
-    def _on_costmap(self, message: Any) -> None:
-        grid = grid_of_message(message) if hasattr(message, "metadata") else None
-        if grid is not None:
-            self._grid = grid
-
     def _on_odometry(self, message: Any) -> None:
-        if not hasattr(message, "twist") or not hasattr(message.twist, "twist"):
-            return  # another type of message
+        if not self._once.has_type(message, ODOMETRY, "odom_topic"):
+            return
         twist = message.twist.twist
         if math.isfinite(twist.linear.x) and math.isfinite(twist.angular.z):
             self._velocity = twist.linear.x, twist.angular.z
@@ -200,7 +196,7 @@ class ControllerServer(ServerPlugin):
 
     def _drive(self, goal: GoalHandle, pose: PlanarPose) -> None:
         """Publish the velocity of the controller."""
-        grid = self._grid
+        grid = self.grid
         placed = None if grid is None else look_up(self.sim, self._frame, grid.frame)
         seen = None if grid is None or placed is None else grid.seen_from(self._frame, placed)
         controller = self.parts[self._controller_name]

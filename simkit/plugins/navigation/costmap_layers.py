@@ -16,6 +16,8 @@ from simkit.plugins.options import Options, boolean, number, text
 if TYPE_CHECKING:
     from simkit.plugins.navigation.nodes import CostmapNode
 
+_MAP: Final = "nav_msgs/msg/OccupancyGrid"
+_SCAN: Final = "sensor_msgs/msg/LaserScan"
 _HALF_CELL: Final = 0.5
 _OVERLAP: Final = 1e-6  # [m]; a radius of 0.2 contains a cell at the distance of 4 cells of 0.05
 
@@ -58,15 +60,13 @@ class StaticLayer:
         self.map: CostGrid | None = None
         self._has_reported = False
         if self._options.enabled:
-            node.subscribe(self._options.map_topic, self._on_map)
+            node.receive(self._options.map_topic, _MAP, "map_topic", self._on_map)
 
     def _on_map(self, message: Any) -> None:
-        grid = None
-        if hasattr(message, "info"):
-            grid = grid_of_map(message, self._node.lethal_cost_threshold, self._node.default_cost)
+        grid = grid_of_map(message, self._node.lethal_cost_threshold, self._node.default_cost)
         if grid is None:
             if not self._has_reported:
-                text = "the map on %s is no OccupancyGrid, is empty, or its size, resolution or origin is not valid"
+                text = "the map on %s is empty, or its size, resolution or origin is not valid"
                 self._node.log.error(text, self._options.map_topic)
             self._has_reported = True
             return
@@ -100,7 +100,7 @@ class ObstacleLayerOptions(Options):
 class SourceOptions(Options):
     """Options of a source of `ObstacleLayer`."""
 
-    topic: str = text("/scan")
+    topic: str = text("scan")
     marking: bool = boolean(True)
     clearing: bool = boolean(True)
     inf_is_valid: bool = boolean(False)
@@ -121,12 +121,12 @@ class ObstacleLayer:
         self._sources = {name: SourceOptions(params.block(name)).read_all() for name in names}
         self._scans: dict[str, Any] = {}  # newest scan of each source
         for name, source in self._sources.items():
-            node.subscribe(source.topic, partial(self._on_scan, name))
+            node.receive(source.topic, _SCAN, f"{name}.topic", partial(self._on_scan, name))
         self._seen: Cells = np.zeros((0, 0), np.uint8)
         self._origin = PlanarPose(0.0, 0.0, 0.0)
 
     def _on_scan(self, source: str, message: Any) -> None:
-        if hasattr(message, "ranges") and math.isfinite(message.angle_min + message.angle_increment):
+        if math.isfinite(message.angle_min + message.angle_increment):
             self._scans[source] = message
 
     def update_costs(self, grid: CostGrid, robot: PlanarPose) -> None:

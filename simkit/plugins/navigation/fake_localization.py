@@ -26,8 +26,9 @@ class FakeLocalizationOptions(Options):
 class FakeLocalization(Plugin):
     """Publishes the transform from the map to the odometry, so that the robot's pose in the map is the true one.
 
-    The frame of the map lies at the origin of the world. The true pose is that of the link `<base_frame_id>`. It is
-    also published on `amcl_pose`. A real localisation, such as AMCL, replaces this plugin.
+    The frame of the map lies at the origin of the world. The true pose is that of the link `<base_frame_id>`; for
+    `<base_frame_id>robot/base_link</base_frame_id>`, of the link `base_link` of the model `robot`. It is also published
+    on `amcl_pose`. A real localisation, such as AMCL, replaces this plugin.
     """
 
     filenames = ("libsimkit_fake_localization.so",)
@@ -47,12 +48,13 @@ class FakeLocalization(Plugin):
         models = tuple(self.sim.models)
         if models == self._models:
             return self._link  # a search takes longer than all the rest
-        name = self.options.base_frame_id
-        found = [model.links[name] for model in self.sim.models.values() if name in model.links]
+        robot, _, name = self.options.base_frame_id.rpartition("/")
+        candidates = [model for model in self.sim.models.values() if robot in ("", model.name)]
+        found = [model.links[name] for model in candidates if name in model.links]
         self._models, self._link = models, found[0] if len(found) == 1 else None
         if self._link is None:
-            message = f"{len(found)} models have a link {name!r}, so there is no true pose"
-            self._once.warn("SK-PLUGIN-132", "link", message, "set <base_frame_id> to the name of the robot's link")
+            message = f"{len(found)} models have a link {self.options.base_frame_id!r}, so there is no true pose"
+            self._once.warn("SK-PLUGIN-132", "link", message, "set <base_frame_id> to LINK, or to MODEL/LINK")
         return self._link
 
     def after_step(self) -> None:

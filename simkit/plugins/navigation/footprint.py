@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
 
 _ROUND: Final = 16  # corners of a circle
+_LEVER: Final = 0.5  # [m] from the robot's origin to a point that turns with it
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +59,30 @@ class Footprint:
         parts = np.linspace(0.0, 1.0, count)[:, None, None]
         points = (self.corners + parts * (ends - self.corners)).reshape(-1, 2)
         return bool((grid.costs(pose.transform(points)) == LETHAL).any())
+
+    def collides_ahead(self, grid: CostGrid, pose: PlanarPose, speeds: tuple[float, float], time: float) -> bool:
+        """Check whether the outline touches an obstacle on the arc that the robot drives with constant speeds.
+
+        Args:
+            grid: costs.
+            pose: pose at the beginning of the arc, which is not checked.
+            speeds: forward speed [m/s] and turning rate [rad/s].
+            time: duration of the motion [s]; a repeated circle, and the way outside of the grid, are left out.
+        """
+        forward, turning = speeds
+        longest = math.pi * (grid.diagonal + 2 * self.circumscribed_radius)  # [m], an arc around the grid
+        time = min(time, longest / abs(forward)) if forward else time
+        time = min(time, math.tau / abs(turning)) if turning else time
+        rate = max(abs(forward), abs(turning) * _LEVER)
+        count = max(1, math.ceil(rate * time / (grid.resolution / 2))) if rate else 0
+        now, period = pose, time / max(count, 1)
+        for _ in range(count):
+            yaw = now.yaw + turning * period / 2
+            way = forward * period
+            now = PlanarPose(now.x + way * math.cos(yaw), now.y + way * math.sin(yaw), now.yaw + turning * period)
+            if self.collides(grid, now):
+                return True
+        return False
 
 
 def round_footprint(radius: float) -> Footprint:

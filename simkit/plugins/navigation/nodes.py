@@ -29,6 +29,9 @@ class Node(Protocol):
     ) -> Subscription:
         """Receive each message on a topic; see `Plugin.subscribe`."""
 
+    def receive(self, topic: str, type_name: str, parameter: str, callback: Callable[[Any], None]) -> Subscription:
+        """Receive the messages of a type on a topic; see `ServerPlugin.receive`."""
+
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """Open a publisher; see `Plugin.advertise`."""
 

@@ -10,7 +10,8 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.endpoints import listens
-from simkit.plugins.navigation.cost_grid import INSCRIBED, UNKNOWN, CostGrid, grid_of_message
+from simkit.plugins.navigation.cost_grid import INSCRIBED, UNKNOWN, CostGrid
+from simkit.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
 from simkit.plugins.navigation.grid_planner import GridPlanner, GridPlannerOptions
 from simkit.plugins.navigation.planar_pose import (
     Floats,
@@ -64,7 +65,7 @@ class PlannerServerOptions(Options):
     """Options of `PlannerServer`."""
 
     planner_plugins: tuple[str, ...] = texts()
-    costmap_topic: str = text("/global_costmap/costmap_raw")
+    costmap_topic: str = text("global_costmap/costmap_raw")
     robot_base_frame: str = text("base_footprint")
 
 
@@ -80,7 +81,7 @@ class _NoPlanError(Exception):
         self.code = code
 
 
-class PlannerServer(ServerPlugin):
+class PlannerServer(CostmapReader, ServerPlugin):
     """Plans paths: action `compute_path_to_pose`, service `is_path_valid`; the newest path is on `plan`.
 
     Each name in `<planner_plugins>` is a planner, with a block of parameters of the same name. Its `<plugin>` is a
@@ -92,22 +93,16 @@ class PlannerServer(ServerPlugin):
     names = ("simkit::PlannerServer", "nav2_planner::PlannerServer")
     options = OptionsOf(PlannerServerOptions)
     option_types = (GridPlannerOptions,)
-    endpoints = (listens("/global_costmap/costmap_raw", "nav2_msgs/msg/Costmap", named_by=("costmap_topic",)),)
+    endpoints = (listens("global_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),)
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()
         open_transforms(self.sim)
         self.make_parts(options.planner_plugins, _DEFAULT, _PLANNERS, ("create_plan",), "configure")
-        self._grid: CostGrid | None = None
-        self.subscribe(options.costmap_topic, self._on_costmap)
+        self.read_costmap(options.costmap_topic)
         self._plan = self.advertise("plan", "nav_msgs/msg/Path")
         self.act("compute_path_to_pose", "nav2_msgs/action/ComputePathToPose", self._on_goal)
         self.offer("is_path_valid", "nav2_msgs/srv/IsPathValid", self._on_is_path_valid)
-
-    def _on_costmap(self, message: Any) -> None:
-        grid = grid_of_message(message) if hasattr(message, "metadata") else None
-        if grid is not None:
-            self._grid = grid
 
     def _on_goal(self, goal: GoalHandle) -> None:
         try:
@@ -130,9 +125,9 @@ class PlannerServer(ServerPlugin):
         planner = self.parts.get(name)
         if planner is None:
             raise _NoPlanError(_INVALID_PLANNER, f"no planner {name!r}; the planners are: {', '.join(self.parts)}")
-        grid = self._grid
+        grid = self.grid
         if grid is None:
-            raise _NoPlanError(_TF_ERROR, f"no costmap on {self.options.costmap_topic} yet")
+            raise _NoPlanError(_TF_ERROR, f"no costmap on {self.ros.topic(self.options.costmap_topic)} yet")
         if request.use_start:
             start = self._in_frame_of(grid, request.start)
         else:
@@ -142,10 +137,10 @@ class PlannerServer(ServerPlugin):
             raise _NoPlanError(_TF_ERROR, f"the {'start' if start is None else 'goal'} is not known in {grid.frame!r}")
         for pose, code, title in ((start, _START_OUTSIDE_MAP, "start"), (end, _GOAL_OUTSIDE_MAP, "goal")):
             if grid.to_cell(pose.x, pose.y) is None:
-                raise _NoPlanError(code, f"the {title} ({pose.x:.2f}, {pose.y:.2f}) is outside of the costmap")
+                raise _NoPlanError(code, f"the {title} ({pose.x:.4g}, {pose.y:.4g}) is outside of the costmap")
         poses = _as_poses(planner.create_plan(grid, start, end), end.yaw)
         if poses is None:
-            raise _NoPlanError(_NO_VALID_PATH, f"{name} found no path to ({end.x:.2f}, {end.y:.2f})")
+            raise _NoPlanError(_NO_VALID_PATH, f"{name} found no path to ({end.x:.4g}, {end.y:.4g})")
         return poses, grid.frame
 
     def _in_frame_of(self, grid: CostGrid, stamped: Any) -> PlanarPose | None:
@@ -157,9 +152,9 @@ class PlannerServer(ServerPlugin):
     def _on_is_path_valid(self, request: Any) -> dict[str, Any]:
         """Check whether a path touches no obstacle."""
         poses = poses_of_path(request.path)
-        if self._grid is None or poses is None or not len(poses):
+        if self.grid is None or poses is None or not len(poses):
             return {"is_valid": False}
-        costs = self._grid.costs(poses[:, :2])
+        costs = self.grid.costs(poses[:, :2])
         invalid = np.flatnonzero((costs >= INSCRIBED) & (costs < UNKNOWN))
         return {"is_valid": not len(invalid), "invalid_pose_indices": invalid.astype(np.int32)}
 

@@ -63,8 +63,10 @@ class PurePursuit:
         """Return forward speed [m/s] and turning rate [rad/s]; None if the robot would touch an obstacle."""
         options = self._options
         found = self._speeds(pose, velocity)
-        if options.use_collision_detection and grid is not None and self._collides(pose, found, grid):
-            return None
+        if options.use_collision_detection and grid is not None:
+            time, footprint = options.max_allowed_time_to_collision_up_to_carrot, self._node.footprint
+            if footprint.collides_ahead(grid, pose, found, time):
+                return None
         return found
 
     def _speeds(self, pose: PlanarPose, velocity: Speeds) -> Speeds:
@@ -104,22 +106,6 @@ class PurePursuit:
         )
         change = options.max_angular_accel / self._node.controller_frequency
         return min(max(wanted, present - change), present + change)
-
-    def _collides(self, pose: PlanarPose, speeds: Speeds, grid: CostGrid) -> bool:
-        """Check whether the robot touches an obstacle within the allowed time, if it keeps its speeds."""
-        forward, turning = speeds
-        footprint, period = self._node.footprint, grid.resolution / 2 / max(abs(forward), abs(turning) * 0.5, 0.05)
-        now = pose
-        for _ in range(max(1, math.ceil(self._options.max_allowed_time_to_collision_up_to_carrot / period))):
-            yaw = now.yaw + turning * period / 2
-            now = PlanarPose(
-                now.x + forward * period * math.cos(yaw),
-                now.y + forward * period * math.sin(yaw),
-                now.yaw + turning * period,
-            )
-            if footprint.collides(grid, now):
-                return True
-        return False
 
 
 def _nearest(distances: Floats) -> int:

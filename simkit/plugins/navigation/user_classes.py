@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.attribute_state import copy_attributes, restore_attributes
@@ -11,6 +12,9 @@ from simkit.plugins.base import Plugin
 from simkit.plugins.discovery.user_plugins import find_user_class
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.scene import ScenePlugin
+
+if TYPE_CHECKING:
+    from simkit.runtime.communication.subscription import Subscription
 
 
 class _Parts(SharedByCopies):
@@ -63,6 +67,21 @@ class ServerPlugin(Plugin):
             part = self._parts.by_name[name] = cls()
             if callable(getattr(part, begin, None)):
                 getattr(part, begin)(self, block)
+
+    def receive(self, topic: str, type_name: str, parameter: str, callback: Callable[[Any], None]) -> Subscription:
+        """Call a function with each message of a type; messages of another type are ignored after a warning.
+
+        Args:
+            topic: name of the topic, expanded and remapped as in ROS.
+            type_name: type of the messages.
+            parameter: parameter with the name of the topic.
+            callback: function called with each message.
+        """
+        return self.subscribe(topic, partial(self._pass_on, type_name, parameter, callback))
+
+    def _pass_on(self, type_name: str, parameter: str, callback: Callable[[Any], None], message: Any) -> None:
+        if self._once.has_type(message, type_name, parameter):
+            callback(message)
 
     @property
     def parts(self) -> dict[str, Any]:

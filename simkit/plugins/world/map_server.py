@@ -169,7 +169,7 @@ def read_map(path: Path) -> OccupancyMap:
     try:
         values = read_yaml(read_input(path, TEXT_LIMIT).decode("utf-8"))
     except (OSError, UnicodeDecodeError, NotYaml) as error:
-        raise MapFileError(f"{path} cannot be read: {error}", _BAD_YAML) from None
+        raise MapFileError(f"{path} cannot be read: {_reason(error)}", _BAD_YAML) from None
     if not isinstance(values, dict):
         raise MapFileError(f"{path}: expected the keys image, resolution and origin", _BAD_YAML)
     problems = [f"missing key '{key}'" for key in ("image", "resolution", "origin") if key not in values]
@@ -209,7 +209,7 @@ def read_map(path: Path) -> OccupancyMap:
 
 def _read_image(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_] | None]:
     """Return brightness, 0 to 1, and which pixels are transparent, shape (rows, columns) from the top."""
-    from PIL import Image
+    from PIL import Image, UnidentifiedImageError
 
     try:
         content = read_input(path, _LARGEST_IMAGE)
@@ -223,8 +223,15 @@ def _read_image(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.boo
                     return pixels[..., :3].mean(axis=2) / 255.0, pixels[..., 3] == 0
                 scale = 255.0 if image.mode in ("L", "1") else 65535.0
                 return np.asarray(image.convert("L") if image.mode == "1" else image, np.float64) / scale, None
+    except UnidentifiedImageError:
+        raise MapFileError(f"{path} is not an image; expected a PGM, PNG or BMP file", _BAD_IMAGE) from None
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise MapFileError(f"{path} cannot be read: {error}", _BAD_IMAGE) from None
+        raise MapFileError(f"{path} cannot be read: {_reason(error)}", _BAD_IMAGE) from None
+
+
+def _reason(error: Exception) -> str:
+    """Return the reason of an error without its number and a repeated file name."""
+    return getattr(error, "strerror", None) or str(error)
 
 
 def _cells(

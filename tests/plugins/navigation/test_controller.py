@@ -51,6 +51,20 @@ def test_the_robot_turns_on_the_spot_to_a_path_behind_it_and_stops_for_an_obstac
     assert controller.compute_velocity_commands(PlanarPose(0.0, 0.0, 0.0), (0.5, 0.0), grid) is None
 
 
+def test_an_arc_is_checked_once_around_however_long_the_time_is() -> None:
+    """An obstacle on the other side of the circle of 0.5 m is found; one beside it is not."""
+    cells = np.zeros((80, 80), np.uint8)
+    grid = CostGrid(cells, 0.05, PlanarPose(-2.0, -2.0, 0.0), "map")
+    begin, outline = PlanarPose(0.0, 0.0, 0.0), round_footprint(0.2)
+    for speeds in ((0.5, 1.0), (1e9, 2e9), (1e-9, 2e-9)):
+        cells[:] = 0
+        cells[30:50, 20] = INSCRIBED
+        assert not outline.collides_ahead(grid, begin, speeds, 1e12)
+        cells[60, 40] = INSCRIBED  # at (0.0, 1.0)
+        assert outline.collides_ahead(grid, begin, speeds, 1e12)
+    assert not outline.collides_ahead(grid, begin, (0.0, 0.0), 1e12)
+
+
 def path(*points: tuple[float, float, float]) -> dict[str, Any]:
     return {"path": {"header": {"frame_id": "map"}, "poses": [pose(*point) for point in points]}}
 

@@ -176,11 +176,22 @@ def test_a_map_without_a_frame_gives_no_costs(tmp_path: Path) -> None:
         sim.run(0.5)
 
 
-def test_a_topic_of_another_type_is_reported_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    with simkit.load(world(tmp_path, "<static_layer><map_topic>/clock</map_topic></static_layer>")) as sim:
+def test_topics_of_another_type_are_reported_once(tmp_path: Path) -> None:
+    layers = "<static_layer><map_topic>/clock</map_topic></static_layer>"
+    layers += "<obstacle_layer><scan><topic>/parameter_events</topic></scan></obstacle_layer>"
+    with simkit.load(world(tmp_path, layers)) as sim:
         sim.subscribe("/clock")
-        sim.run(0.5)
-    assert sum("is no OccupancyGrid" in record.getMessage() for record in caplog.records) == 1
+        sim.run(0.1)
+        sim.advertise("/parameter_events", "rcl_interfaces/msg/ParameterEvent").publish({})
+        sim.run(0.4)
+        found = [d.message.partition(": ")[2] for d in sim.diagnostics if d.code == "SK-PLUGIN-041"]
+    wrong = {
+        "rcl_interfaces/msg/ParameterEvent on <scan.topic>": "sensor_msgs/msg/LaserScan",
+        "rosgraph_msgs/msg/Clock on <map_topic>": "nav_msgs/msg/OccupancyGrid",
+    }
+    assert sorted(found) == [
+        f"messages of the type {given} are ignored; expected {expected}" for given, expected in wrong.items()
+    ]
 
 
 def test_a_ray_ends_at_the_border_of_the_costmap(tmp_path: Path) -> None:

@@ -177,9 +177,33 @@ def test_the_end_of_an_old_path_is_not_the_end_of_a_new_goal(tmp_path: Path) -> 
 def test_a_rejected_goal_of_the_topic_is_in_the_log(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     with simkit.load(world(tmp_path)) as sim:
         sim.run(1.3)
-        sim.publish("/goal_pose", pose(0.5, 0.0, frame="moon"))
-        sim.step(2)
-    assert any("Goal rejected: the goal has no pose" in record.getMessage() for record in caplog.records)
+        for goal in (pose(0.5, 0.0, frame="moon"), pose(math.nan, 0.0)):
+            sim.publish("/goal_pose", goal)
+            sim.step(2)
+    moon, nan = (record.getMessage() for record in caplog.records if "Goal rejected" in record.getMessage())
+    assert "the pose of the goal is not known in 'map'" in moon and "unknown frame 'moon'" in moon
+    assert nan == "Goal rejected: the pose of the goal contains NaN or infinite numbers"
+
+
+def test_a_goal_outside_of_the_map_is_aborted_with_the_planners_error_code(tmp_path: Path) -> None:
+    with simkit.load(world(tmp_path)) as sim:
+        sim.run(1.3)
+        goal = sim.send_goal("/navigate_to_pose", {"pose": pose(1e30, 0.0)})
+        run_until_done(sim, goal)
+        assert (goal.status.name, goal.result.error_code) == ("ABORTED", 204)  # GOAL_OUTSIDE_MAP
+        assert goal.reason == "the goal (1e+30, 0) is outside of the costmap; 2 recoveries did not help"
+
+
+def test_a_motion_without_end_is_checked_within_the_costmap_only(tmp_path: Path) -> None:
+    """The way of 10³⁰ m at 10³⁰ m/s would have 10³² poses; those outside of the costmap cannot touch anything."""
+    file = world(tmp_path, models="")
+    file.write_text(file.read_text("utf-8").replace("<plugins>obstacle_layer ", "<plugins>"), "utf-8")
+    with simkit.load(file) as sim:
+        sim.run(0.5)
+        request = {"target": {"x": 1e30}, "speed": 1e30, "time_allowance": {"sec": 1}}
+        goal = sim.send_goal("/drive_on_heading", request)
+        run_until_done(sim, goal)
+        assert (goal.status.name, goal.result.error_code) == ("ABORTED", 721)  # TIMEOUT
 
 
 def test_a_motion_ends_if_the_pose_is_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

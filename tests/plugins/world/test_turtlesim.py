@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -219,3 +220,19 @@ def test_a_removed_model_removes_its_turtle(sim: simkit.Simulation) -> None:
     sim.run(0.1)
     assert set(sim.models) == {"square", "turtle1"}
     assert not any("turtle2" in topic for topic in sim.topics())
+
+
+MIMIC = Path(__file__).parents[3] / "labs" / "01_turtlesim" / "mimic.sdf"
+
+
+def test_a_mimic_makes_a_second_turtle_draw_the_same_arc() -> None:
+    """Each pose is passed on one update of 16 ms later; the command of 1 s ends with the last pose that moves."""
+    with simkit.load("turtlesim", spawn=[str(MIMIC)]) as sim:
+        assert sim.call("/spawn", {"x": 2.0, "y": 2.0, "theta": 1.0, "name": "turtle2"}).name == "turtle2"
+        sim.step(2)
+        first, second = sim.model("turtle1").pose, sim.model("turtle2").pose
+        drive(sim, x=2.0, turn=1.2, time=2.5)
+        arcs = [before.inverse() @ sim.model(name).pose for name, before in (("turtle1", first), ("turtle2", second))]
+        assert math.dist(arcs[0].position, arcs[1].position) < 0.04  # 16 ms at 2 m/s
+        assert arcs[0].rpy[2] == pytest.approx(1.2, abs=0.02)
+        assert arcs[1].rpy[2] == pytest.approx(arcs[0].rpy[2], abs=0.02)

@@ -497,6 +497,10 @@ WORLDS: dict[str, str] = {
     ),
     "BtNavigator": lab(world=NAVIGATION + NAVIGATOR, model=ODOMETRY),
     "TurtleSim": lab(world=plugin("libsimkit_turtlesim.so")),
+    "TurtleMimic": lab(
+        world=plugin("libsimkit_turtlesim.so")
+        + plugin("libsimkit_turtle_mimic.so", "<ros><remapping>input/pose:=turtle1/pose</remapping></ros>")
+    ),
     "EkfNode": lab(
         model=ros("p3d", tags(body_name="base", frame_name="odom", gaussian_noise=0.01, update_rate=50)),
         world=plugin("libsimkit_robot_localization.so", EKF, "ekf_filter_node"),
