@@ -234,6 +234,8 @@ def servo_traits(
         refs: actuators of the servos.
         compiled: compiled values of the model fields that were changed after the compile, by name.
     """
+    if not refs:
+        return []
     names = "actuator_gainprm", "actuator_forcerange", "actuator_forcelimited", "dof_damping", "dof_frictionloss"
     strengths, ranges, limited, damping, friction = ((compiled or {}).get(name, getattr(model, name)) for name in names)
     data = first_state(model)

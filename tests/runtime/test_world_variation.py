@@ -54,6 +54,42 @@ def test_numbers_that_are_set_in_a_loaded_world_give_the_bits_of_a_load(override
             assert model_numbers(varied) == model_numbers(base)
 
 
+def test_what_a_run_changed_does_not_stay_in_a_varied_world() -> None:
+    overrides = [f"{_ROBOT}::wheel_left_link::tread.surface.friction.ode.mu=0.4"]
+    with simkit.load("turtlebot3_world", overrides=overrides) as loaded, simkit.load("turtlebot3_world") as varied:
+        varied.link(f"{_ROBOT}::base_link").mass = 3.0
+        varied.gravity = (0.0, 0.0, -1.0)
+        varied.spawn('<sdf version="1.9"><model name="box"><pose>9 9 1 0 0 0</pose><link name="l"/></model></sdf>')
+        varied.run(0.1)
+        assert apply_overrides(varied, overrides)
+        assert model_numbers(varied) == model_numbers(loaded)
+        assert varied.link(f"{_ROBOT}::base_link").mass == loaded.link(f"{_ROBOT}::base_link").mass
+
+
+class Stiff(simkit.ModelPlugin):
+    reads_at_load = ()
+
+    def load(self, model: Any, _params: Any) -> None:
+        model.joint("wheel_left_joint").damping = 0.7
+
+
+def test_what_a_plugin_wrote_while_it_was_loaded_stays_in_a_varied_world() -> None:
+    overrides = [f"{_ROBOT}::wheel_right_joint.axis.dynamics.damping=0.2"]
+    plugins = [(_ROBOT, Stiff())], [(_ROBOT, Stiff())]
+    with simkit.load("turtlebot3_world", plugins=plugins[0]) as varied:
+        with simkit.load("turtlebot3_world", plugins=plugins[1], overrides=overrides) as loaded:
+            varied.run(0.1)
+            assert apply_overrides(varied, overrides)
+            assert [varied.joint(f"{_ROBOT}::wheel_{side}_joint").damping for side in ("left", "right")] == [0.7, 0.2]
+            assert model_numbers(varied) == model_numbers(loaded)
+            for sim in (loaded, varied):
+                sim.run(1.0)
+            assert state_hash(varied) == state_hash(loaded)
+        assert apply_overrides(varied, [])
+        with simkit.load("turtlebot3_world", plugins=[(_ROBOT, Stiff())]) as base:
+            assert model_numbers(varied) == model_numbers(base)
+
+
 def test_a_light_of_a_loaded_world_has_the_values_and_pictures_of_a_load() -> None:
     overrides = {"sun.intensity": 0.4, "sun.diffuse": (1, 0.5, 0.2, 1), "sun.pose": (3, 4, 20, 0.5, 0.1, 0)}
     pictures = []
