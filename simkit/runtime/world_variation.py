@@ -100,6 +100,9 @@ def _switch_world(sim: Simulation, loaded: Snapshot, world: SceneWorld, edits: N
     """
     engine, structure, handles = sim.engine, loaded.structure, sim.contents.handles
     builder, compiled = structure.builder, structure.compiled
+    sim.communication.bus.settle()
+    for sensor in engine.structure.all_sensors():
+        sensor.reset()  # otherwise a camera would draw its last sample for the change of the model, which takes 50 ms
     lights = [light for light in world.lights if light not in builder.world.lights]
     if lights or engine.structure is not structure:
         sim._restore(loaded)
