@@ -20,6 +20,7 @@ from simkit.compiler.geometry_edits import SpecEdit, is_plain_obstacle, plan_lig
 from simkit.compiler.joints import is_valid_axis, write_dynamics
 from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.model_compilation import apply_velocity_decay
+from simkit.compiler.moved_models import SHAPE_FIELDS, moved_models, other_changes, plan_moved_model
 from simkit.compiler.name_map import ModelRecord, NameMap
 from simkit.compiler.refused_inertias import BodyInertia, repair_inertia
 from simkit.compiler.servo_gains import tune_servos
@@ -93,9 +94,18 @@ def plan_number_edits(compiled: Compiled, world: SceneWorld, changes: Sequence[E
     """
     numbers: list[Edit] = []
     shapes: list[SpecEdit] = []
-    for change in changes:
+    moved, rest = moved_models(changes), []
+    for model in moved.values():
+        own = [change for change in changes if change.owner is model]
+        edits = plan_moved_model(compiled.builder, world, model, own)
+        if edits is None:
+            return None
+        shapes += edits
+        rest += other_changes(own)
+    rest += [change for change in changes if change.owner is None or change.owner.scoped not in moved]
+    for change in rest:
         is_light = isinstance(change.new, SceneLight)
-        is_shape = is_light or change.fields <= {"pose_world", "pose_link", "geometry"}
+        is_shape = is_light or change.fields <= SHAPE_FIELDS
         if is_light:
             found: Any = plan_light(world, change)
         else:

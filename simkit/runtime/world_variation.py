@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+import mujoco
+import numpy as np
+
+from simkit.compiler.model_compilation import place_followers
+from simkit.compiler.moved_models import SHAPE_FIELDS
 from simkit.compiler.number_edits import DERIVED_FIELDS, plan_number_edits, replace_scenes
 from simkit.compiler.state_transfer import fields_on_changed_model, restore_compiled_fields
 from simkit.diagnostics import Diagnostics
+from simkit.runtime.engine.physics_state import StepWindow
 from simkit.scene import SceneLight
 from simkit.scene.differences import EntityChange, entity_changes
 from simkit.scene.overrides import Overrides, override_texts, xacro_overrides
@@ -68,9 +75,6 @@ def apply_overrides(sim: Simulation, overrides: Overrides, seed: int | None = No
     return True
 
 
-_SHAPE_FIELDS: Final = frozenset({"geometry", "pose_link", "pose_world"})
-
-
 def _is_read(engine: Engine, change: EntityChange) -> bool:
     """Check whether a plugin or sensor may have computed with a number while it was loaded.
 
@@ -79,7 +83,7 @@ def _is_read(engine: Engine, change: EntityChange) -> bool:
     """
     structure = engine.structure
     parts = structure.parts.get(change.owner.scoped) if change.owner is not None else None
-    if change.fields & _SHAPE_FIELDS and parts is not None and (parts.sensors or parts.plugins):
+    if change.fields & SHAPE_FIELDS and parts is not None and (parts.sensors or parts.plugins):
         return True
     for item in (*structure.all_plugins(), *structure.all_sensors()):
         if isinstance(change.new, SceneLight) and getattr(item, "is_gz_system", False):
@@ -95,11 +99,10 @@ def _is_read(engine: Engine, change: EntityChange) -> bool:
 def _switch_world(sim: Simulation, loaded: Snapshot, world: SceneWorld, edits: NumberEdits) -> None:
     """Make a changed world the loaded state of a simulation; the next reset returns to it.
 
-    Changed numbers are written to the present compiled model. Changed shapes need another compiled model, which the
-    reset adopts.
+    Changed numbers are written to the present compiled model. Changed shapes need another compiled model.
     """
     engine, structure, handles = sim.engine, loaded.structure, sim.contents.handles
-    builder, compiled = structure.builder, structure.compiled
+    builder = structure.builder
     sim.communication.bus.settle()
     for sensor in engine.structure.all_sensors():
         sensor.reset()  # otherwise a camera would draw its last sample for the change of the model, which takes 50 ms
@@ -117,6 +120,11 @@ def _switch_world(sim: Simulation, loaded: Snapshot, world: SceneWorld, edits: N
     structure = replace(structure, compiled=compiled, models={**structure.models, **models})
     if compiled.model is engine.mj_model:
         sim.contents.spawner.adopt_numbers(structure, are_scenes_changed=bool(models), are_derived=edits.are_derived)
+        data, sleep = loaded.data, loaded.sleep
+    else:
+        _write_first_state(loaded, compiled)
+        sim.contents.spawner.adopt(structure)
+        data, sleep = copy.copy(engine.mj_data), engine.physics.sleep.get_state()
     numbers = engine.numbers
     states: list[tuple[Stateful, AttachedState]] = []
     for part, state in loaded.handles:
@@ -126,9 +134,26 @@ def _switch_world(sim: Simulation, loaded: Snapshot, world: SceneWorld, edits: N
             states.append((part, part.get_state() if lights else state))
     fields = fields_on_changed_model(loaded.fields, before, compiled.model)
     fields["gravity"] = compiled.model.opt.gravity.copy()
-    sim.contents.spawner.snapshots.variant += 1
-    variant = sim.contents.spawner.snapshots.variant
-    sim._loaded = replace(loaded, structure=structure, fields=fields, handles=states, variant=variant)
+    snapshots = sim.contents.spawner.snapshots
+    snapshots.variant += 1
+    sim._loaded = replace(
+        loaded, structure=structure, data=data, sleep=sleep, fields=fields, handles=states, window=StepWindow(),
+        variant=snapshots.variant,
+    )  # fmt: skip
+
+
+def _write_first_state(loaded: Snapshot, compiled: Compiled) -> None:
+    """Write the loaded state to the data of another compiled model, with the first positions of this model.
+
+    Positions that plugins set while they were loaded stay.
+    """
+    before, data = loaded.structure.compiled, compiled.data
+    positions = data.qpos.copy()
+    mujoco.mj_copyData(data, compiled.model, loaded.data)
+    if not np.array_equal(before.model.qpos0, compiled.model.qpos0):
+        first = mujoco.MjData(before.model)
+        place_followers(first, before.names.joints.values())
+        data.qpos[:] = np.where(data.qpos == first.qpos, positions, data.qpos)
 
 
 def _write_edits(engine: Engine, loaded: Snapshot, edits: NumberEdits) -> Compiled:
