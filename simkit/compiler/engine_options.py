@@ -112,13 +112,15 @@ def choose_islands(spec: mujoco.MjSpec, trees: int) -> None:
         spec.option.disableflags &= ~flag
 
 
-def set_extent(model: mujoco.MjModel) -> None:
+def set_extent(model: mujoco.MjModel, data: mujoco.MjData) -> None:
     """Set centre and size of the scene from its bounded geoms; planes, distant lights and outliers are ignored.
 
     Renderers with MuJoCo's defaults scale their clip planes and their shadow map by this size.
+
+    Args:
+        model: MuJoCo's model.
+        data: first state of the model.
     """
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
     bounded = model.geom_rbound > 0.0
     if not bounded.any():
         model.stat.center[:] = 0.0

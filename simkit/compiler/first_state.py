@@ -14,9 +14,9 @@ def first_state(model: mujoco.MjModel) -> mujoco.MjData:
     return data
 
 
-def first_mass_matrix(model: mujoco.MjModel) -> mujoco.MjData:
-    """Return the first state with the mass matrix M and its factorisation."""
-    data = first_state(model)
+def first_mass_matrix(model: mujoco.MjModel, data: mujoco.MjData | None = None) -> mujoco.MjData:
+    """Return the first state with the mass matrix M and its factorisation; `data` is this state without them."""
+    data = first_state(model) if data is None else data
     mujoco.mj_makeM(model, data)
     mujoco.mj_factorM(model, data)
     return data

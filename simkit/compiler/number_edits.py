@@ -7,7 +7,7 @@ is compiled from the changed world.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -15,12 +15,13 @@ import mujoco
 
 from simkit.compiler.bodies import add_body, is_massless
 from simkit.compiler.contact_friction import STIFF_KP, contact_properties, has_directional_friction
-from simkit.compiler.engine_options import apply_options, set_extent
+from simkit.compiler.engine_options import apply_options
 from simkit.compiler.geometry_edits import SpecEdit, is_plain_obstacle, plan_light, plan_moved_link, plan_shape
 from simkit.compiler.joints import is_valid_axis, write_dynamics
 from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.model_compilation import apply_velocity_decay
-from simkit.compiler.name_map import ModelRecord
+from simkit.compiler.moved_models import SHAPE_FIELDS, moved_models, other_changes, plan_moved_model
+from simkit.compiler.name_map import ModelRecord, NameMap
 from simkit.compiler.refused_inertias import BodyInertia, repair_inertia
 from simkit.compiler.servo_gains import tune_servos
 from simkit.compiler.spec_builder import Compiled
@@ -44,6 +45,9 @@ Edit = Callable[[], None]
 
 _EDITABLE_AXIS: Final = frozenset({"lower", "upper", "damping", "friction", "stiffness", "spring_ref"})
 _BODY_FIELDS: Final = ("body_mass", "body_inertia", "body_ipos", "body_iquat")
+_BASIC_FIELDS: Final = frozenset({"inertial", "axes"})
+"""Fields of the scene from which numbers of the compiled model are derived."""
+
 DERIVED_FIELDS: Final = (
     *("body_subtreemass", "body_invweight0", "dof_M0", "dof_invweight0", "tendon_invweight0", "actuator_acc0"),
     *("cam_poscom0", "light_poscom0"),
@@ -60,10 +64,12 @@ class NumberEdits:
     Attributes:
         numbers: functions that write numbers to the specification and to the compiled model.
         shapes: functions that write poses and sizes to the specification, which must then be compiled.
+        are_derived: True if other numbers follow from the changed ones.
     """
 
     numbers: tuple[Edit, ...] = ()
     shapes: tuple[SpecEdit, ...] = ()
+    are_derived: bool = True
 
     def apply(self, compiled: Compiled) -> Compiled:
         """Write all changes, and return the compiled model with all numbers that follow from them."""
@@ -73,7 +79,8 @@ class NumberEdits:
             for write_shape in self.shapes:
                 write_shape(compiled.builder.spec)
             return compiled.builder.compile()
-        refresh_derived_numbers(compiled)
+        if self.are_derived:
+            refresh_derived_numbers(compiled)
         return compiled
 
 
@@ -87,9 +94,18 @@ def plan_number_edits(compiled: Compiled, world: SceneWorld, changes: Sequence[E
     """
     numbers: list[Edit] = []
     shapes: list[SpecEdit] = []
-    for change in changes:
+    moved, rest = moved_models(changes), []
+    for model in moved.values():
+        own = [change for change in changes if change.owner is model]
+        edits = plan_moved_model(compiled.builder, world, model, own)
+        if edits is None:
+            return None
+        shapes += edits
+        rest += other_changes(own)
+    rest += [change for change in changes if change.owner is None or change.owner.scoped not in moved]
+    for change in rest:
         is_light = isinstance(change.new, SceneLight)
-        is_shape = is_light or change.fields <= {"pose_world", "pose_link", "geometry"}
+        is_shape = is_light or change.fields <= SHAPE_FIELDS
         if is_light:
             found: Any = plan_light(world, change)
         else:
@@ -97,7 +113,8 @@ def plan_number_edits(compiled: Compiled, world: SceneWorld, changes: Sequence[E
         if found is None:
             return None
         (shapes if is_shape else numbers).extend(found)
-    return NumberEdits(tuple(numbers), tuple(shapes))
+    are_derived = any(change.fields & _BASIC_FIELDS for change in changes)
+    return NumberEdits(tuple(numbers), tuple(shapes), are_derived)
 
 
 def _plan_shape(compiled: Compiled, change: EntityChange) -> list[SpecEdit] | None:
@@ -120,9 +137,10 @@ def _plan_shape(compiled: Compiled, change: EntityChange) -> list[SpecEdit] | No
 def refresh_derived_numbers(compiled: Compiled) -> None:
     """Compute the numbers that the compiler derives from masses, inertias, joints and gains."""
     model, records = compiled.model, list(compiled.builder.records.values())
+    centre, extent = model.stat.center.copy(), model.stat.extent  # they follow from shapes alone
     mujoco.mj_setConst(model, mujoco.MjData(model))
+    model.stat.center[:], model.stat.extent = centre, extent
     set_mean_values(compiled)
-    set_extent(model)
     apply_velocity_decay(model, records)
     tune_servos(compiled.builder.spec, model, [ref for record in records for ref in record.actuators])
 
@@ -317,3 +335,13 @@ def replace_scenes(record: ModelRecord, model: SceneModel) -> None:
         is_of_world = binding.body_name == WORLD and not record.attached
         record.links[name] = replace(binding, scene=scene, offset=scene.pose_world if is_of_world else binding.offset)
     record.joints = {n: replace(b, scene=joints.get(n, b.scene)) for n, b in record.joints.items()}
+
+
+def bind_scenes(names: NameMap, records: Iterable[ModelRecord]) -> None:
+    """Make the bindings of a compiled model refer to the changed scenes of its records."""
+    names.forget_shared()
+    for record in records:
+        links = {n: b.scene for n, b in record.links.items() if names.links[n].scene is not b.scene}
+        joints = {n: b.scene for n, b in record.joints.items() if names.joints[n].scene is not b.scene}
+        names.links.update({n: replace(names.links[n], scene=scene) for n, scene in links.items()})
+        names.joints.update({n: replace(names.joints[n], scene=scene) for n, scene in joints.items()})

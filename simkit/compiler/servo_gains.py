@@ -181,9 +181,11 @@ def add_armature(joint: mujoco.MjsJoint, scoped: str, diagnostics: Diagnostics, 
         diagnostics.note("SK-PHYS-010", message, where)
 
 
-def tune_servos(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[ActuatorRef]) -> None:
-    """Set the gains of all servos in the model and in the spec."""
-    for i, gain, bias in tuned_gains(model, refs):
+def tune_servos(
+    spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[ActuatorRef], data: mujoco.MjData | None = None
+) -> None:
+    """Set the gains of all servos in the model and in the spec; `data` is the first state, if it exists already."""
+    for i, gain, bias in tuned_gains(model, refs, data):
         actuator = spec.actuator(mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, i))
         model.actuator_gainprm[i, 0] = actuator.gainprm[0] = gain
         model.actuator_biasprm[i, :3] = bias
@@ -192,12 +194,12 @@ def tune_servos(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[Actua
 
 
 def tuned_gains(
-    model: mujoco.MjModel, refs: Iterable[ActuatorRef]
+    model: mujoco.MjModel, refs: Iterable[ActuatorRef], data: mujoco.MjData | None = None
 ) -> list[tuple[int, float, tuple[float, float, float]]]:
     """Return id, gain and bias (constant, position, velocity) of each servo among the actuators."""
     refs = [r for r in refs if r.kind in ("position", "velocity")]
     found = []
-    for ref, inertia in zip(refs, _servo_inertias(model, refs) if refs else (), strict=True):
+    for ref, inertia in zip(refs, _servo_inertias(model, refs, data) if refs else (), strict=True):
         kp, kv = servo_gains(ref, inertia, float(model.opt.timestep))
         i = int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name))
         found.append((i, kv, (0.0, 0.0, -kv)) if ref.kind == "velocity" else (i, kp, (0.0, -kp, -kv)))
@@ -234,6 +236,8 @@ def servo_traits(
         refs: actuators of the servos.
         compiled: compiled values of the model fields that were changed after the compile, by name.
     """
+    if not refs:
+        return []
     names = "actuator_gainprm", "actuator_forcerange", "actuator_forcelimited", "dof_damping", "dof_frictionloss"
     strengths, ranges, limited, damping, friction = ((compiled or {}).get(name, getattr(model, name)) for name in names)
     data = first_state(model)
@@ -272,9 +276,9 @@ def _joint_reach(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> floa
     return float((np.linalg.norm(np.cross(arms, axis), axis=1) + model.geom_rbound[geoms]).max())
 
 
-def _servo_inertias(model: mujoco.MjModel, refs: list[ActuatorRef]) -> list[float]:
+def _servo_inertias(model: mujoco.MjModel, refs: list[ActuatorRef], data: mujoco.MjData | None = None) -> list[float]:
     """Return the inertia at each driven degree of freedom in the first state, with all others free: 1 / (M⁻¹)_jj."""
-    data, inertias = first_mass_matrix(model), []
+    data, inertias = first_mass_matrix(model, data), []
     for ref in refs:
         i = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name)
         dof = int(model.jnt_dofadr[model.actuator_trnid[i, 0]])

@@ -355,12 +355,12 @@ class SpecBuilder:
         with warnings.catch_warnings(record=True) as engine_warnings:
             warnings.simplefilter("always")
             model = compile_spec(self.spec, self.world, list(self.records.values()), self.diagnostics)
-            self._finish(model)
+            first = self._finish(model)
             names = NameMap.of(self.records.values(), model)
             data = mujoco.MjData(model)
             place_followers(data, names.joints.values())
             report_lights(model, self.diagnostics, self.world.where)
-            report_overlaps(model, names, self.diagnostics, self.world.where)
+            report_overlaps(model, first, names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in engine_warnings):
             if not mjcf_attachment.is_expected_warning(text):
                 self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
@@ -385,8 +385,8 @@ class SpecBuilder:
         self._finish(model)
         return Compiled(model, fresh, NameMap.of(self.records.values(), model), self)
 
-    def _finish(self, model: mujoco.MjModel) -> None:
-        finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)
+    def _finish(self, model: mujoco.MjModel) -> mujoco.MjData:
+        return finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)
 
     def copy(self) -> SpecBuilder:
         """Return an independent builder with the same content."""

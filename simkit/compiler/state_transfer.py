@@ -97,6 +97,25 @@ def restore_compiled_fields(model: mujoco.MjModel, originals: Mapping[str, npt.N
         getattr(model, field)[:] = original
 
 
+def fields_on_changed_model(
+    values: Mapping[str, npt.NDArray[np.float64]], before: Mapping[str, npt.NDArray[np.float64]], model: mujoco.MjModel
+) -> dict[str, npt.NDArray[np.float64]]:
+    """Return the values of model fields on a model with changed numbers.
+
+    An element that differs from its compiled value keeps its value; all others get the numbers of the model.
+
+    Args:
+        values: values by field; fields without a compiled value are left out.
+        before: compiled values before the change.
+        model: model with the changed numbers.
+    """
+    return {
+        field: np.where(value != before[field], value, getattr(model, field))
+        for field, value in values.items()
+        if field in before
+    }
+
+
 def _pair_by_name(prefix: str, count: int, old: mujoco.MjModel, new: mujoco.MjModel) -> list[tuple[int, int]]:
     """Return (id in the old model, id in the new model) of each named element of a kind that is in both models."""
     kind, found = _KINDS[prefix], []

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from simkit.compiler.number_edits import bind_scenes
 from simkit.compiler.state_transfer import copy_fields_by_name, restore_compiled_fields
 from simkit.diagnostics import MOST_ERRORS, Diagnostic, Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
@@ -275,8 +276,7 @@ class Spawner:
         """Bind handles, sensors and topics to a structure."""
         engine, handles, compiled = self._engine, self._handles, structure.compiled
         physics = engine.physics
-        if not any(kept() is structure for kept in self._structures):
-            self._structures.append(weakref.ref(structure))
+        self._remember(structure)
         self._communication.bus.settle()
         staying = set(structure.all_sensors())
         for sensor in engine.structure.all_sensors() if self._attached else ():
@@ -297,6 +297,36 @@ class Spawner:
         for sensor in structure.all_sensors():
             if sensor in self._attached:
                 sensor.bind(compiled)
+
+    def adopt_numbers(self, structure: WorldStructure, *, are_scenes_changed: bool, are_derived: bool) -> None:
+        """Switch to a structure with the same compiled model, whose numbers have changed.
+
+        Args:
+            structure: structure of the loaded models.
+            are_scenes_changed: True if descriptions of models have changed.
+            are_derived: True if numbers have changed that follow from masses, inertias and joints.
+        """
+        engine, compiled = self._engine, structure.compiled
+        self._remember(structure)
+        self._communication.bus.settle()
+        engine.structure = structure
+        engine.physics.changed_model()
+        if are_derived:
+            engine.numbers.renew()
+        if not are_scenes_changed:
+            return
+        bind_scenes(compiled.names, structure.builder.records.values())
+        self._handles.bind(structure)
+        engine.friction.bind(compiled, [plugin for part in structure.parts.values() for plugin, _ in part.plugins])
+        for sensor in structure.all_sensors():
+            if sensor in self._attached:
+                sensor.bind(compiled)
+
+    def _remember(self, structure: WorldStructure) -> None:
+        """Add a structure to those that a restore may bring back, and forget those that nothing refers to."""
+        if not any(kept() is structure for kept in self._structures):
+            self._structures = [kept for kept in self._structures if kept() is not None]
+            self._structures.append(weakref.ref(structure))
 
     def start(self, parts: list[SensorsAndPlugins], diagnostics: Diagnostics) -> None:
         """Attach new sensors, then load new plugins, in document order.

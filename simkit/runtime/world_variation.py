@@ -8,17 +8,24 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import mujoco
+import numpy as np
 
-from simkit.compiler.name_map import NameMap
-from simkit.compiler.number_edits import plan_number_edits, replace_scenes
-from simkit.compiler.spec_builder import Compiled
+from simkit.compiler.model_compilation import place_followers
+from simkit.compiler.moved_models import SHAPE_FIELDS
+from simkit.compiler.number_edits import DERIVED_FIELDS, plan_number_edits, replace_scenes
+from simkit.compiler.state_transfer import fields_on_changed_model, restore_compiled_fields
 from simkit.diagnostics import Diagnostics
+from simkit.runtime.engine.physics_state import StepWindow
 from simkit.scene import SceneLight
 from simkit.scene.differences import EntityChange, entity_changes
 from simkit.scene.overrides import Overrides, override_texts, xacro_overrides
 
 if TYPE_CHECKING:
+    from simkit.compiler.number_edits import NumberEdits
+    from simkit.compiler.spec_builder import Compiled
     from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.engine.entity_structure import AttachedState
+    from simkit.runtime.engine.snapshot import Snapshot, Stateful
     from simkit.runtime.simulation import Simulation
     from simkit.scene import SceneWorld
 
@@ -58,20 +65,14 @@ def apply_overrides(sim: Simulation, overrides: Overrides, seed: int | None = No
         return False
     if changes:
         loaded = sim._loaded_state()
-        compiled = _copied(loaded.structure.compiled)
-        edits = plan_number_edits(compiled, world, changes)
-        if edits is None:
-            return False
-        sim._restore(loaded)
-        _switch_world(sim, world, edits.apply(compiled))
-        sim._loaded = sim.snapshot()
+        edits = plan_number_edits(loaded.structure.compiled, world, changes)
+        if edits is None or (edits.are_derived and loaded.fields.keys() & set(DERIVED_FIELDS)):
+            return False  # a plugin changed a mass during the load, so that numbers follow from both changes
+        _switch_world(sim, loaded, world, edits)
     if sim.run_spec is not None:
         sim.run_spec = replace(sim.run_spec, overrides=tuple(overrides))
     sim.reset(seed)
     return True
-
-
-_SHAPE_FIELDS: Final = frozenset({"geometry", "pose_link", "pose_world"})
 
 
 def _is_read(engine: Engine, change: EntityChange) -> bool:
@@ -82,7 +83,7 @@ def _is_read(engine: Engine, change: EntityChange) -> bool:
     """
     structure = engine.structure
     parts = structure.parts.get(change.owner.scoped) if change.owner is not None else None
-    if change.fields & _SHAPE_FIELDS and parts is not None and (parts.sensors or parts.plugins):
+    if change.fields & SHAPE_FIELDS and parts is not None and (parts.sensors or parts.plugins):
         return True
     for item in (*structure.all_plugins(), *structure.all_sensors()):
         if isinstance(change.new, SceneLight) and getattr(item, "is_gz_system", False):
@@ -95,29 +96,70 @@ def _is_read(engine: Engine, change: EntityChange) -> bool:
     return False
 
 
-def _copied(compiled: Compiled) -> Compiled:
-    """Return a copy of a compiled model; code that keeps values of a model recognises another model by its identity."""
-    model = copy.copy(compiled.model)
-    return Compiled(model, mujoco.MjData(model), compiled.names, compiled.builder)
+def _switch_world(sim: Simulation, loaded: Snapshot, world: SceneWorld, edits: NumberEdits) -> None:
+    """Make a changed world the loaded state of a simulation; the next reset returns to it.
 
-
-def _switch_world(sim: Simulation, world: SceneWorld, compiled: Compiled) -> None:
-    """Make the simulation refer to the entities of the changed world and to its compiled model."""
-    engine, structure = sim.engine, sim.engine.structure
+    Changed numbers are written to the present compiled model. Changed shapes need another compiled model.
+    """
+    engine, structure, handles = sim.engine, loaded.structure, sim.contents.handles
     builder = structure.builder
-    mujoco.mj_copyData(compiled.data, compiled.model, engine.mj_data)
+    sim.communication.bus.settle()
+    for sensor in engine.structure.all_sensors():
+        sensor.reset()  # otherwise a camera would draw its last sample for the change of the model, which takes 50 ms
+    lights = [light for light in world.lights if light not in builder.world.lights]
+    if lights or engine.structure is not structure:
+        sim._restore(loaded)
     models = {model.name: model for model in world.models if structure.models.get(model.name) is not model}
     for model in models.values():
         replace_scenes(builder.records[model.scoped], model)
-    sim.contents.spawner.snapshots.variant += 1
     builder.world = engine.world = sim.control.loaded_world = world
-    names = NameMap.of(builder.records.values(), compiled.model)
-    sim.contents.handles.replace_scenes(structure.models, models)
-    sim.contents.handles.replace_lights(world.lights)
-    sim.contents.spawner.adopt(
-        replace(
-            structure,
-            compiled=Compiled(compiled.model, compiled.data, names, builder),
-            models={name: models.get(name, model) for name, model in structure.models.items()},
-        )
-    )
+    handles.replace_scenes(structure.models, models)
+    handles.replace_lights(lights)
+    before = dict(engine.originals)
+    compiled = _write_edits(engine, loaded, edits)
+    structure = replace(structure, compiled=compiled, models={**structure.models, **models})
+    if compiled.model is engine.mj_model:
+        sim.contents.spawner.adopt_numbers(structure, are_scenes_changed=bool(models), are_derived=edits.are_derived)
+        data, sleep = loaded.data, loaded.sleep
+    else:
+        _write_first_state(loaded, compiled)
+        sim.contents.spawner.adopt(structure)
+        data, sleep = copy.copy(engine.mj_data), engine.physics.sleep.get_state()
+    numbers = engine.numbers
+    states: list[tuple[Stateful, AttachedState]] = []
+    for part, state in loaded.handles:
+        if part is numbers:
+            states.append((part, numbers.on_changed_model(state, before, compiled.model)))
+        else:
+            states.append((part, part.get_state() if lights else state))
+    fields = fields_on_changed_model(loaded.fields, before, compiled.model)
+    fields["gravity"] = compiled.model.opt.gravity.copy()
+    snapshots = sim.contents.spawner.snapshots
+    snapshots.variant += 1
+    sim._loaded = replace(
+        loaded, structure=structure, data=data, sleep=sleep, fields=fields, handles=states, window=StepWindow(),
+        variant=snapshots.variant,
+    )  # fmt: skip
+
+
+def _write_first_state(loaded: Snapshot, compiled: Compiled) -> None:
+    """Write the loaded state to the data of another compiled model, with the first positions of this model.
+
+    Positions that plugins set while they were loaded stay.
+    """
+    before, data = loaded.structure.compiled, compiled.data
+    positions = data.qpos.copy()
+    mujoco.mj_copyData(data, compiled.model, loaded.data)
+    if not np.array_equal(before.model.qpos0, compiled.model.qpos0):
+        first = mujoco.MjData(before.model)
+        place_followers(first, before.names.joints.values())
+        data.qpos[:] = np.where(data.qpos == first.qpos, positions, data.qpos)
+
+
+def _write_edits(engine: Engine, loaded: Snapshot, edits: NumberEdits) -> Compiled:
+    """Write changes to the compiled model without the values that a run has written to it."""
+    model, written = engine.mj_model, dict(engine.originals)
+    engine.originals.clear()
+    restore_compiled_fields(model, written)
+    model.opt.gravity[:] = loaded.fields["gravity"]
+    return edits.apply(loaded.structure.compiled)

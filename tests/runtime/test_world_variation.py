@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.pose import Pose
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.runtime.world_variation import apply_overrides
 
@@ -51,6 +52,102 @@ def test_numbers_that_are_set_in_a_loaded_world_give_the_bits_of_a_load(override
         assert state_hash(varied) == state_hash(loaded)
         assert apply_overrides(varied, [])
         with simkit.load("turtlebot3_world") as base:
+            assert model_numbers(varied) == model_numbers(base)
+
+
+_INERTIA = "<inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia>"
+_OBJECTS = f"""
+<sdf version="1.9"><world name="w">
+  <model name="ground"><static>1</static><link name="l"><collision name="c"><geometry><plane/></geometry></collision>
+  </link></model>
+  <model name="shelf"><static>1</static><pose>0 0 0.02 0 0 0</pose><link name="l"><collision name="c"><geometry>
+    <box><size>0.5 0.5 0.04</size></box></geometry></collision></link></model>
+  <model name="box"><pose>0 0 0.3 0.2 0 0.1</pose><link name="l"><inertial><mass>2</mass>{_INERTIA}</inertial>
+    <collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
+    <visual name="v"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></visual></link></model>
+  <model name="door"><pose>2 0 0 0 0 0.3</pose>
+    <link name="frame"><pose>0.1 0.2 0.7 0 0 0.2</pose><inertial><mass>5</mass>{_INERTIA}</inertial></link>
+    <joint name="fixed" type="fixed"><parent>world</parent><child>frame</child></joint>
+    <link name="leaf"><pose>0.5 0.2 0.7 0.1 0 0.2</pose><inertial><mass>1</mass>{_INERTIA}</inertial>
+      <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link>
+    <joint name="hinge" type="revolute"><parent>frame</parent><child>leaf</child><pose>-0.4 0 0 0 0 0</pose>
+      <axis><xyz>0 1 0.3</xyz><dynamics><damping>0.02</damping></dynamics></axis></joint></model>
+</world></sdf>
+"""
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        ["box.pose=0.31 -0.17 0.45 0.3 -0.2 1.1"],
+        ["box.pose.z=0.6", "box::l.inertial.mass=0.7", "box::l::c.surface.friction.ode.mu=0.3", "world.gravity=0 0 -5"],
+        ["box::l::c.geometry.box.size=0.1 0.3 0.2", "box::l::v.geometry.box.size=0.1 0.3 0.2"],
+        ["shelf.pose.z=0.12", "shelf::l::c.size=0.6 0.6 0.04"],
+        ["door.pose=-1.3 0.7 0.1 0 0 -0.9"],
+        ["door.pose.x=1.7", "door::hinge.axis.dynamics.damping=0.3", "door::leaf.pose=0.55 0.2 0.7 0.1 0 0.2"],
+    ],
+)
+def test_poses_and_sizes_of_moving_objects_in_a_loaded_world_give_the_bits_of_a_load(overrides: list[str]) -> None:
+    with simkit.load(_OBJECTS, overrides=overrides) as loaded, simkit.load(_OBJECTS) as varied:
+        varied.run(0.2)
+        varied.model("box").set_pose(Pose((1.0, 1.0, 1.0)))
+        assert apply_overrides(varied, overrides)
+        assert model_numbers(varied) == model_numbers(loaded)
+        assert state_hash(varied) == state_hash(loaded)
+        for joint in ("door::hinge", "door::fixed"):
+            names = [sim.engine.names.joint(joint) for sim in (varied, loaded)]
+            assert names[0].pose_child == names[1].pose_child and names[0].pose_moved == names[1].pose_moved
+        for sim in (loaded, varied):
+            sim.run(1.0)
+        assert state_hash(varied) == state_hash(loaded)
+        assert apply_overrides(varied, [])
+        with simkit.load(_OBJECTS) as base:
+            assert model_numbers(varied) == model_numbers(base)
+            assert state_hash(varied) == state_hash(base)
+
+
+def test_another_pose_of_a_robot_and_another_kind_of_shape_need_a_new_load() -> None:
+    with simkit.load("turtlebot3_world") as sim:
+        assert not apply_overrides(sim, [f"{_ROBOT}.pose.x=1"])
+    with simkit.load(_OBJECTS) as sim:
+        sim.contents.add_weld("w", "box::l", "door::leaf")
+        assert apply_overrides(sim, ["box.pose.x=1"])  # the weld belongs to the run, not to the file
+        assert sim.model("box").pose.position[0] == 1.0
+
+
+def test_what_a_run_changed_does_not_stay_in_a_varied_world() -> None:
+    overrides = [f"{_ROBOT}::wheel_left_link::tread.surface.friction.ode.mu=0.4"]
+    with simkit.load("turtlebot3_world", overrides=overrides) as loaded, simkit.load("turtlebot3_world") as varied:
+        varied.link(f"{_ROBOT}::base_link").mass = 3.0
+        varied.gravity = (0.0, 0.0, -1.0)
+        varied.spawn('<sdf version="1.9"><model name="box"><pose>9 9 1 0 0 0</pose><link name="l"/></model></sdf>')
+        varied.run(0.1)
+        assert apply_overrides(varied, overrides)
+        assert model_numbers(varied) == model_numbers(loaded)
+        assert varied.link(f"{_ROBOT}::base_link").mass == loaded.link(f"{_ROBOT}::base_link").mass
+
+
+class Stiff(simkit.ModelPlugin):
+    reads_at_load = ()
+
+    def load(self, model: Any, _params: Any) -> None:
+        model.joint("wheel_left_joint").damping = 0.7
+
+
+def test_what_a_plugin_wrote_while_it_was_loaded_stays_in_a_varied_world() -> None:
+    overrides = [f"{_ROBOT}::wheel_right_joint.axis.dynamics.damping=0.2"]
+    plugins = [(_ROBOT, Stiff())], [(_ROBOT, Stiff())]
+    with simkit.load("turtlebot3_world", plugins=plugins[0]) as varied:
+        with simkit.load("turtlebot3_world", plugins=plugins[1], overrides=overrides) as loaded:
+            varied.run(0.1)
+            assert apply_overrides(varied, overrides)
+            assert [varied.joint(f"{_ROBOT}::wheel_{side}_joint").damping for side in ("left", "right")] == [0.7, 0.2]
+            assert model_numbers(varied) == model_numbers(loaded)
+            for sim in (loaded, varied):
+                sim.run(1.0)
+            assert state_hash(varied) == state_hash(loaded)
+        assert apply_overrides(varied, [])
+        with simkit.load("turtlebot3_world", plugins=[(_ROBOT, Stiff())]) as base:
             assert model_numbers(varied) == model_numbers(base)
 
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from simkit.compiler.model_compilation import apply_velocity_decay
 from simkit.compiler.number_edits import DERIVED_FIELDS, body_numbers, set_mean_values
 from simkit.compiler.servo_gains import tuned_gains
-from simkit.compiler.state_transfer import copy_rows_by_name
+from simkit.compiler.state_transfer import copy_rows_by_name, fields_on_changed_model
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 Numbers = npt.NDArray[np.float64]
 ChangeKey = tuple[str, str, str]
 """Kind and scoped name of an entity, and the name of the changed attribute."""
+
+NumberState = tuple[dict[str, "Inertial"], dict[ChangeKey, Any], dict[str, Numbers]]
+"""Changed masses and inertias by link, changed attributes, and given values by field of the model."""
 
 _GAINS: Final = ("actuator_gainprm", "actuator_biasprm")
 
@@ -61,7 +64,7 @@ class NumberChanges:
         self._engine.touch(field)[rows] = values
         given = self._given.setdefault(field, self._engine.original(field).copy())
         given[rows] = values
-        self._renew()
+        self.renew()
 
     def keep(self, kind: str, scoped: str, attribute: str, value: Any) -> None:
         """Record a changed attribute of a handle, so that a reset can keep it."""
@@ -107,9 +110,10 @@ class NumberChanges:
             if all(np.array_equal(v, getattr(model, f)[index]) for f, v in zip(_GAINS, given, strict=True)):
                 self.write("actuator_gainprm", (index, 0), gain)
                 self.write("actuator_biasprm", (index, slice(0, 3)), bias)
-        self._renew()
+        self.renew()
 
-    def _renew(self) -> None:
+    def renew(self) -> None:
+        """Compute again what the servos and the physics derive from masses, inertias and gains."""
         self._renew_servos()
         self._engine.physics.renew_pushes()
 
@@ -121,14 +125,19 @@ class NumberChanges:
             copy_rows_by_name(field, given, carried[field], old, new)
         self._given = carried
 
-    def get_state(self) -> tuple[dict[str, Inertial], dict[ChangeKey, Any], dict[str, Numbers]]:
+    @staticmethod
+    def on_changed_model(state: NumberState, before: Mapping[str, Numbers], model: mujoco.MjModel) -> NumberState:
+        """Return a state for a model whose compiled values have changed, as in `fields_on_changed_model`."""
+        return state[0], state[1], fields_on_changed_model(state[2], before, model)
+
+    def get_state(self) -> NumberState:
         """Return the changes for a snapshot."""
         return dict(self.inertials), dict(self.values), {field: given.copy() for field, given in self._given.items()}
 
-    def set_state(self, state: tuple[dict[str, Inertial], dict[ChangeKey, Any], dict[str, Numbers]]) -> None:
+    def set_state(self, state: NumberState) -> None:
         """Restore changes from `get_state`; the snapshot has restored the model's fields."""
         if self._given or state[2]:
-            self._renew()
+            self.renew()
             set_mean_values(self._engine.compiled)
         self.inertials, self.values = dict(state[0]), dict(state[1])
         self._given = {field: given.copy() for field, given in state[2].items()}

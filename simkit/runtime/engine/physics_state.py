@@ -340,7 +340,7 @@ class PhysicsState:
 def _step_fields(model: mujoco.MjModel) -> list[bytes]:
     """Return the fields of a model that a run may write to and that decide the step method."""
     joints = model.jnt_range, model.jnt_limited, model.dof_damping, model.dof_frictionloss, model.dof_armature
-    return [field.tobytes() for field in (model.geom_contype, model.geom_conaffinity, *joints)]
+    return [field.tobytes() for field in (model.geom_contype, model.geom_conaffinity, model.geom_solref, *joints)]
 
 
 def set_speculative(model: mujoco.MjModel, is_on: bool) -> None:

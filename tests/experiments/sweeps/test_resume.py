@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import signal
 import subprocess
@@ -85,4 +86,7 @@ def test_a_sweep_that_is_killed_equals_an_uninterrupted_one(tmp_path: Path) -> N
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="it needs SIGKILL")
 def test_a_sweep_of_10000_runs_that_is_killed_five_times_equals_an_uninterrupted_one(tmp_path: Path) -> None:
+    # 20,000 runs and 7 starts of a sweep take 40 s of processor time; the limit of all tests, 300 s, is short for a
+    # slow machine that does other work too. pytest removes this limit after the test.
+    faulthandler.dump_traceback_later(1500, exit=True)
     check_killed_sweep(tmp_path, 10_000, 5)
