@@ -184,14 +184,31 @@ class GeomWriter:
         for severity, code, text, hint in bodies.findings:
             report_once(self.diagnostics, severity, code, f"{_collision_title(shape)} {text}", collision.where, hint)
         settings = solid if bodies.is_exact else {**solid, "group": COLLISION_CONTACT}
-        for name in self.assets.convex_bodies(bodies):
+        names = self.assets.convex_bodies(bodies)
+        for name in names:
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
+        self._copies(parent, owner, collision.pose_link, bodies, names, settings)
         self._tiles(parent, owner, collision.pose_link, bodies, settings)
         if not bodies.is_exact:
             drawn: GeomSettings = {"contype": 0, "conaffinity": 0, "group": COLLISION_RAY}
             is_shared = len(parts) == 1 and len(faces) > TRIANGLES_FROM  # with the visual of the same file
             name = self.assets.part(parts[0], False) if is_shared else self.assets.surface(vertices, faces)
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **drawn)
+
+    def _copies(
+        self,
+        parent: GeomParent,
+        owner: GeomOwner,
+        pose: Pose,
+        bodies: ConvexBodies,
+        names: list[str],
+        settings: GeomSettings,
+    ) -> None:
+        """Add the bodies that a large surface repeats at other places."""
+        frame = parent.offset @ pose
+        for (number, _), place in zip(bodies.copies, _moved(frame, [at for _, at in bodies.copies]), strict=True):
+            kind = mujoco.mjtGeom.mjGEOM_MESH
+            self._add_at(parent, owner, place, frame.quaternion, type=kind, meshname=names[number], **settings)
 
     def _tiles(
         self, parent: GeomParent, owner: GeomOwner, pose: Pose, bodies: ConvexBodies, settings: GeomSettings
@@ -348,6 +365,14 @@ class GeomWriter:
         x, y, z = shape.position
         at = pose @ Pose((x, y, z + low * z_size))
         self._add(parent, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
+
+
+def _moved(frame: Pose, points: list[Floats]) -> Floats:
+    """Return points of a frame in its parent [m], shape (n, 3)."""
+    rotation = np.zeros(9)
+    mujoco.mju_quat2Mat(rotation, frame.quaternion)
+    moved: Floats = frame.position + np.array(points).reshape(-1, 3) @ rotation.reshape(3, 3).T
+    return moved
 
 
 def _tinted(colour: Colour, pixels: Pixels) -> Colour:

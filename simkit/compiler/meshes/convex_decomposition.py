@@ -128,7 +128,7 @@ LARGEST_ERROR: Final = 0.005
 """Largest error [m] of the contacts of a large static mesh that is not reported as a warning."""
 
 _REPORTS: Final = (
-    7  # version of the bodies and of the texts of their findings, which are cached: raise it with every change
+    8  # version of the bodies and of the texts of their findings, which are cached: raise it with every change
 )
 _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
 _KEPT: Final = 128
@@ -147,12 +147,14 @@ class ConvexBodies:
         is_exact: True if rays can use the bodies; else rays need a copy of the mesh itself.
         findings: diagnostics about the conversion.
         tiles: height fields that collide beside the bodies.
+        copies: number of a shape and offset [m] of each further place of it.
     """
 
     shapes: tuple[tuple[Floats, Ints], ...]
     is_exact: bool = True
     findings: tuple[CollisionFinding, ...] = ()
     tiles: tuple[HeightTile, ...] = ()
+    copies: tuple[tuple[int, Floats], ...] = ()
 
 
 def convex_bodies(
@@ -231,10 +233,11 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
 def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
     findings: list[CollisionFinding] = []
     tiles: list[HeightTile] = []
+    copies: list[tuple[int, Floats]] = []
     large = large_surface_pieces(vertices, faces) if len(faces) > TRIANGLES_FROM else None
     if large is not None and (large.error <= LEAST_TOLERANCE or is_large(vertices, faces)):
-        pieces, tiles, error = large
-        kind = f"{sum(not p.exact for p in pieces)} patches of"
+        pieces, tiles, error, copies = large
+        kind = f"{sum(not p.is_solid for p in pieces)} patches of"
         shapes = tuple((p.points, np.zeros((0, 3), np.int32)) for p in pieces)
         if error > LARGEST_ERROR:
             text = (
@@ -243,13 +246,13 @@ def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
             findings.append(("warning", "SK-MESH-005", text, "give the collision a coarser mesh or several meshes"))
     else:
         pieces = convex_pieces(vertices, faces)
-        kind = f"{sum(not p.exact for p in pieces)} prisms on"
+        kind = f"{sum(not p.is_solid for p in pieces)} prisms on"
         shapes = _hulls([p.points for p in pieces])
-    closed = sum(p.exact for p in pieces)
+    closed = sum(p.is_solid for p in pieces) + len(copies)
     fields = f", and {len(tiles)} height fields" if tiles else ""
     text = f"is not convex: it collides as {closed} convex pieces and {kind} its surface{fields}"
     findings.append(("note", "SK-MESH-006", text, ""))
-    return ConvexBodies(shapes, False, tuple(findings), tuple(tiles))
+    return ConvexBodies(shapes, False, tuple(findings), tuple(tiles), tuple(copies))
 
 
 def _surface_plates(vertices: Floats, faces: Ints) -> ConvexBodies:
@@ -323,7 +326,8 @@ def _load(key: str) -> ConvexBodies | None:
             HeightTile(numbers[:3], numbers[3:12].reshape(3, 3), numbers[12:14], rows.reshape(size), float(numbers[14]))
             for numbers, rows, size in zip(arrays["tiles"], heights, arrays["tile_sizes"], strict=True)
         )
-        return ConvexBodies(shapes, bool(header["is_exact"]), findings, tiles)
+        copies = tuple(zip(arrays["copies"].tolist(), arrays["copy_offsets"], strict=True))
+        return ConvexBodies(shapes, bool(header["is_exact"]), findings, tiles, copies)
     except Exception:  # noqa: BLE001 -- after any error with a foreign file, the bodies are computed again
         return None
 
@@ -337,6 +341,8 @@ def _store(key: str, bodies: ConvexBodies) -> ConvexBodies:
         "face_counts": np.array([len(f) for _, f in shapes], np.int64),
         "tiles": np.array([(*t.origin, *t.axes.flat, *t.cell, t.base) for t in bodies.tiles]).reshape(-1, 15),
         "tile_sizes": np.array([t.heights.shape for t in bodies.tiles], np.int64).reshape(-1, 2),
+        "copies": np.array([number for number, _ in bodies.copies], np.int64),
+        "copy_offsets": np.array([offset for _, offset in bodies.copies]).reshape(-1, 3),
         "tile_heights": np.concatenate([np.zeros(0), *(t.heights.reshape(-1) for t in bodies.tiles)]),
     }
     has_failed = any(code == "SK-MESH-014" for _, code, _, _ in bodies.findings)

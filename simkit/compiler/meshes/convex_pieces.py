@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.meshes.connected_triangles import members_of, part_numbers
-from simkit.compiler.meshes.mesh_part import Floats, Ints
+from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 
 HULLS_MOST: Final = 64
 THICKNESS: Final = 0.05
@@ -23,10 +23,10 @@ _FEW_FACES: Final = 128
 
 @dataclass(frozen=True, eq=False)
 class ConvexPiece:
-    """Convex body: points, shape (n, 3) [m]; `exact` is True if the body equals a closed piece of the mesh."""
+    """Convex body: points, shape (n, 3) [m]; `is_solid` is True if the body fills a closed part or a piece of one."""
 
     points: Floats
-    exact: bool
+    is_solid: bool
 
 
 def is_convex(vertices: Floats, faces: Ints) -> bool:
@@ -83,8 +83,22 @@ def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
     return pieces
 
 
-def closed_convex_parts(vertices: Floats, faces: Ints) -> tuple[list[Floats], npt.NDArray[np.bool_]]:
-    """Return the points of each closed convex part that is no cavity, and a mask of the faces of all other parts."""
+class ClosedParts(NamedTuple):
+    """Connected parts of a mesh.
+
+    Attributes:
+        convex: points of each closed convex part that is no cavity [m].
+        others: numbers of the triangles of each other part that is no cavity and has none.
+        is_rest: mask of the faces of all parts that are not closed and convex.
+    """
+
+    convex: list[Floats]
+    others: list[Indices]
+    is_rest: npt.NDArray[np.bool_]
+
+
+def closed_convex_parts(vertices: Floats, faces: Ints) -> ClosedParts:
+    """Return the connected parts of a mesh, divided into closed convex ones and others."""
     of_face = part_numbers(faces)
     parts = members_of(of_face)
     corners = vertices[faces]
@@ -92,21 +106,19 @@ def closed_convex_parts(vertices: Floats, faces: Ints) -> tuple[list[Floats], np
     inverted = np.bincount(of_face, volumes)[[of_face[p[0]] for p in parts]] < 0.0
     low = np.array([corners[p].min(axis=(0, 1)) for p in parts])
     high = np.array([corners[p].max(axis=(0, 1)) for p in parts])
-    closed: list[Floats] = []
-    is_rest = np.ones(len(faces), bool)
+    result = ClosedParts([], [], np.ones(len(faces), bool))
     for i, part in enumerate(parts):
         hollow = inverted & (low > low[i]).all(axis=1) & (high < high[i]).all(axis=1) if inverted.any() else inverted
+        if inverted[i] or hollow.any():
+            continue
         used, inverse = np.unique(faces[part], return_inverse=True)
         local = np.asarray(inverse).reshape(-1, 3)
-        if (
-            len(closed) < _CLOSED_MOST
-            and not inverted[i]
-            and not hollow.any()
-            and _is_closed_convex(vertices[used], local.astype(np.int32))
-        ):
-            closed.append(vertices[used])
-            is_rest[part] = False
-    return closed, is_rest
+        if len(result.convex) < _CLOSED_MOST and _is_closed_convex(vertices[used], local.astype(np.int32)):
+            result.convex.append(vertices[used])
+            result.is_rest[part] = False
+        else:
+            result.others.append(part)
+    return result
 
 
 def _is_closed_convex(vertices: Floats, faces: Ints) -> bool:

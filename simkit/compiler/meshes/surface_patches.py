@@ -25,6 +25,7 @@ from simkit.compiler.meshes.patch_division import (
     middle_plane,
     plane_between_layers,
 )
+from simkit.compiler.meshes.solid_pieces import solid_parts
 
 TRIANGLES_FROM: Final = 4000
 """Number of triangles up to which a static mesh is divided into prisms, which are exact, instead of patches."""
@@ -41,7 +42,7 @@ LEAST_TOLERANCE: Final = 0.5e-3
 """Least value of this error [m]."""
 
 _TILE_ERROR: Final = 8e-4
-"""Largest error of a height field on a curved surface, relative to the size of the mesh."""
+"""Largest error of a height field on a curved surface or of a solid piece, relative to the size of the mesh."""
 
 _LEAST_TILE_ERROR: Final = 1e-3
 """Least value of this error [m]."""
@@ -82,46 +83,66 @@ class LargeSurface(NamedTuple):
         pieces: convex pieces.
         tiles: height fields of regular grids.
         error: largest distance between a body and the surface [m].
+        copies: number of a piece and offset [m] of each further place of it.
     """
 
     pieces: list[ConvexPiece]
     tiles: list[HeightTile]
     error: float
+    copies: list[tuple[int, Floats]]
 
 
 def large_surface_pieces(vertices: Floats, faces: Ints) -> LargeSurface:
     """Return the bodies of a large static mesh.
 
-    Closed convex parts are pieces of their own. Regular grids are height fields. All other triangles are divided into
-    patches.
+    Closed parts are solid pieces if few are enough. Regular grids are height fields. All other triangles are divided
+    into patches.
     """
     vertices = np.asarray(vertices, float)
-    closed, is_rest = closed_convex_parts(vertices, faces)
+    closed, others, is_rest = closed_convex_parts(vertices, faces)
     pieces = [ConvexPiece(points, True) for points in closed]
     if not is_rest.any():
-        return LargeSurface(pieces, [], 0.0)
+        return LargeSurface(pieces, [], 0.0, [])
+    solids = solid_parts(vertices, faces, others, _largest_error(_usual_size(vertices[faces[is_rest]])))
+    copies = [(len(pieces) + number, offset) for number, offset in solids.copies]
+    pieces += [ConvexPiece(points, True) for points in solids.pieces]
+    for part in solids.faces:
+        is_rest[part] = False
+    rest = _surface_bodies(vertices, faces, is_rest)
+    return LargeSurface(pieces + rest.pieces, rest.tiles, max(rest.error, solids.error), copies)
+
+
+def _surface_bodies(vertices: Floats, faces: Ints, is_rest: Mask) -> LargeSurface:
+    """Return height fields and patches for a part of the surface of a mesh.
+
+    Args:
+        vertices: vertices of the whole mesh [m], shape (n, 3).
+        faces: vertex indices of the whole mesh, shape (m, 3).
+        is_rest: mask of the triangles without a body.
+    """
     tiles, is_left = height_tiles(vertices, faces, vertices[faces[is_rest]], LEAST_TOLERANCE)
-    if not is_left.any():
-        return LargeSurface(pieces, tiles, LEAST_TOLERANCE)
     rest = np.flatnonzero(is_rest)[is_left]
-    corners = vertices[faces[rest]]
-    rest = rest[_have_area(corners)]
+    rest = rest[_have_area(vertices[faces[rest]])]
     if not len(rest):
-        return LargeSurface(pieces, tiles, LEAST_TOLERANCE if tiles else 0.0)
+        return LargeSurface([], tiles, LEAST_TOLERANCE if tiles else 0.0, [])
     corners = vertices[faces[rest]]
     depths, _ = layer_depths(vertices, faces, corners)
     most = min(_PIECES_MOST, len(rest) // _TRIANGLES_PER_PIECE)
     groups, flat_count = _groups(corners, most)
     curved = np.flatnonzero(groups >= flat_count)
     size = _usual_size(corners)
-    limit = max(_LEAST_TILE_ERROR, _TILE_ERROR * size)
-    fields = curved_tiles(vertices, faces, rest[curved], depths[curved], groups[curved], limit)
+    fields = curved_tiles(vertices, faces, rest[curved], depths[curved], groups[curved], _largest_error(size))
     is_left = np.ones(len(rest), bool)
     is_left[curved[~fields.is_left]] = False
     few = min(most, max(int(is_left.sum()) // _TRIANGLES_PER_PIECE, most // 4))
     patches, error = _nearly_convex_patches(corners[is_left], depths[is_left], groups[is_left], (few, 4 * most), size)
-    pieces += [ConvexPiece(points, False) for points in patches]
-    return LargeSurface(pieces, [*tiles, *fields.tiles], max(error, fields.error))
+    pieces = [ConvexPiece(points, False) for points in patches]
+    return LargeSurface(pieces, [*tiles, *fields.tiles], max(error, fields.error), [])
+
+
+def _largest_error(size: float) -> float:
+    """Return the largest error of a height field or a solid piece [m] for a mesh of this size [m]."""
+    return max(_LEAST_TILE_ERROR, _TILE_ERROR * size)
 
 
 def _have_area(corners: Floats) -> Mask:

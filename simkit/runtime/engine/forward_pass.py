@@ -13,6 +13,7 @@ from simkit.runtime.engine.physics_state import (
     CONTROL,
     FRESH,
     INTEGRATION_STATE,
+    OPEN_WINDOWS,
     STALE,
     VELOCITY,
     HeldState,
@@ -91,12 +92,18 @@ class ForwardPass(PhysicsState):
 
     def _look_for_fast(self) -> None:
         """Decide at the beginning of a window, from the state alone, whether the window needs speculative contacts."""
-        self._fast_until = (self.tick // self._window + 1) * self._window
-        is_fast = self.fast_bodies.wants(self.data)
+        is_open = self._space.is_open(self.data)
+        self._fast_until = self._end_of_window(is_open)
+        is_fast = not is_open and self.fast_bodies.wants(self.data)
         if is_fast != self._is_fast:
             self._is_fast = is_fast
             set_speculative(self.model, is_fast)
             self.stage = STALE  # contact detection changes
+
+    def _end_of_window(self, is_open: bool) -> int:
+        """Return the tick of the next check; bodies that are far from everything need fewer checks."""
+        window = OPEN_WINDOWS * self._window if is_open else self._window
+        return (self.tick // window + 1) * window
 
     @property
     def _closing(self) -> list[float] | None:
@@ -125,8 +132,9 @@ class ForwardPass(PhysicsState):
         if stage > CONTROL:
             self._update_velocities()
         if self.tick >= self._until:
-            self._until = (self.tick // self._window + 1) * self._window
-            self._uses_law = self._is_fast or self.law.is_needed(data)
+            is_open = not data.ncon and self._space.is_open(data)
+            self._until = self._end_of_window(is_open)
+            self._uses_law = not is_open and (self._is_fast or self.law.is_needed(data))
         if self._probes:
             self._probes = False
             self.stage = STALE  # an interrupt during the solve leaves unfinished constraints

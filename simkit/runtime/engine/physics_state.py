@@ -13,6 +13,7 @@ import numpy.typing as npt
 from simkit.compiler.engine_options import has_engine_contacts
 from simkit.errors import SimulationDiverged
 from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, window_length
+from simkit.runtime.contact.open_space import OpenSpace
 from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, FastBodyDetector
 from simkit.runtime.engine.free_motion import FreeMotionIntegrator
 from simkit.runtime.engine.simulated_time import Clock
@@ -81,6 +82,8 @@ _INTEGRATORS = {
     int(mujoco.mjtIntegrator.mjINT_RK4): lambda model, data: mujoco.mj_RungeKutta(model, data, 4),
 }
 _NEVER = 1 << 62  # tick
+OPEN_WINDOWS = 4
+"""Number of windows without a check of the contacts while all bodies are far from everything."""
 _MIN_PUSH = 0.2  # [m/s²] least acceleration of wheel rims, by a change of controls, that starts a check of the contacts
 _LEVER = 0.1  # [m] assumed radius of a body on a hinge
 
@@ -189,6 +192,8 @@ class PhysicsState:
         """Derive the objects that decide the step method from the model."""
         model = self.model
         self.law, self.fast_bodies = ContactLaw(model), FastBodyDetector(model)
+        timestep = float(model.opt.timestep)
+        self._space = OpenSpace(model, OPEN_WINDOWS * window_length(timestep) * timestep)
         is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         self.free_motion = FreeMotionIntegrator.of(model) if is_implicit and not has_engine_contacts(model) else None
         self._analysed, self._is_analysed = _step_fields(model), True

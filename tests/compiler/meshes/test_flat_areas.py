@@ -32,7 +32,7 @@ def rooms():
 
 def test_walls_with_doors_are_divided_along_their_doors(rooms):
     vertices, faces = rooms
-    pieces, _, error = large_surface_pieces(vertices, faces)
+    pieces, _, error, _ = large_surface_pieces(vertices, faces)
     walls = [p.points for p in pieces if np.ptp(p.points, axis=0).min() < 0.06 and p.points[:, 2].max() > 2.0]
     assert len(walls) <= 24 * 3 + 24  # three convex areas of each wall, and some that crossing walls divide
     assert error < 0.02

@@ -43,7 +43,7 @@ def settle(make, compiled, tmp_path, vertices, faces, *bodies, steps=1500):
 @pytest.mark.parametrize("is_turned", [False, True])
 def test_tiles_are_the_surface_itself(compiled, make, tmp_path, axis, is_turned):
     vertices, faces = ground(is_turned)
-    pieces, tiles, error = large_surface_pieces(turned(vertices, axis), faces)
+    pieces, tiles, error, _ = large_surface_pieces(turned(vertices, axis), faces)
     assert (len(pieces), len(tiles)) == (0, 11 * 11)
     assert error < 1e-3
     c = settle(make, compiled, tmp_path, turned(vertices, axis), faces, steps=1)
@@ -61,7 +61,7 @@ def test_tiles_are_the_surface_itself(compiled, make, tmp_path, axis, is_turned)
 
 def test_the_tiles_of_a_downward_surface_lie_behind_it():
     vertices, faces = ground()
-    _, tiles, _ = large_surface_pieces(vertices, faces[:, ::-1])
+    _, tiles, _, _ = large_surface_pieces(vertices, faces[:, ::-1])
     assert {tuple(tile.axes[:, 2]) for tile in tiles} == {(0.0, 0.0, -1.0)}
     top = max(float(tile.origin[2]) + tile.base for tile in tiles)
     assert top <= vertices[:, 2].max() + 0.05 + 1e-9  # the layer lies behind the surface, here above it
@@ -88,10 +88,10 @@ def test_a_box_as_wide_as_many_cells_rests_on_a_fine_grid(make, compiled, tmp_pa
 def test_a_hole_and_a_plane_in_a_grid_stay_as_they_are():
     vertices, faces = ground()
     middle = np.linalg.norm(vertices[faces].mean(axis=1)[:, :2] - 5.0, axis=1)
-    _, tiles, _ = large_surface_pieces(vertices, faces[middle > 0.8])
+    _, tiles, _, _ = large_surface_pieces(vertices, faces[middle > 0.8])
     covered = sum((t.heights.shape[0] - 1) * (t.heights.shape[1] - 1) for t in tiles)
     assert covered < (middle > 0.8).sum() / 2
     vertices[:, 2] = np.where(vertices[:, 0] < 8.0, 0.0, vertices[:, 2])
-    pieces, tiles, _ = large_surface_pieces(vertices, faces)
+    pieces, tiles, _, _ = large_surface_pieces(vertices, faces)
     assert 0 < len(tiles) <= 4 * 11  # the plane is a few large patches
     assert len(pieces) < 60

@@ -61,7 +61,7 @@ def settle(make, compiled, tmp_path, mesh, *bodies, steps=1500):
 
 def test_hills_become_few_bodies_within_their_error(ground):
     vertices, faces = ground
-    pieces, tiles, error = large_surface_pieces(vertices, faces)
+    pieces, tiles, error, _ = large_surface_pieces(vertices, faces)
     assert len(pieces) + len(tiles) < 0.2 * len(faces)
     assert error <= 0.006  # 0.001 of the size of 6 m, from which no patch is cut any more
     hulls = [trimesh.convex.convex_hull(p.points) for p in pieces]

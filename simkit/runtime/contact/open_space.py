@@ -1,0 +1,119 @@
+"""Check whether free bodies are so far from everything that no contact can arise for some steps.
+
+A flying body may land at any time, so its steps follow the contact law, which takes as long as the engine's own step of
+one body. High above a terrain or a building nothing can be hit. There, the engine steps alone, with the same bits.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.runtime.contact import travel_bounds
+
+_GROWTH: Final = 2.0
+"""Factor by which speeds may grow within the steps."""
+
+_LEAST_SPEED: Final = 5.0
+"""Speed [m/s] that any body may reach within the steps."""
+
+_MOST_TREES: Final = 4
+"""Largest number of moving models; with more, the check takes as long as it saves."""
+
+_PLANE: Final = int(mujoco.mjtGeom.mjGEOM_PLANE)
+_FREE: Final = int(mujoco.mjtJoint.mjJNT_FREE)
+_HINGE: Final = int(mujoco.mjtJoint.mjJNT_HINGE)
+
+_Ball = tuple[int, int, float]
+"""Addresses of a model's position and velocity, and the radius [m] about its first link that it never leaves."""
+
+
+class OpenSpace:
+    """Surroundings of the free models of one compiled model.
+
+    Args:
+        model: MuJoCo's model.
+        duration: time of the steps [s].
+
+    Attributes:
+        is_known: False if the check does not apply: with joints to the world, slide joints, mocap bodies or more than
+            four models.
+    """
+
+    def __init__(self, model: mujoco.MjModel, duration: float) -> None:
+        self._duration = duration
+        solid = np.flatnonzero(travel_bounds.can_collide(model))
+        tree = model.body_treeid[model.geom_bodyid[solid]]
+        self._balls = [_ball_of(model, number, solid[tree == number]) for number in np.unique(tree[tree >= 0]).tolist()]
+        self.is_known = 0 < len(self._balls) <= _MOST_TREES and None not in self._balls
+        self.is_known = self.is_known and not (model.nmocap or model.nflex)
+        if self.is_known:
+            self._find_static(model, solid[tree < 0])
+
+    def _find_static(self, model: mujoco.MjModel, geoms: npt.NDArray[np.intp]) -> None:
+        """Find the planes, and the box around all other geoms that never move."""
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        is_plane = model.geom_type[geoms] == _PLANE
+        self._planes: list[tuple[float, float, float, float]] = []
+        for geom in geoms[is_plane]:
+            normal = data.geom_xmat[geom].reshape(3, 3)[:, 2]
+            self._planes.append((*normal.tolist(), float(normal @ data.geom_xpos[geom])))
+        others = geoms[~is_plane]
+        radii, places = model.geom_rbound[others, None], data.geom_xpos[others]
+        self._low = (places - radii).min(axis=0, initial=np.inf).tolist()
+        self._high = (places + radii).max(axis=0, initial=-np.inf).tolist()
+
+    def is_open(self, data: mujoco.MjData) -> bool:
+        """Check, from positions and velocities alone, whether no contact can arise within the steps."""
+        if not self.is_known:
+            return False
+        positions, velocities, spheres = data.qpos, data.qvel, []
+        for ball in self._balls:
+            assert ball is not None
+            place, motion, radius = ball
+            speed = math.hypot(*velocities[motion : motion + 3].tolist())
+            reach = radius + _GROWTH * (speed + _LEAST_SPEED) * self._duration
+            x, y, z = positions[place : place + 3].tolist()
+            if not self._is_outside(x, y, z, reach):
+                return False
+            spheres.append((x, y, z, reach))
+        return all(
+            math.dist(one[:3], other[:3]) > one[3] + other[3] for k, one in enumerate(spheres) for other in spheres[:k]
+        )
+
+    def _is_outside(self, x: float, y: float, z: float, reach: float) -> bool:
+        """Check whether a sphere touches neither a plane nor the box around the static geoms; False for NaN."""
+        if not all(a * x + b * y + c * z - offset > reach for a, b, c, offset in self._planes):
+            return False
+        low, high = self._low, self._high
+        return (
+            not low[0] - reach <= x <= high[0] + reach
+            or not low[1] - reach <= y <= high[1] + reach
+            or not low[2] - reach <= z <= high[2] + reach
+        ) and math.isfinite(x + y + z + reach)
+
+
+def _ball_of(model: mujoco.MjModel, tree: int, geoms: npt.NDArray[np.intp]) -> _Ball | None:
+    """Return the ball that the geoms of a kinematic tree never leave; None if its size has no bound."""
+    bodies = np.flatnonzero(model.body_treeid == tree)
+    root = int(bodies[0])
+    joint = int(model.body_jntadr[root])
+    if model.body_jntnum[root] != 1 or model.jnt_type[joint] != _FREE:
+        return None
+    reach = {root: 0.0}
+    for body in bodies[1:].tolist():  # parents come first
+        joints = range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body]))
+        if any(model.jnt_type[k] != _HINGE for k in joints):
+            return None
+        anchors = 2.0 * sum(float(np.linalg.norm(model.jnt_pos[k])) for k in joints)
+        reach[body] = reach[int(model.body_parentid[body])] + float(np.linalg.norm(model.body_pos[body])) + anchors
+    offsets = np.linalg.norm(model.geom_pos[geoms], axis=1) + model.geom_rbound[geoms]
+    radius = max(
+        reach[body] + size for body, size in zip(model.geom_bodyid[geoms].tolist(), offsets.tolist(), strict=True)
+    )
+    return int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint]), radius

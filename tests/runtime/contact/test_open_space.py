@@ -1,0 +1,69 @@
+"""Bodies far from everything are stepped by the engine alone, with the same bits as by the contact law."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+
+import simkit
+from simkit.runtime.contact.open_space import OpenSpace
+
+GROUND = '<geom type="plane" size="1 1 .1"/>'
+WALL = '<geom type="box" size="1 1 1" pos="5 0 0"/>'
+FLYER = """<body pos="{}"><freejoint/><geom type="box" size=".2 .1 .05"/>
+  <body pos=".2 0 0"><joint type="{}" axis="1 0 0"/><geom type="capsule" size=".02 .1"/></body></body>"""
+
+
+def space(*elements, height=10.0, speed=0.0):
+    """Return whether the first body of a model with these elements can touch nothing within 64 ms."""
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{''.join(elements)}</worldbody></mujoco>")
+    data = mujoco.MjData(model)
+    data.qpos[2], data.qvel[2] = height, speed
+    return OpenSpace(model, 0.064).is_open(data)
+
+
+@pytest.mark.parametrize(
+    ("height", "speed", "expected"), [(10.0, 0.0, True), (1.1, 0.0, True), (0.9, 0.0, False), (10.0, 80.0, False)]
+)
+def test_a_flyer_needs_room_for_its_size_and_its_speed(height, speed, expected):
+    # radius 0.32 m and twice 5 m/s for 64 ms: 0.96 m above the ground
+    assert space(GROUND, FLYER.format("0 0 0", "hinge"), height=height, speed=speed) is expected
+
+
+def test_the_space_around_a_box_is_not_open():
+    flyer = FLYER.format("5 0 0", "hinge")
+    assert space(WALL, flyer, height=4.0)
+    assert not space(WALL, flyer, height=2.0)
+
+
+def test_two_flyers_that_may_meet_are_not_alone():
+    assert space(GROUND, FLYER.format("0 0 5", "hinge"), FLYER.format("5 0 10", "hinge"))
+    assert not space(GROUND, FLYER.format("0 0 5", "hinge"), FLYER.format("1 0 10", "hinge"))
+
+
+def test_models_without_a_bound_of_their_size_are_never_alone():
+    assert not space(GROUND, FLYER.format("0 0 5", "slide"))
+    assert not space(GROUND, '<body mocap="true"><geom size=".1"/></body>', FLYER.format("0 0 5", "hinge"))
+    assert not space(GROUND, FLYER.format("0 0 5", "hinge"), height=np.nan)
+
+
+def test_a_fall_has_the_same_bits_with_and_without_the_check(tmp_path):
+    world = tmp_path / "world.sdf"
+    world.write_text("""<sdf version="1.9"><world name="w">
+      <model name="step"><static>true</static><link name="l"><collision name="c"><geometry>
+      <box><size>2 2 0.2</size></box></geometry></collision></link></model>
+      <model name="ball"><pose>0.9 0.3 4 0.3 0.2 0</pose><link name="l"><inertial auto="true"/><collision name="c">
+      <geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link></model></world></sdf>""")
+    runs = []
+    for is_known in (True, False):
+        with simkit.load(world) as sim:
+            assert sim.engine.physics._space.is_known
+            sim.engine.physics._space.is_known = is_known
+            states = []
+            for _ in range(150):  # it hits at 0.88 s
+                sim.run(0.013)
+                states.append(sim.mj_data.qpos.tobytes() + sim.mj_data.qvel.tobytes())
+            assert sim.model("ball").pose.position[2] < 0.3
+            runs.append(states)
+    assert runs[0] == runs[1]
