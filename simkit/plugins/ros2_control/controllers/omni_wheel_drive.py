@@ -19,8 +19,8 @@ class OmniWheelDrive(ReferenceDrive):
     """Drives three or more omnidirectional wheels on a circle: forward, sideways and turning.
 
     The wheels follow each other anticlockwise at equal angles. The first wheel is at `wheel_offset` [rad] from the x
-    axis of the base, and the axes of the wheel joints point outwards. The effect of the rollers comes from friction that
-    differs along and across `<fdir1>` of the wheels' collisions.
+    axis of the base, and the axes of the wheel joints point outwards. The effect of the rollers comes from friction
+    that differs along and across `<fdir1>` of the wheels' collisions.
     """
 
     types = ("omni_wheel_drive_controller/OmniWheelDriveController",)
