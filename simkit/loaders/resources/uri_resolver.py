@@ -28,6 +28,7 @@ from simkit.loaders.resources.uris import (
     is_private,
     is_relocated,
     leaves_folder,
+    other_case_hint,
     package_uri,
     sibling_names,
 )
@@ -168,7 +169,7 @@ class Resolver:
                 diagnostics.error("SK-URI-009", message, where, f"{near} or {hint}" if near else hint)
             else:
                 message = f"{uri} is not found{format_searched(places)}"
-                diagnostics.error("SK-URI-001", message, where, near or _PATH_HINT)
+                diagnostics.error("SK-URI-001", message, where, near or other_case_hint(places) or _PATH_HINT)
         return None
 
     def format_searched_packages(self, places: list[Path]) -> str:

@@ -9,6 +9,7 @@ from itertools import islice
 from pathlib import Path
 from urllib.parse import unquote
 
+_MOST_LISTED = 1000  # searched paths, and names of a folder, that are compared for a hint
 _MANIFESTS = ("model.config", "model.sdf", "package.xml", "manifest.xml")
 _ASSETS = ("assets", "materials", "media", "mesh", "meshes", "stl", "stls", "textures")
 
@@ -89,6 +90,19 @@ def format_searched(places: list[Path] | None) -> str:
     shown = [str(p) for p in places[:8]]
     more = f" and {len(places) - 8} more" if len(places) > 8 else ""
     return "; searched " + ", ".join(shown) + more
+
+
+def other_case_hint(places: list[Path] | None) -> str:
+    """Suggest a file whose name differs from a searched path only in upper and lower case; empty if there is none."""
+    for place in (places or [])[:_MOST_LISTED]:
+        try:
+            names = [entry.name for entry in islice(os.scandir(place.parent), _MOST_LISTED)]
+        except OSError:
+            continue
+        for name in names:
+            if name.casefold() == place.name.casefold():
+                return f"did you mean {name!r}? Upper and lower case differ"
+    return ""
 
 
 def access_problem(path: Path) -> str:

@@ -20,6 +20,7 @@ from simkit.loaders.xacro.isolated_xacro import MACRO_ARGUMENT, XacroModule, imp
 
 MAX_EXPANDED = 50_000
 MAX_COPIED = 300_000
+_ROS_VARIABLES = {"ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3", "ROS_DISTRO": "jazzy"}
 _CALL = 5  # cost of a macro call, counted in elements
 _TOKEN = re.compile(r"(?P<escaped>\$\$+[{(])|(?P<expression>\$\{[^}]*\})|(?P<command>\$\([^)]*\))|[^$]+|\$[^{($]+|\$$")
 
@@ -58,6 +59,7 @@ class _Expansion:
         self.engine, self.document, self.diagnostics = engine, document, diagnostics
         self.where = document.root.where
         self.files = FileAccess(resolver, diagnostics, lambda: self.where)
+        self.unset_variables: set[str] = set()
         self.budget = Budget()
         self.given = {str(k): str(v) for k, v in arguments.items()}
         self.arguments: dict[str, str] = dict(self.given)
@@ -266,6 +268,18 @@ class _Expansion:
             where = "" if "when evaluating" in str(error) else f", when evaluating ${{{inner}}}"
             raise ExpansionError(f"{error}{where}") from None
 
+    def _environment_variable(self, name: str) -> str:
+        """Return an environment variable; on a machine without ROS, a variable that every ROS installation sets."""
+        if name in os.environ:
+            return os.environ[name]
+        if name not in _ROS_VARIABLES:
+            raise ExpansionError(f"the environment variable {name} is not set")
+        value = _ROS_VARIABLES[name]
+        if name not in self.unset_variables:
+            self.unset_variables.add(name)
+            self._report_message((f"the environment variable {name} is not set; {value} is used",))
+        return value
+
     def _command(self, text: str, symbols: Names | None) -> Value:
         words = text.split()
         name, rest = (words[0], words[1:]) if words else ("", [])
@@ -274,9 +288,7 @@ class _Expansion:
         if name == "arg" and len(rest) == 1:
             return self._argument(rest[0])
         if name == "env" and len(rest) == 1:
-            if rest[0] not in os.environ:
-                raise ExpansionError(f"the environment variable {rest[0]} is not set")
-            return os.environ[rest[0]]
+            return self._environment_variable(rest[0])
         if name == "optenv" and rest:
             return os.environ.get(rest[0], " ".join(rest[1:]))
         if name in ("dirname", "cwd") and not rest:

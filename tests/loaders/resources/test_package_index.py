@@ -275,3 +275,11 @@ def test_a_file_finds_the_install_without_a_package_file_that_contains_it(used, 
     uri = "package://robots/models/arm/parts/m.stl"
     assert used("env/share/robots/models/arm/r.urdf", uri)[0] == "own"
     assert used("env/other/robots/models/arm/r.urdf", uri)[0] == ""  # any folder of that name is not enough
+
+
+def test_a_name_in_other_case_is_suggested_for_a_missing_file(write, used, package):
+    package("ws/robot")
+    write("ws/robot/meshes/Base.STL", "own")
+    content, found = used("ws/robot/urdf/r.urdf", "package://robot/meshes/base.stl")
+    (problem,) = with_code(found, "SK-URI-001")
+    assert (content, problem.hint) == ("", "did you mean 'Base.STL'? Upper and lower case differ")

@@ -420,3 +420,18 @@ def test_defaults_with_quotes_have_the_values_of_xacro_itself(write):
         wanted = original.process_file(str(file)).getElementsByTagName("a")[0]
         (element,) = document.root.children
         assert element.attributes == {"b": wanted.getAttribute("b"), "c": "1"}
+
+
+def test_a_variable_of_every_ros_installation_has_a_value_on_a_machine_without_ros(tmp_path, monkeypatch):
+    monkeypatch.delenv("ROS_VERSION", raising=False)
+    path = tmp_path / "robot.urdf.xacro"
+    path.write_text("""<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+      <xacro:property name="ros" value="$(env ROS_VERSION)"/>
+      <xacro:if value="${int(ros) == 2 and int(ros) != 1}"><link name="two"/></xacro:if></robot>""")
+    found = simkit.check(path)
+    (warning,) = with_code(found, "SK-XACRO-005")
+    assert "ROS_VERSION is not set; 2 is used" in warning.message
+    assert simkit.describe(path)["model"]["links"][0]["name"] == "two"
+    path.write_text(path.read_text().replace("ROS_VERSION", "ROS_MODEL"))
+    (error,) = with_code(simkit.check(path), "SK-XACRO-001")
+    assert "ROS_MODEL is not set" in error.message

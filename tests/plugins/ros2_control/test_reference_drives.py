@@ -203,6 +203,38 @@ def test_a_mecanum_base_moves_forward_sideways_and_in_place(
     assert measured == pytest.approx(found, abs=0.04)
 
 
+@pytest.mark.parametrize(
+    ("ahead", "left", "turn", "more"),
+    [
+        (0.2, 0.1, 0.0, "cmd_vel_timeout: 5.0"),
+        (0.0, 0.0, 0.3, "cmd_vel_timeout: 5.0, position_feedback: false"),
+    ],
+)
+def test_three_omnidirectional_wheels_drive_and_turn_as_asked(
+    tmp_path: Path, ahead: float, left: float, turn: float, more: str
+) -> None:
+    wheels = ""
+    for index, angle in enumerate((math.radians(30), math.radians(150), math.radians(270))):
+        x, y = math.cos(angle), math.sin(angle)
+        one = wheel(f"w{index}", 0.3 * x, 0.3 * y).replace('<axis xyz="0 1 0"/>', f'<axis xyz="{x} {y} 0"/>')
+        wheels += one + ROLLERS.format(name=f"w{index}", direction=f"{-y} {x} 0")
+    names = "w0", "w1", "w2"
+    values = f"wheel_names: [{', '.join(f'{name}_wheel' for name in names)}], wheel_offset: {math.radians(30)}, "
+    values += f"robot_radius: 0.3, wheel_radius: {RADIUS}, {more}"
+    controller = "omni_wheel_drive_controller/OmniWheelDriveController"
+    with drive(tmp_path, wheels.replace('<origin xyz="0.2 0 0.1"/>', ""), list(names), [], controller, values) as sim:
+        found, measured = driven_pose(sim, ahead, turn, left, ("/base/cmd_vel", "/base/odom"))
+    assert found == pytest.approx([4 * ahead, 4 * left, 4 * turn], abs=0.06)
+    assert measured == pytest.approx(found, abs=0.04)
+
+
+def test_two_omnidirectional_wheels_are_too_few(tmp_path: Path) -> None:
+    values = "wheel_names: [a_wheel, b_wheel], robot_radius: 0.3, wheel_radius: 0.1"
+    wheels = wheel("a", 0.3, 0) + wheel("b", -0.3, 0)
+    with pytest.raises(simkit.LoadError, match="SK-CONTROL-040: wheel_names names 2 joints"):
+        drive(tmp_path, wheels, ["a", "b"], [], "omni_wheel_drive_controller/OmniWheelDriveController", values)
+
+
 def test_a_wrong_number_of_joints_and_missing_sizes_are_errors(tmp_path: Path) -> None:
     values = "traction_joints_names: [right_wheel], steering_joints_names: [fr_steering, fr_steering]"
     wheels = wheel("right", 0, 0) + wheel("fr", BASE, 0, steered=True)
