@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from simkit.errors import TransformError
+from simkit.errors import ArgumentValueError, TransformError
 from simkit.params import Params, number_or_nan
 from simkit.plugins.base import Plugin
 from simkit.plugins.drives.odometry import BodyTwist
@@ -340,7 +340,7 @@ class EkfNode(Plugin):
             return Pose()
         try:
             return self.sim.tf.lookup(target, frame)
-        except TransformError as error:
+        except (TransformError, ArgumentValueError) as error:
             hint = "check odom_frame, base_link_frame and world_frame against the frames of the messages"
             message = f"a message of {owner} is not used: {error}"
             self._once.warn("SK-EKF-001", f"{owner} {target} {frame}", message, hint)
