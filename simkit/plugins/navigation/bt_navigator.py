@@ -61,7 +61,7 @@ class _Task:
     Attributes:
         goal: goal of the action.
         targets: poses that remain, in the frame of the map, as messages; the last one is the end.
-        begin_ns: time of the begin [ns].
+        begin_ns: time of the start [ns].
         plan: goal of the planner, while it plans.
         follow: goal of the controller.
         recovery: goal of a behaviour.
