@@ -27,6 +27,7 @@ MOST_ERRORS = 1000
 LONGEST_MESSAGE = 4000  # characters
 _MOST_NAMES = 5000  # largest number of candidates; among more names, a similar name means nothing
 _LONGEST_NAME = 200
+_MOST_LISTED = 20  # names in a message
 _QUOTED = re.compile(r"'([^']+)'")
 
 
@@ -162,9 +163,10 @@ def did_you_mean(name: str, allowed: Iterable[str]) -> str:
 
 
 def name_hint(name: str, known: Iterable[str]) -> str:
-    """Return `did you mean 'x'?`, else `there is` with all known names, or `none`."""
+    """Return `did you mean 'x'?`, else `there is` with the first known names, or `none`."""
     names = list(known)
-    return did_you_mean(name, names) or "there is " + (", ".join(names) or "none")
+    more = f" and {len(names) - _MOST_LISTED} more" if len(names) > _MOST_LISTED else ""
+    return did_you_mean(name, names) or "there is " + (", ".join(names[:_MOST_LISTED]) or "none") + more
 
 
 def shorten(text: str, most: int) -> str:

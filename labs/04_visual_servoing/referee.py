@@ -23,9 +23,9 @@ import numpy as np
 
 from simkit import ModelPlugin, Pose
 
-SETTLING = 0.4  # [s] after the begin or a saturated command: the drives still accelerate
+SETTLING = 0.4  # [s] after the start or a saturated command: the drives still accelerate
 SPAN = 6.0  # a decay is measured until the error has fallen by this factor
-LEAST = {"x": 0.08, "y": 0.08, "distance": 0.06}  # errors at the begin of a decay that are large enough to measure
+LEAST = {"x": 0.08, "y": 0.08, "distance": 0.06}  # errors at the start of a decay that are large enough to measure
 
 FLOATS = "sight_error distance_error saturation first_decay first_misfit second_decay second_misfit"
 

@@ -57,10 +57,10 @@ class AStar:
         if begin is None or end is None:
             return []
         costs = grid.cells.tolist()  # costs[row][column]; a list is faster than an array here
-        reached = {begin: 0.0}  # cell -> length of the shortest way from the begin that is known so far
+        reached = {begin: 0.0}  # cell -> length of the shortest way from the start that is known so far
         before = {}  # cell -> cell before it on this way
         queue = [(0.0, begin)]  # heapq.heappush and heappop keep the smallest estimate in front
-        # Exercise: take cells from the queue until the end is reached; then follow `before` back to the begin.
+        # Exercise: take cells from the queue until the end is reached; then follow `before` back to the start.
         return []
 
 

@@ -56,6 +56,8 @@ def map(
     place = None if start is None else _parse_place(start)
     if place is not None and everywhere:
         raise map_error("--start and --everywhere exclude each other", "leave one of them out")
+    if output.name in ("", ".."):
+        raise map_error(f"--output {str(output)!r} is a folder", "write the name of a file, without its ending: -o map")
     stem = output.with_suffix("") if output.suffix.lower() in _SUFFIXES else output
     image, description = (stem.with_name(stem.name + suffix) for suffix in _SUFFIXES)
     for path in (image, description):

@@ -137,6 +137,7 @@ def test_free_cells_behind_walls_are_unknown_unless_everywhere_is_asked(tmp_path
         (["--start", "1.1,0"], "the start (1.1, 0) is occupied or outside"),
         (["--start", "100,0"], "the start (100, 0) is occupied or outside"),
         (["--start", "0,0.5", "--everywhere"], "exclude each other"),
+        (["--output", ".."], "is a folder"),
         (["--height", "nan"], "expected a finite number"),
     ],
 )

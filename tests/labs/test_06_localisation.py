@@ -1,4 +1,4 @@
-"""Lab 6: the solution and simkit's own amcl on the lab's tour against the truth, the lab's map, and the picture of its README."""
+"""Lab 6: the solution and simkit's amcl against the truth, the map of the lab, and the picture of its README."""
 
 from __future__ import annotations
 

@@ -226,7 +226,7 @@ class Amcl(Plugin):
         try:
             odometry = self.sim.tf.lookup(self._value("odom_frame_id"), base, scan.header.stamp)
             sensor = self.sim.tf.lookup(base, scan.header.frame_id, scan.header.stamp)
-        except TransformError as error:
+        except (TransformError, ArgumentValueError) as error:  # a scan may name no frame
             if self.sim.time - self._waits_since > _PATIENCE:
                 self._once.warn(_CODE, "tf", f"scans are not used: {error}", "check the names of the frames")
             return

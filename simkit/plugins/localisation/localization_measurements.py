@@ -39,6 +39,12 @@ class MeasuredBlock:
     covariance: Vector
     used: Flags
 
+    @property
+    def is_finite(self) -> bool:
+        """True if no used value, and no covariance of two of them, is NaN or infinite."""
+        covariance = self.covariance[np.ix_(self.used, self.used)]
+        return bool(np.isfinite(self.values[self.used]).all() and np.isfinite(covariance).all())
+
     def measurement(self, time_ns: int, threshold: float, *, is_planar: bool) -> Measurement:
         """Return the measurement; in two dimensions, the states out of the plane are measured as zero."""
         values, covariance = np.zeros(ekf.SIZE), np.zeros((ekf.SIZE, ekf.SIZE))
@@ -78,7 +84,8 @@ def pose_of(message: Any) -> Pose | None:
 def unit_quaternion(q: Any) -> Vector | None:
     """Return w, x, y, z of a message's quaternion with length 1; None for NaN."""
     found = np.array((q.w, q.x, q.y, q.z), np.float64)
-    length = float(np.linalg.norm(found))
+    with np.errstate(over="ignore"):
+        length = float(np.linalg.norm(found))
     if not math.isfinite(length):
         return None
     return found / length if length > 0 else np.array((1.0, 0.0, 0.0, 0.0))
@@ -99,7 +106,9 @@ def rotated(part: slice, values: Vector, covariance: Any, used: Flags, quaternio
     for k in range(0, size, 3):
         turn[k : k + 3, k : k + 3] = quat_to_matrix(quaternion)
     shares = np.sqrt(turn**2 @ used.astype(np.float64))
-    return MeasuredBlock(part, values, turn @ found @ turn.T, shares >= _LEAST_PART)
+    with np.errstate(invalid="ignore", over="ignore"):  # the filter leaves out NaN and infinite numbers
+        turned = turn @ found @ turn.T
+    return MeasuredBlock(part, values, turned, shares >= _LEAST_PART)
 
 
 def pose_block(pose: Pose, covariance: Any, used: Flags, frame: Pose) -> MeasuredBlock:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from simkit.errors import TransformError
+from simkit.errors import ArgumentValueError, TransformError
 from simkit.number_text import number_or_nan
 from simkit.params import Params
 from simkit.plugins.base import Plugin
@@ -241,6 +241,8 @@ class EkfNode(Plugin):
         time_ns = measured.stamp_ns(message.header.stamp)
         is_oriented = abs(message.orientation_covariance[0] + 1.0) > 1e-9
         attitude = measured.unit_quaternion(message.orientation) if is_oriented else None
+        if is_oriented and attitude is None and one.used[ekf.ANGLES].any():
+            self._warn_of_numbers(one)
         if attitude is not None and one.used[ekf.ANGLES].any():
             covariance, used = message.orientation_covariance, one.used[ekf.ANGLES]
             block = measured.attitude_block(attitude, covariance, used, mount)
@@ -250,8 +252,8 @@ class EkfNode(Plugin):
             covariance = np.zeros((6, 6))
             covariance[3:, 3:] = np.reshape(message.angular_velocity_covariance, (3, 3))
             used = one.used[ekf.TWIST] & (np.arange(6) >= 3)
-            block = measured.twist_block(np.zeros(3), rates, covariance, used, mount, self._rates())
-            self._add(time_ns, block, one.twist_threshold)
+            block = measured.twist_block(np.zeros(3), rates, covariance, used, mount, self._filter.state[ekf.RATES])
+            self._add(one, time_ns, block, one.twist_threshold)
         if one.used[ekf.ACCELERATION].any():
             force, gravity = measured.vector_of(message.linear_acceleration), self.options.gravitational_acceleration
             if attitude is None:
@@ -264,7 +266,7 @@ class EkfNode(Plugin):
                 attitude if one.removes_gravity else None,
                 gravity,
             )
-            self._add(time_ns, block, one.acceleration_threshold)
+            self._add(one, time_ns, block, one.acceleration_threshold)
 
     def _is_new(self, one: Input, header: Any) -> bool:
         """Check whether a message is newer than the last one of its topic, and than the last `set_pose`."""
@@ -277,6 +279,8 @@ class EkfNode(Plugin):
         pose, time_ns = measured.pose_of(message.pose), measured.stamp_ns(stamp)
         used = one.used[ekf.POSE]
         if pose is None or not used.any():
+            if used.any():
+                self._warn_of_numbers(one)
             return
         covariance = np.array(message.covariance, np.float64).reshape(6, 6)
         if one.is_differential:
@@ -287,7 +291,7 @@ class EkfNode(Plugin):
             pose = one.first.inverse() @ pose
         world = self._pose_of_frame(one.name, self._world, frame)
         if world is not None:
-            self._add(time_ns, measured.pose_block(pose, covariance, used, world), one.pose_threshold)
+            self._add(one, time_ns, measured.pose_block(pose, covariance, used, world), one.pose_threshold)
 
     def _add_angles(self, one: Input, time_ns: int, block: MeasuredBlock) -> None:
         """Add the attitude of an IMU, or its change."""
@@ -300,29 +304,32 @@ class EkfNode(Plugin):
         if one.is_relative:
             one.first = one.first or attitude
             block.values = (one.first.inverse() @ attitude).rpy
-        self._add(time_ns, block, one.pose_threshold)
+        self._add(one, time_ns, block, one.pose_threshold)
 
     def _add_difference(self, one: Input, time_ns: int, pose: Pose, covariance: Vector, used: Flags) -> None:
         """Add the mean twist since the last message."""
         before, one.before = one.before, PreviousPose(pose, covariance, time_ns)
         block = None if before is None else measured.pose_difference_block(pose, covariance, used, time_ns, before)
         if block is not None:
-            self._add(time_ns, block, one.pose_threshold)
+            self._add(one, time_ns, block, one.pose_threshold)
 
     def _add_twist(self, one: Input, stamp: Any, frame: str, message: Any) -> None:
         used = one.used[ekf.TWIST]
         mount = self._mount(one, frame) if used.any() else None
         if mount is not None:
             linear, angular = measured.vector_of(message.twist.linear), measured.vector_of(message.twist.angular)
-            block = measured.twist_block(linear, angular, message.covariance, used, mount, self._rates())
-            self._add(measured.stamp_ns(stamp), block, one.twist_threshold)
+            rates = self._filter.state[ekf.RATES]
+            block = measured.twist_block(linear, angular, message.covariance, used, mount, rates)
+            self._add(one, measured.stamp_ns(stamp), block, one.twist_threshold)
 
-    def _add(self, time_ns: int, block: MeasuredBlock, threshold: float) -> None:
+    def _add(self, one: Input, time_ns: int, block: MeasuredBlock, threshold: float) -> None:
+        if not block.is_finite:
+            self._warn_of_numbers(one)
         self._queue.append(block.measurement(time_ns, threshold, is_planar=self.options.two_d_mode))
 
-    def _rates(self) -> Vector:
-        rates: Vector = self._filter.state[ekf.RATES]
-        return rates
+    def _warn_of_numbers(self, one: Input) -> None:
+        text = f"a measurement of {one.name} is ignored: one of its numbers, or of its covariance, is NaN or infinite"
+        self._once.warn("SK-EKF-001", f"{one.name} finite", text, "check the plugin that publishes it")
 
     def _mount(self, one: Input, frame: str) -> Pose | None:
         """Return the pose of a sensor's frame in the base."""
@@ -334,7 +341,7 @@ class EkfNode(Plugin):
             return Pose()
         try:
             return self.sim.tf.lookup(target, frame)
-        except TransformError as error:
+        except (TransformError, ArgumentValueError) as error:
             hint = "check odom_frame, base_link_frame and world_frame against the frames of the messages"
             message = f"a message of {owner} is not used: {error}"
             self._once.warn("SK-EKF-001", f"{owner} {target} {frame}", message, hint)

@@ -48,10 +48,10 @@ class _Motion:
     Attributes:
         goal: goal.
         name: name of the action.
-        begin_ns: time of the begin [ns].
-        begin: pose at the begin.
+        begin_ns: time of the start [ns].
+        begin: pose at the start.
         last: pose at the last call.
-        turned: angle turned since the begin [rad].
+        turned: angle turned since the start [rad].
         target: angle [rad], distance [m] or duration [s] of the goal, with sign.
         speed: speed of the goal [m/s].
         allowance: longest duration [s]; 0 for no limit.

@@ -61,7 +61,7 @@ class _Task:
     Attributes:
         goal: goal of the action.
         targets: poses that remain, in the frame of the map, as messages; the last one is the end.
-        begin_ns: time of the begin [ns].
+        begin_ns: time of the start [ns].
         plan: goal of the planner, while it plans.
         follow: goal of the controller.
         recovery: goal of a behaviour.
@@ -128,7 +128,8 @@ class BtNavigator(Plugin):
             self._reject(goal, "the goal has no pose")
             return
         if self._pose() is None:
-            self._reject(goal, f"the pose of the robot in {self.options.global_frame!r} is not known")
+            frames = f"{self.options.global_frame!r} and {self.options.robot_base_frame!r}"
+            self._reject(goal, f"the pose of the robot is not known; a localisation must connect the frames {frames}")
             return
         before = self._task
         self._task = _Task(goal, targets, self.sim.time_ns)

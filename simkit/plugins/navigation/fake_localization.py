@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from simkit import msgs
-from simkit.errors import InputError, TransformError
+from simkit.errors import ArgumentValueError, InputError, TransformError
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.options import Options, OptionsOf, number, text
@@ -63,8 +63,8 @@ class FakeLocalization(Plugin):
             return
         try:
             odometry = self.sim.tf.lookup(options.odom_frame_id, options.base_frame_id)
-        except TransformError:
-            return  # there is no odometry yet
+        except (TransformError, ArgumentValueError):
+            return  # there is no odometry yet, or a frame without a name
         try:
             pose = link.pose
         except InputError:  # the robot was removed, and another one with its name was added

@@ -129,7 +129,9 @@ class MapServer(Plugin):
             try:
                 found = make_map(self.sim.mj_model, data, self.options.height, self.options.resolution)
             except InputError as error:
-                params.diagnostics.error("SK-MAP-001", f"plugin {self.name!r}: {error}", self.where)
+                problem = str(error).partition("\n")[0].removeprefix(f"{error.code} ")
+                hint = "change <height> or <resolution>, or use the file of a map: <yaml_filename>"
+                params.diagnostics.error("SK-MAP-001", f"plugin {self.name!r}: {problem}", self.where, hint)
                 found = OccupancyMap(np.zeros((0, 0), np.int8), self.options.resolution, Pose())
         self._file = None
         self._publish(found)

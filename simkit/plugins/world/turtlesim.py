@@ -55,7 +55,7 @@ class Turtle:
         pen, width: colour (RGB) and width [px] of the trail.
         is_pen_down: True if the turtle draws.
         goal: active goal of the action.
-        begin: heading at the goal's begin [rad].
+        begin: heading at the start of the goal [rad].
         is_placed: True if its model exists, so that a removed model removes the turtle.
     """
 
@@ -333,7 +333,7 @@ class TurtleSim(WorldPlugin):
 
 
 def _result(turtle: Turtle) -> dict[str, float]:
-    """Return the result of the action: its begin minus the present heading, as turtlesim defines it."""
+    """Return the result of the action: the heading at its start minus the present one, as turtlesim defines it."""
     return {"delta": math.remainder(turtle.begin - turtle.theta, math.tau)}
 
 

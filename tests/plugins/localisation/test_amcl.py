@@ -161,6 +161,7 @@ def test_the_same_seed_gives_the_same_particles_after_a_restore_and_after_a_rese
     ("options", "words"),
     [
         ("<odom_frame_id>odometry</odom_frame_id>", "SK-TF-001 unknown frame 'odometry'"),
+        ("<odom_frame_id></odom_frame_id>", "the target frame must be a text that is not empty"),
         ("<map_topic>plan</map_topic>", "there is no map"),
         ("<global_frame_id>earth</global_frame_id>", "the map is in the frame 'map', <global_frame_id> is 'earth'"),
     ],
@@ -170,6 +171,14 @@ def test_what_is_missing_is_reported_once(options: str, words: str) -> None:
         sim.run(2.5)
         found = [d for d in sim.diagnostics if d.code == "SK-AMCL-001"]
         assert len(found) == 1 and words in found[0].message
+
+
+def test_a_scan_without_a_frame_is_reported_once() -> None:
+    with simkit.load(rooms("<set_initial_pose>true</set_initial_pose><scan_topic>other</scan_topic>")) as sim:
+        sim.advertise("/other", "sensor_msgs/msg/LaserScan").publish({"ranges": [1.0]})
+        sim.run(2.0)
+        (found,) = [d for d in sim.diagnostics if d.code == "SK-AMCL-001"]
+        assert "scans are not used: the source frame must be a text that is not empty" in found.message
 
 
 @pytest.mark.parametrize(

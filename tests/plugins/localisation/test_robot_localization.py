@@ -288,6 +288,25 @@ def test_a_frame_that_is_not_known_is_reported_once(tmp_path: Path) -> None:
         assert [d.code for d in sim.diagnostics if d.code == "SK-EKF-001"] == ["SK-EKF-001"]
 
 
+@pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
+def test_a_measurement_without_a_finite_number_is_reported_once_and_not_used(tmp_path: Path, number: float) -> None:
+    """The numbers that no input uses, and -1 of an IMU without attitude, are no mistakes."""
+    imu = "<imu0>imu</imu0><imu0_config>0 0 0  0 0 0  0 0 0  0 0 1  0 0 0</imu0_config>"
+    with loaded(tmp_path, f"<odom0>odom</odom0><odom0_config>{TWIST}</odom0_config>{imu}") as sim:
+        odom, imu_topic = advertised(sim), sim.advertise("/imu", "sensor_msgs/msg/Imu")
+        result = sim.subscribe("/odometry/filtered", keep=1)
+        for forward in (0.5, number, number):
+            odom.publish(odometry(sim.time, x=number, speed=forward))
+            header = {"stamp": stamp(sim.time), "frame_id": "base_link"}
+            reading = {"header": header, "linear_acceleration": {"x": number}}
+            imu_topic.publish({**reading, "orientation_covariance": [-1.0] + 8 * [0.0]})
+            sim.run(0.1)
+        (found,) = [d for d in sim.diagnostics if d.code == "SK-EKF-001"]
+        assert "a measurement of odom0 is ignored" in found.message
+        assert math.isfinite(result.latest.pose.pose.position.x)
+        assert result.latest.twist.twist.linear.x == pytest.approx(0.5, abs=0.05)
+
+
 def test_messages_of_another_type_are_ignored_and_reported_once(tmp_path: Path) -> None:
     with loaded(tmp_path, f"<odom0>scan</odom0><odom0_config>{TWIST}</odom0_config>") as sim:
         out = sim.advertise("/scan", "sensor_msgs/msg/LaserScan")

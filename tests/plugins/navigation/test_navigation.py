@@ -185,6 +185,15 @@ def test_a_rejected_goal_of_the_topic_is_in_the_log(tmp_path: Path, caplog: pyte
     assert nan == "Goal rejected: the pose of the goal contains NaN or infinite numbers"
 
 
+def test_a_goal_before_there_is_a_pose_is_rejected_with_the_frames_that_are_not_connected(tmp_path: Path) -> None:
+    with simkit.load(world(tmp_path)) as sim:
+        goal = sim.send_goal("/navigate_to_pose", {"pose": pose(0.5, 0.0)})
+        sim.step(2)
+        assert goal.status.name == "REJECTED"
+        text = "the pose of the robot is not known; a localisation must connect the frames 'map' and 'base_footprint'"
+        assert goal.reason == text
+
+
 def test_a_goal_outside_of_the_map_is_aborted_with_the_planners_error_code(tmp_path: Path) -> None:
     with simkit.load(world(tmp_path)) as sim:
         sim.run(1.3)

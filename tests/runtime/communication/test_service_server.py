@@ -106,3 +106,13 @@ def test_a_service_is_removed_with_its_model_and_restored_with_it(tmp_path: Path
         sim.remove("robot")
         sim.spawn(model)
         assert sim.call("/robot/home").success
+
+
+def test_an_unknown_service_is_reported_with_the_first_twenty_names() -> None:
+    """A TIAGo has more than a hundred services; a message with all of them has forty lines."""
+    with simkit.load("turtlebot3_world") as sim:
+        names = sim.communication.services.names()
+        with pytest.raises(ServiceError) as raised:
+            sim.call("/plan_kinematic_path", {})
+    listed = ", ".join(sorted(names)[:20])
+    assert str(raised.value).endswith(f"there is {listed} and {len(names) - 20} more")
