@@ -342,7 +342,6 @@ def replace_scenes(record: ModelRecord, model: SceneModel) -> None:
 
 def bind_scenes(names: NameMap, records: Iterable[ModelRecord]) -> None:
     """Make the bindings of a compiled model refer to the changed scenes of its records."""
-    names.forget_shared()
     for record in records:
         links = {n: b.scene for n, b in record.links.items() if names.links[n].scene is not b.scene}
         joints = {n: b.scene for n, b in record.joints.items() if names.joints[n].scene is not b.scene}
