@@ -6,9 +6,12 @@ import mujoco
 import numpy as np
 
 
-def first_state(model: mujoco.MjModel) -> mujoco.MjData:
-    """Return the state at the start, with the poses of all bodies computed."""
-    data = mujoco.MjData(model)
+def first_state(model: mujoco.MjModel, data: mujoco.MjData | None = None) -> mujoco.MjData:
+    """Return the state at the start, with the poses of all bodies computed, in `data` if it is given."""
+    if data is None:
+        data = mujoco.MjData(model)
+    else:
+        mujoco.mj_resetData(model, data)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     return data

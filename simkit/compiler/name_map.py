@@ -240,10 +240,9 @@ class NameMap:
         value: T = self._shared[key]
         return value
 
-    def forget_shared(self, *keys: str) -> None:
-        """Let the next call of `shared` compute the values of some keys again; without keys, all values."""
-        for key in keys or list(self._shared):
-            self._shared.pop(key, None)
+    def forget_shared(self, key: str) -> None:
+        """Let the next call of `shared` compute the value of a key again."""
+        self._shared.pop(key, None)
 
     def link(self, scoped: str) -> LinkBinding:
         """Return a link; a KeyError suggests the closest name."""

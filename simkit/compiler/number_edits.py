@@ -16,6 +16,7 @@ import mujoco
 from simkit.compiler.bodies import add_body, is_massless
 from simkit.compiler.contact_friction import STIFF_KP, contact_properties, has_directional_friction
 from simkit.compiler.engine_options import apply_options
+from simkit.compiler.first_state import first_state
 from simkit.compiler.geometry_edits import SpecEdit, is_plain_obstacle, plan_light, plan_moved_link, plan_shape
 from simkit.compiler.joints import is_valid_axis, write_dynamics
 from simkit.compiler.kinematic_tree import WORLD
@@ -138,11 +139,13 @@ def refresh_derived_numbers(compiled: Compiled) -> None:
     """Compute the numbers that the compiler derives from masses, inertias, joints and gains."""
     model, records = compiled.model, list(compiled.builder.records.values())
     centre, extent = model.stat.center.copy(), model.stat.extent  # they follow from shapes alone
-    mujoco.mj_setConst(model, mujoco.MjData(model))
+    data = mujoco.MjData(model)
+    mujoco.mj_setConst(model, data)
     model.stat.center[:], model.stat.extent = centre, extent
     set_mean_values(compiled)
     apply_velocity_decay(model, records)
-    tune_servos(compiled.builder.spec, model, [ref for record in records for ref in record.actuators])
+    refs = [ref for record in records for ref in record.actuators]
+    tune_servos(compiled.builder.spec, model, refs, first_state(model, data))
 
 
 def set_mean_values(compiled: Compiled) -> None:
@@ -339,7 +342,6 @@ def replace_scenes(record: ModelRecord, model: SceneModel) -> None:
 
 def bind_scenes(names: NameMap, records: Iterable[ModelRecord]) -> None:
     """Make the bindings of a compiled model refer to the changed scenes of its records."""
-    names.forget_shared()
     for record in records:
         links = {n: b.scene for n, b in record.links.items() if names.links[n].scene is not b.scene}
         joints = {n: b.scene for n, b in record.joints.items() if names.joints[n].scene is not b.scene}

@@ -311,16 +311,16 @@ class Spawner:
         self._communication.bus.settle()
         engine.structure = structure
         engine.physics.changed_model()
+        if are_scenes_changed:
+            bind_scenes(compiled.names, structure.builder.records.values())
+            self._handles.bind(structure)
+            plugins = [plugin for part in structure.parts.values() for plugin, _ in part.plugins]
+            engine.friction.bind(compiled, plugins, is_changed=True)
         if are_derived:
             engine.numbers.renew()
-        if not are_scenes_changed:
-            return
-        bind_scenes(compiled.names, structure.builder.records.values())
-        self._handles.bind(structure)
-        engine.friction.bind(compiled, [plugin for part in structure.parts.values() for plugin, _ in part.plugins])
-        for sensor in structure.all_sensors():
-            if sensor in self._attached:
-                sensor.bind(compiled)
+            for sensor in structure.all_sensors():  # a contact sensor has the centre of mass of its link
+                if sensor in self._attached:
+                    sensor.bind(compiled)
 
     def _remember(self, structure: WorldStructure) -> None:
         """Add a structure to those that a restore may bring back, and forget those that nothing refers to."""

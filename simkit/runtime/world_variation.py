@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.compiler.model_compilation import place_followers
 from simkit.compiler.moved_models import SHAPE_FIELDS
@@ -125,21 +126,27 @@ def _switch_world(sim: Simulation, loaded: Snapshot, world: SceneWorld, edits: N
         _write_first_state(loaded, compiled)
         sim.contents.spawner.adopt(structure)
         data, sleep = copy.copy(engine.mj_data), engine.physics.sleep.get_state()
-    numbers = engine.numbers
-    states: list[tuple[Stateful, AttachedState]] = []
-    for part, state in loaded.handles:
-        if part is numbers:
-            states.append((part, numbers.on_changed_model(state, before, compiled.model)))
-        else:
-            states.append((part, part.get_state() if lights else state))
+    if lights:  # they have their new values
+        loaded = replace(loaded, handles=[(part, part.get_state()) for part, _ in loaded.handles])
     fields = fields_on_changed_model(loaded.fields, before, compiled.model)
     fields["gravity"] = compiled.model.opt.gravity.copy()
     snapshots = sim.contents.spawner.snapshots
     snapshots.variant += 1
     sim._loaded = replace(
-        loaded, structure=structure, data=data, sleep=sleep, fields=fields, handles=states, window=StepWindow(),
-        variant=snapshots.variant,
+        loaded, structure=structure, data=data, sleep=sleep, fields=fields, window=StepWindow(),
+        handles=_states_on_changed_model(engine, loaded, before), variant=snapshots.variant,
     )  # fmt: skip
+
+
+def _states_on_changed_model(
+    engine: Engine, loaded: Snapshot, before: Mapping[str, npt.NDArray[np.float64]]
+) -> list[tuple[Stateful, AttachedState]]:
+    """Return the loaded states of handles for the present model; `before` has the compiled values before the change."""
+    numbers, model = engine.numbers, engine.mj_model
+    return [
+        (part, numbers.on_changed_model(state, before, model) if part is numbers else state)
+        for part, state in loaded.handles
+    ]
 
 
 def _write_first_state(loaded: Snapshot, compiled: Compiled) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit import msgs
 from simkit.pose import Pose
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.runtime.world_variation import apply_overrides
@@ -113,6 +114,19 @@ def test_another_pose_of_a_robot_and_another_kind_of_shape_need_a_new_load() -> 
         sim.contents.add_weld("w", "box::l", "door::leaf")
         assert apply_overrides(sim, ["box.pose.x=1"])  # the weld belongs to the run, not to the file
         assert sim.model("box").pose.position[0] == 1.0
+
+
+def test_a_bumper_has_the_torque_about_the_changed_centre_of_mass() -> None:
+    bumper = '<plugin name="p" filename="libgazebo_ros_bumper.so"/>'
+    sensor = f'<sensor name="s" type="contact"><contact><collision>c</collision></contact>{bumper}</sensor>'
+    world, overrides = _OBJECTS.replace("<visual", f"{sensor}<visual", 1), ["box::l.inertial.com=0.03 0 0"]
+    with simkit.load(world, overrides=overrides) as loaded, simkit.load(world) as varied:
+        assert apply_overrides(varied, overrides)
+        received = [sim.subscribe("/bumper_states") for sim in (loaded, varied)]
+        for sim in (loaded, varied):
+            sim.run(0.4)
+        assert received[0].latest.states
+        assert msgs.serialize(received[0].latest) == msgs.serialize(received[1].latest)
 
 
 def test_what_a_run_changed_does_not_stay_in_a_varied_world() -> None:

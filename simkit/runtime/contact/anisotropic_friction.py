@@ -93,9 +93,17 @@ class AnisotropicFriction:
         self._wheels = weakref.WeakKeyDictionary()
         self._belts: weakref.WeakKeyDictionary[object, Callable[[], Sequence[Belt]]] = weakref.WeakKeyDictionary()
 
-    def bind(self, compiled: Compiled, plugins: Iterable[object]) -> None:
-        """Switch to another compiled model; only wheels and belts of these plugins count from now on."""
+    def bind(self, compiled: Compiled, plugins: Iterable[object], *, is_changed: bool = False) -> None:
+        """Switch to another compiled model; only wheels and belts of these plugins count from now on.
+
+        Args:
+            compiled: compiled model with its names.
+            plugins: plugins of the simulation.
+            is_changed: True if surfaces have changed since an earlier call with this model.
+        """
         self._compiled, self._plugins = compiled, frozenset(map(id, plugins))
+        if is_changed:
+            compiled.names.forget_shared(_SHARED_KEY)
         table = self._table()
         for owner, (wheels, slips) in self._wheels.items():
             if id(owner) in self._plugins:
