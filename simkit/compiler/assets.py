@@ -153,7 +153,7 @@ class Assets:
         if digest is None:
             values = [value for t in bodies.tiles for value in (t.cell, t.heights, np.array(t.base))]
             shapes = [t.heights.shape for t in bodies.tiles]
-            digest = _digest(np.concatenate([value.reshape(-1) for value in values]), shapes)
+            digest = _digest(np.concatenate([np.zeros(0), *(value.reshape(-1) for value in values)]), shapes)
             _tile_digests[bodies] = digest
         names = [f"heights#{digest}_{number}" for number in range(len(bodies.tiles))]
         for name, tile in zip(names, bodies.tiles, strict=True):
