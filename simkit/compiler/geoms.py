@@ -293,9 +293,10 @@ class GeomWriter:
     def _visual_settings(self, visual: SceneVisual, part: MeshPart | None, pixels: Pixels | None) -> GeomSettings:
         """Return the settings of a drawn geom; `pixels` is the texture of the `<visual>`, or None."""
         look = geom_colours(visual, part)
+        digest = ""
         if visual.material is None and part is not None:
-            pixels = part.texture
-        texture = self.assets.texture(pixels) if pixels is not None else ""
+            pixels, digest = part.texture, part.texture_digest
+        texture = self.assets.texture(pixels, digest) if pixels is not None else ""
         scale = visual.material.texture_scale if visual.material is not None and part is None else (1.0, 1.0)
         repeat = (1.0 / abs(scale[0]), 1.0 / abs(scale[1]))
         emission = look.emission_under(self._ambient)
