@@ -5,7 +5,6 @@ The name of an asset contains a hash of its content, so that geoms share equal a
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -16,6 +15,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler.meshes.companion_files import Pixels, read_pixels
+from simkit.compiler.meshes.content_digest import content_digest
 from simkit.compiler.meshes.convex_decomposition import ConvexBodies
 from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshPart
 from simkit.scene import Material, SceneVisual
@@ -47,7 +47,7 @@ class Assets:
 
     def surface(self, vertices: Floats, faces: Ints, uv: Floats | None = None) -> str:
         """Add a triangle mesh, which may be flat or open, and return its name."""
-        name = "mesh#" + _digest(vertices, faces, uv)
+        name = "mesh#" + content_digest(vertices, faces, uv)
         if self._is_new("mesh", name):
             self._add_mesh(name, mesh_bytes(vertices, faces, uv))
         return name
@@ -60,7 +60,7 @@ class Assets:
         uv = part.uv if has_uv else None
         names = _names.setdefault(part, {})
         if has_uv not in names:
-            names[has_uv] = "mesh#" + _digest(part.vertices, part.faces, uv)
+            names[has_uv] = "mesh#" + content_digest(part.vertices, part.faces, uv)
         if self._is_new("mesh", names[has_uv]):
             self._add_mesh(names[has_uv], mesh_bytes(part.vertices, part.faces, uv))
         return names[has_uv]
@@ -69,7 +69,7 @@ class Assets:
         """Add the convex bodies of a mesh and return their names, which are computed once for each mesh."""
         names = _body_names.get(bodies)
         if names is None:
-            names = _body_names[bodies] = ["mesh#" + _digest(*shape, None) for shape in bodies.shapes]
+            names = _body_names[bodies] = ["mesh#" + content_digest(*shape, None) for shape in bodies.shapes]
         for name, shape in zip(names, bodies.shapes, strict=True):
             if self._is_new("mesh", name):
                 self._add_mesh(name, mesh_bytes(*shape))
@@ -96,9 +96,14 @@ class Assets:
             self._pictures[file] = read_pixels(file)
         return self._pictures[file]
 
-    def texture(self, pixels: Pixels) -> str:
-        """Add an image that is mapped by texture coordinates, and return its name."""
-        name = "texture#" + _digest(pixels)
+    def texture(self, pixels: Pixels, digest: str = "") -> str:
+        """Add an image that is mapped by texture coordinates, and return its name.
+
+        Args:
+            pixels: image.
+            digest: hash of the image if it is known; large images take as long to hash as to read.
+        """
+        name = "texture#" + (digest or content_digest(pixels))
         if self._is_new("texture", name):
             texture = self.spec.add_texture(name=name)
             texture.type = mujoco.mjtTexture.mjTEXTURE_2D
@@ -142,7 +147,7 @@ class Assets:
             rows: heights from 0 to 1, ordered from -y to +y.
             size: extent along x and y, and greatest height [m].
         """
-        name = "heights#" + _digest(rows, size)
+        name = "heights#" + content_digest(rows, size)
         if self._is_new("hfield", name):
             self._add_field(name, rows, size, max(0.1, 0.05 * size[2]))
         return name
@@ -153,7 +158,7 @@ class Assets:
         if digest is None:
             values = [value for t in bodies.tiles for value in (t.cell, t.heights, np.array(t.base))]
             shapes = [t.heights.shape for t in bodies.tiles]
-            digest = _digest(np.concatenate([value.reshape(-1) for value in values]), shapes)
+            digest = content_digest(np.concatenate([np.zeros(0), *(value.reshape(-1) for value in values)]), shapes)
             _tile_digests[bodies] = digest
         names = [f"heights#{digest}_{number}" for number in range(len(bodies.tiles))]
         for name, tile in zip(names, bodies.tiles, strict=True):
@@ -203,24 +208,7 @@ def mesh_bytes(vertices: Floats, faces: Ints, uv: Floats | None = None) -> bytes
 @lru_cache(maxsize=1024)
 def _material_name(*values: object) -> str:
     texture = values[3]
-    return "material#" + _digest(*values) + ("#textured" if texture else "")
-
-
-_text_of_type = lru_cache(maxsize=64)(
-    str
-)  # cached, because NumPy needs ten times as long to format a type as to hash it
-
-
-def _digest(*values: object) -> str:
-    digest = hashlib.sha1(usedforsecurity=False)
-    for value in values:
-        if isinstance(value, np.ndarray):
-            digest.update(f"{_text_of_type(value.dtype)}{value.shape}".encode())
-            digest.update(np.ascontiguousarray(value).data)
-        else:
-            digest.update(repr(value).encode())
-        digest.update(b"|")
-    return digest.hexdigest()[:20]
+    return "material#" + content_digest(*values) + ("#textured" if texture else "")
 
 
 PLAIN: Final[Colour] = (0.7, 0.7, 0.7, 1.0)

@@ -187,15 +187,14 @@ class GeomWriter:
         names = self.assets.convex_bodies(bodies)
         for name in names:
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
-        self._copies(parent, owner, collision.pose_link, bodies, names, settings)
-        self._tiles(parent, owner, collision.pose_link, bodies, settings)
+        self._large_surface(parent, owner, collision.pose_link, bodies, names, settings)
         if not bodies.is_exact:
             drawn: GeomSettings = {"contype": 0, "conaffinity": 0, "group": COLLISION_RAY}
             is_shared = len(parts) == 1 and len(faces) > TRIANGLES_FROM  # with the visual of the same file
             name = self.assets.part(parts[0], False) if is_shared else self.assets.surface(vertices, faces)
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **drawn)
 
-    def _copies(
+    def _large_surface(
         self,
         parent: GeomParent,
         owner: GeomOwner,
@@ -204,28 +203,23 @@ class GeomWriter:
         names: list[str],
         settings: GeomSettings,
     ) -> None:
-        """Add the bodies that a large surface repeats at other places."""
-        frame = parent.offset @ pose
-        for (number, _), place in zip(bodies.copies, _moved(frame, [at for _, at in bodies.copies]), strict=True):
-            kind = mujoco.mjtGeom.mjGEOM_MESH
-            self._add_at(parent, owner, place, frame.quaternion, type=kind, meshname=names[number], **settings)
-
-    def _tiles(
-        self, parent: GeomParent, owner: GeomOwner, pose: Pose, bodies: ConvexBodies, settings: GeomSettings
-    ) -> None:
-        """Add the height fields of a large surface; a `Pose` for each would take as long as everything else."""
-        if not bodies.tiles:
-            return
+        """Add copies, boxes and height fields; a `Pose` for each would take as long as everything else."""
+        mesh, box, field = mujoco.mjtGeom.mjGEOM_MESH, mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_HFIELD
+        geoms: list[tuple[Floats, Floats, GeomSettings]] = [
+            (at, np.eye(3), {"type": mesh, "meshname": names[number]}) for number, at in bodies.copies
+        ]
+        geoms += [(b.centre, b.axes, {"type": box, "size": b.half}) for b in bodies.boxes]
+        for tile, name in zip(bodies.tiles, self.assets.tiles(bodies), strict=True):
+            middle = 0.5 * tile.cell * (tile.heights.shape[1] - 1, tile.heights.shape[0] - 1)
+            at = tile.origin + tile.axes[:, :2] @ middle
+            geoms.append((at, tile.axes, {"type": field, "hfieldname": name}))
         frame, rotation = parent.offset @ pose, np.zeros(9)
         mujoco.mju_quat2Mat(rotation, frame.quaternion)
         turn = rotation.reshape(3, 3)
-        for tile, name in zip(bodies.tiles, self.assets.tiles(bodies), strict=True):
-            middle = 0.5 * tile.cell * (tile.heights.shape[1] - 1, tile.heights.shape[0] - 1)
+        for at, axes, own in geoms:
             quaternion = np.zeros(4)
-            mujoco.mju_mat2Quat(quaternion, (turn @ tile.axes).reshape(9))
-            at = frame.position + turn @ (tile.origin + tile.axes[:, :2] @ middle)
-            kind = mujoco.mjtGeom.mjGEOM_HFIELD
-            self._add_at(parent, owner, at, quaternion, type=kind, hfieldname=name, **settings)
+            mujoco.mju_mat2Quat(quaternion, (turn @ axes).reshape(9))
+            self._add_at(parent, owner, frame.position + turn @ at, quaternion, **own, **settings)
 
     def _wheel(
         self, parent: GeomParent, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, solid: GeomSettings
@@ -299,9 +293,10 @@ class GeomWriter:
     def _visual_settings(self, visual: SceneVisual, part: MeshPart | None, pixels: Pixels | None) -> GeomSettings:
         """Return the settings of a drawn geom; `pixels` is the texture of the `<visual>`, or None."""
         look = geom_colours(visual, part)
+        digest = ""
         if visual.material is None and part is not None:
-            pixels = part.texture
-        texture = self.assets.texture(pixels) if pixels is not None else ""
+            pixels, digest = part.texture, part.texture_digest
+        texture = self.assets.texture(pixels, digest) if pixels is not None else ""
         scale = visual.material.texture_scale if visual.material is not None and part is None else (1.0, 1.0)
         repeat = (1.0 / abs(scale[0]), 1.0 / abs(scale[1]))
         emission = look.emission_under(self._ambient)
@@ -365,14 +360,6 @@ class GeomWriter:
         x, y, z = shape.position
         at = pose @ Pose((x, y, z + low * z_size))
         self._add(parent, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
-
-
-def _moved(frame: Pose, points: list[Floats]) -> Floats:
-    """Return points of a frame in its parent [m], shape (n, 3)."""
-    rotation = np.zeros(9)
-    mujoco.mju_quat2Mat(rotation, frame.quaternion)
-    moved: Floats = frame.position + np.array(points).reshape(-1, 3) @ rotation.reshape(3, 3).T
-    return moved
 
 
 def _tinted(colour: Colour, pixels: Pixels) -> Colour:

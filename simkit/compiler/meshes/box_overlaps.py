@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.compiler.meshes.mesh_part import Floats, Indices
 
@@ -21,6 +22,12 @@ def ragged(counts: Indices) -> tuple[Indices, Indices]:
     return rows, np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
 
 
+def all_of_three(rows: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Return a mask of the rows of three values that are all true; a tenth of the time of `all(axis=1)`."""
+    mask: npt.NDArray[np.bool_] = rows[:, 0] & rows[:, 1] & rows[:, 2]
+    return mask
+
+
 def overlaps(low: Floats, high: Floats, others_low: Floats, others_high: Floats) -> tuple[Indices, Indices]:
     """Return the numbers of a box and of another box for each pair that overlaps, ordered by the first.
 
@@ -33,19 +40,24 @@ def overlaps(low: Floats, high: Floats, others_low: Floats, others_high: Floats)
     origin, size = others_low.min(axis=0), float(np.median((high - low).max(axis=1)))
     size = max(size, 1e-6 * float((others_high.max(axis=0) - origin).max()), 1e-300)
     shape = ((others_high.max(axis=0) - origin) / size).astype(np.int64) + 1
-    first, counts = _cubes(others_low, others_high, origin, size, shape)
+    cubes, counts = _cubes(others_low, others_high, origin, size, shape)
     is_wide = counts.prod(axis=1) > _WIDE
     narrow = np.flatnonzero(~is_wide)
-    rows, keys = _keys(first[narrow], counts[narrow], shape)
+    rows, keys = _keys(cubes[narrow], counts[narrow], shape)
     order = np.argsort(keys, kind="stable")
     members, keys = narrow[rows[order]], keys[order]
     boxes, wanted = _keys(*_cubes(low, high, origin, size, shape), shape)
     start, end = np.searchsorted(keys, wanted, "left"), np.searchsorted(keys, wanted, "right")
     at, place = ragged(end - start)
     box, other = boxes[at], members[start[at] + place]
+    # one axis after the other: most pairs overlap along none, and sums over rows of three numbers are slow
+    for k in range(3):
+        first, last, others_first, others_last = (
+            np.ascontiguousarray(ends[:, k]) for ends in (low, high, others_low, others_high)
+        )
+        keep = np.maximum(first[box], others_first[other]) <= np.minimum(last[box], others_last[other])
+        box, other, at = box[keep], other[keep], at[keep]
     corner = np.maximum(low[box], others_low[other])
-    keep = (corner <= np.minimum(high[box], others_high[other])).all(axis=1)
-    box, other, corner, at = box[keep], other[keep], corner[keep], at[keep]
     # boxes that share several cubes are a pair in the first of them
     cube = ((corner - origin) / size).clip(0, shape - 1).astype(np.int64)
     is_first = (cube[:, 0] * shape[1] + cube[:, 1]) * shape[2] + cube[:, 2] == wanted[at]

@@ -23,6 +23,7 @@ import numpy as np
 
 from simkit import progress
 from simkit.child_process import ChildProcesses
+from simkit.compiler.meshes.box_pieces import BoxPiece, box_pieces
 from simkit.compiler.meshes.convex_pieces import (
     convex_pieces,
     filled_ratio,
@@ -148,6 +149,7 @@ class ConvexBodies:
         findings: diagnostics about the conversion.
         tiles: height fields that collide beside the bodies.
         copies: number of a shape and offset [m] of each further place of it.
+        boxes: boxes that collide beside the bodies.
     """
 
     shapes: tuple[tuple[Floats, Ints], ...]
@@ -155,6 +157,7 @@ class ConvexBodies:
     findings: tuple[CollisionFinding, ...] = ()
     tiles: tuple[HeightTile, ...] = ()
     copies: tuple[tuple[int, Floats], ...] = ()
+    boxes: tuple[BoxPiece, ...] = ()
 
 
 def convex_bodies(
@@ -234,11 +237,12 @@ def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
     findings: list[CollisionFinding] = []
     tiles: list[HeightTile] = []
     copies: list[tuple[int, Floats]] = []
+    boxes: list[BoxPiece] = []
     large = large_surface_pieces(vertices, faces) if len(faces) > TRIANGLES_FROM else None
     if large is not None and (large.error <= LEAST_TOLERANCE or is_large(vertices, faces)):
         pieces, tiles, error, copies = large
         kind = f"{sum(not p.is_solid for p in pieces)} patches of"
-        shapes = tuple((p.points, np.zeros((0, 3), np.int32)) for p in pieces)
+        shapes, boxes, copies = _shapes_and_boxes([p.points for p in pieces], copies)
         if error > LARGEST_ERROR:
             text = (
                 f"has {len(faces)} triangles; it is simplified for contacts, and its surface is exact to {error:.2g} m"
@@ -252,7 +256,20 @@ def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
     fields = f", and {len(tiles)} height fields" if tiles else ""
     text = f"is not convex: it collides as {closed} convex pieces and {kind} its surface{fields}"
     findings.append(("note", "SK-MESH-006", text, ""))
-    return ConvexBodies(shapes, False, tuple(findings), tuple(tiles), tuple(copies))
+    return ConvexBodies(shapes, False, tuple(findings), tuple(tiles), tuple(copies), tuple(boxes))
+
+
+def _shapes_and_boxes(
+    pieces: list[Floats], copies: list[tuple[int, Floats]]
+) -> tuple[tuple[tuple[Floats, Ints], ...], list[BoxPiece], list[tuple[int, Floats]]]:
+    """Return the pieces that are no boxes, the boxes at all places, and the copies of the pieces that are no boxes."""
+    found = box_pieces(pieces)
+    is_shape = np.array([box is None for box in found], bool)
+    numbers = np.cumsum(is_shape) - 1
+    boxes = [box for box in found if box is not None]
+    boxes += [box._replace(centre=box.centre + at) for number, at in copies if (box := found[number]) is not None]
+    shapes = tuple((pieces[number], np.zeros((0, 3), np.int32)) for number in np.flatnonzero(is_shape).tolist())
+    return shapes, boxes, [(int(numbers[number]), at) for number, at in copies if is_shape[number]]
 
 
 def _surface_plates(vertices: Floats, faces: Ints) -> ConvexBodies:
@@ -327,7 +344,8 @@ def _load(key: str) -> ConvexBodies | None:
             for numbers, rows, size in zip(arrays["tiles"], heights, arrays["tile_sizes"], strict=True)
         )
         copies = tuple(zip(arrays["copies"].tolist(), arrays["copy_offsets"], strict=True))
-        return ConvexBodies(shapes, bool(header["is_exact"]), findings, tiles, copies)
+        boxes = tuple(BoxPiece(row[:3], row[3:12].reshape(3, 3), row[12:]) for row in arrays["boxes"])
+        return ConvexBodies(shapes, bool(header["is_exact"]), findings, tiles, copies, boxes)
     except Exception:  # noqa: BLE001 -- after any error with a foreign file, the bodies are computed again
         return None
 
@@ -343,6 +361,7 @@ def _store(key: str, bodies: ConvexBodies) -> ConvexBodies:
         "tile_sizes": np.array([t.heights.shape for t in bodies.tiles], np.int64).reshape(-1, 2),
         "copies": np.array([number for number, _ in bodies.copies], np.int64),
         "copy_offsets": np.array([offset for _, offset in bodies.copies]).reshape(-1, 3),
+        "boxes": np.array([(*b.centre, *b.axes.flat, *b.half) for b in bodies.boxes]).reshape(-1, 15),
         "tile_heights": np.concatenate([np.zeros(0), *(t.heights.reshape(-1) for t in bodies.tiles)]),
     }
     has_failed = any(code == "SK-MESH-014" for _, code, _, _ in bodies.findings)

@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simkit.compiler.meshes.box_overlaps import overlaps
+from simkit.compiler.meshes.box_overlaps import all_of_three, overlaps
 from simkit.compiler.meshes.connected_triangles import part_numbers
 from simkit.compiler.meshes.height_tiles import HeightTile, Mask
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
@@ -245,11 +245,11 @@ def _fitted_tiles(
     reach = np.einsum("ijk,ik->ij", np.abs(axes), half)
     of, triangles = overlaps(middle - reach, middle + reach, surface.low, surface.high)
     centres = np.einsum("ijk,ij->ik", axes[of], surface.centres[triangles] - middle[of])
-    is_close = (np.abs(centres) <= half[of] + surface.radii[triangles, None]).all(axis=1)
+    is_close = all_of_three(np.abs(centres) <= half[of] + surface.radii[triangles, None])
     of, triangles = of[is_close], triangles[is_close]
     local = surface.corners[triangles] @ axes[of]
-    lowest, highest = local.min(axis=1), local.max(axis=1)
-    is_inside = ((lowest < high[of] - snap) & (highest > low[of] + snap)).all(axis=1)
+    lowest, highest = (end(end(local[:, 0], local[:, 1]), local[:, 2]) for end in (np.minimum, np.maximum))
+    is_inside = all_of_three((lowest < high[of] - snap) & (highest > low[of] + snap))
     is_top = is_inside & (np.einsum("ij,ij->i", surface.units[triangles], axes[of, :, 2]) > _LEAST_SLOPE_AROUND)
     other_of, other_low, other_high = (a[is_inside & ~is_top] for a in (of, lowest[:, 2], highest[:, 2]))
     of, triangles, local, lowest, highest = (a[is_top] for a in (of, triangles, local, lowest, highest))
@@ -278,8 +278,8 @@ def _fitted_tiles(
     errors = np.zeros(len(chosen))
     np.maximum.at(errors, at, np.abs(above - shift[at]) * cosines)
     is_good &= errors <= tolerance
-    is_covered = is_good[of] & (lowest[:, :2] >= low[of, :2] - snap).all(axis=1)
-    is_covered &= (highest[:, :2] <= high[of, :2] + snap).all(axis=1)
+    is_between = (lowest[:, :2] >= low[of, :2] - snap) & (highest[:, :2] <= high[of, :2] + snap)
+    is_covered = is_good[of] & is_between[:, 0] & is_between[:, 1]
     is_left[triangles[is_covered]] = False
     return [
         (fields.tile(k, axes[k], low[k], depths[k], shift[k]), float(errors[k]))

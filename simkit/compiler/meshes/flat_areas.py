@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -14,6 +15,12 @@ _LEAST_AREA: Final = 8.0
 
 _ANGLE: Final = 1e-4
 """Difference between the normals of triangles in one plane."""
+
+_EXACT: Final = 1e-9
+"""Difference between the area of triangles and that of their hull, relative to the area, that is rounding."""
+
+_FEW_TRIANGLES: Final = 8
+"""Number of triangles up to which the hull is computed without Qhull."""
 
 _LINES: Final = 10
 """Number of lines that are compared, the longest sides of the outline."""
@@ -79,6 +86,8 @@ def dividing_line(corners: Floats, up: Floats) -> tuple[Floats, float] | None:
     size = float(np.ptp(flat.reshape(-1, 2), axis=0).max())
     lines = _outline_lines(flat, size)
     middles, best, least = flat.mean(axis=1), None, np.inf
+    (a, b), (c, d) = (flat[:, 1] - flat[:, 0]).T, (flat[:, 2] - flat[:, 0]).T
+    covered = 0.5 * float(np.abs(a * d - b * c).sum())
     for direction, offset in lines:
         across = np.array((-direction[1], direction[0]))
         distances = flat @ across - offset
@@ -88,6 +97,8 @@ def dividing_line(corners: Floats, up: Floats) -> tuple[Floats, float] | None:
         total = _hull_area(flat[is_above]) + _hull_area(flat[~is_above])
         if total < least * (1.0 - 1e-6):
             best, least = (across[0] * u + across[1] * v, float(offset)), total
+            if abs(total - covered) <= _EXACT * covered:  # both parts are convex
+                break
     return best
 
 
@@ -119,7 +130,27 @@ def _hull_area(flat: Floats) -> float:
     """Return the area of the hull of triangles in a plane [m²]; 0 for none."""
     from scipy.spatial import ConvexHull, QhullError
 
+    if len(flat) <= _FEW_TRIANGLES:
+        return _few_points_area(flat.reshape(-1, 2))
     try:
         return float(ConvexHull(flat.reshape(-1, 2)).volume)
     except (QhullError, ValueError):
         return 0.0
+
+
+def _few_points_area(points: Floats) -> float:
+    """Return the area of the hull of points in a plane [m²]; for few points, this is faster than Qhull."""
+    if not len(points):
+        return 0.0
+    ordered = sorted(map(tuple, (points - points[0]).tolist()))
+    area = 0.0
+    for side in (ordered, ordered[::-1]):
+        hull: list[tuple[float, float]] = []
+        for x, y in side:
+            while len(hull) > 1 and (hull[-1][0] - hull[-2][0]) * (y - hull[-2][1]) <= (
+                (hull[-1][1] - hull[-2][1]) * (x - hull[-2][0])
+            ):
+                hull.pop()
+            hull.append((x, y))
+        area += sum(a[0] * b[1] - a[1] * b[0] for a, b in pairwise(hull))
+    return 0.5 * area

@@ -24,9 +24,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit.compiler.meshes.content_digest import content_digest
 from simkit.compiler.meshes.mesh_part import MeshPart
 
-FORMAT: Final = "simkit mesh 4"
+FORMAT: Final = "simkit mesh 5"
 """Version of the conversions; change it whenever a reader returns different numbers for the same file."""
 
 _SELF_CONTAINED: Final = {".stl", ".glb", ".ply"}
@@ -100,7 +101,10 @@ def store_converted(key: str, converted: ConvertedMesh) -> None:
             arrays[f"t{i}"] = part.texture
     keep = ("name", "colour", "specular", "emission", "aliases")
     header = {
-        "parts": [{k: getattr(p, k) for k in keep} for p in converted.parts],
+        "parts": [
+            {**{k: getattr(p, k) for k in keep}, "texture": "" if p.texture is None else content_digest(p.texture)}
+            for p in converted.parts
+        ],
         "notes": converted.notes,
         "companions": dict(converted.companions),
     }
@@ -185,4 +189,5 @@ def _part_from(arrays: Mapping[str, Any], i: int, entry: Mapping[str, Any]) -> M
         specular=entry["specular"],
         emission=entry["emission"],
         aliases=tuple(entry["aliases"]),
+        texture_digest=entry["texture"],
     )

@@ -35,6 +35,7 @@ class MeshPart:
         uv: texture coordinates, shape (n, 2), v upwards, or None.
         colour: RGBA from 0 to 1, or None if the file has none.
         texture: image rows from the top, shape (h, w, 3), uint8, or None.
+        texture_digest: hash of the texture; empty if it is not known.
         specular: strength of reflection, from 0 to 1.
         emission: strength of emission, from 0 to 1.
         aliases: further names of the sub-mesh in its file.
@@ -49,6 +50,7 @@ class MeshPart:
     specular: float = 0.0
     emission: float = 0.0
     aliases: tuple[str, ...] = ()
+    texture_digest: str = ""
 
     def scaled(self, scale: tuple[float, float, float]) -> MeshPart:
         """Return the part scaled along the axes; a mirroring scale reverses the faces."""

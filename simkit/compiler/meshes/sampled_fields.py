@@ -30,8 +30,10 @@ def sampled_heights(
     """
     step = ((high - low)[:, :2] / (counts - 1))[of]
     start, last = low[of, :2], (counts - 1)[of]
-    least = np.ceil((local[:, :, :2].min(axis=1) - snap - start) / step).clip(0, last + 1).astype(np.int64)
-    most = np.floor((local[:, :, :2].max(axis=1) + snap - start) / step).clip(-1, last).astype(np.int64)
+    flat = local[:, :, :2]
+    lowest, highest = (end(end(flat[:, 0], flat[:, 1]), flat[:, 2]) for end in (np.minimum, np.maximum))
+    least = np.ceil((lowest - snap - start) / step).clip(0, last + 1).astype(np.int64)
+    most = np.floor((highest + snap - start) / step).clip(-1, last).astype(np.int64)
     spans = np.maximum(most - least + 1, 0)
     at, place = ragged(spans.prod(axis=1))
     i, j = np.divmod(place, spans[at, 1])
@@ -47,12 +49,12 @@ def sampled_heights(
     heights = (a[at, 2] + first * b[at, 2] + second * c[at, 2])[is_inside]
     starts = np.append(0, np.cumsum(counts.prod(axis=1)))
     node = (starts[of[at]] + grid[:, 0] * counts[of[at], 1] + grid[:, 1])[is_inside]
-    lowest, highest = np.full(starts[-1], np.inf), np.full(starts[-1], -np.inf)
-    np.minimum.at(lowest, node, heights)
-    np.maximum.at(highest, node, heights)
+    least_of, most_of = np.full(starts[-1], np.inf), np.full(starts[-1], -np.inf)
+    np.minimum.at(least_of, node, heights)
+    np.maximum.at(most_of, node, heights)
     with np.errstate(invalid="ignore"):
-        is_single = (highest - lowest <= 20.0 * snap) & np.isfinite(highest)
-    return np.where(np.isfinite(highest), highest, 0.0), np.logical_and.reduceat(is_single, starts[:-1])
+        is_single = (most_of - least_of <= 20.0 * snap) & np.isfinite(most_of)
+    return np.where(np.isfinite(most_of), most_of, 0.0), np.logical_and.reduceat(is_single, starts[:-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +93,8 @@ def surface_points(
     middles = local.mean(axis=1, keepdims=True)
     points = np.concatenate([local, 0.5 * (local + local[:, (1, 2, 0)]), middles], axis=1).reshape(-1, 3)
     at = np.repeat(of, 7)
-    is_inside = ((points[:, :2] >= low[at, :2]) & (points[:, :2] <= high[at, :2])).all(axis=1)
+    is_between = (points[:, :2] >= low[at, :2]) & (points[:, :2] <= high[at, :2])
+    is_inside = is_between[:, 0] & is_between[:, 1]
     at, points = at[is_inside], points[is_inside]
     points[:, :2] -= low[at, :2]
     counts = 2 * fields.cells + 1

@@ -24,6 +24,9 @@ _LEAST_SPEED: Final = 5.0
 _MOST_TREES: Final = 4
 """Largest number of moving models; with more, the check takes as long as it saves."""
 
+_FIELDS: Final = ("geom_pos", "geom_quat", "geom_rbound", "body_pos", "body_quat", "jnt_pos")
+"""Fields of a model that a run may write to and that decide whether the space is open, beside the masks of geoms."""
+
 _PLANE: Final = int(mujoco.mjtGeom.mjGEOM_PLANE)
 _FREE: Final = int(mujoco.mjtJoint.mjJNT_FREE)
 _HINGE: Final = int(mujoco.mjtJoint.mjJNT_HINGE)
@@ -46,6 +49,7 @@ class OpenSpace:
 
     def __init__(self, model: mujoco.MjModel, duration: float) -> None:
         self._duration = duration
+        self._model, self._fields = model, [getattr(model, name).copy() for name in _FIELDS]
         solid = np.flatnonzero(travel_bounds.can_collide(model))
         tree = model.body_treeid[model.geom_bodyid[solid]]
         self._balls = [_ball_of(model, number, solid[tree == number]) for number in np.unique(tree[tree >= 0]).tolist()]
@@ -53,6 +57,13 @@ class OpenSpace:
         self.is_known = self.is_known and not (model.nmocap or model.nflex)
         if self.is_known:
             self._find_static(model, solid[tree < 0])
+
+    def is_current(self) -> bool:
+        """Check whether the sizes and places in the model are still those of this object."""
+        model = self._model
+        return all(
+            np.array_equal(getattr(model, name), known) for name, known in zip(_FIELDS, self._fields, strict=True)
+        )
 
     def _find_static(self, model: mujoco.MjModel, geoms: npt.NDArray[np.intp]) -> None:
         """Find the planes, and the box around all other geoms that never move."""

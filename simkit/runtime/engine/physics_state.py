@@ -192,13 +192,16 @@ class PhysicsState:
         """Derive the objects that decide the step method from the model."""
         model = self.model
         self.law, self.fast_bodies = ContactLaw(model), FastBodyDetector(model)
-        timestep = float(model.opt.timestep)
-        self._space = OpenSpace(model, OPEN_WINDOWS * window_length(timestep) * timestep)
+        self._space = self._open_space()
         is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         self.free_motion = FreeMotionIntegrator.of(model) if is_implicit and not has_engine_contacts(model) else None
         self._analysed, self._is_analysed = _step_fields(model), True
         # without contacts that the law may change, no step has to check anything
         self._is_plain = not (self.law.is_on or self.fast_bodies.can_be_fast)
+
+    def _open_space(self) -> OpenSpace:
+        timestep = float(self.model.opt.timestep)
+        return OpenSpace(self.model, OPEN_WINDOWS * window_length(timestep) * timestep)
 
     def renew_pushes(self) -> None:
         """Compute again which accelerations the controls cause, because masses or gains have changed."""
@@ -214,6 +217,8 @@ class PhysicsState:
             on_approach = self.fast_bodies.on_approach
             self._analyse()
             self.fast_bodies.on_approach = on_approach
+        elif not self._space.is_current():
+            self._space = self._open_space()
         self._until = self._fast_until = _NEVER if self._is_plain else -1
 
     # ------------------------------------------------------------------ writing

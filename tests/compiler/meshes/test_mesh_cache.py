@@ -15,6 +15,7 @@ from mesh_makers import L_SHAPE, QUAD, binary_stl, picture
 import simkit
 from simkit.compiler.meshes import convex_decomposition as mesh_collision
 from simkit.compiler.meshes import mesh_cache, mesh_reader
+from simkit.compiler.meshes.content_digest import content_digest
 from simkit.compiler.meshes.convex_decomposition import convex_bodies
 from simkit.compiler.meshes.mesh_reader import convert_file, load_file
 from simkit.compiler.shape_geometry import polyline_triangles
@@ -70,6 +71,14 @@ def test_what_comes_back_is_what_was_converted(textured, own_mesh_cache, monkeyp
             assert x.dtype == y.dtype
             np.testing.assert_array_equal(x, y)
     assert first.notes == second.notes
+
+
+def test_the_cache_knows_the_hash_of_a_texture(textured, own_mesh_cache):
+    first = convert_file(textured).parts[0]
+    forget()
+    second = convert_file(textured).parts[0]
+    assert first.texture_digest == ""
+    assert second.texture_digest == content_digest(first.texture)
 
 
 def test_a_changed_texture_or_library_is_converted_again(textured, own_mesh_cache):

@@ -104,18 +104,6 @@ def test_a_ball_between_two_layers_stays_there(make, compiled, tmp_path):
     assert c.data.body("ball::link").xpos[2] == pytest.approx(0.1, abs=2e-3)
 
 
-def test_closed_boxes_of_a_city_are_exact(tmp_path):
-    boxes = [
-        trimesh.creation.box((1, 1, 1 + k % 5)).apply_translation((2.0 * (k % 20), k // 20 * 2.0, 0))
-        for k in range(400)
-    ]
-    city = trimesh.util.concatenate(boxes)
-    bodies = convex_bodies(np.asarray(city.vertices), np.asarray(city.faces, np.int32), fixed=True)
-    assert len(bodies.shapes) == 400
-    assert {len(points) for points, _ in bodies.shapes} == {8}
-    assert [code for _, code, _, _ in bodies.findings] == ["SK-MESH-006"]
-
-
 def test_a_box_slides_down_a_fine_ramp_without_catching(make, compiled, tmp_path):
     x, y = np.meshgrid(np.linspace(0, 10, 46), np.linspace(0, 10, 46), indexing="ij")
     heights = -0.5 * x + np.where(y > 9.0, hills(x, y), 0.0)

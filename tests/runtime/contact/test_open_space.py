@@ -48,6 +48,34 @@ def test_models_without_a_bound_of_their_size_are_never_alone():
     assert not space(GROUND, FLYER.format("0 0 5", "hinge"), height=np.nan)
 
 
+def test_a_changed_place_or_size_makes_the_check_out_of_date():
+    model = mujoco.MjModel.from_xml_string(
+        f"<mujoco><worldbody>{WALL}{FLYER.format('0 0 9', 'hinge')}</worldbody></mujoco>"
+    )
+    for field in ("geom_pos", "geom_rbound", "body_pos"):
+        found = OpenSpace(model, 0.064)
+        assert found.is_current()
+        getattr(model, field)[-1] += 1.0
+        assert not found.is_current()
+
+
+def test_a_wall_that_is_moved_under_a_falling_ball_stops_it(tmp_path):
+    world = tmp_path / "world.sdf"
+    world.write_text("""<sdf version="1.9"><world name="w"><model name="plate"><static>true</static>
+      <pose>0 0 -50 0 0 0</pose><link name="l"><collision name="c"><geometry><box><size>2 2 0.2</size></box></geometry>
+      </collision></link></model>
+      <model name="ball"><pose>0 0 4 0 0 0</pose><link name="l"><inertial auto="true"/><collision name="c">
+      <geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link></model></world></sdf>""")
+    with simkit.load(world) as sim:
+        sim.run(0.5)
+        space = sim.engine.physics._space
+        plate = int(np.flatnonzero(sim.mj_model.geom_bodyid == 0)[0])
+        sim.engine.touch("geom_pos")[plate] = (0.0, 0.0, -0.1)
+        sim.run(2.0)
+        assert sim.engine.physics._space is not space
+        assert sim.model("ball").pose.position[2] == pytest.approx(0.1, abs=5e-3)
+
+
 def test_a_fall_has_the_same_bits_with_and_without_the_check(tmp_path):
     world = tmp_path / "world.sdf"
     world.write_text("""<sdf version="1.9"><world name="w">
