@@ -224,6 +224,8 @@ class Session:
                 print_summary(sim, counter, recording, elapsed, quiet=display.quiet)
                 self.verdict.print_results()
                 self._report_fallen_models()
+                if recording is not None:
+                    self._report_unmatched_topics()
         if driven is not None and display.picture is not None:
             draw_picture(sim, display.picture, driven)
         return interrupts.exit_code or self.verdict.code
@@ -233,6 +235,19 @@ class Session:
         from simkit.runtime.fallen_models import find_fallen_models
 
         found = find_fallen_models(self.sim)
+        print_diagnostics(found, verbose=True)
+        add_diagnostics(found)
+
+    def _report_unmatched_topics(self) -> None:
+        """Warn of selected topics that no topic of the recorded run matches."""
+        from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
+        from simkit.recording.bags.bag_contents import matches_topic
+
+        found, topics = Diagnostics(), self.sim.communication.bus.all_topics()
+        for pattern in self.spec.topics:
+            if not any(matches_topic(topic, [pattern]) for topic in topics):
+                text = f"the recording selects the topic {pattern!r}, but no topic of this run matches"
+                found.warning("SK-BAG-017", text, NOWHERE, name_hint(pattern, topics))
         print_diagnostics(found, verbose=True)
         add_diagnostics(found)
 

@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 import simkit
+from simkit.cli.commands import app
 from simkit.recording.bags.recorder import Recorder
 
 
@@ -151,3 +153,13 @@ def test_a_recording_of_a_simulation_that_ends_is_whole(start: Any, simkit_line:
     found = simkit_line("bag", "record", "-a", "-x", "camera", "-o", str(target))
     assert found.exit_code == 0 and "has ended" in found.stderr and "messages on" in found.stderr
     assert json.loads(simkit_line("bag", "info", str(target), "--json").stdout)["complete"]
+
+
+def test_a_selected_topic_that_the_run_does_not_have_is_a_warning(tmp_path: Path) -> None:
+    topics = ["--topic", "/clok", "--topic", "/cl*"]
+    recording = ["--record", str(tmp_path / "x.mcap"), *topics]
+    found = CliRunner().invoke(app, ["run", "empty", "--duration", "0.1", "--json", *recording])
+    report = json.loads(found.stdout)
+    assert (found.exit_code, report["recording"]["messages"]) == (0, 10)
+    (warning,) = [d for d in report["diagnostics"] if d["severity"] == "warning"]
+    assert warning["code"] == "SK-BAG-017" and "'/clok'" in warning["message"]

@@ -19,7 +19,6 @@ from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odomet
 from simkit.plugins.endpoints import listens, offers, publishes
 from simkit.plugins.localisation import extended_kalman_filter as ekf
 from simkit.plugins.localisation import localization_measurements as measured
-from simkit.plugins.localisation.extended_kalman_filter import ExtendedKalmanFilter, Measurement
 from simkit.plugins.localisation.localization_measurements import Flags, MeasuredBlock, PreviousPose
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, without_effect
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
@@ -126,10 +125,10 @@ class EkfNode(Plugin):
         process = self._read_covariance("process_noise_covariance", np.diag(ekf.PROCESS_NOISE))
         first = self._read_covariance("initial_estimate_covariance", np.eye(ekf.SIZE) * ekf.INITIAL_VARIANCE)
         state = np.array(self.params.vector("initial_state", ekf.SIZE, (0.0,) * ekf.SIZE))
-        self._filter = ExtendedKalmanFilter(
+        self._filter = ekf.ExtendedKalmanFilter(
             process, state, first, has_dynamic_noise=options.dynamic_process_noise_covariance
         )
-        self._queue: list[Measurement] = []
+        self._queue: list[ekf.Measurement] = []
         self._published_ns = self._set_ns = -1
         self._inputs = {one.name: one for kind in _INPUTS for one in self._read_inputs(kind)}
         if not self._inputs:
