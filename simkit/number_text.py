@@ -6,7 +6,8 @@ import math
 import re
 
 _TRUTHS = {"true": True, "1": True, "false": False, "0": False}
-_WITH_UNIT = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)[A-Za-z°%]{1,8}")
+# possessive quantifiers: the time is proportional to the length, also for a million digits
+_WITH_UNIT = re.compile(r"([-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?)[A-Za-z°%]{1,8}")
 
 
 def is_number(text: str) -> bool:

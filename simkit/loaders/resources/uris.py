@@ -96,7 +96,8 @@ def other_case_hint(places: list[Path] | None) -> str:
     """Suggest a file whose name differs from a searched path only in upper and lower case; empty if there is none."""
     for place in (places or [])[:_MOST_LISTED]:
         try:
-            names = [entry.name for entry in islice(os.scandir(place.parent), _MOST_LISTED)]
+            with os.scandir(place.parent) as entries:
+                names = [entry.name for entry in islice(entries, _MOST_LISTED)]
         except OSError:
             continue
         for name in names:
