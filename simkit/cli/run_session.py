@@ -171,8 +171,6 @@ class Session:
         commands, self._teleop = Commands(sim, self._commands()), self._driver()
         played = self._played()
         duration = run_length(spec, played.duration if played is not None else None)
-        if duration is None:
-            print_status(_endless_text(spec))
         conditions = self.verdict.watch(sim, duration)
         driven = DrivenPath(sim) if display.picture is not None or display.film is not None else None
         with ExitStack() as stack:
@@ -204,6 +202,8 @@ class Session:
                 self._connect_keys(keyboard, loop)
             self._serve(stack, loop)
             start_bridges(self._bridges, loop, interrupts, watchers)
+            if duration is None:
+                print_status(_endless_text(spec))  # other terminals can connect from now on
             self._hold()
             stack.enter_context(conditions)
             loop.is_over = self.verdict.is_over
