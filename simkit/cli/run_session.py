@@ -19,7 +19,9 @@ from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stderr_console, stdout_console
 from simkit.cli.terminal.page_options import open_later, open_page
+from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
 from simkit.errors import InputError, RenderError
+from simkit.recording.bags.bag_contents import matches_topic
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
 
@@ -240,9 +242,6 @@ class Session:
 
     def _report_unmatched_topics(self) -> None:
         """Warn of selected topics that no topic of the recorded run matches."""
-        from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
-        from simkit.recording.bags.bag_contents import matches_topic
-
         found, topics = Diagnostics(), self.sim.communication.bus.all_topics()
         for pattern in self.spec.topics:
             if not any(matches_topic(topic, [pattern]) for topic in topics):
@@ -268,8 +267,6 @@ class Session:
         Raises:
             RenderError: SK-RENDER-001 images are selected, but there is no renderer.
         """
-        from simkit.recording.bags.bag_contents import matches_topic
-
         spec, bus = self.spec, self.sim.communication.bus
         if not spec.topics:
             return
