@@ -19,6 +19,7 @@ from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stderr_console, stdout_console
 from simkit.cli.terminal.page_options import open_later, open_page
+from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
 from simkit.errors import InputError, RenderError
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
@@ -240,7 +241,6 @@ class Session:
 
     def _report_unmatched_topics(self) -> None:
         """Warn of selected topics that no topic of the recorded run matches."""
-        from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
         from simkit.recording.bags.bag_contents import matches_topic
 
         found, topics = Diagnostics(), self.sim.communication.bus.all_topics()
