@@ -60,18 +60,14 @@ def drive(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 def odometry_map(scans: list[Any], odometry: list[Any], lidar: simkit.Pose, like: Any) -> Any:
     """Return a map of scans at the poses of the odometry, with the size of another map."""
     grid = runpy.run_path(str(LAB / "solution" / "mapping.py"))["Grid"]()
-    poses = {time_ns(message): msgs.pose(message.pose.pose) for message in odometry}
+    poses = {msgs.stamp_ns(message.header.stamp): msgs.pose(message.pose.pose) for message in odometry}
     stamps = np.array(list(poses))
     for scan in scans:
-        pose = poses[int(stamps[np.abs(stamps - time_ns(scan)).argmin()])] @ lidar
+        pose = poses[int(stamps[np.abs(stamps - msgs.stamp_ns(scan.header.stamp)).argmin()])] @ lidar
         angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges))
         place = (*pose.position[:2].tolist(), float(pose.rpy[2]))
         grid.add_scan(place, angles, np.asarray(scan.ranges, float), scan.range_max)
     return msgs.make("nav_msgs/msg/OccupancyGrid", info=like.info, data=grid.values().reshape(-1))
-
-
-def time_ns(message: Any) -> int:
-    return int(message.header.stamp.sec * 10**9 + message.header.stamp.nanosec)
 
 
 def cells(message: Any) -> np.ndarray[Any, Any]:

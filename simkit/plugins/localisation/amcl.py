@@ -16,7 +16,7 @@ from simkit.plugins.base import Plugin
 from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.localisation.likelihood_field import Hits, LikelihoodMap, Poses
-from simkit.plugins.localisation.motion_models import MOTION_MODELS
+from simkit.plugins.localisation.motion_models import MOTION_MODELS, wrapped_angles
 from simkit.plugins.localisation.particle_filter import Adaptation, Estimate, ParticleFilter
 from simkit.pose import Pose
 
@@ -144,7 +144,7 @@ class Amcl(Plugin):
         values, axes = np.linalg.eigh((covariance + covariance.T) / 2)
         normal = self._generator().standard_normal((int(self._value("max_particles")), 3))
         poses = pose + (normal * np.sqrt(np.maximum(values, 0.0))) @ axes.T
-        poses[:, 2] = (poses[:, 2] + np.pi) % (2 * np.pi) - np.pi
+        poses[:, 2] = wrapped_angles(poses[:, 2])
         self._restart(poses)
 
     def _restart(self, poses: Poses) -> None:
@@ -190,7 +190,9 @@ class Amcl(Plugin):
         self._begin(np.array([*pose.position[:2], pose.rpy[2]]), covariance)
 
     def _on_map(self, message: Any) -> None:
-        found = LikelihoodMap.from_message(message) if self._once.has_type(message, _GRID, "map_topic", _CODE) else None
+        if not self._once.has_type(message, _GRID, "map_topic", _CODE):
+            return
+        found = LikelihoodMap.from_message(message)
         if found is None:
             text = "a map is ignored that is empty, or whose size, resolution or origin is not valid"
             self._once.warn(_CODE, "map values", text)

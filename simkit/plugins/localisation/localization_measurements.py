@@ -67,11 +67,6 @@ class PreviousPose:
     time_ns: int
 
 
-def stamp_ns(stamp: Any) -> int:
-    """Return the time of a message [ns]."""
-    return int(stamp.sec) * 10**9 + int(stamp.nanosec)
-
-
 def pose_of(message: Any) -> Pose | None:
     """Return a pose with a unit quaternion; None for NaN. A quaternion of zeros is the identity."""
     p, q = message.position, message.orientation

@@ -48,7 +48,7 @@ def differential(poses: Poses, motion: Motion, alphas: Alphas, generator: np.ran
     second_turn = second + math.sqrt(a1 * b + a2 * travel**2) * noise[2]
     heading = poses[:, 2] + first_turn
     moved_x, moved_y = poses[:, 0] + driven * np.cos(heading), poses[:, 1] + driven * np.sin(heading)
-    return np.column_stack((moved_x, moved_y, _wrapped(heading + second_turn)))
+    return np.column_stack((moved_x, moved_y, wrapped_angles(heading + second_turn)))
 
 
 def omnidirectional(poses: Poses, motion: Motion, alphas: Alphas, generator: np.random.Generator) -> Poses:
@@ -66,10 +66,11 @@ def omnidirectional(poses: Poses, motion: Motion, alphas: Alphas, generator: np.
     heading = poses[:, 2] + (math.atan2(y, x) if travel >= _STANDS else 0.0)
     cos, sin = np.cos(heading), np.sin(heading)
     moved_x, moved_y = poses[:, 0] + driven * cos + aside * sin, poses[:, 1] + driven * sin - aside * cos
-    return np.column_stack((moved_x, moved_y, _wrapped(poses[:, 2] + turn)))
+    return np.column_stack((moved_x, moved_y, wrapped_angles(poses[:, 2] + turn)))
 
 
-def _wrapped(angles: Poses) -> Poses:
+def wrapped_angles(angles: Poses) -> Poses:
+    """Return angles [rad] from -π to π."""
     wrapped: Poses = (angles + np.pi) % (2 * np.pi) - np.pi
     return wrapped
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.plugins.localisation.likelihood_field import Poses
+from simkit.plugins.localisation.motion_models import wrapped_angles
 
 Weights = npt.NDArray[np.float64]
 RandomPoses = Callable[[int], Poses]
@@ -119,7 +120,7 @@ class ParticleFilter:
             random_poses: function that returns any poses; None if the map has no free cells, so that none are added.
             generator: random numbers.
         """
-        most = max(adaptation.most, adaptation.least)
+        most = adaptation.most
         bounds = np.cumsum(self.weights)
         drawn = np.searchsorted(bounds / bounds[-1], generator.random(most), side="right")
         poses = self.poses[np.minimum(drawn, len(self.poses) - 1)]
@@ -145,7 +146,7 @@ class ParticleFilter:
         mean = weights @ poses[:, :2]
         cos, sin = float(weights @ np.cos(poses[:, 2])), float(weights @ np.sin(poses[:, 2]))
         yaw = math.atan2(sin, cos)
-        offsets = np.column_stack((poses[:, :2] - mean, (poses[:, 2] - yaw + np.pi) % (2 * np.pi) - np.pi))
+        offsets = np.column_stack((poses[:, :2] - mean, wrapped_angles(poses[:, 2] - yaw)))
         covariance = (offsets * weights[:, None]).T @ offsets
         return Estimate((float(mean[0]), float(mean[1]), yaw), covariance, float(shares[best]))
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit import msgs
 from simkit.errors import ArgumentValueError, TransformError
 from simkit.number_text import number_or_nan
 from simkit.params import Params
@@ -210,34 +211,28 @@ class EkfNode(Plugin):
 
     # ------------------------------------------------------------------ messages
 
-    def _take(self, take: Callable[[str, Any], None], type_name: str, name: str, message: Any) -> None:
-        """Pass a message to its function; a message of another type is ignored after a warning."""
+    def _take(self, take: Callable[[Input, Any], None], type_name: str, name: str, message: Any) -> None:
+        """Pass a new message to its function; a message of another type is ignored after a warning."""
         if self._once.has_type(message, type_name, name, "SK-EKF-001"):
-            take(name, message)
+            one = self._inputs[name]
+            if self._is_new(one, message.header):
+                take(one, message)
 
-    def _take_odometry(self, name: str, message: Any) -> None:
-        one = self._inputs[name]
-        if self._is_new(one, message.header):
-            frame = message.header.frame_id
-            self._add_pose(one, message.header.stamp, frame, message.pose)
-            self._add_twist(one, message.header.stamp, message.child_frame_id, message.twist)
+    def _take_odometry(self, one: Input, message: Any) -> None:
+        self._add_pose(one, message.header.stamp, message.header.frame_id, message.pose)
+        self._add_twist(one, message.header.stamp, message.child_frame_id, message.twist)
 
-    def _take_pose(self, name: str, message: Any) -> None:
-        one = self._inputs[name]
-        if self._is_new(one, message.header):
-            self._add_pose(one, message.header.stamp, message.header.frame_id, message.pose)
+    def _take_pose(self, one: Input, message: Any) -> None:
+        self._add_pose(one, message.header.stamp, message.header.frame_id, message.pose)
 
-    def _take_twist(self, name: str, message: Any) -> None:
-        one = self._inputs[name]
-        if self._is_new(one, message.header):
-            self._add_twist(one, message.header.stamp, message.header.frame_id, message.twist)
+    def _take_twist(self, one: Input, message: Any) -> None:
+        self._add_twist(one, message.header.stamp, message.header.frame_id, message.twist)
 
-    def _take_imu(self, name: str, message: Any) -> None:
-        one = self._inputs[name]
-        mount = self._mount(one, message.header.frame_id) if self._is_new(one, message.header) else None
+    def _take_imu(self, one: Input, message: Any) -> None:
+        mount = self._mount(one, message.header.frame_id)
         if mount is None:
             return
-        time_ns = measured.stamp_ns(message.header.stamp)
+        time_ns = msgs.stamp_ns(message.header.stamp)
         is_oriented = abs(message.orientation_covariance[0] + 1.0) > 1e-9
         attitude = measured.unit_quaternion(message.orientation) if is_oriented else None
         if is_oriented and attitude is None and one.used[ekf.ANGLES].any():
@@ -268,14 +263,14 @@ class EkfNode(Plugin):
             self._add(one, time_ns, block, one.acceleration_threshold)
 
     def _is_new(self, one: Input, header: Any) -> bool:
-        """Check whether a message is newer than the last one of its topic, and than the last `set_pose`."""
-        time_ns = measured.stamp_ns(header.stamp)
+        """Check whether a message is not older than the last one of its topic, and newer than the last `set_pose`."""
+        time_ns = msgs.stamp_ns(header.stamp)
         is_new = time_ns >= one.newest_ns and time_ns > self._set_ns
         one.newest_ns = max(time_ns, one.newest_ns)
         return is_new
 
     def _add_pose(self, one: Input, stamp: Any, frame: str, message: Any) -> None:
-        pose, time_ns = measured.pose_of(message.pose), measured.stamp_ns(stamp)
+        pose, time_ns = measured.pose_of(message.pose), msgs.stamp_ns(stamp)
         used = one.used[ekf.POSE]
         if pose is None or not used.any():
             if used.any():
@@ -319,7 +314,7 @@ class EkfNode(Plugin):
             linear, angular = measured.vector_of(message.twist.linear), measured.vector_of(message.twist.angular)
             rates = self._filter.state[ekf.RATES]
             block = measured.twist_block(linear, angular, message.covariance, used, mount, rates)
-            self._add(one, measured.stamp_ns(stamp), block, one.twist_threshold)
+            self._add(one, msgs.stamp_ns(stamp), block, one.twist_threshold)
 
     def _add(self, one: Input, time_ns: int, block: MeasuredBlock, threshold: float) -> None:
         if not block.is_finite:

@@ -13,6 +13,7 @@ from simkit.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit.plugins.move_group.group_model import GroupModel
 from simkit.plugins.move_group.inverse_kinematics import PoseGoal, solve
 from simkit.plugins.move_group.path_timing import TimedPath
+from simkit.plugins.move_group.planning import fine_positions, refuse_path_constraints
 from simkit.plugins.move_group.state_copy import se3
 from simkit.pose import Pose, Vector
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 _TURN_STEP: Final = 0.05  # [rad] between two poses
 _MOST_POSES: Final = 5000
 _LONGEST: Final = 1e6  # [s]; the seconds of a message have 32 bits
-_FINE: Final = 0.004  # [m], longest way of any point between two collision checks
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,9 +69,7 @@ def line_options(request: Message, types: Sequence[str]) -> LineOptions:
     """
     if not 0.0 < request.max_step < np.inf:
         raise PlanningFailed(Code.FAILURE, f"max_step is {request.max_step:g}; expected a positive length [m]")
-    path = request.path_constraints
-    if any(len(getattr(path, f"{kind}_constraints")) for kind in ("joint", "position", "orientation", "visibility")):
-        raise PlanningFailed(Code.FAILURE, "path constraints are not supported")
+    refuse_path_constraints(request.path_constraints)
     given = [
         request.prismatic_jump_threshold if kind == "prismatic" else request.revolute_jump_threshold for kind in types
     ]
@@ -125,11 +123,11 @@ def _positions_along(model: GroupModel, link: str, targets: Sequence[object], op
             problem = "a joint would jump"
             break
         if options.avoids_collisions:
-            count = max(1, int(np.ceil(float(model.levers @ np.abs(found - q)) / _FINE)))
-            checks += count
-            blocked = next((s for s in np.arange(1, count + 1) / count if not model.is_free(q + (found - q) * s)), None)
+            between = fine_positions(model, q, found)
+            checks += len(between)
+            blocked = next((position for position in between if not model.is_free(position)), None)
             if blocked is not None:
-                problem = " and ".join(model.collisions(q + (found - q) * blocked)[0]) + " would touch"
+                problem = " and ".join(model.collisions(blocked)[0]) + " would touch"
                 break
         q = found
         rows.append(q)

@@ -6,7 +6,7 @@ collision shapes are those of MuJoCo's geoms.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -170,11 +170,11 @@ class GroupModel:
         """
         self._margin = margin
         names = self._geom_names()
-        placed = {geom: self._add_geom(geom, names[geom]) for geom in self._geoms()}
+        placed = {geom: self._add_geom(geom, names[geom], shape) for geom, shape in self._geoms()}
         held = self._check.held_geoms
         mine = [*placed]
         moving = [(i, names[g]) for g, i in placed.items() if self._mover_of(g, held)]
-        robot_names = {i: names[g] for g, i in placed.items()}
+        shape_names = {i: names[g] for g, i in placed.items()}
         pairs = [(placed[a], placed[b]) for a, b in self._check.self_pairs if a in placed and b in placed]
         for a in (g for g in mine if g in held):  # an object in the gripper and the links that do not hold it
             touched = self._touched_by(a)
@@ -185,20 +185,20 @@ class GroupModel:
             ]
         self._set_levers([i for i, _ in moving])
         if world:
-            for geom in self._surroundings(mine):
-                index = self._add_geom(geom, names[geom])
-                robot_names[index] = names[geom]
+            for geom, shape in self._surroundings(mine):
+                index = self._add_geom(geom, names[geom], shape)
+                shape_names[index] = names[geom]
                 pairs += [(i, index) for i, _ in moving]
         for obstacle in obstacles:
             if not obstacle.link and not self._is_in_reach(obstacle):
                 continue
-            pairs += self._add_obstacle(obstacle, robot_names, moving)
-        short = {i: _own_names(name) for i, name in robot_names.items()}
+            pairs += self._add_obstacle(obstacle, shape_names, moving)
+        short = {i: _own_names(name) for i, name in shape_names.items()}
         if allowed:
             pairs = [(a, b) for a, b in pairs if not _is_allowed(short[a], short[b], allowed)]
         for a, b in pairs:
             self._geometry.addCollisionPair(self._pin.CollisionPair(a, b))
-        self._pairs = [(robot_names[a], robot_names[b]) for a, b in pairs]
+        self._pairs = [(shape_names[a], shape_names[b]) for a, b in pairs]
         self._geometry_data = self._geometry.createData()
         own = set(placed.values())
         self._set_margins([SELF_MARGIN if a in own and b in own else margin for a, b in pairs])
@@ -206,10 +206,15 @@ class GroupModel:
         make = self._pin.BroadPhaseManager_DynamicAABBTreeCollisionManager
         self._tree = make(self._model, self._geometry, self._geometry_data)
 
-    def _geoms(self) -> list[int]:
-        """Return the geoms of the robot and of held objects that can collide."""
+    def _geoms(self) -> list[tuple[int, Any]]:
+        """Return the geoms of the robot and of held objects that can collide, with their shapes."""
         collides = (self._mj.geom_contype | self._mj.geom_conaffinity) != 0
-        return [int(g) for g in (*self._check.robot_geoms, *self._check.held_geoms) if collides[g]]
+        return self._with_shapes(int(g) for g in (*self._check.robot_geoms, *self._check.held_geoms) if collides[g])
+
+    def _with_shapes(self, geoms: Iterable[int]) -> list[tuple[int, Any]]:
+        """Return geoms with their shapes, without those of a kind that has no shape."""
+        found = ((geom, shape_of_geom(self._mj, geom)) for geom in geoms)
+        return [(geom, shape) for geom, shape in found if shape is not None]
 
     def _mover_of(self, geom: int, held: Mapping[int, int]) -> int:
         return int(self._mover[held.get(geom, self._mj.geom_bodyid[geom])])
@@ -224,11 +229,11 @@ class GroupModel:
                     found.add(int(other))
         return found
 
-    def _add_geom(self, geom: int, name: str) -> int:
+    def _add_geom(self, geom: int, name: str, shape: Any) -> int:
         pose = Pose(self._data.geom_xpos[geom], quaternion_of(self._data.geom_xmat[geom]))
         held = self._check.held_geoms
         joint, placement = self._place(held.get(geom, int(self._mj.geom_bodyid[geom])), pose)
-        return self._add_shape(name, joint, placement, shape_of_geom(self._mj, geom))
+        return self._add_shape(name, joint, placement, shape)
 
     def _add_shape(self, name: str, joint: int, placement: Any, shape: Any) -> int:
         number = len(self._geometry.geometryObjects)
@@ -251,16 +256,15 @@ class GroupModel:
         names[index] = obstacle.name
         return found
 
-    def _surroundings(self, mine: Collection[int]) -> list[int]:
-        """Return the geoms of other models that the group can reach."""
+    def _surroundings(self, mine: Collection[int]) -> list[tuple[int, Any]]:
+        """Return the geoms of other models that the group can reach, with their shapes."""
         mj, own = self._mj, set(mine) | set(self._check.robot_geoms.tolist())
         collides = (mj.geom_contype | mj.geom_conaffinity) != 0
         reach = float(self._reach)
         centre = self._frames[1].translation if len(self._frames) > 1 else np.zeros(3)
         away = np.linalg.norm(self._data.geom_xpos - centre, axis=1) - mj.geom_rbound
         near = (away < reach) | (mj.geom_rbound <= 0)
-        found = [int(g) for g in np.nonzero(collides & near)[0] if int(g) not in own]
-        return [g for g in found if shape_of_geom(mj, g) is not None]
+        return self._with_shapes(int(g) for g in np.nonzero(collides & near)[0] if int(g) not in own)
 
     def _is_in_reach(self, obstacle: Obstacle) -> bool:
         obstacle.shape.computeLocalAABB()

@@ -9,6 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
+from simkit.msgs.goal_status import GoalStatus
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import acts, offers
@@ -25,6 +26,7 @@ from simkit.plugins.move_group.planning import (
     Planner,
     Surroundings,
     find_link,
+    refuse_path_constraints,
     root_link,
     start_positions,
 )
@@ -111,10 +113,10 @@ class MoveGroup(ModelPlugin):
         self._fingers = tuple(name for name in parent.joints if any(word in name for word in _FINGERS))
         self._scene = PlanningScene()
         self._executions: list[Execution] = []
-        self.offer("compute_fk", FK, self._answers(self._compute_fk, "error_code"))
-        self.offer("compute_ik", IK, self._answers(self._compute_ik, "error_code"))
+        self.offer("compute_fk", FK, self._answers(self._compute_fk))
+        self.offer("compute_ik", IK, self._answers(self._compute_ik))
         self.offer("plan_kinematic_path", PLAN, self._plan_kinematic_path)
-        self.offer("compute_cartesian_path", LINE, self._answers(self._compute_cartesian_path, "error_code"))
+        self.offer("compute_cartesian_path", LINE, self._answers(self._compute_cartesian_path))
         self.offer("apply_planning_scene", APPLY, self._apply_planning_scene)
         self.offer("get_planning_scene", SCENE, lambda _: {"scene": self._scene.as_fields(self.robot.name)})
         self.act("move_action", MOVE, self._on_move, self._on_cancel)
@@ -173,15 +175,15 @@ class MoveGroup(ModelPlugin):
 
     # ------------------------------------------------------------------ services
 
-    def _answers(self, handler: Callable[[Any], dict[str, object]], field: str) -> Callable[[Any], dict[str, object]]:
+    def _answers(self, handler: Callable[[Any], dict[str, object]]) -> Callable[[Any], dict[str, object]]:
         """Return a handler that answers with an error code instead of an exception."""
 
         def answer(request: Message) -> dict[str, object]:
             try:
-                return {**handler(request), field: error_fields(None, self.name)}
+                return {**handler(request), "error_code": error_fields(None, self.name)}
             except PlanningFailed as error:
                 self.log.info("%s", error)
-                return {field: error_fields(error, self.name)}
+                return {"error_code": error_fields(error, self.name)}
 
         return answer
 
@@ -198,6 +200,8 @@ class MoveGroup(ModelPlugin):
 
     def _compute_ik(self, request: Message) -> dict[str, object]:
         asked = request.ik_request
+        if len(asked.pose_stamped_vector) > 1 or len(asked.ik_link_names) > 1:
+            raise PlanningFailed(Code.NO_IK_SOLUTION, "the inverse kinematics of several links is not supported")
         group = self._find_group(asked.group_name)
         planner = self._planner(group, asked.robot_state)
         stamped = asked.pose_stamped_vector[0] if len(asked.pose_stamped_vector) else asked.pose_stamped
@@ -237,11 +241,7 @@ class MoveGroup(ModelPlugin):
             PlanningFailed: The request is invalid or has no answer.
         """
         group = self._find_group(asked.group_name)
-        path = asked.path_constraints
-        if any(
-            len(getattr(path, f"{kind}_constraints")) for kind in ("joint", "position", "orientation", "visibility")
-        ):
-            raise PlanningFailed(Code.FAILURE, "path constraints are not supported")
+        refuse_path_constraints(asked.path_constraints)
         if not len(asked.goal_constraints):
             raise PlanningFailed(Code.INVALID_GOAL_CONSTRAINTS, "the request has no goal_constraints")
         planner = self._planner(group, asked.start_state)
@@ -295,6 +295,7 @@ class MoveGroup(ModelPlugin):
             goal.publish_feedback({"state": "PLANNING"})
             if goal.is_done:  # the client removed the robot
                 return
+            _refuse_scene(goal.request.planning_options.planning_scene_diff)
             plan = self._plan(goal.request.request)
             trajectory = plan.as_trajectory(root_link(self.robot))
             fields: dict[str, object] = {"planned_trajectory": trajectory, "trajectory_start": self._start(plan)}
@@ -331,7 +332,7 @@ class MoveGroup(ModelPlugin):
         run = next((run for run in self._executions if part in run.parts), None)
         if run is None or run.goal.is_done:  # the removal of the robot ends all goals
             return
-        if part.status.name == "SUCCEEDED":
+        if part.status is GoalStatus.SUCCEEDED:
             run.parts.remove(part)
             if not run.parts:
                 self._executions.remove(run)
@@ -360,3 +361,14 @@ class MoveGroup(ModelPlugin):
     def _abort(self, goal: GoalHandle, fields: Mapping[str, object], error: PlanningFailed) -> None:
         self.log.info("%s", error)
         goal.abort({**fields, "error_code": error_fields(error, self.name)}, str(error))
+
+
+def _refuse_scene(scene: Message) -> None:
+    """Refuse a `moveit_msgs/msg/PlanningScene` with objects that would count for one goal only.
+
+    Raises:
+        PlanningFailed: The scene has objects.
+    """
+    if len(scene.world.collision_objects) or len(scene.robot_state.attached_collision_objects):
+        text = "objects in planning_options.planning_scene_diff are not supported; help: call apply_planning_scene"
+        raise PlanningFailed(Code.FAILURE, text)

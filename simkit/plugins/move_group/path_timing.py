@@ -93,7 +93,7 @@ def time_path(samples: Vector, speeds: Vector, accelerations: Vector) -> TimedPa
     curves = np.zeros_like(tangents)
     curves[1:-1] = np.diff(slopes, axis=0) / np.diff(middle)[:, None]
     with np.errstate(divide="ignore"):
-        by_speed = np.min(speeds / np.abs(np.maximum(np.abs(tangents), 1e-12)), axis=1) ** 2
+        by_speed = np.min(speeds / np.maximum(np.abs(tangents), 1e-12), axis=1) ** 2
         by_curve = np.min(_FOR_CURVES * accelerations / np.maximum(np.abs(curves), 1e-12), axis=1)
     most = np.minimum(by_speed, by_curve)  # the square of the speed along the path
     left = accelerations - np.abs(curves) * most[:, None]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -152,6 +153,23 @@ def find_link(robot: Model, name: str) -> str:
     return robot.links[name].scoped
 
 
+def refuse_path_constraints(constraints: Message) -> None:
+    """Refuse a request with path constraints, a `moveit_msgs/msg/Constraints`.
+
+    Raises:
+        PlanningFailed: There are path constraints.
+    """
+    kinds = ("joint", "position", "orientation", "visibility")
+    if any(len(getattr(constraints, f"{kind}_constraints")) for kind in kinds):
+        raise PlanningFailed(Code.FAILURE, "path constraints are not supported")
+
+
+def fine_positions(model: GroupModel, start: Vector, end: Vector) -> list[Vector]:
+    """Return the positions of a straight line that the final check of a path uses, from after its start to its end."""
+    count = max(1, int(np.ceil(float(model.levers @ np.abs(end - start)) / _FINE)))
+    return [start + (end - start) * (k / count) for k in range(1, count + 1)]
+
+
 def root_link(robot: Model) -> str:
     """Return the plain name of the first link of the robot that no joint moves."""
     moved = {joint.scene.child_link for joint in robot.joints.values()}
@@ -294,11 +312,8 @@ class Planner:
 
     def is_free(self, course: TimedPath) -> bool:
         """Check the points of a course, and positions between them, for collisions."""
-        for a, b in zip(course.positions[:-1], course.positions[1:], strict=True):
-            count = max(1, int(np.ceil(float(self.model.levers @ np.abs(b - a)) / _FINE)))
-            if not all(self.model.is_free(a + (b - a) * (k / count)) for k in range(1, count + 1)):
-                return False
-        return True
+        steps = pairwise(course.positions)
+        return all(self.model.is_free(q) for a, b in steps for q in fine_positions(self.model, a, b))
 
     def _speeds(self, factor: float) -> Vector:
         limits = [joint.scene.axes[0].velocity for joint in self._joints]

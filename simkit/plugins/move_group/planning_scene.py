@@ -220,7 +220,7 @@ class PlanningScene:
             link = found.link.rpartition("::")[2]
             message = found.message
             fields = {name: getattr(message, name) for name in ("id", "type", *_SHAPE_FIELDS)}
-            fields |= {"header": {"frame_id": link or "world"}, "pose": _pose_fields(found.pose)}
+            fields |= {"header": {"frame_id": link or "world"}, "pose": msgs.pose_message(found.pose)}
             if link:
                 attached.append({"link_name": link, "object": fields, "touch_links": sorted(found.touches)})
             else:
@@ -235,14 +235,6 @@ def _object_pose(item: Message) -> Pose:
     if not any((o.w, o.x, o.y, o.z)):
         return pose_of_message(msgs.make("geometry_msgs/msg/Pose", position=item.pose.position, orientation={"w": 1.0}))
     return pose_of_message(item.pose)
-
-
-def _pose_fields(pose: Pose) -> dict[str, object]:
-    w, x, y, z = (float(v) for v in pose.quaternion)
-    return {
-        "position": dict(zip("xyz", map(float, pose.position), strict=True)),
-        "orientation": {"w": w, "x": x, "y": y, "z": z},
-    }
 
 
 def _allowed_pairs(matrix: Message) -> frozenset[frozenset[str]]:

@@ -13,7 +13,7 @@ from simkit.plugins.base import NEVER
 from simkit.plugins.endpoints import listens
 from simkit.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
 from simkit.plugins.navigation.footprint import Footprint, read_footprint
-from simkit.plugins.navigation.planar_pose import PlanarPose, look_up, open_transforms
+from simkit.plugins.navigation.planar_pose import PlanarPose, look_up
 from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ class BehaviorServer(CostmapReader):
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()
-        open_transforms(self.sim)
+        self.sim.tf.open()  # so that the first look-up knows the transforms before it
         self._footprint: Footprint = read_footprint(self, options.footprint, options.robot_radius)
         self._motion: _Motion | None = None
         self.read_costmap(options.costmap_topic)

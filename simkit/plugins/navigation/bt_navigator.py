@@ -17,7 +17,6 @@ from simkit.plugins.navigation.planar_pose import (
     Floats,
     PlanarPose,
     look_up,
-    open_transforms,
     planar_of,
     pose_of_message,
     poses_of_path,
@@ -105,7 +104,7 @@ class BtNavigator(Plugin):
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         self.options.read_all()
-        open_transforms(self.sim)
+        self.sim.tf.open()  # so that the first look-up knows the transforms before it
         self._task: _Task | None = None
         self._turn = 0  # recovery that comes next
         self.act("navigate_to_pose", "nav2_msgs/action/NavigateToPose", self._on_goal, self._on_cancel)

@@ -16,7 +16,7 @@ from simkit.plugins.navigation.cost_grid import CostGrid
 from simkit.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
 from simkit.plugins.navigation.footprint import Footprint, read_footprint
 from simkit.plugins.navigation.nodes import ControllerNode
-from simkit.plugins.navigation.planar_pose import Floats, PlanarPose, look_up, open_transforms, poses_of_path
+from simkit.plugins.navigation.planar_pose import Floats, PlanarPose, look_up, poses_of_path
 from simkit.plugins.navigation.pure_pursuit import PurePursuit, PurePursuitOptions, Speeds
 from simkit.plugins.navigation.user_classes import ServerPlugin
 from simkit.plugins.options import Options, OptionsOf, block, boolean, number, text, texts
@@ -114,7 +114,7 @@ class ControllerServer(CostmapReader, ServerPlugin):
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()
-        open_transforms(self.sim)
+        self.sim.tf.open()  # so that the first look-up knows the transforms before it
         options.progress_checker.read_all()
         options.general_goal_checker.read_all()
         self.controller_frequency = options.controller_frequency
@@ -212,7 +212,7 @@ class ControllerServer(CostmapReader, ServerPlugin):
             self._valid_ns = now
         self._publish(speeds)
         distance = math.hypot(self._end.x - pose.x, self._end.y - pose.y)
-        goal.publish_feedback({"distance_to_goal": distance, "speed": math.hypot(speeds[0], 0.0)})
+        goal.publish_feedback({"distance_to_goal": distance, "speed": abs(speeds[0])})
 
     def _is_reached(self, pose: PlanarPose) -> bool:
         """Check the tolerances of the goal; a stateful checker checks the position once."""

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
-from simkit.plugins.navigation.planar_pose import Floats, PlanarPose, pose_of_message
+from simkit.plugins.navigation.planar_pose import Floats, PlanarPose, pose_message, pose_of_message
 
 FREE: Final = 0
 INSCRIBED: Final = 253  # the robot's centre must not be here: some part of the robot would touch
@@ -79,6 +79,12 @@ class CostGrid:
         found[inside] = self.cells[rows[inside], columns[inside]]
         return found
 
+    def is_blocked(self, points: Floats) -> Mask:
+        """Check for each point [m], shape (n, 2), whether the cost is INSCRIBED or LETHAL; unknown cells are free."""
+        costs = self.costs(points)
+        found: Mask = (costs >= INSCRIBED) & (costs < UNKNOWN)
+        return found
+
     def cost(self, x: float, y: float) -> int:
         """Return the cost at a point [m]; UNKNOWN outside of the grid."""
         cell = self.to_cell(x, y)
@@ -102,7 +108,7 @@ class CostGrid:
         return msgs.make(
             "nav_msgs/msg/OccupancyGrid",
             header=msgs.header(time_ns, self.frame),
-            info={**info, "origin": self._origin()},
+            info={**info, "origin": pose_message(self.origin)},
             data=_OCCUPANCY[self.cells].reshape(-1),
         )
 
@@ -114,16 +120,9 @@ class CostGrid:
         return msgs.make(
             "nav2_msgs/msg/Costmap",
             header=msgs.header(time_ns, self.frame),
-            metadata={**times, **size, "layer": "master", "origin": self._origin()},
+            metadata={**times, **size, "layer": "master", "origin": pose_message(self.origin)},
             data=self.cells.reshape(-1).copy(),
         )
-
-    def _origin(self) -> dict[str, Any]:
-        yaw = self.origin.yaw / 2
-        return {
-            "position": {"x": self.origin.x, "y": self.origin.y},
-            "orientation": {"z": math.sin(yaw), "w": math.cos(yaw)},
-        }
 
 
 def grid_of_message(message: Any) -> CostGrid | None:

@@ -20,7 +20,7 @@ from simkit.plugins.navigation.costmap_layers import (
     StaticLayerOptions,
 )
 from simkit.plugins.navigation.footprint import Footprint, read_footprint
-from simkit.plugins.navigation.planar_pose import PlanarPose, look_up, open_transforms
+from simkit.plugins.navigation.planar_pose import PlanarPose, look_up
 from simkit.plugins.navigation.user_classes import ServerPlugin
 from simkit.plugins.options import Options, OptionsOf, boolean, integer, number, text, texts
 
@@ -28,7 +28,11 @@ if TYPE_CHECKING:
     from simkit.runtime import Model, Simulation
 
 _MOST_CELLS: Final = 25_000_000
-_CLEAR: Final = "nav2_msgs/srv/ClearEntireCostmap"
+_CLEARS: Final = {
+    "entirely": "nav2_msgs/srv/ClearEntireCostmap",
+    "around": "nav2_msgs/srv/ClearCostmapAroundRobot",
+    "except": "nav2_msgs/srv/ClearCostmapExceptRegion",
+}
 
 
 class CostmapOptions(Options):
@@ -70,15 +74,13 @@ class Costmap2D(ServerPlugin):
         listens("map", "nav_msgs/msg/OccupancyGrid", named_by=("map_topic",)),
         listens("scan", "sensor_msgs/msg/LaserScan", named_by=("topic",)),
         offers("~/get_costmap", "nav2_msgs/srv/GetCostmap"),
-        offers("~/clear_entirely_<name>", _CLEAR),
-        offers("~/clear_around_<name>", "nav2_msgs/srv/ClearCostmapAroundRobot"),
-        offers("~/clear_except_<name>", "nav2_msgs/srv/ClearCostmapExceptRegion"),
+        *(offers(f"~/clear_{extent}_<name>", type_name) for extent, type_name in _CLEARS.items()),
     )
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()
         self.after_step_rate = options.update_frequency
-        open_transforms(self.sim)
+        self.sim.tf.open()  # so that the first look-up knows the transforms before it
         self.default_cost = UNKNOWN if options.track_unknown_space else FREE
         self.lethal_cost_threshold = options.lethal_cost_threshold
         self.footprint: Footprint = read_footprint(self, options.footprint, options.robot_radius)
@@ -98,17 +100,8 @@ class Costmap2D(ServerPlugin):
         self.offer(
             "~/get_costmap", "nav2_msgs/srv/GetCostmap", lambda _: {"map": self.grid.raw_message(self.sim.time_ns)}
         )
-        self.offer(f"~/clear_entirely_{name}", _CLEAR, lambda _: self._clear(None, outside=False))
-        self.offer(
-            f"~/clear_around_{name}",
-            "nav2_msgs/srv/ClearCostmapAroundRobot",
-            lambda request: self._clear(request.reset_distance, outside=False),
-        )
-        self.offer(
-            f"~/clear_except_{name}",
-            "nav2_msgs/srv/ClearCostmapExceptRegion",
-            lambda request: self._clear(request.reset_distance, outside=True),
-        )
+        for extent, type_name in _CLEARS.items():
+            self.offer(f"~/clear_{extent}_{name}", type_name, self._clear)
 
     # ------------------------------------------------------------------ the grid
 
@@ -161,11 +154,11 @@ class Costmap2D(ServerPlugin):
         if self._robot is not None and self._outline.wanted:
             self._outline.publish(self.footprint.message(self._robot, self.grid.frame, now))
 
-    def _clear(self, distance: float | None, *, outside: bool) -> dict[str, Any]:
+    def _clear(self, _: Any) -> dict[str, Any]:
         """Let the layers forget what they have seen; then update the costmap.
 
-        Nav2 clears a square around the robot, or everything outside of it. Here, the layers forget everything in both
-        cases, because the next scan brings back what is still there.
+        In Nav2, two of the services clear a square around the robot, or everything outside of it. Here, the layers
+        forget everything in all cases, because the next scan brings back what is still there.
         """
         for layer in self.parts.values():
             if callable(getattr(layer, "reset", None)):

@@ -8,6 +8,7 @@ from simkit import msgs
 from simkit.errors import ArgumentValueError, InputError, TransformError
 from simkit.params import Params
 from simkit.plugins.base import Plugin
+from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
 from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class FakeLocalization(Plugin):
         self.after_step_rate = self.options.read_all().update_rate
         self._models: tuple[str, ...] = ()
         self._link: Link | None = None
-        self._transforms = self.advertise("/tf", "tf2_msgs/msg/TFMessage")
+        self._transforms = self.advertise("/tf", TRANSFORMS)
         self._pose = self.advertise("amcl_pose", "geometry_msgs/msg/PoseWithCovarianceStamped")
 
     def _find_link(self) -> Link | None:
@@ -70,12 +71,9 @@ class FakeLocalization(Plugin):
         except InputError:  # the robot was removed, and another one with its name was added
             self._models = ()
             return
-        header = msgs.header(self.sim.time_ns, options.global_frame_id)
-        placed = pose @ odometry.inverse()
-        (x, y, z), (qw, qx, qy, qz) = placed.position.tolist(), placed.quaternion.tolist()
-        transform = msgs.Transform(msgs.Vector3(x, y, z), msgs.Quaternion(qx, qy, qz, qw))
-        stamped = msgs.TransformStamped(header, options.odom_frame_id, transform)
-        self._transforms.publish(msgs.TFMessage([stamped]))
+        item = options.global_frame_id, options.odom_frame_id, pose @ odometry.inverse()
+        self._transforms.publish(transforms(self.sim.time_ns, item))
         if self._pose.wanted:
             fields = {"pose": msgs.pose_message(pose)}
+            header = msgs.header(self.sim.time_ns, options.global_frame_id)
             self._pose.publish(msgs.make(self._pose.type_name, header=header, pose=fields))

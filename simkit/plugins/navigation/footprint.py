@@ -12,6 +12,7 @@ import numpy as np
 from simkit import msgs
 from simkit.plugins.navigation.cost_grid import INSCRIBED, LETHAL, UNKNOWN, CostGrid
 from simkit.plugins.navigation.planar_pose import Floats, PlanarPose
+from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
@@ -21,7 +22,7 @@ _LEVER: Final = 0.5  # [m] from the robot's origin to a point that turns with it
 
 
 @dataclass(frozen=True, eq=False)
-class Footprint:
+class Footprint(SharedByCopies):
     """Outline of a robot in its own frame.
 
     Attributes:
@@ -35,9 +36,6 @@ class Footprint:
     is_round: bool
     inscribed_radius: float
     circumscribed_radius: float
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Footprint:
-        return self
 
     def message(self, robot: PlanarPose, frame: str, time_ns: int) -> Any:
         """Return a `geometry_msgs/msg/PolygonStamped` of the outline at a pose."""

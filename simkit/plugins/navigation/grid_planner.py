@@ -116,14 +116,8 @@ def _smooth(points: Floats, grid: CostGrid) -> Floats:
         found[1:-1] = (1.0 - _KEPT) * (found[1:-1] + middle) / 2 + _KEPT * points[1:-1]
     for _ in range(_REPAIRS):
         middle = (found[:-1] + found[1:]) / 2
-        bad = np.flatnonzero(_touches(grid, middle) | _touches(grid, found[:-1]) | _touches(grid, found[1:]))
+        bad = np.flatnonzero(grid.is_blocked(middle) | grid.is_blocked(found[:-1]) | grid.is_blocked(found[1:]))
         if not len(bad):
             return found
         found[bad], found[bad + 1] = points[bad], points[bad + 1]
     return points
-
-
-def _touches(grid: CostGrid, points: Floats) -> Mask:
-    costs = grid.costs(points)
-    found: Mask = (costs >= INSCRIBED) & (costs < UNKNOWN)
-    return found

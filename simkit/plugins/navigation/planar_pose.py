@@ -61,10 +61,11 @@ def pose_of_message(message: Any) -> PlanarPose | None:
 
 def stamped_pose(pose: PlanarPose, header: msgs.Header) -> Any:
     """Return a `geometry_msgs/msg/PoseStamped`."""
-    return msgs.PoseStamped(header, _pose_message(pose))
+    return msgs.PoseStamped(header, pose_message(pose))
 
 
-def _pose_message(pose: PlanarPose) -> Any:
+def pose_message(pose: PlanarPose) -> Any:
+    """Return a `geometry_msgs/msg/Pose`."""
     turn = msgs.Quaternion(0.0, 0.0, math.sin(pose.yaw / 2), math.cos(pose.yaw / 2))
     return msgs.Pose(msgs.Point(pose.x, pose.y, 0.0), turn)
 
@@ -78,11 +79,6 @@ def poses_of_path(path: Any) -> Floats | None:
     """Return x, y [m] and yaw [rad] of the poses of a path, shape (n, 3); None if a number is NaN or infinite."""
     found = [pose_of_message(stamped.pose) for stamped in path.poses]
     return None if None in found else np.array(found, np.float64).reshape(-1, 3)
-
-
-def open_transforms(sim: Simulation) -> None:
-    """Receive transforms from now on, so that the first look-up knows those before it."""
-    sim.tf.frames()
 
 
 def look_up(sim: Simulation, target: str, source: str, stamp: Any = None) -> PlanarPose | None:

@@ -10,14 +10,13 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.endpoints import listens
-from simkit.plugins.navigation.cost_grid import INSCRIBED, UNKNOWN, CostGrid
+from simkit.plugins.navigation.cost_grid import CostGrid
 from simkit.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
 from simkit.plugins.navigation.grid_planner import GridPlanner, GridPlannerOptions
 from simkit.plugins.navigation.planar_pose import (
     Floats,
     PlanarPose,
     look_up,
-    open_transforms,
     path_message,
     pose_of_message,
     poses_of_path,
@@ -97,7 +96,7 @@ class PlannerServer(CostmapReader, ServerPlugin):
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()
-        open_transforms(self.sim)
+        self.sim.tf.open()  # so that the first look-up knows the transforms before it
         self.make_parts(options.planner_plugins, _DEFAULT, _PLANNERS, ("create_plan",), "configure")
         self.read_costmap(options.costmap_topic)
         self._plan = self.advertise("plan", "nav_msgs/msg/Path")
@@ -154,8 +153,7 @@ class PlannerServer(CostmapReader, ServerPlugin):
         poses = poses_of_path(request.path)
         if self.grid is None or poses is None or not len(poses):
             return {"is_valid": False}
-        costs = self.grid.costs(poses[:, :2])
-        invalid = np.flatnonzero((costs >= INSCRIBED) & (costs < UNKNOWN))
+        invalid = np.flatnonzero(self.grid.is_blocked(poses[:, :2]))
         return {"is_valid": not len(invalid), "invalid_pose_indices": invalid.astype(np.int32)}
 
 

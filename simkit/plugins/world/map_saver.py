@@ -73,7 +73,7 @@ class MapSaver(WorldPlugin):
         self.offer("~/save_map", "nav2_msgs/srv/SaveMap", self._on_save_map)
 
     def _on_map(self, message: Any) -> None:
-        if message.__msgtype__ == _GRID:
+        if self._once.has_type(message, _GRID, "map_topic"):
             self._newest = _ReceivedMap(message)
 
     def _on_save_map(self, request: Any) -> dict[str, bool]:

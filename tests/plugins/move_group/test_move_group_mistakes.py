@@ -74,6 +74,19 @@ def test_one_goal_of_several_is_enough(sim: simkit.Simulation) -> None:
     assert plan(sim, goal_constraints=[far, out, joint_goal(0.3)]).val == 1
 
 
+def test_fields_without_effect_are_refused(sim: simkit.Simulation) -> None:
+    stamped = {"pose": {"position": {"x": 0.5, "z": 0.25}, "orientation": {"w": 1.0}}}
+    for several in ({"pose_stamped_vector": [stamped, stamped]}, {"ik_link_names": ["hand", "hand"]}):
+        asked = {"group_name": "arm", "pose_stamped": stamped, **several}
+        answer = sim.call("/compute_ik", {"ik_request": asked}).error_code
+        assert answer.val == -31 and "several links" in answer.message
+    scene = {"world": {"collision_objects": [{"id": "b", "primitives": [BOX]}]}}
+    request = {"group_name": "arm", "goal_constraints": [joint_goal(0.3)]}
+    goal = sim.send_goal("/move_action", {"request": request, "planning_options": {"planning_scene_diff": scene}})
+    sim.step()
+    assert goal.status.name == "ABORTED" and "apply_planning_scene" in goal.reason
+
+
 def test_an_invalid_object_leaves_the_scene_as_it_was(sim: simkit.Simulation) -> None:
     nan = {"position": {"x": float("nan")}, "orientation": {"w": 0.0}}
     assert not apply(sim, world={"collision_objects": [{"id": "b", "primitives": [BOX], "pose": nan}]})

@@ -178,6 +178,15 @@ def test_a_restored_run_saves_the_map_of_its_time(tmp_path: Path, monkeypatch: p
         assert image.size == (4, 2)
 
 
+def test_a_topic_of_another_type_is_reported() -> None:
+    with simkit.load(world(SAVER.format("<map_topic>scan</map_topic>"))) as sim:
+        sim.advertise("/scan", "sensor_msgs/msg/LaserScan").publish({})
+        sim.step()
+        assert [d.message.partition(": ")[2] for d in sim.diagnostics if d.code == "SK-PLUGIN-041"] == [
+            f"messages of the type sensor_msgs/msg/LaserScan on <map_topic> are ignored; expected {GRID}"
+        ]
+
+
 def test_limits_in_the_wrong_order_are_an_error() -> None:
     options = "<free_thresh_default>0.7</free_thresh_default>"
     with pytest.raises(LoadError, match="SK-MAP-002"), simkit.load(world(SAVER.format(options))):
