@@ -7,7 +7,7 @@ one body. High above a terrain or a building nothing can be hit. There, the engi
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import mujoco
 import numpy as np
@@ -24,15 +24,31 @@ _LEAST_SPEED: Final = 5.0
 _MOST_TREES: Final = 4
 """Largest number of moving models; with more, the check takes as long as it saves."""
 
-_FIELDS: Final = ("geom_pos", "geom_quat", "geom_rbound", "body_pos", "body_quat", "jnt_pos")
+_FIELDS: Final = (
+    *("geom_pos", "geom_quat", "geom_rbound", "body_pos", "body_quat", "body_ipos", "body_mass", "jnt_pos"),
+)
 """Fields of a model that a run may write to and that decide whether the space is open, beside the masks of geoms."""
 
 _PLANE: Final = int(mujoco.mjtGeom.mjGEOM_PLANE)
 _FREE: Final = int(mujoco.mjtJoint.mjJNT_FREE)
 _HINGE: Final = int(mujoco.mjtJoint.mjJNT_HINGE)
 
-_Ball = tuple[int, int, float]
-"""Addresses of a model's position and velocity, and the radius [m] about its first link that it never leaves."""
+
+class _Ball(NamedTuple):
+    """Ball about the origin of a model's first link that the model never leaves.
+
+    Attributes:
+        place: address of the position of the origin.
+        motion: address of the velocity of the origin.
+        radius: radius [m].
+        levers: bounds on the speed of the centre of mass relative to the origin per unit of each joint velocity after
+            that of the origin [m], shape (n,).
+    """
+
+    place: int
+    motion: int
+    radius: float
+    levers: npt.NDArray[np.float64]
 
 
 class OpenSpace:
@@ -48,20 +64,20 @@ class OpenSpace:
     """
 
     def __init__(self, model: mujoco.MjModel, duration: float) -> None:
-        self._duration = duration
-        self._model, self._fields = model, [getattr(model, name).copy() for name in _FIELDS]
+        self._duration, self._model = duration, model
         solid = np.flatnonzero(travel_bounds.can_collide(model))
         tree = model.body_treeid[model.geom_bodyid[solid]]
         self._balls = [_ball_of(model, number, solid[tree == number]) for number in np.unique(tree[tree >= 0]).tolist()]
         self.is_known = 0 < len(self._balls) <= _MOST_TREES and None not in self._balls
         self.is_known = self.is_known and not (model.nmocap or model.nflex)
         if self.is_known:
+            self._fields = [getattr(model, name).copy() for name in _FIELDS]
             self._find_static(model, solid[tree < 0])
 
     def is_current(self) -> bool:
-        """Check whether the sizes and places in the model are still those of this object."""
+        """Check whether the sizes, places and masses in the model are still those of this object."""
         model = self._model
-        return all(
+        return not self.is_known or all(
             np.array_equal(getattr(model, name), known) for name, known in zip(_FIELDS, self._fields, strict=True)
         )
 
@@ -86,8 +102,10 @@ class OpenSpace:
         positions, velocities, spheres = data.qpos, data.qvel, []
         for ball in self._balls:
             assert ball is not None
-            place, motion, radius = ball
-            speed = math.hypot(*velocities[motion : motion + 3].tolist())
+            place, motion, radius, levers = ball
+            # the centre of mass keeps its velocity; the origin of a spinning model may stop for a moment
+            spin = float(levers @ np.abs(velocities[motion + 3 : motion + 3 + len(levers)]))
+            speed = math.hypot(*velocities[motion : motion + 3].tolist()) + 2.0 * spin
             reach = radius + _GROWTH * (speed + _LEAST_SPEED) * self._duration
             x, y, z = positions[place : place + 3].tolist()
             if not self._is_outside(x, y, z, reach):
@@ -96,6 +114,16 @@ class OpenSpace:
         return all(
             math.dist(one[:3], other[:3]) > one[3] + other[3] for k, one in enumerate(spheres) for other in spheres[:k]
         )
+
+    def is_pushed(self, data: mujoco.MjData) -> bool:
+        """Check whether forces may change a speed within the steps by more than `is_open` assumes.
+
+        Args:
+            data: MuJoCo's data with accelerations up to date.
+        """
+        most, accelerations = _GROWTH * _LEAST_SPEED / self._duration, data.qacc
+        found = (accelerations[ball.motion : ball.motion + 3] for ball in self._balls if ball is not None)
+        return any(math.hypot(*own.tolist()) > most for own in found)
 
     def _is_outside(self, x: float, y: float, z: float, reach: float) -> bool:
         """Check whether a sphere touches neither a plane nor the box around the static geoms; False for NaN."""
@@ -127,4 +155,32 @@ def _ball_of(model: mujoco.MjModel, tree: int, geoms: npt.NDArray[np.intp]) -> _
     radius = max(
         reach[body] + size for body, size in zip(model.geom_bodyid[geoms].tolist(), offsets.tolist(), strict=True)
     )
-    return int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint]), radius
+    return _Ball(
+        int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint]), radius, _levers_of_centre(model, root, reach)
+    )
+
+
+def _levers_of_centre(model: mujoco.MjModel, root: int, reach: dict[int, float]) -> npt.NDArray[np.float64]:
+    """Return the levers of `_Ball`; those of a wheel that turns about its centre of mass are 0.
+
+    Args:
+        model: MuJoCo's model.
+        root: first body of a kinematic tree.
+        reach: largest distance of each body of the tree from the first [m].
+    """
+    dof, mass = int(model.body_dofadr[root]), float(model.body_subtreemass[root])
+    levers = np.zeros(sum(int(model.body_dofnum[body]) for body in reach) - 3)
+    offsets = np.linalg.norm(model.body_ipos, axis=1)
+    for body, distance in reach.items():
+        share, above = float(model.body_mass[body]) / mass, body
+        while above != root:
+            first, count = int(model.body_jntadr[above]), int(model.body_jntnum[above])
+            for joint in range(first, first + count):
+                lever = distance - reach[above] + offsets[body] + float(np.linalg.norm(model.jnt_pos[joint]))
+                if above == body and count == 1:
+                    arm = model.body_ipos[body] - model.jnt_pos[joint]
+                    lever = float(np.linalg.norm(np.cross(arm, model.jnt_axis[joint])))
+                levers[int(model.jnt_dofadr[joint]) - dof - 3] += share * lever
+            above = int(model.body_parentid[above])
+        levers[:3] += share * (distance + offsets[body])
+    return levers

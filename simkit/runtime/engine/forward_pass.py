@@ -131,10 +131,11 @@ class ForwardPass(PhysicsState):
             return
         if stage > CONTROL:
             self._update_velocities()
+        has_new_forces = self._probes or self.tick >= self._until
         if self.tick >= self._until:
-            is_open = not data.ncon and self._space.is_open(data)
-            self._until = self._end_of_window(is_open)
-            self._uses_law = not is_open and (self._is_fast or self.law.is_needed(data))
+            self._is_open = not data.ncon and self._space.is_open(data)
+            self._until = self._end_of_window(self._is_open)
+            self._uses_law = not self._is_open and (self._is_fast or self.law.is_needed(data))
         if self._probes:
             self._probes = False
             self.stage = STALE  # an interrupt during the solve leaves unfinished constraints
@@ -144,6 +145,8 @@ class ForwardPass(PhysicsState):
             self.law.solve(data, self._closing)
         else:
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
+        if self._is_open and has_new_forces and self._space.is_pushed(data):
+            self._until = self._fast_until = -1
         self.stage = FRESH
 
     def _check_controls(self) -> None:

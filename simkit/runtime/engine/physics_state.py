@@ -96,8 +96,10 @@ class StepWindow(NamedTuple):
         until: tick of the next check of the contacts.
         is_fast: True if the steps have speculative contacts.
         fast_until: tick of the next check of the speeds.
-        probes: True if controls or forces have changed so much that contacts may begin to slide.
+        probes: True if controls or forces have changed so much that contacts may begin to slide, or at
+            all while the space is open.
         probed: controls at the last check of their effect, shape (nu,); empty for the present controls.
+        is_open: True if all bodies are so far from everything that the steps need no check of their contacts.
     """
 
     uses_law: bool = False
@@ -106,6 +108,7 @@ class StepWindow(NamedTuple):
     fast_until: int = -1
     probes: bool = False
     probed: tuple[float, ...] = ()
+    is_open: bool = False
 
 
 @dataclass(slots=True, eq=False)
@@ -164,6 +167,7 @@ class PhysicsState:
         self._fast_until: int
         self._probes: bool
         self._probed: npt.NDArray[np.float64]
+        self._is_open: bool
         self.sleep = Sleep(model, data, self._may_sleep)
         self.shaper: ContactShaper | None = None
         self._analyse()
@@ -235,7 +239,7 @@ class PhysicsState:
         if stage > CONTROL:
             self._until = self._fast_until = -1  # the step method was chosen for the previous velocities
         elif not self._probes:
-            self._probes = self.one_shot or self._is_pushed()
+            self._probes = self.one_shot or self._is_pushed() or self._is_open
 
     def changed_body(self, stage: int, body: int) -> None:
         """Record a write to one body and wake the body if it sleeps."""
@@ -324,14 +328,15 @@ class PhysicsState:
     def window(self) -> StepWindow:
         """Step method up to the next check of the contacts; part of the state."""
         return StepWindow(
-            self._uses_law, self._until, self._is_fast, self._fast_until, self._probes, tuple(self._probed.tolist())
+            *(self._uses_law, self._until, self._is_fast, self._fast_until, self._probes),
+            *(tuple(self._probed.tolist()), self._is_open),
         )
 
     @window.setter
     def window(self, value: StepWindow) -> None:
-        self._uses_law, self._until, self._is_fast, self._fast_until, self._probes, probed = value
+        self._uses_law, self._until, self._is_fast, self._fast_until, self._probes, probed, self._is_open = value
         if self._is_plain:
-            self._uses_law = self._is_fast = self._probes = False
+            self._uses_law = self._is_fast = self._probes = self._is_open = False
             self._until = self._fast_until = _NEVER
         elif self._until >= _NEVER:
             self._until = self._fast_until = -1  # the state is from before collisions were enabled

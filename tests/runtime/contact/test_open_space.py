@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import mujoco
 import numpy as np
 import pytest
@@ -95,3 +97,64 @@ def test_a_fall_has_the_same_bits_with_and_without_the_check(tmp_path):
             assert sim.model("ball").pose.position[2] < 0.3
             runs.append(states)
     assert runs[0] == runs[1]
+
+
+PLANE_AND_BODY = """<sdf version="1.9"><world name="w">
+  <physics type="ode"><max_step_size>{step}</max_step_size></physics>
+  <model name="floor"><static>true</static><link name="l"><collision name="c"><geometry><plane/></geometry></collision>
+  </link></model>
+  <model name="b"><pose>0 0 2 0 0 0</pose><link name="l"><inertial><pose>{offset} 0 0 0 0 0</pose><mass>1</mass>
+  <inertia><ixx>.01</ixx><iyy>.1</iyy><izz>.1</izz></inertia></inertial><collision name="c"><pose>{offset} 0 0 0 0 0
+  </pose><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link></model></world></sdf>"""
+
+
+def throw(sim):
+    sim.model("b").set_velocity((0.0, 0.0, -100.0))
+
+
+def kick(sim):
+    sim.model("b").link("l").apply_wrench((0.0, 0.0, -60.0 / sim.timestep))  # 60 m/s after one step
+
+
+def push(sim):
+    body = sim.mj_model.nbody - 1
+    sim.engine.physics.set_persistent_wrenches({body: np.array([0.0, 0.0, -1500.0, 0.0, 0.0, 0.0])})
+
+
+def pull(sim):
+    sim.gravity = (0.0, 0.0, -1500.0)
+
+
+def spin(sim):
+    sim.model("b").set_velocity((0.0, 0.0, 0.0), (0.0, 80.0, 0.0))  # the centre of mass, at 1 m, moves at 80 m/s
+
+
+def states_after(world, change, *, is_known, is_restored=False):
+    """Return the state after each of 90 steps; the motion changes in the second step of an open window."""
+    with simkit.load(world) as sim:
+        physics = sim.engine.physics
+        physics._space.is_known = is_known
+        sim.run(sim.timestep)
+        assert (physics.window.is_open, physics.window.uses_law) == (is_known, not is_known)
+        change(sim)
+        states, lowest = [], 2.0
+        for step in range(90):
+            if is_restored and step % 7 == 0:
+                kept = sim.snapshot()
+                sim.run(3 * sim.timestep)
+                sim.restore(pickle.loads(pickle.dumps(kept)) if step % 2 else kept)
+            sim.run(sim.timestep)
+            states.append(sim.mj_data.qpos.tobytes() + sim.mj_data.qvel.tobytes())
+            lowest = min(lowest, *sim.mj_data.geom_xpos[1:, 2].tolist())
+        assert lowest < 0.11  # it hits the ground
+        return states
+
+
+@pytest.mark.parametrize("step", [0.001, 0.002])
+@pytest.mark.parametrize(("change", "offset"), [(throw, 0.0), (kick, 0.0), (push, 0.0), (pull, 0.0), (spin, 1.0)])
+def test_a_body_that_becomes_fast_in_open_space_lands_with_the_same_bits(tmp_path, change, offset, step):
+    world = tmp_path / "world.sdf"
+    world.write_text(PLANE_AND_BODY.format(step=step, offset=offset))
+    expected = states_after(world, change, is_known=False)
+    assert states_after(world, change, is_known=True) == expected
+    assert states_after(world, change, is_known=True, is_restored=True) == expected
