@@ -1,4 +1,4 @@
-"""Connected parts of triangles that share corners."""
+"""Connected parts of triangles that share corners, and whether a part is closed."""
 
 from __future__ import annotations
 
@@ -31,3 +31,11 @@ def members_of(numbers: Indices) -> list[Indices]:
     order = np.argsort(numbers, kind="stable")
     members: list[npt.NDArray[np.int64]] = np.split(order, np.flatnonzero(np.diff(numbers[order])) + 1)
     return members if len(numbers) else []
+
+
+def is_closed(corners: Corners) -> bool:
+    """Check whether each edge belongs to two triangles with the same side outside."""
+    edges = np.concatenate([corners[:, (0, 1)], corners[:, (1, 2)], corners[:, (2, 0)]]).astype(np.int64)
+    count = int(corners.max()) + 1
+    ahead, back = np.sort(edges[:, 0] * count + edges[:, 1]), np.sort(edges[:, 1] * count + edges[:, 0])
+    return bool(np.array_equal(ahead, back) and (ahead[1:] != ahead[:-1]).all())

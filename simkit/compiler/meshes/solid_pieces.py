@@ -12,6 +12,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from simkit.compiler.meshes.connected_triangles import is_closed
+from simkit.compiler.meshes.convex_pieces import hull_volume
 from simkit.compiler.meshes.flat_areas import connected_areas
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.patch_division import Patch, area_vectors, divide
@@ -140,14 +142,6 @@ class _Cell:
     error: float = 0.0
     deepest: Floats | None = None
     outside: Floats | None = None
-
-
-def is_closed(faces: Ints) -> bool:
-    """Check whether each edge belongs to two triangles with the same side outside."""
-    edges = np.concatenate([faces[:, (0, 1)], faces[:, (1, 2)], faces[:, (2, 0)]]).astype(np.int64)
-    count = int(faces.max()) + 1
-    ahead, back = np.sort(edges[:, 0] * count + edges[:, 1]), np.sort(edges[:, 1] * count + edges[:, 0])
-    return bool(np.array_equal(ahead, back) and (ahead[1:] != ahead[:-1]).all())
 
 
 def solid_pieces(corners: Floats, tolerance: float) -> SolidPieces | None:
@@ -323,8 +317,8 @@ def _best_plane(cell: _Cell) -> tuple[Floats, float]:
     margin = _MARGIN * float(highs[first] - lows[first])
     if lows[first] + margin < deepest < highs[first] - margin:
         planes.append((axes[first], deepest))
-    volumes = np.array([sum(map(_hull_volume, _side_points(triangles, *plane))) for plane in planes])
-    whole = _hull_volume(points)
+    volumes = np.array([sum(map(hull_volume, _side_points(triangles, *plane))) for plane in planes])
+    whole = hull_volume(points)
     gains = whole - volumes
     if gains.max() <= _LEAST_GAIN * whole:
         return planes[0]
@@ -335,15 +329,6 @@ def _side_points(triangles: Floats, normal: Floats, offset: float) -> list[Float
     """Return the points of the surface on both sides of a plane."""
     patch = Patch(triangles, triangles[:, 0], np.zeros(len(triangles)), cut=(normal, offset))
     return [part.corners.reshape(-1, 3) for part in divide(patch, 0.0)]
-
-
-def _hull_volume(points: Floats) -> float:
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        return float(ConvexHull(points).volume)
-    except (QhullError, ValueError):
-        return 0.0
 
 
 def _distinct(points: Floats) -> Floats:

@@ -13,7 +13,7 @@ from simkit.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit.plugins.move_group.group_model import GroupModel
 from simkit.plugins.move_group.inverse_kinematics import PoseGoal, solve
 from simkit.plugins.move_group.path_timing import TimedPath
-from simkit.plugins.move_group.planning import fine_positions, refuse_path_constraints
+from simkit.plugins.move_group.planning import fine_positions, refuse_constraints
 from simkit.plugins.move_group.state_copy import se3
 from simkit.pose import Pose, Vector
 
@@ -69,7 +69,7 @@ def line_options(request: Message, types: Sequence[str]) -> LineOptions:
     """
     if not 0.0 < request.max_step < np.inf:
         raise PlanningFailed(Code.FAILURE, f"max_step is {request.max_step:g}; expected a positive length [m]")
-    refuse_path_constraints(request.path_constraints)
+    refuse_constraints(request.path_constraints)
     given = [
         request.prismatic_jump_threshold if kind == "prismatic" else request.revolute_jump_threshold for kind in types
     ]

@@ -26,7 +26,7 @@ from simkit.plugins.move_group.planning import (
     Planner,
     Surroundings,
     find_link,
-    refuse_path_constraints,
+    refuse_constraints,
     root_link,
     start_positions,
 )
@@ -202,6 +202,7 @@ class MoveGroup(ModelPlugin):
         asked = request.ik_request
         if len(asked.pose_stamped_vector) > 1 or len(asked.ik_link_names) > 1:
             raise PlanningFailed(Code.NO_IK_SOLUTION, "the inverse kinematics of several links is not supported")
+        refuse_constraints(asked.constraints, "ik_request")
         group = self._find_group(asked.group_name)
         planner = self._planner(group, asked.robot_state)
         stamped = asked.pose_stamped_vector[0] if len(asked.pose_stamped_vector) else asked.pose_stamped
@@ -241,7 +242,7 @@ class MoveGroup(ModelPlugin):
             PlanningFailed: The request is invalid or has no answer.
         """
         group = self._find_group(asked.group_name)
-        refuse_path_constraints(asked.path_constraints)
+        refuse_constraints(asked.path_constraints)
         if not len(asked.goal_constraints):
             raise PlanningFailed(Code.INVALID_GOAL_CONSTRAINTS, "the request has no goal_constraints")
         planner = self._planner(group, asked.start_state)

@@ -153,15 +153,19 @@ def find_link(robot: Model, name: str) -> str:
     return robot.links[name].scoped
 
 
-def refuse_path_constraints(constraints: Message) -> None:
-    """Refuse a request with path constraints, a `moveit_msgs/msg/Constraints`.
+def refuse_constraints(constraints: Message, kind: str = "path") -> None:
+    """Refuse a request with other constraints than goals, a `moveit_msgs/msg/Constraints`.
+
+    Args:
+        constraints: constraints of the request.
+        kind: word for the constraints in the message.
 
     Raises:
-        PlanningFailed: There are path constraints.
+        PlanningFailed: There are such constraints.
     """
-    kinds = ("joint", "position", "orientation", "visibility")
-    if any(len(getattr(constraints, f"{kind}_constraints")) for kind in kinds):
-        raise PlanningFailed(Code.FAILURE, "path constraints are not supported")
+    fields = ("joint", "position", "orientation", "visibility")
+    if any(len(getattr(constraints, f"{name}_constraints")) for name in fields):
+        raise PlanningFailed(Code.FAILURE, f"{kind} constraints are not supported")
 
 
 def fine_positions(model: GroupModel, start: Vector, end: Vector) -> list[Vector]:

@@ -59,8 +59,8 @@ class OpenSpace:
         duration: time of the steps [s].
 
     Attributes:
-        is_known: False if the check does not apply: with joints to the world, slide joints, mocap bodies or more than
-            four models.
+        is_known: False if the check does not apply: with joints to the world, slide joints, mocap bodies, ropes and
+            springs between models, or more than four models.
     """
 
     def __init__(self, model: mujoco.MjModel, duration: float) -> None:
@@ -69,7 +69,7 @@ class OpenSpace:
         tree = model.body_treeid[model.geom_bodyid[solid]]
         self._balls = [_ball_of(model, number, solid[tree == number]) for number in np.unique(tree[tree >= 0]).tolist()]
         self.is_known = 0 < len(self._balls) <= _MOST_TREES and None not in self._balls
-        self.is_known = self.is_known and not (model.nmocap or model.nflex)
+        self.is_known = self.is_known and not (model.nmocap or model.nflex or model.ntendon or model.neq)
         if self.is_known:
             self._fields = [getattr(model, name).copy() for name in _FIELDS]
             self._find_static(model, solid[tree < 0])

@@ -80,6 +80,9 @@ def test_fields_without_effect_are_refused(sim: simkit.Simulation) -> None:
         asked = {"group_name": "arm", "pose_stamped": stamped, **several}
         answer = sim.call("/compute_ik", {"ik_request": asked}).error_code
         assert answer.val == -31 and "several links" in answer.message
+    limited = {"group_name": "arm", "pose_stamped": stamped, "constraints": joint_goal(0.3)}
+    answer = sim.call("/compute_ik", {"ik_request": limited}).error_code
+    assert answer.val == 99999 and "ik_request constraints are not supported" in answer.message
     scene = {"world": {"collision_objects": [{"id": "b", "primitives": [BOX]}]}}
     request = {"group_name": "arm", "goal_constraints": [joint_goal(0.3)]}
     goal = sim.send_goal("/move_action", {"request": request, "planning_options": {"planning_scene_diff": scene}})
