@@ -322,7 +322,7 @@ class EkfNode(Plugin):
         self._queue.append(block.measurement(time_ns, threshold, is_planar=self.options.two_d_mode))
 
     def _warn_of_numbers(self, one: Input) -> None:
-        text = f"a measurement of {one.name} is ignored: one of its numbers, or of its covariance, is NaN or infinite"
+        text = f"a measurement of {one.name} has NaN or infinite numbers, which are not used"
         self._once.warn("SK-EKF-001", f"{one.name} finite", text, "check the plugin that publishes it")
 
     def _mount(self, one: Input, frame: str) -> Pose | None:
