@@ -46,7 +46,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._publishers: list[tuple[str, Publisher, bool]] = []
         self._newest: Sample | None = None
         self._gathered: list[tuple[int, Reading]] = []
-        self._group: SampleGroup | None = None  # samples that only recorders read
+        self._group: SampleGroup | None = None  # samples that nobody uses at once
         self._revision, self._patience = -1, 0.0
         self._read_publishers: list[tuple[str, Publisher, bool]] = []
         self._is_read = self._gathers = self._is_served = self._is_unread = False
@@ -275,7 +275,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._is_unread = not (self._read_publishers or changes or self._delayed)
         self._patience = max(patience, default=0.0)
         is_packed = is_plain and self.is_deferred and not changes and self._overrides("pack_samples")
-        is_packed = is_packed and self._is_read and all(publisher.is_streamed for publisher in publishers)
+        is_packed = is_packed and self._is_read and not any(publisher.is_live for publisher in publishers)
         self._group = SampleGroup(self, next(iter(self._products))) if is_packed else None
 
     def _process_pending(self) -> None:

@@ -88,6 +88,19 @@ def test_a_recording_has_the_bytes_of_messages_that_are_made_at_once(tmp_path: P
     assert len(made) > 250
 
 
+@pytest.mark.parametrize("keep", [None, 30])
+@pytest.mark.parametrize("action", ACTIONS)
+def test_a_subscription_keeps_the_messages_that_a_callback_receives(action: str, keep: int | None) -> None:
+    made: list[bytes] = []
+    with simkit.load(WORLD.format(**PLAIN)) as sim:
+        sim.communication.bus.tap("/imu", lambda message: made.append(msgs.serialize(message)))
+        run(sim, ACTIONS[action])
+    with simkit.load(WORLD.format(**PLAIN)) as sim:
+        kept = sim.subscribe("/imu", keep=keep)
+        run(sim, ACTIONS[action])
+        assert list(map(msgs.serialize, kept.messages)) == made[-keep if keep else 0 :]
+
+
 @pytest.mark.parametrize(
     "changed",
     [

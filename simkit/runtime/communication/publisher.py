@@ -105,11 +105,6 @@ class Publisher(InProcess):
         return readers.is_called or readers.feeds or self.latched
 
     @property
-    def is_streamed(self) -> bool:
-        """True if a recorder receives each message when it is published, but needs it only later."""
-        return self._readers.is_streamed and not self.is_live
-
-    @property
     def patience(self) -> float:
         """Number of newest messages that the subscribers keep; 0 if the owner must publish each message at once.
 

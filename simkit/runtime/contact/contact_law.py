@@ -200,10 +200,10 @@ class ContactLaw:
 
     def _has_fast(self, data: mujoco.MjData) -> bool:
         """Check whether a freely moving body is so fast that a hit within the window matters."""
-        velocities = data.qvel
+        velocities = data.qvel.take(self._free)
         if np.vdot(velocities, velocities) <= FAST_SPEED * FAST_SPEED:  # no body can be fast
             return False
-        return bool((np.abs(velocities[self._free]) > FAST_SPEED).any())
+        return bool((np.abs(velocities) > FAST_SPEED).any())
 
     def _is_quiet(self, data: mujoco.MjData) -> bool:
         """Check whether all constraints are nearly at rest and no reference separates bodies fast."""

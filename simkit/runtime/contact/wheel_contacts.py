@@ -12,7 +12,7 @@ where the contact line crosses the middle of the tread.
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import mujoco
 import numpy as np
@@ -25,6 +25,15 @@ _CENTRED: Final = 0.05
 
 _LEVEL: Final = 0.9999
 """Least cosine between the normals of two contacts on one line."""
+
+WheelPair = tuple[int, int, list[int], bool]
+"""Wheel and another geom that touch at several points.
+
+- Geom of the wheel.
+- Column of its matrix that is the axis.
+- Numbers of the contacts.
+- True if all contacts have the same normal, because the other geom is a plane.
+"""
 
 _NO_ISLANDS: Final = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
 
@@ -41,6 +50,7 @@ class WheelContacts:
         self._is_sparse = bool(mujoco.mj_isSparse(model))
         self._has_islands = not model.opt.disableflags & _NO_ISLANDS
         self._axis_of: dict[int, int] = {}  # geom -> column of its matrix that is the axis
+        self._geoms, self._pairs = b"", list[WheelPair]()  # geoms of all contacts, and what was derived from them
         if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:  # its rows are edges, not tangents
             return
         for joint in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE).tolist():
@@ -101,8 +111,9 @@ class WheelContacts:
                 one = jacobian[starts[first] : starts[first + 1] + int(data.efc_J_rownnz[first])]
                 other = jacobian[starts[second] : starts[second + 1] + int(data.efc_J_rownnz[second])]
             apart = other - one
-            if apart.any():
-                one += weight * apart
+            if np.count_nonzero(apart):  # takes a fifth of the time of `any`
+                apart *= weight
+                one += apart
                 other[:] = one
                 is_changed = True
         if not is_changed:  # merged before: computing islands again would use more of the engine's memory
@@ -114,39 +125,55 @@ class WheelContacts:
 
     def _lines(self, data: mujoco.MjData) -> list[tuple[int, int, float]]:
         """Return the rows of both ends of each contact line, and the relative position of the middle of the tread."""
-        contact, axis_of = data.contact, self._axis_of
-        groups: dict[tuple[int, int], list[int]] = {}
-        for number, (first, second) in enumerate(contact.geom.tolist()):
-            if first in axis_of or second in axis_of:
-                pair = first, second
-                if pair in groups:
-                    groups[pair].append(number)
-                else:
-                    groups[pair] = [number]
+        contact = data.contact
+        geoms = contact.geom
+        content = geoms.tobytes()
+        if content != self._geoms:  # the pairs in contact seldom change from step to step
+            self._geoms, self._pairs = content, self._wheel_pairs(geoms.tolist())
         lines: list[tuple[int, int, float]] = []
-        if not groups:
+        if not self._pairs:
             return lines
-        rows, points = contact.efc_address.tolist(), contact.pos.tolist()
-        frames = contact.frame.tolist()
+        rows, points, dims = contact.efc_address.tolist(), contact.pos.tolist(), contact.dim.tolist()
+        axes, centres = data.geom_xmat, data.geom_xpos
+        for wheel, column, numbers, is_level in self._pairs:
+            a, b, c = axes[wheel].tolist()[column::3]
+            u, v, w = centres[wheel].tolist()
+            low = high = 0.0
+            one = other = -1
+            for number in numbers:
+                x, y, z = points[number]
+                place = a * (x - u) + b * (y - v) + c * (z - w)
+                if rows[number] < 0:
+                    continue
+                if place < low:
+                    low, one = place, number
+                elif place > high:
+                    high, other = place, number
+            if one >= 0 and other >= 0 and dims[one] > 1 and (is_level or _are_level(contact, one, other)):
+                lines.append((rows[one], rows[other], -low / (high - low)))
+        return lines
+
+    def _wheel_pairs(self, geoms: list[list[int]]) -> list[WheelPair]:
+        """Return the pairs of geoms with at least two contacts and a wheel.
+
+        Args:
+            geoms: both geoms of each contact.
+        """
+        axis_of, model = self._axis_of, self._model
+        groups: dict[tuple[int, int], list[int]] = {}
+        for number, (first, second) in enumerate(geoms):
+            if first in axis_of or second in axis_of:
+                groups.setdefault((first, second), []).append(number)
+        pairs: list[WheelPair] = []
         for (first, second), numbers in groups.items():
             if len(numbers) > 1:
                 wheel = second if second in axis_of else first
-                column = axis_of[wheel]
-                a, b, c = data.geom_xmat[wheel].tolist()[column::3]
-                u, v, w = data.geom_xpos[wheel].tolist()
-                low = high = 0.0
-                one = other = -1
-                for number in numbers:
-                    x, y, z = points[number]
-                    place = a * (x - u) + b * (y - v) + c * (z - w)
-                    if rows[number] < 0:
-                        continue
-                    if place < low:
-                        low, one = place, number
-                    elif place > high:
-                        high, other = place, number
-                if one >= 0 and other >= 0 and contact.dim[one] > 1:
-                    (d, e, f), (g, h, i) = frames[one][:3], frames[other][:3]
-                    if d * g + e * h + f * i > _LEVEL:
-                        lines.append((rows[one], rows[other], -low / (high - low)))
-        return lines
+                is_level = bool((model.geom_type[[first, second]] == mujoco.mjtGeom.mjGEOM_PLANE).any())
+                pairs.append((wheel, axis_of[wheel], numbers, is_level))
+        return pairs
+
+
+def _are_level(contact: Any, one: int, other: int) -> bool:
+    """Check whether two contacts have the same normal."""
+    (a, b, c), (d, e, f) = contact.frame[[one, other], :3].tolist()
+    return bool(a * d + b * e + c * f > _LEVEL)
