@@ -38,12 +38,12 @@ class GravityEfforts(SharedByCopies):
             self._model, self._own = model, np.zeros(model.nv)
             self._dofs = np.array([sim.engine.names.joint(name).dofs[0] for name in self._joints], np.intp)
         if physics.fresh_velocities():
-            bias: Vector = data.qfrc_bias[self._dofs]
+            bias: Vector = data.qfrc_bias.take(self._dofs)
             return bias
         # this part of a forward pass takes a tenth of the time, and its results are bit-identical
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_comVel(model, data)
         mujoco.mj_rne(model, data, 0, self._own)
-        efforts: Vector = self._own[self._dofs]
+        efforts: Vector = self._own.take(self._dofs)
         return efforts

@@ -230,10 +230,10 @@ class Hardware(SharedByCopies):
         bindings = [names.joint(self.joints[joint].scoped) for joint in joints]
         if interface == POSITION:
             qpos = np.array([binding.qpos[0] for binding in bindings], np.intp)
-            return lambda: physics.data.qpos[qpos]
+            return lambda: physics.data.qpos.take(qpos)
         if interface == VELOCITY:
             dofs = np.array([binding.dofs[0] for binding in bindings], np.intp)
-            return lambda: physics.data.qvel[dofs]
+            return lambda: physics.data.qvel.take(dofs)
         driven = {joint.name: k for k, joint in enumerate(self.actuated.joints)}
         indices = np.array([driven.get(joint, -1) for joint in joints], np.intp)
         if (indices >= 0).all():
@@ -248,7 +248,7 @@ class Hardware(SharedByCopies):
             period: time since the last call [s].
         """
         if len(self._sources):
-            commands = self.commands.values[self._sources]
+            commands = self.commands.values.take(self._sources)
             if len(self._unclaimed):
                 commands[self._unclaimed] = np.nan
             self.actuated.write(commands, period)

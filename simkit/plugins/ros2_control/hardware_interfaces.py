@@ -90,7 +90,6 @@ class InterfaceSelection(SharedByCopies):
         indices = [table.index(name) for name in names]
         self._indices = frozenset(indices)
         self._array_index = array_index(indices)
-        self._is_view = isinstance(self._array_index, slice)
 
     def __len__(self) -> int:
         return len(self.names)
@@ -101,8 +100,9 @@ class InterfaceSelection(SharedByCopies):
         table = self._table
         if table.deferred and not table.deferred_indices.isdisjoint(self._indices):
             table.read_deferred(self._indices)
-        found: Vector = table.values[self._array_index]
-        return found.copy() if self._is_view else found
+        if isinstance(self._array_index, slice):
+            return table.values[self._array_index].copy()
+        return table.values.take(self._array_index)  # takes a third of the time of an index
 
     @values.setter
     def values(self, values: Vector | Sequence[float]) -> None:

@@ -25,7 +25,7 @@ import numpy as np
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
-from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY, Indices
+from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY, Indices, array_index
 from simkit.plugins.ros2_control.velocity_references import advance_references
 from simkit.pose import Vector
 from simkit.runtime.engine.physics_step import CONTROL
@@ -111,8 +111,9 @@ class JointActuators(SharedByCopies):
         self._cached = None
         bindings = [sim.engine.names.joint(joint.scoped) for joint in self.joints]
         self._ids = np.array([sim.engine.names.actuator(ref) for ref in self.actuators], np.intp)
-        # addresses of the actuators' states
+        # addresses of the actuators' states; slices are faster
         self._states = np.array(model.actuator_actadr[self._ids], np.intp)
+        self._state_index, self._control_index = array_index(self._states.tolist()), array_index(self._ids.tolist())
         self._qpos = np.array([b.qpos[0] for b in bindings], np.intp)
         self._dofs = np.array([b.dofs[0] for b in bindings], np.intp)
         if is_first:
@@ -232,12 +233,12 @@ class JointActuators(SharedByCopies):
             state += now.effort_share * commands
         if self.gravity_shares is not None:
             shift = self.gravity_shares * weight
-            effort = state - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
+            effort = state - now.kp * data.qpos.take(self._qpos) - now.kv * data.qvel.take(self._dofs)
             state += np.minimum(np.maximum(effort, now.lowest + shift), now.highest + shift) - effort
         if not np.vdot(state, state) < _LARGEST_CONTROL**2:
             state = np.minimum(np.maximum(state, -_LARGEST_CONTROL), _LARGEST_CONTROL)
-        data.act[self._states] = state
-        data.ctrl[self._ids] = now.servo_stiffness * rate
+        data.act[self._state_index] = state
+        data.ctrl[self._control_index] = now.servo_stiffness * rate
         physics.changed(CONTROL)
 
     def _move_references(self, now: ActiveModes, commands: Vector, period: float) -> tuple[Vector, Vector]:
@@ -250,7 +251,7 @@ class JointActuators(SharedByCopies):
             now.period, now.highest_move = period, self._max_velocities * period
             now.lowest_move = -now.highest_move
         # a blocked joint must not jump when it is released, so its reference stays within `largest_lag` of the joint
-        positions, reach = data.qpos[self._qpos], now.largest_lag
+        positions, reach = data.qpos.take(self._qpos), now.largest_lag
         targets = np.minimum(np.maximum(targets, positions - reach), positions + reach)
         move = np.minimum(np.maximum(commands, self._position_limits[0]), self._position_limits[1])
         move -= targets
@@ -296,14 +297,14 @@ class JointActuators(SharedByCopies):
     def _integrate(self, now: ActiveModes, reference: Vector, rate: Vector, period: float) -> Vector:
         """Advance the integral parts of the file's PID loops, and return them [N·m or N]."""
         data, (ki, lowest, highest) = self._sim.engine.physics.data, now.integral
-        error = np.where(now.is_position, reference - data.qpos[self._qpos], rate - data.qvel[self._dofs])
+        error = np.where(now.is_position, reference - data.qpos.take(self._qpos), rate - data.qvel.take(self._dofs))
         self.integrals = np.minimum(np.maximum(self.integrals + ki * error * period, lowest), highest)
         return self.integrals
 
     def efforts(self) -> Vector:
         """Return the current effort of each actuator [N·m or N]."""
         now, data = self._active_modes(), self._sim.engine.physics.data
-        force = data.act[self._states] - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
+        force = data.act.take(self._states) - now.kp * data.qpos.take(self._qpos) - now.kv * data.qvel.take(self._dofs)
         if self.gravity_shares is not None:
             return np.asarray(force)
         effort: Vector = np.minimum(np.maximum(force, now.lowest), now.highest)
