@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ gymnasium = pytest.importorskip("gymnasium", reason="pip install 'simkit-robotic
 import simkit.gym  # noqa: E402
 from simkit import msgs  # noqa: E402
 from simkit.gym import Batched  # noqa: E402
+from simkit.run_spec import RunSpec  # noqa: E402
 
 MUJOCO = ("physics.contact_law=mujoco",)
 
@@ -74,7 +76,7 @@ RATE = "<odom_publish_frequency>{}</odom_publish_frequency>"
 TWIST = {"/cmd_vel": {"linear.x": (-0.5, 1.0), "angular.z": (-2.0, 2.0)}}
 
 
-def assert_same_bits(source: str, steps: int, count: int = 3, **options: Any) -> int:
+def assert_same_bits(source: str | RunSpec, steps: int, count: int = 3, **options: Any) -> int:
     """Compare all bits of a batch with single environments, and return the number of episodes that ended."""
     options = {"action": TWIST, "overrides": MUJOCO, "control_period": 0.1, **options}
     batch = simkit.gym.make_vec(source, num_envs=count, batch=True, **options)
@@ -174,3 +176,19 @@ def test_a_drive_whose_commands_expire_is_no_drive_of_a_batch() -> None:
     action = {"/mobile_base/commands/velocity": TWIST["/cmd_vel"]}
     with pytest.raises(InputError, match="SK-GYM-001.*plugin GazeboRosKobuki"):
         simkit.gym.make_vec(world(robot), num_envs=2, batch=True, observation="rover", action=action, overrides=MUJOCO)
+
+
+TURTLEBOT3 = Path(__file__).resolve().parents[3] / "shared" / "corpus" / "files" / "ROBOTIS-GIT+turtlebot3_simulations"
+TURTLEBOT3_MODELS = TURTLEBOT3 / "turtlebot3_gazebo" / "models"
+
+
+@pytest.mark.skipif(not TURTLEBOT3_MODELS.is_dir(), reason="needs the corpus in ../shared")
+def test_the_public_waffle_in_its_world_has_the_bits_of_single_robots() -> None:
+    models = "".join(
+        f"<include><uri>model://turtlebot3_{name}</uri><pose>{pose} 0 0 0</pose></include>"
+        for name, pose in (("world", "0 0 0"), ("waffle", "-2 -0.5 0.01"))
+    )
+    source = world(models, 0.001).replace("1.5 0 0.5", "9 0 0.5")
+    spec = RunSpec(source, name="w", options={"resource_paths": (TURTLEBOT3_MODELS,)})
+    observation = {"scan": "/scan", "odom": "/odom", "joints": "/joint_states", "imu": "/imu"}
+    assert assert_same_bits(spec, 25, 2, time_limit=1.0, observation=observation, samples_all=False) == 4
