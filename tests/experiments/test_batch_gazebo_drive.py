@@ -139,6 +139,18 @@ def test_an_episode_begins_with_the_motion_and_the_enabled_state_that_on_reset_l
     assert assert_same_bits(source, 60, time_limit=0.5, **options) > 20
 
 
+PUBLISHER = """</plugin><plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
+<odom_topic>true_odom</odom_topic><odom_publish_frequency>{}</odom_publish_frequency>"""
+
+
+@pytest.mark.parametrize("rate", [30, 0])
+def test_the_odometry_publisher_has_the_bits_of_single_robots(rate: float) -> None:
+    source = world(rover("rover", 0, COMMAND_AND_ODOMETRY + ACCELERATION + PUBLISHER.format(rate)))
+    options: dict[str, Any] = {"observation": {"true": "/true_odom", "odom": "/odom"}, "on_reset": moved}
+    assert assert_same_bits(source, 24, time_limit=0.5, control_period=0.02, **options) == 0
+    assert assert_same_bits(source, 20, time_limit=0.5, **options) >= 9
+
+
 @pytest.mark.parametrize(
     ("plugin", "options", "reason"),
     [
@@ -148,6 +160,11 @@ def test_an_episode_begins_with_the_motion_and_the_enabled_state_that_on_reset_l
             "<simkit:odometry_noise><wheel_variance>1e-5</wheel_variance></simkit:odometry_noise>",
             {"observation": "/odom"},
             "topic /odom with <odometry_noise>",
+        ),
+        (
+            PUBLISHER.format(30) + "<gaussian_noise>0.1</gaussian_noise>",
+            {"observation": "/true_odom"},
+            "topic /true_odom with <gaussian_noise>",
         ),
         (
             """</plugin><plugin filename="gz-sim-velocity-control-system" name="gz::sim::systems::VelocityControl">""",

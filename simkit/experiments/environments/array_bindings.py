@@ -12,9 +12,11 @@ from simkit.experiments.environments.array_view import ArrayView
 from simkit.experiments.environments.cannot_batch import CannotBatchError
 from simkit.experiments.environments.drive_arrays import DRIVE_ARRAYS, DriveArrays
 from simkit.experiments.environments.expression_arrays import array_expression
+from simkit.experiments.environments.sampled_rows import MeanMotionRows, SampledRows
 from simkit.experiments.environments.sensor_arrays import ImuArrays, ScanArrays, sensor_obstacle
 from simkit.experiments.environments.specification import Batched, Observation
 from simkit.msgs.topic_names import absolute_name
+from simkit.plugins.gz.odometry_publisher import OdometryPublisher
 from simkit.plugins.joint_states import JointStates
 from simkit.runtime import Simulation
 from simkit.sensors.inertial.imu import Imu
@@ -100,27 +102,6 @@ def _expression(source: str, view: ArrayView, env: SimulationEnv) -> Callable[[]
 
 
 # ---------------------------------------------------------------------- observations
-
-
-class SampledRows:
-    """Values that a plugin samples at its own rate, in all environments.
-
-    Args:
-        read: function that returns the present values of some environments.
-        grid: ticks at which the plugin samples; None for every step.
-        bound: observation of the environment that resets all others.
-        count: number of environments.
-    """
-
-    def __init__(self, read: Callable[[Ids], Floats], grid: Any, bound: Any, count: int) -> None:
-        self._read, self.grid, self._bound = read, grid, bound
-        self.values = np.zeros((count, *np.shape(bound._read())))
-
-    def take(self, row: int) -> None:
-        self.values[row] = self._bound._read()
-
-    def sample(self, ids: Ids) -> None:
-        self.values[ids] = self._read(ids)
 
 
 class ObservationArrays:
@@ -223,13 +204,17 @@ class Sources:
             if read is not None:
                 return self._sample(read, drive.grid, bound)
         for plugin in self._env.sim.engine.structure.all_plugins():
+            if type(plugin) is OdometryPublisher and topic in (plugin._odom.topic, plugin._noisy.topic):
+                return self._keep(MeanMotionRows(plugin, self._view, bound))
             if isinstance(plugin, JointStates) and plugin.ros.topic(plugin._topic) == topic:
                 grid = self._env.sim.engine.clock.grid(plugin.after_step_rate or 0.0)
                 return self._sample(self._joint_states(plugin), grid, bound)
         raise CannotBatchError(f"topic {topic}")
 
     def _sample(self, read: Callable[[Ids], Floats], grid: Any, bound: Any) -> Read:
-        rows = SampledRows(read, grid, bound, self._view.count)
+        return self._keep(SampledRows(read, grid, bound, self._view.count))
+
+    def _keep(self, rows: SampledRows) -> Read:
         self.sampled.append(rows)
         return lambda _: rows.values
 

@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 from mujoco.batch import Batch, SimulationError
 
-from simkit.experiments.environments.array_bindings import SampledRows
 from simkit.experiments.environments.array_view import ArrayView
 from simkit.experiments.environments.drive_arrays import DRIVE_ARRAYS
 from simkit.experiments.environments.due_ticks import Grid, is_due, last_due, next_due
+from simkit.experiments.environments.sampled_rows import SampledRows
 from simkit.experiments.environments.servo_arrays import ServoArrays
 from simkit.runtime import Simulation
 from simkit.runtime.engine.physics_state import BAD_ACCELERATION, BAD_POSITION, BAD_VELOCITY, divergence
@@ -124,18 +124,21 @@ class BatchPhysics:
             samples = [(last_due(one.grid, last), one) for one in sampled]
             rows = None if len(group) == len(self.tick) else group
             while tick < last:
-                self._before(group, tick, tick - first)
-                stop = self._next_stop(group, tick, [last, *(due for due, _ in samples if due > tick)])
+                self._before(group, self.tick[group] + (tick - first))
+                stops = [last, *(due for due, _ in samples if due > tick), *(one.next_stop(tick) for one in sampled)]
+                stop = self._next_stop(group, tick, stops)
                 stage = _ACCELERATIONS if stop == last and with_accelerations else _VELOCITIES
                 try:
                     self.batch.step(rows, stop - tick, stage)
                 except SimulationError as error:
                     self.failed[error.ids] = True
                 tick = stop
-                self._after(group, tick, tick - first)
+                ticks = self.tick[group] + (tick - first)
+                self._after(group, ticks)
                 for due, one in samples:
                     if due == tick:
-                        one.sample(group)
+                        one.sample(group, ticks)
+                    one.note(group, ticks)
             self.tick[group] += steps
 
     def _groups(self, ids: Ids, sampled: list[SampledRows]) -> list[Ids]:
@@ -155,18 +158,17 @@ class BatchPhysics:
         stops = [*stops, *(next_due(grid, tick) for grid in self._grids())]
         return min([*stops, *(drive.next_stop(ids, tick) for drive in self.drives)])
 
-    def _before(self, ids: Ids, tick: int, passed: int) -> None:
-        ticks = self.tick[ids] + passed
-        if self._has_servos and is_due(self._servos.grid, tick):
+    def _before(self, ids: Ids, ticks: npt.NDArray[np.int64]) -> None:
+        if self._has_servos and is_due(self._servos.grid, int(ticks[0])):
             self._servos.correct(ids, ticks)
         for drive in self.drives:
             drive.before_step(ids, ticks)
 
-    def _after(self, ids: Ids, tick: int, passed: int) -> None:
-        if len(self._limited) and is_due(self._limit_grid, tick):
+    def _after(self, ids: Ids, ticks: npt.NDArray[np.int64]) -> None:
+        if len(self._limited) and is_due(self._limit_grid, int(ticks[0])):
             self._limit(ids)
         for drive in self.drives:
-            drive.after_step(ids, self.tick[ids] + passed)
+            drive.after_step(ids, ticks)
 
     def _limit(self, ids: Ids) -> None:
         """Enforce the velocity limits of joints, which few environments exceed."""
