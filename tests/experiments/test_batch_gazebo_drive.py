@@ -157,11 +157,6 @@ def test_the_odometry_publisher_has_the_bits_of_single_robots(rate: float) -> No
         ("", {"observation": "/odom", "overrides": ()}, "contact law"),
         ("", {"observation": "/model/rover/tf"}, "topic /model/rover/tf"),
         (
-            "<simkit:odometry_noise><wheel_variance>1e-5</wheel_variance></simkit:odometry_noise>",
-            {"observation": "/odom"},
-            "topic /odom with <odometry_noise>",
-        ),
-        (
             PUBLISHER.format(30) + "<gaussian_noise>0.1</gaussian_noise>",
             {"observation": "/true_odom"},
             "topic /true_odom with <gaussian_noise>",
@@ -179,10 +174,27 @@ def test_what_a_batch_of_gazebos_drive_cannot_do_is_named(plugin: str, options: 
         simkit.gym.make_vec(source, num_envs=2, batch=True, **{"action": TWIST, "overrides": MUJOCO, **options})
 
 
-def test_errors_of_the_odometry_matter_only_to_an_observation_of_it() -> None:
-    noise = "<simkit:odometry_noise><wheel_variance>1e-4</wheel_variance></simkit:odometry_noise>"
-    source = world(rover("rover", 0, COMMAND_AND_ODOMETRY + noise))
-    assert assert_same_bits(source, 20, 2, time_limit=1.0, observation={"scan": "/rover/scan", "pose": "rover"}) == 2
+NOISE = """<simkit:odometry_noise><wheel_variance>1e-4</wheel_variance><left_radius_error>0.02</left_radius_error>
+<counts_per_revolution>360</counts_per_revolution></simkit:odometry_noise>"""
+
+
+def test_odometry_with_noise_has_the_bits_of_single_robots() -> None:
+    source = world(rover("rover", 0, COMMAND_AND_ODOMETRY + ACCELERATION + NOISE))
+    options: dict[str, Any] = {"observation": {"odom": "/odom"}, "on_reset": moved}
+    assert assert_same_bits(source, 25, time_limit=0.8, **options) >= 6
+
+
+@pytest.mark.parametrize("source", [0, 1])
+def test_noise_on_the_odometry_of_gazebo_classic_needs_encoders_in_a_batch(source: int) -> None:
+    classic = f"""<plugin filename="libgazebo_ros_diff_drive.so" name="drive"><left_joint>left_joint</left_joint>
+    <right_joint>right_joint</right_joint><wheel_separation>0.4</wheel_separation><wheel_diameter>0.2</wheel_diameter>
+    <publish_odom>true</publish_odom><odometry_source>{source}</odometry_source>{NOISE}</plugin>"""
+    robot = re.sub(r"<plugin filename=.gz-sim-diff.*?</plugin>", classic, rover("rover"), flags=re.DOTALL)
+    if source == 0:
+        assert assert_same_bits(world(robot), 25, 2, time_limit=0.8, observation={"odom": "/odom"}) >= 4
+        return
+    with pytest.raises(InputError, match="SK-GYM-001.*/odom: ground truth with <odometry_noise>"):
+        simkit.gym.make_vec(world(robot), num_envs=2, batch=True, observation="/odom", action=TWIST, overrides=MUJOCO)
 
 
 def test_a_drive_whose_commands_expire_is_no_drive_of_a_batch() -> None:

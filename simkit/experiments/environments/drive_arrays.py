@@ -22,8 +22,10 @@ from simkit.experiments.environments.due_ticks import NEVER, Grid, is_due, last_
 from simkit.experiments.environments.servo_arrays import ServoArrays
 from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive, GazeboRosSkidSteerDrive
 from simkit.plugins.drives.odometry import DeadReckoning, TrueMotion, WheelOdometry, wheel_angles
+from simkit.plugins.drives.odometry_noise import NoisyOdometry
 from simkit.plugins.drives.speed_limits import SpeedLimiterArrays
 from simkit.plugins.gz.diff_drive import DiffDrive
+from simkit.runtime.engine.random_streams import RandomStream
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef
@@ -86,6 +88,7 @@ class DriveArrays(abc.ABC):
         self._angles, self._reckonings = np.zeros((count, 2)), [DeadReckoning() for _ in range(count)]
         self.odometry, self.observes_wheels = np.zeros((count, 6)), False
         self.grid: Grid = self._clock.grid(plugin.after_step_rate)
+        self._noisy: list[tuple[NoisyOdometry, int]] = []  # with the time of the last update [ns]
 
     # ------------------------------------------------------------------ each drive
 
@@ -112,7 +115,7 @@ class DriveArrays(abc.ABC):
 
     @abc.abstractmethod
     def outputs(self) -> Iterable[tuple[Any, Read, bool]]:
-        """Yield each publisher of odometry (or None), the function that reads it, and whether it has added errors."""
+        """Yield each publisher of odometry (or None), its reading function, and true for a truth with added errors."""
 
     # ------------------------------------------------------------------ all drives
 
@@ -131,12 +134,12 @@ class DriveArrays(abc.ABC):
         """Return the function that reads the odometry on a topic at the ticks of `grid`; None for another topic.
 
         Raises:
-            CannotBatchError: the odometry has added errors.
+            CannotBatchError: the ground truth has added errors.
         """
         for publisher, read, has_errors in self.outputs():
             if publisher is not None and publisher.topic == topic:
                 if has_errors:
-                    raise CannotBatchError(f"topic {topic} with <odometry_noise>")
+                    raise CannotBatchError(f"topic {topic}: ground truth with <odometry_noise>")
                 self.observes_wheels |= read == self.read_wheels
                 return read
         return None
@@ -167,6 +170,24 @@ class DriveArrays(abc.ABC):
         self._angles[ids] = angles
         for row, (left, right) in zip(ids.tolist(), rolled.tolist(), strict=True):
             self._reckonings[row].advance(left, right, self._separation)
+
+    def _take_noise(self, row: int, odometry: NoisyOdometry, time_ns: int) -> None:
+        """Copy an odometry with noise to one environment, whose episode has its own seed."""
+        mine, stream = copy.copy(odometry), odometry._stream
+        mine.reckoning = copy.copy(odometry.reckoning)
+        seed = self.plugin.sim.engine.streams._folded_seed
+        mine._stream = RandomStream(seed, stream.scoped, stream.channel, stream.width)
+        self._noisy = self._noisy or [(mine, time_ns)] * self._view.count
+        self._noisy[row] = mine, time_ns
+
+    def _store_with_noise(self, ids: Ids, ticks: Ticks) -> None:
+        """Advance the odometry with noise of some environments, and store it."""
+        for row, tick, angles in zip(ids.tolist(), ticks.tolist(), self._wheel_angles(ids).tolist(), strict=True):
+            (odometry, last_ns), now = self._noisy[row], self._clock.time_ns(tick)
+            odometry.advance(*angles, (now - last_ns) * 1e-9)
+            self._noisy[row] = odometry, now
+            way, twist = odometry.reckoning, odometry.twist
+            self.odometry[row] = way.x, way.y, way.yaw, *twist.linear[:2], twist.angular[2]
 
     def _store(self, ids: Ids, rolled: Floats, time: Floats | float) -> None:
         """Store the poses of some environments, and the twists while the wheels roll some way [m] in some time [s]."""
@@ -199,6 +220,8 @@ class ClassicDriveArrays(DriveArrays):
         self.command[row], self._last_ns[row] = plugin._command, plugin._last_ns
         self._rim_speeds[row], self._angles[row] = plugin._rims, plugin._angles
         self._reckonings[row] = copy.copy(plugin._reckoning)
+        if plugin._erring is not None:
+            self._take_noise(row, plugin._erring, plugin._last_read_ns)
 
     def next_stop(self, ids: Ids, tick: int) -> int:
         return next_due(self.grid, tick)
@@ -221,14 +244,18 @@ class ClassicDriveArrays(DriveArrays):
 
     def after_step(self, ids: Ids, ticks: Ticks) -> None:
         """Integrate the travel of the wheels, as the plugin does with odometry from encoders."""
-        if self.observes_wheels and is_due(self.grid, int(ticks[0])):
+        if not self.observes_wheels or not is_due(self.grid, int(ticks[0])):
+            return
+        if self._noisy:
+            self._store_with_noise(ids, ticks)
+        else:
             self._roll(ids, self._wheel_angles(ids))
             self._store(ids, self._view.qvel[ids[:, None], self._dofs] * self._radius, 1.0)
 
     def outputs(self) -> Iterable[tuple[Any, Read, bool]]:
         plugin, truth = self.plugin, true_odometry(self._view, self.plugin._true)
         measured = self.read_wheels if plugin.options.from_encoders else truth
-        yield plugin._outputs._odom, measured, plugin.options.noise is not None
+        yield plugin._outputs._odom, measured, plugin._followed is not None
         yield plugin._truth, truth, False
 
 
@@ -262,7 +289,9 @@ class GazeboDriveArrays(DriveArrays):
         plugin = self.plugin
         self.command[row], self._last[row], self._before_last[row] = plugin._target, plugin._last, plugin._before_last
         self._settled[row], self._enabled[row] = plugin._settled, plugin._enabled
-        if self.observes_wheels:
+        if plugin._noisy is not None:
+            self._take_noise(row, plugin._noisy, plugin._last_ns)
+        elif self.observes_wheels:
             self._take_odometry(row, tick, plugin._odometry)
 
     def _take_odometry(self, row: int, tick: int, odometry: WheelOdometry) -> None:
@@ -308,8 +337,12 @@ class GazeboDriveArrays(DriveArrays):
         tick = int(ticks[0])
         if not self.observes_wheels or next_odometry_tick(self.grid, tick - 1) != tick:
             return
-        slots, angles = ticks % _WINDOW, self._wheel_angles(ids)
         is_message = is_due(self.grid, tick)
+        if self._noisy:
+            if is_message:
+                self._store_with_noise(ids, ticks)
+            return
+        slots, angles = ticks % _WINDOW, self._wheel_angles(ids)
         if is_message or (tick - last_due(self.grid, tick)) % _STRIDE == 0:
             self._roll(ids, angles)
         if is_message:
@@ -319,7 +352,7 @@ class GazeboDriveArrays(DriveArrays):
 
     def outputs(self) -> Iterable[tuple[Any, Read, bool]]:
         plugin = self.plugin
-        yield plugin._odom, self.read_wheels, plugin._noisy is not None
+        yield plugin._odom, self.read_wheels, False
         yield plugin._truth, true_odometry(self._view, plugin._true), False
 
 
