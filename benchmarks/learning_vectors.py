@@ -3,19 +3,22 @@
 python benchmarks/learning_vectors.py [--rounds N] [--environments N] [--processes N]
 
 One step is 0.1 s of `simkit/TurtleBot3Goal-v0` with a fresh scan of 360 rays in each environment. MuJoCo's batch makes
-the same steps from the same states with the same rays, on the same threads. The sides take turns; wall times, because
-both use all processors, but CPU times for the peers. `--processes 0` leaves out the processes.
+the same steps from the same states with the same rays, on the same threads. Then the drives of Gazebo Sim and of Gazebo
+Classic are compared in `turtlebot3_world`. The sides take turns; wall times, because both use all processors, but CPU
+times for the peers. `--processes 0` leaves out the processes.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 import tempfile
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import fleet
 import measure  # noqa: F401 - makes simkit importable
 import mujoco
 import numpy as np
@@ -79,6 +82,43 @@ def vectors(count: int, processes: int, rounds: int) -> None:
         each = seconds / (processes if name in others else count)
         print(f"{name:34s} {each * 1e6:8.0f} us for each environment   {name} / ours {each / ours:5.2f}")
     for envs in (batch, *others.values()):
+        envs.close()
+
+
+def drives(count: int, processes: int, rounds: int) -> None:
+    """Burgers with Gazebo Sim's drive, with limited acceleration, in `turtlebot3_world`, and with Gazebo Classic's."""
+    source = (Path(__file__).resolve().parents[1] / "worlds" / "turtlebot3_world.sdf").read_text(encoding="utf-8")
+    robot = fleet.SYSTEMS + fleet.robot("turtlebot3", -2.0, -0.5, "gz")
+    gazebo = re.sub(r"<include>.*?</include>", robot, source, flags=re.DOTALL)
+    lidar = "/world/turtlebot3_world/model/turtlebot3/link/base_scan/sensor/lds/lidar"
+    of_gazebo = gazebo, lidar, "/model/turtlebot3/odometry", "/model/turtlebot3/cmd_vel"
+    of_classic = source.replace("//turtlebot3<", "//turtlebot3_burger<"), "/scan", "/odom", "/cmd_vel"
+
+    def make(names: tuple[str, ...], number: int, **options: Any) -> Any:
+        world, scan, odom, command = names
+        twist = {command: {"linear.x": (0.0, 0.22), "angular.z": (-1.5, 1.5)}}
+        given = {"observation": {"scan": scan, "odom": odom}, "action": twist, "samples_all": False, **options}
+        return simkit.gym.make_vec(world, num_envs=number, overrides=("physics.contact_law=mujoco",), **given)
+
+    made = {
+        "batch, Gazebo Sim's drive": make(of_gazebo, count, batch=True),
+        "batch, Gazebo Classic's drive": make(of_classic, count, batch=True),
+        "one by one, Gazebo Sim's drive": make(of_gazebo, 4, processes=False),
+    }
+    if processes:
+        made["processes, Gazebo Sim's drive"] = make(of_gazebo, processes, processes=True)
+    random = np.random.default_rng(0)
+
+    def side(envs: Any) -> Callable[[], object]:
+        envs.reset(seed=0)
+        return lambda: envs.step(random.uniform((0.0, -1.5), (0.22, 1.5), (envs.num_envs, 2)).astype(np.float32))
+
+    found = medians({name: side(envs) for name, envs in made.items()}, rounds)
+    each = {name: seconds / made[name].num_envs for name, seconds in found.items()}
+    ours = each["batch, Gazebo Sim's drive"]
+    for name, seconds in each.items():
+        print(f"{name:34s} {seconds * 1e6:8.0f} us for each environment   {name} / ours {seconds / ours:5.2f}")
+    for envs in made.values():
         envs.close()
 
 
@@ -178,6 +218,7 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=16)
     options = parser.parse_args()
     vectors(options.environments, options.processes, options.rounds)
+    drives(options.environments, options.processes, options.rounds)
     peers(options.rounds)
 
 

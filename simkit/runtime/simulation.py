@@ -188,7 +188,8 @@ class Simulation(ScriptGraph, InProcess):
         for sensor in engine.structure.all_sensors():
             sensor.reset()
         for plugin in engine.structure.all_plugins():
-            engine.faults.task(plugin, "reset")(0)
+            if plugin.has_hook("reset"):
+                engine.faults.task(plugin, "reset")(0)
 
     @journaled
     def snapshot(self) -> Snapshot:

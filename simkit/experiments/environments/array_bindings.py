@@ -10,12 +10,13 @@ import numpy.typing as npt
 
 from simkit.experiments.environments.array_view import ArrayView
 from simkit.experiments.environments.cannot_batch import CannotBatchError
-from simkit.experiments.environments.drive_arrays import DiffDriveArrays
+from simkit.experiments.environments.drive_arrays import DRIVE_ARRAYS, DriveArrays
 from simkit.experiments.environments.expression_arrays import array_expression
+from simkit.experiments.environments.sampled_rows import MeanMotionRows, SampledRows
 from simkit.experiments.environments.sensor_arrays import ImuArrays, ScanArrays, sensor_obstacle
 from simkit.experiments.environments.specification import Batched, Observation
 from simkit.msgs.topic_names import absolute_name
-from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive
+from simkit.plugins.gz.odometry_publisher import OdometryPublisher
 from simkit.plugins.joint_states import JointStates
 from simkit.runtime import Simulation
 from simkit.sensors.inertial.imu import Imu
@@ -50,8 +51,9 @@ def world_obstacles(sim: Simulation) -> list[str]:
         found.append("persistent wrenches")
     for plugin in sim.engine.structure.all_plugins():
         name = type(plugin).__name__
-        if isinstance(plugin, GazeboRosDiffDrive):
-            obstacle = DiffDriveArrays.obstacle(plugin)
+        drive = DRIVE_ARRAYS.get(type(plugin))
+        if drive is not None:
+            obstacle = drive.obstacle(plugin)
             if obstacle:
                 found.append(f"{obstacle} of plugin {name}")
         elif not vars(type(plugin)).get("only_publishes", False):
@@ -102,27 +104,6 @@ def _expression(source: str, view: ArrayView, env: SimulationEnv) -> Callable[[]
 # ---------------------------------------------------------------------- observations
 
 
-class SampledRows:
-    """Values that a plugin samples at its own rate, in all environments.
-
-    Args:
-        read: function that returns the present values of some environments.
-        grid: ticks at which the plugin samples; None for every step.
-        bound: observation of the environment that resets all others.
-        count: number of environments.
-    """
-
-    def __init__(self, read: Callable[[Ids], Floats], grid: Any, bound: Any, count: int) -> None:
-        self._read, self.grid, self._bound = read, grid, bound
-        self.values = np.zeros((count, *np.shape(bound._read())))
-
-    def take(self, row: int) -> None:
-        self.values[row] = self._bound._read()
-
-    def sample(self, ids: Ids) -> None:
-        self.values[ids] = self._read(ids)
-
-
 class ObservationArrays:
     """One observation of all environments.
 
@@ -157,7 +138,7 @@ class Sources:
         needs_acceleration: True if a source reads accelerations.
     """
 
-    def __init__(self, env: SimulationEnv, view: ArrayView, batch: Any, drives: list[DiffDriveArrays]) -> None:
+    def __init__(self, env: SimulationEnv, view: ArrayView, batch: Any, drives: list[DriveArrays]) -> None:
         self._env, self._view, self._batch, self._drives = env, view, batch, drives
         self.sensors: list[ScanArrays | ImuArrays] = []
         self.sampled: list[SampledRows] = []
@@ -219,45 +200,23 @@ class Sources:
             if sensor.topic == topic:
                 return self._sensor(sensor, given)
         for drive in self._drives:
-            publisher = drive.plugin._outputs._odom
-            if publisher is not None and publisher.topic == topic:
-                return self._sample(self._odometry(drive), drive.grid, bound)
+            read = drive.bind(topic)
+            if read is not None:
+                return self._sample(read, drive.grid, bound)
         for plugin in self._env.sim.engine.structure.all_plugins():
+            if type(plugin) is OdometryPublisher and topic in (plugin._odom.topic, plugin._noisy.topic):
+                return self._keep(MeanMotionRows(plugin, self._view, bound))
             if isinstance(plugin, JointStates) and plugin.ros.topic(plugin._topic) == topic:
                 grid = self._env.sim.engine.clock.grid(plugin.after_step_rate or 0.0)
                 return self._sample(self._joint_states(plugin), grid, bound)
         raise CannotBatchError(f"topic {topic}")
 
     def _sample(self, read: Callable[[Ids], Floats], grid: Any, bound: Any) -> Read:
-        rows = SampledRows(read, grid, bound, self._view.count)
+        return self._keep(SampledRows(read, grid, bound, self._view.count))
+
+    def _keep(self, rows: SampledRows) -> Read:
         self.sampled.append(rows)
         return lambda _: rows.values
-
-    def _odometry(self, drive: DiffDriveArrays) -> Callable[[Ids], Floats]:
-        """Return the function that reads x, y, yaw, forward speed, speed to the left and turning rate."""
-        view, plugin = self._view, drive.plugin
-        if plugin.options.from_encoders:
-
-            def read(ids: Ids) -> Floats:
-                found = drive.odometry[ids]
-                found[:, 2] = np.arctan2(np.sin(found[:, 2]), np.cos(found[:, 2]))
-                return found
-
-            return read
-        motion = plugin._true
-        name, link = motion._frame.scoped, motion._link.scoped
-        arm = np.array(motion._arm)
-
-        def read_truth(ids: Ids) -> Floats:
-            position, quaternion = view.position(name)[ids], view.quaternion(name)[ids]
-            linear = _rotate_back(quaternion, view.linear_velocity(link)[ids])
-            spin = _rotate_back(quaternion, view.angular_velocity(link)[ids])
-            linear = linear + np.cross(spin, arm)
-            w, x, y, z = quaternion.T
-            yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-            return np.column_stack((position[:, 0], position[:, 1], yaw, linear[:, 0], linear[:, 1], spin[:, 2]))
-
-        return read_truth
 
     def _joint_states(self, plugin: JointStates) -> Callable[[Ids], Floats]:
         view, joints = self._view, plugin._handles
@@ -265,14 +224,6 @@ class Sources:
             raise CannotBatchError("joint states of joints with several degrees of freedom")
         places, dofs = (np.array([getattr(j, name) for j in joints], np.intp) for name in ("_one_qpos", "_one_dof"))
         return lambda ids: np.hstack((view.qpos[np.ix_(ids, places)], view.qvel[np.ix_(ids, dofs)]))
-
-
-def _rotate_back(quaternions: Floats, vectors: Floats) -> Floats:
-    """Rotate vectors by the inverses of unit quaternions w, x, y, z."""
-    w, v = quaternions[:, :1], -quaternions[:, 1:]
-    twice = 2.0 * np.cross(v, vectors)
-    found: Floats = vectors + w * twice + np.cross(v, twice)
-    return found
 
 
 # ---------------------------------------------------------------------- actions
@@ -288,9 +239,9 @@ class ActionArrays:
         drives: drives of the world.
     """
 
-    def __init__(self, env: SimulationEnv, view: ArrayView, applied: Floats, drives: list[DiffDriveArrays]) -> None:
+    def __init__(self, env: SimulationEnv, view: ArrayView, applied: Floats, drives: list[DriveArrays]) -> None:
         self._applied, self._view = applied, view
-        self._twists: list[tuple[DiffDriveArrays, int, int]] = []
+        self._twists: list[tuple[DriveArrays, int, int]] = []
         self._efforts: list[tuple[int, int, float]] = []
         action = env.spec_of_env.action
         targets: Mapping[str, Any] = {action: None} if isinstance(action, str) else action
@@ -304,23 +255,20 @@ class ActionArrays:
                 self._bind_topic(env, target, given, drives, first)
                 first += len(given)
 
-    def _bind_topic(
-        self, env: SimulationEnv, target: str, given: Any, drives: list[DiffDriveArrays], first: int
-    ) -> None:
+    def _bind_topic(self, env: SimulationEnv, target: str, given: Any, drives: list[DriveArrays], first: int) -> None:
         topic = absolute_name(target)
         types = env.sim.communication.bus.types_of(topic)
-        for drive in drives:
-            if drive.plugin.ros.topic(drive.plugin.options.command_topic) == topic and types[0] in _TWISTS:
-                paths = [str(path).removeprefix("twist.") for path in given]
-                columns = [first + paths.index(path) if path in paths else -1 for path in ("linear.x", "angular.z")]
-                self._twists.append((drive, columns[0], columns[1]))
-                return
-        raise CannotBatchError(f"action {target!r}: only twists of differential drives and efforts of joints")
+        followers = [drive for drive in drives if drive.plugin.command_topic == topic and types[0] in _TWISTS]
+        if not followers:
+            raise CannotBatchError(f"action {target!r}: only twists of differential drives and efforts of joints")
+        paths = [str(path).removeprefix("twist.") for path in given]
+        forward, turn = (first + paths.index(path) if path in paths else -1 for path in ("linear.x", "angular.z"))
+        self._twists += [(drive, forward, turn) for drive in followers]
 
     def send(self, ids: Ids, numbers: Floats) -> None:
         """Send the actions of some environments, which act until the next call."""
         numbers = np.hstack((numbers, np.zeros((len(numbers), 1))))  # the last column is for fields without an action
         for drive, forward, turn in self._twists:
-            drive.command[ids, 0], drive.command[ids, 1] = numbers[:, forward], numbers[:, turn]
+            drive.aim(ids, numbers[:, forward], numbers[:, turn])
         for column, dof, limit in self._efforts:
             self._applied[ids, dof] = np.clip(numbers[:, column], -limit, limit)

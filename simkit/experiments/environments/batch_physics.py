@@ -11,13 +11,13 @@ import numpy as np
 import numpy.typing as npt
 from mujoco.batch import Batch, SimulationError
 
-from simkit.experiments.environments.array_bindings import SampledRows
 from simkit.experiments.environments.array_view import ArrayView
-from simkit.experiments.environments.drive_arrays import DiffDriveArrays, ServoArrays
-from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive
+from simkit.experiments.environments.drive_arrays import DRIVE_ARRAYS
+from simkit.experiments.environments.due_ticks import Grid, is_due, last_due, next_due
+from simkit.experiments.environments.sampled_rows import SampledRows
+from simkit.experiments.environments.servo_arrays import ServoArrays
 from simkit.runtime import Simulation
 from simkit.runtime.engine.physics_state import BAD_ACCELERATION, BAD_POSITION, BAD_VELOCITY, divergence
-from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.runtime.engine.step_tasks import _LIMIT_RATE, _NO_LIMIT
 from simkit.runtime.engine.velocity_limits import limit_velocities
 
@@ -54,10 +54,10 @@ class BatchPhysics:
         self.tick = np.zeros(count, np.int64)
         self.failed = np.zeros(count, np.bool_)
         self._scratch: Any = None
-        self._servos = ServoArrays(sim, self.view, count)
+        self._servos = ServoArrays(sim, self.view)
         self._has_servos = sim.engine.velocity_servos.are_there
-        plugins = [p for p in sim.engine.structure.all_plugins() if isinstance(p, GazeboRosDiffDrive)]
-        self.drives = [DiffDriveArrays(plugin, self._servos, self.view, count) for plugin in plugins]
+        plugins = [plugin for plugin in sim.engine.structure.all_plugins() if type(plugin) in DRIVE_ARRAYS]
+        self.drives = [DRIVE_ARRAYS[type(plugin)](plugin, self._servos, self.view) for plugin in plugins]
         self._compute_limits()
 
     def _compute_limits(self) -> None:
@@ -79,7 +79,7 @@ class BatchPhysics:
         if self._has_servos:
             self._servos.take(row)
         for drive in self.drives:
-            drive.take(row)
+            drive.take(row, physics.tick)
 
     def take_model(self, row: int) -> None:
         """Copy the numbers of the simulation's model to one environment."""
@@ -120,62 +120,59 @@ class BatchPhysics:
         for group in self._groups(ids, sampled):
             first = int(self.tick[group[0]])
             tick, last = first, first + steps
+            # only the last values of this call are observed
+            samples = [(last_due(one.grid, last), one) for one in sampled]
             rows = None if len(group) == len(self.tick) else group
             while tick < last:
-                self._before(group, tick, tick - first)
-                stop = min([last, *(self._next(grid, tick) for grid in self._grids(sampled))])
+                self._before(group, self.tick[group] + (tick - first))
+                stops = [last, *(due for due, _ in samples if due > tick), *(one.next_stop(tick) for one in sampled)]
+                stop = self._next_stop(group, tick, stops)
                 stage = _ACCELERATIONS if stop == last and with_accelerations else _VELOCITIES
                 try:
                     self.batch.step(rows, stop - tick, stage)
                 except SimulationError as error:
                     self.failed[error.ids] = True
                 tick = stop
-                self._after(group, tick, sampled)
+                ticks = self.tick[group] + (tick - first)
+                self._after(group, ticks)
+                for due, one in samples:
+                    if due == tick:
+                        one.sample(group, ticks)
+                    one.note(group, ticks)
             self.tick[group] += steps
 
     def _groups(self, ids: Ids, sampled: list[SampledRows]) -> list[Ids]:
         """Divide environments into groups at which the same parts are due at the same steps."""
         ticks = self.tick[ids]
-        cycle = 1
-        for grid in self._grids(sampled):
-            cycle = math.lcm(cycle, grid.cycle) if isinstance(grid, TickGrid) else cycle
+        grids = [*self._grids(), *(drive.grid for drive in self.drives), *(one.grid for one in sampled)]
+        cycle = math.lcm(*(grid.cycle for grid in grids if grid is not None))
         phases = np.where(ticks > 0, ticks % cycle, -1)
         return [ids[phases == phase] for phase in np.unique(phases)]
 
-    def _grids(self, sampled: list[SampledRows]) -> list[Any]:
+    def _grids(self) -> list[Grid]:
         servos = [self._servos.grid] if self._has_servos else []
-        limits = [self._limit_grid] if len(self._limited) else []
-        return [*servos, *limits, *(drive.grid for drive in self.drives), *(one.grid for one in sampled)]
+        return [*servos, self._limit_grid] if len(self._limited) else servos
 
-    @staticmethod
-    def _next(grid: TickGrid | None, tick: int) -> int:
-        return tick + 1 if grid is None else grid.next(tick)
+    def _next_stop(self, ids: Ids, tick: int, stops: list[int]) -> int:
+        """Return the first of some ticks and of those at which a part is due."""
+        stops = [*stops, *(next_due(grid, tick) for grid in self._grids())]
+        return min([*stops, *(drive.next_stop(ids, tick) for drive in self.drives)])
 
-    @classmethod
-    def _is_due(cls, grid: TickGrid | None, tick: int) -> bool:
-        return grid is None or (tick > 0 and grid.next(tick - 1) == tick)
-
-    def _before(self, ids: Ids, tick: int, passed: int) -> None:
-        ticks = self.tick[ids] + passed
-        if self._has_servos and self._is_due(self._servos.grid, tick):
+    def _before(self, ids: Ids, ticks: npt.NDArray[np.int64]) -> None:
+        if self._has_servos and is_due(self._servos.grid, int(ticks[0])):
             self._servos.correct(ids, ticks)
         for drive in self.drives:
-            if self._is_due(drive.grid, tick):
-                drive.before_step(ids, ticks)
+            drive.before_step(ids, ticks)
 
-    def _after(self, ids: Ids, tick: int, sampled: list[SampledRows]) -> None:
-        if len(self._limited) and self._is_due(self._limit_grid, tick):
+    def _after(self, ids: Ids, ticks: npt.NDArray[np.int64]) -> None:
+        if len(self._limited) and is_due(self._limit_grid, int(ticks[0])):
             self._limit(ids)
         for drive in self.drives:
-            if drive.plugin.options.from_encoders and self._is_due(drive.grid, tick):
-                drive.after_step(ids)
-        for one in sampled:
-            if self._is_due(one.grid, tick):
-                one.sample(ids)
+            drive.after_step(ids, ticks)
 
     def _limit(self, ids: Ids) -> None:
         """Enforce the velocity limits of joints, which few environments exceed."""
-        velocities = self.view.qvel[np.ix_(ids, self._limited)]
+        velocities = self.view.qvel[ids[:, None], self._limited]
         for row in ids[(np.abs(velocities) > self._limits).any(axis=1) & np.isfinite(velocities).all(axis=1)].tolist():
             model, data = self.state_of(row)
             limit_velocities(_OneState(model, data), self._limited, self._limits)  # type: ignore[arg-type]

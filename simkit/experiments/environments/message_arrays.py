@@ -46,7 +46,7 @@ def conversion_of(message: Any) -> tuple[Conversion, Bounds]:
         return _imu, (np.concatenate((-_UNIT, -rest)), np.concatenate((_UNIT, rest)))
     if kind == "Odometry":
         high = np.array([_INF, _INF, np.pi, _INF, _INF, _INF])
-        return _odometry, (-high, high)
+        return odometry_numbers, (-high, high)
     if kind == "JointState":
         return lambda m: np.concatenate((m.position, m.velocity)), (-_INF, _INF)
     return lambda m: np.fromiter(_numbers(m), float), (-_INF, _INF)
@@ -57,7 +57,8 @@ def _imu(message: Any) -> Array:
     return np.array([q.w, q.x, q.y, q.z, w.x, w.y, w.z, a.x, a.y, a.z])
 
 
-def _odometry(message: Any) -> Array:
+def odometry_numbers(message: Any) -> Array:
+    """Return x, y, yaw, forward speed, speed to the left and yaw rate of an odometry."""
     pose, twist = message.pose.pose, message.twist.twist
     yaw = msgs.yaw(pose.orientation)
     return np.array([pose.position.x, pose.position.y, yaw, twist.linear.x, twist.linear.y, twist.angular.z])

@@ -24,6 +24,7 @@ class CommandedDrive(ModelPlugin):
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._command = (0.0, 0.0)
         self._last_ns = self.sim.time_ns
+        self.command_topic = self.ros.topic(topic)
         self.listen(topic, COMMAND_TYPES, self._on_command)
 
     def _on_command(self, message: Twist | TwistStamped) -> None:

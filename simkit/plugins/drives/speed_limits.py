@@ -6,8 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, number
+from simkit.pose import Vector
 
 _QUANTITIES = ("velocity", "acceleration", "jerk")
 
@@ -37,6 +40,24 @@ class SpeedLimiter(SharedByCopies):
         if abs(reached - target) <= 1e-12 * max(1.0, abs(target)):
             reached = target
         return _clamp(reached, self.velocity)
+
+
+class SpeedLimiterArrays:
+    """Several limiters that limit arrays of speeds, one column for each limiter, with the bits of `SpeedLimiter`."""
+
+    def __init__(self, limiters: Sequence[SpeedLimiter]) -> None:
+        self._bounds = [np.array([getattr(one, quantity) for one in limiters]).T for quantity in _QUANTITIES]
+
+    def limit(self, target: Vector, last: Vector, before_last: Vector, step: float) -> Vector:
+        """Return the speeds to command now; see `SpeedLimiter.limit`."""
+        velocity, acceleration, jerk = self._bounds
+        old = (last - before_last) / step
+        wanted = np.maximum(jerk[0], np.minimum(jerk[1], ((target - last) / step - old) / step))
+        gain = np.maximum(acceleration[0], np.minimum(acceleration[1], old + wanted * step))
+        reached = last + gain * step
+        is_target = np.abs(reached - target) <= 1e-12 * np.maximum(1.0, np.abs(target))
+        speeds: Vector = np.maximum(velocity[0], np.minimum(velocity[1], np.where(is_target, target, reached)))
+        return speeds
 
 
 class SpeedLimitOptions(Options):

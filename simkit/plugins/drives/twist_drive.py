@@ -82,7 +82,9 @@ class TwistDrive(ModelPlugin):
     def open_topics(self, parent: Model, params: Params) -> None:
         """Open the topics of commands, odometry and its transform."""
         model = parent.name
-        self.listen(read_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self.on_twist)
+        topic = read_topic(params, "topic", f"/model/{model}/cmd_vel")
+        self.command_topic = self.ros.topic(topic)
+        self.listen(topic, COMMAND_TYPES, self.on_twist)
         self.open_odometry(parent, params)
 
     def open_odometry(self, parent: Model, params: Params) -> None:

@@ -96,8 +96,14 @@ class OdometryPublisher(ModelPlugin):
             self._tf.publish_later(partial(transforms, now, (self._frame, self._base, pose)))
 
     def _reading(self) -> tuple[Pose, BodyTwist]:
-        """Return the base frame's world pose, and its mean twist over the last steps, in the base frame's axes."""
-        trail = np.array((*self._trail, self._true.place()))
+        return self.reading_of(np.array((*self._trail, self._true.place())))
+
+    def reading_of(self, trail: Vector) -> tuple[Pose, BodyTwist]:
+        """Return the base frame's world pose, and its mean twist in the base frame's axes.
+
+        Args:
+            trail: poses of the model (x, y, z, qw, qx, qy, qz) before the last steps and at present, shape (n, 7).
+        """
         positions, turns = self._base_frames(trail)
         pose = Pose(positions[-1], turns[-1])
         linear, angular = self._mean_twist(positions, turns) if len(trail) > 1 else (np.zeros(3), np.zeros(3))

@@ -41,14 +41,13 @@ class RandomStream(InProcess):
     """Random numbers for the samples of one channel.
 
     Samples are drawn in blocks, each from its own counter. Any index can be drawn without the previous ones, while
-    consecutive indices cost a table look-up. The first samples of a block are drawn without the others, because many
-    episodes of learning need only a few; the numbers are the same.
+    consecutive indices cost a table look-up. A block is drawn in pieces, each as long as all before it, because many
+    episodes of learning need only a few samples; the numbers are the same.
     """
 
     def __init__(self, seed: int, scoped: str, channel: str, width: int) -> None:
         self.scoped, self.channel, self.width = scoped, channel, int(width)
         self._rows = max(1, _BLOCK_VALUES // max(1, self.width))
-        self._first = max(1, self._rows // 16)
         self._seed: int | None = None
         self._key: StreamKey | None = None
         self._name: tuple[int, ...] = ()
@@ -80,14 +79,12 @@ class RandomStream(InProcess):
         return values
 
     def _draw_normals(self, block: int, row: int) -> None:
-        """Draw the numbers of a block up to a row, or to its end."""
+        """Draw the numbers of a block up to a row, or further."""
         if block != self._normal_block:
             self._normals, self._drawn = np.empty((self._rows, self.width)), 0
             self._normal_generator = self.generator(block, 1)
             self._normal_block = block
-        end = self._rows
-        if self._drawn == 0 and row < self._first:
-            end = self._first
+        end = min(self._rows, max(row + 1, 2 * self._drawn))
         self._normal_generator.standard_normal(out=self._normals[self._drawn : end])
         self._drawn = end
 

@@ -13,7 +13,7 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive, read_options
 from simkit.plugins.drives.odometry import DeadReckoning, WheelOdometry, command_of, planar_covariance
-from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimitOptions, speed_limits
+from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimiterArrays, SpeedLimitOptions, speed_limits
 
 WHEELS = {"left_joint": "l", "right_joint": "r"}
 
@@ -267,3 +267,25 @@ def test_the_covariance_of_height_roll_and_pitch_is_huge() -> None:
     np.testing.assert_array_equal(
         np.diag(planar_covariance(1.0, 2.0, 3.0).reshape(6, 6)), [1.0, 2.0, 1e12, 1e12, 1e12, 3.0]
     )
+
+
+def test_limits_of_arrays_have_the_bits_of_single_limits() -> None:
+    random, step = np.random.default_rng(1), 0.001
+    limiters = [
+        SpeedLimiter((-0.4, 0.5), (-1.5, 1.0), (-8.0, 5.0)),
+        SpeedLimiter(acceleration=(-3.0, 2.0)),
+        SpeedLimiter(),
+    ]
+    arrays = SpeedLimiterArrays(limiters)
+    last, before_last = np.zeros((20, 3)), np.zeros((20, 3))
+    for k in range(300):
+        if k % 60 == 0:
+            target = random.uniform(-1.0, 1.0, (20, 3)) * (random.random((20, 3)) < 0.8)
+        speeds = arrays.limit(target, last, before_last, step)
+        single = [
+            [limiters[j].limit(*(float(v[i, j]) for v in (target, last, before_last)), step) for j in range(3)]
+            for i in range(20)
+        ]
+        assert speeds.tolist() == single
+        last, before_last = speeds, last
+    assert (np.abs(last[:, 0]) <= 0.5).all() and (last[:, 2] == target[:, 2]).all()
