@@ -156,7 +156,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
     def _texts(self, file: str) -> list[str] | None:
         """Return the texts that a file's classes assign to the attributes; None if one is not a literal text."""
         try:
-            with open(file, "rb", buffering=0) as stream:  # noqa: PTH123 - 340 files of plugins: 7 ms instead of 11
+            with open(file, "rb", buffering=0) as stream:  # 340 files of plugins: 7 ms, with `Path` 11
                 content = stream.read()
             if not self._assignment.search(content):
                 return []

@@ -71,7 +71,7 @@ def allowed_travel(model: mujoco.MjModel, half: Floats, geoms: Ints) -> Floats:
     for first, second in dict.fromkeys(map(tuple, masks.tolist())):
         kinds[first, second] = solid[(masks[:, 0] == first) & (masks[:, 1] == second)]
     static_least = {key: _minimum(half[own[tree[own] < 0]]) for key, own in kinds.items()}
-    trees = {key: set(np.unique(tree[own]).tolist()) - {-1} for key, own in kinds.items()}
+    trees = {key: set(tree[own].tolist()) - {-1} for key, own in kinds.items()}
     touchy: dict[int, bool] = {}
     allowed = np.empty(len(geoms))
     by_kind: dict[tuple[int, int, int], float] = {}
@@ -98,8 +98,8 @@ def _minimum(values: Floats) -> float:
 
 def _can_touch_itself(model: mujoco.MjModel, tree: int) -> bool:
     """Check whether two bodies of a kinematic tree may touch each other."""
-    solid = np.unique(model.geom_bodyid[can_collide(model)])
-    bodies = solid[model.body_treeid[solid] == tree].tolist()
+    solid = model.geom_bodyid[can_collide(model)]
+    bodies = sorted(set(solid[model.body_treeid[solid] == tree].tolist()))
     if len(bodies) > _MAX_COMPARED_BODIES:
         return True
     pairs = BodyPairs(model)
