@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 _TEXTS = re.compile(r"""[ ]*\((?:\s|,|"[^"\\\n]*"|'[^'\\\n]*'|#[^\n]*\n)*\)[ ]*(?:#[^\n]*)?\n""")
 _TEXT = re.compile(r"""#[^\n]*|"(?P<one>[^"\\\n]+)"|'(?P<two>[^'\\\n]+)'""")
-_OUTER = "\nclass ", "\ndef ", "\nasync def "
+_FUNCTIONS = "\ndef ", "\nasync def "
 
 
 def entry_points_of(group: str) -> list[EntryPoint]:
@@ -220,7 +220,8 @@ def _assigned_name_pattern(source: str, name: str) -> Iterator[int]:
     at = source.find(f"\n    {name}")
     while at >= 0:
         line = source[at + 5 + len(name) : source.find("\n", at + 1)]
-        last = max(_OUTER, key=lambda word: source.rfind(word, 0, at))
-        if line[:1] in " :=" and "=" in line and last == _OUTER[0]:
+        begin = max(0, source.rfind("\nclass ", 0, at))
+        is_in_function = any(source.find(word, begin, at) >= 0 for word in _FUNCTIONS)
+        if line[:1] in " :=" and "=" in line and not is_in_function:
             yield at + 5 + len(name) + line.index("=") + 1
         at = source.find(f"\n    {name}", at + 1)
