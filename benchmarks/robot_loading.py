@@ -77,7 +77,7 @@ def compare(robot: list[str]) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         file = str(Path(folder) / "robot.xml")
         with ours(*robot) as sim:
-            write_mjcf(sim, Path(file))
+            write_mjcf(sim.engine.compiled.builder, Path(file))
         modules = in_fresh_process("ours", "", *robot)
         fresh = [
             (float(in_fresh_process("ours", modules, *robot)), float(in_fresh_process("bare", "mujoco", file)))

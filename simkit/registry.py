@@ -8,7 +8,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import logging
-import pkgutil
+import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 _TEXTS = re.compile(r"""[ ]*\((?:\s|,|"[^"\\\n]*"|'[^'\\\n]*'|#[^\n]*\n)*\)[ ]*(?:#[^\n]*)?\n""")
 _TEXT = re.compile(r"""#[^\n]*|"(?P<one>[^"\\\n]+)"|'(?P<two>[^'\\\n]+)'""")
-_OUTER = "\nclass ", "\ndef ", "\nasync def "
+_FUNCTIONS = "\ndef ", "\nasync def "
 
 
 def entry_points_of(group: str) -> list[EntryPoint]:
@@ -77,6 +77,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         self._packages = (packages,) if isinstance(packages, str) else packages
         self._group, self._base, self._names = group, base, names
         self._attributes, self._spell = attributes, spell
+        self._assignment = re.compile(rb"\n    (?:%b)[ :=]" % "|".join(attributes).encode())
         self._found: dict[str, type[T] | None] = {}
 
     def __getitem__(self, name: str) -> type[T]:
@@ -134,7 +135,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         return self._found[name]
 
     @cached_property
-    def _modules(self) -> tuple[tuple[str, Path], ...]:
+    def _modules(self) -> tuple[tuple[str, str], ...]:
         """Names of all modules of the packages, and their files."""
         roots = [importlib.import_module(package) for package in self._packages]
         return tuple(found for root in roots for found in _modules_below(root.__path__, root.__name__))
@@ -152,11 +153,12 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
                 literal.setdefault(self._spell(text), (text, []))[1].append(module)
         return literal, computed
 
-    def _texts(self, file: Path) -> list[str] | None:
+    def _texts(self, file: str) -> list[str] | None:
         """Return the texts that a file's classes assign to the attributes; None if one is not a literal text."""
         try:
-            content = file.read_bytes()
-            if not any(name in content for name in map(str.encode, self._attributes)):
+            with open(file, "rb", buffering=0) as stream:  # 340 files of plugins: 7 ms, with `Path` 11
+                content = stream.read()
+            if not self._assignment.search(content):
                 return []
             source = content.decode().replace("\r\n", "\n")
         except (OSError, ValueError):
@@ -195,14 +197,22 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         return [cls for cls in own if issubclass(cls, self._base) and not inspect.isabstract(cls)]
 
 
-def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, Path]]:
-    """Yield name and file of each module in a package and its sub-packages, without importing the modules."""
+def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, str]]:
+    """Yield name and file of each module in a package and its sub-packages, without importing the modules.
+
+    `pkgutil.iter_modules` would take 7 ms instead of 1 ms for the plugins.
+    """
     for folder in folders:
-        for info in pkgutil.iter_modules([folder]):
-            name, path = f"{package}.{info.name}", Path(folder, info.name)
-            yield name, path / "__init__.py" if info.ispkg else path.with_name(f"{info.name}.py")
-            if info.ispkg:
-                yield from _modules_below([str(path)], name)
+        with os.scandir(folder) as entries:
+            found = sorted((entry.name, entry.is_dir()) for entry in entries)
+        for name, is_folder in found:
+            path = os.path.join(folder, name)  # noqa: PTH118 - as above
+            stem = f"{package}.{name.removesuffix('.py')}"
+            if is_folder and os.path.isfile(init := os.path.join(path, "__init__.py")):  # noqa: PTH113, PTH118
+                yield stem, init
+                yield from _modules_below([path], stem)
+            elif name.endswith(".py") and name != "__init__.py":
+                yield stem, path
 
 
 def _assigned_name_pattern(source: str, name: str) -> Iterator[int]:
@@ -210,7 +220,8 @@ def _assigned_name_pattern(source: str, name: str) -> Iterator[int]:
     at = source.find(f"\n    {name}")
     while at >= 0:
         line = source[at + 5 + len(name) : source.find("\n", at + 1)]
-        last = max(_OUTER, key=lambda word: source.rfind(word, 0, at))
-        if line[:1] in " :=" and "=" in line and last == _OUTER[0]:
+        begin = max(0, source.rfind("\nclass ", 0, at))
+        is_in_function = any(source.find(word, begin, at) >= 0 for word in _FUNCTIONS)
+        if line[:1] in " :=" and "=" in line and not is_in_function:
             yield at + 5 + len(name) + line.index("=") + 1
         at = source.find(f"\n    {name}", at + 1)

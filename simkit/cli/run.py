@@ -171,8 +171,6 @@ def run(
     no_open: page_options.NoOpen = False,
 ) -> int:
     """Run a world without a window, as fast as possible."""
-    from simkit.recording.films.film import film_options as read_film_options
-
     policy, checks = _on_error(on_plugin_error), tuple(Check("final", expression=e, where="--assert") for e in assert_)
     loading = load_options(
         resource_path, package_path, xacro_arg, base, plugin_path, params_file, on_error=policy, strict=strict
@@ -204,7 +202,11 @@ def run(
     key_timeout = _timeout(key_timeout)
     bridge = ros_options.run_ros_options(ros, ros_python, ros_domain, ros_namespace, ros_network, ros_args)
     servers = web_options.web_options(foxglove=foxglove, rosbridge=rosbridge)
-    film = read_film_options(gif, video, resolution, fps, camera)
+    film = None
+    if (gif, video, resolution, fps, camera) != (None, None, None, None, "auto"):
+        from simkit.recording.films.film import film_options as read_film_options  # 7 ms
+
+        film = read_film_options(gif, video, resolution, fps, camera)
     page = page_options.page_options(web, host, no_open=no_open)
     display = RunDisplay(
         view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure, bridge, servers, film, page
@@ -270,12 +272,14 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
     from simkit.cli.run_pictures import check_renderer
     from simkit.cli.run_session import Session, check_keyboard
     from simkit.cli.run_verdict import RunVerdict
-    from simkit.recording import run_picture
-    from simkit.recording.bags import writer
 
     if spec.recording is not None:
+        from simkit.recording.bags import writer  # 3 ms: the formats of bags
+
         writer.check_target(spec.recording.path, overwrite=spec.recording.overwrite)
     if display.picture is not None:
+        from simkit.recording import run_picture
+
         run_picture.check_target(display.picture)
     if display.picture is not None or display.film is not None:
         check_renderer()

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from simkit.recording.bags.playback import Playback
     from simkit.recording.bags.recorder import Recorder
     from simkit.recording.command_script import Command
+    from simkit.recording.run_picture import DrivenPath
     from simkit.recording.topic_counts import TopicCount, TopicCounter
     from simkit.runtime import Simulation
 
@@ -166,7 +167,6 @@ class Session:
     def execute(self) -> int:
         """Run the simulation to its end and return the exit code."""
         from simkit.recording.command_script import Commands
-        from simkit.recording.run_picture import DrivenPath
         from simkit.recording.topic_counts import RENDERED, TopicCounter
 
         spec, display, sim = self.spec, self.display, self.sim
@@ -174,7 +174,7 @@ class Session:
         played = self._played()
         duration = run_length(spec, played.duration if played is not None else None)
         conditions = self.verdict.watch(sim, duration)
-        driven = DrivenPath(sim) if display.picture is not None or display.film is not None else None
+        driven = self._driven_path()
         with ExitStack() as stack:
             if played is not None:
                 stack.enter_context(played)
@@ -232,6 +232,14 @@ class Session:
             draw_picture(sim, display.picture, driven)
         return interrupts.exit_code or self.verdict.code
 
+    def _driven_path(self) -> DrivenPath | None:
+        """Start to record the path of the robot, if the run draws a picture or a film."""
+        if self.display.picture is None and self.display.film is None:
+            return None
+        from simkit.recording.run_picture import DrivenPath  # 4 ms
+
+        return DrivenPath(self.sim)
+
     def _report_fallen_models(self) -> None:
         """Warn of models that fell out of the world."""
         from simkit.runtime.fallen_models import find_fallen_models
@@ -252,12 +260,12 @@ class Session:
 
     def _start_recording(self, stack: ExitStack) -> Recorder | None:
         """Start the recorder that the specification requests; the stack closes it."""
-        from simkit.recording.bags.recorder import Recorder
-
         spec, bag = self.spec, self.spec.recording
         if bag is None:
             self._check_selected_topics()
             return None
+        from simkit.recording.bags.recorder import Recorder
+
         recorder = Recorder(self.sim, bag.path, overwrite=bag.overwrite, topics=spec.topics, skip=spec.skip)
         return stack.enter_context(recorder)
 
@@ -290,13 +298,13 @@ class Session:
 
     def _played(self) -> Playback | None:
         """Open the bag to play, if the specification names one."""
-        from simkit.recording.bags.playback import Playback
-
         bag = self.spec.played_bag
         if bag is None:
             if self.spec.play_topics:
                 raise InputError("SK-CLI-018 --play-topic needs --play BAG", "SK-CLI-018")
             return None
+        from simkit.recording.bags.playback import Playback  # 5 ms: the formats of bags
+
         played = Playback(self.sim, bag, self.spec.play_topics)
         for note in played.notes:
             print_status(f"note: {note}")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
 
 import mujoco
@@ -16,9 +16,11 @@ import numpy as np
 
 from simkit.compiler.meshes.companion_files import Pixels, read_pixels
 from simkit.compiler.meshes.content_digest import content_digest
-from simkit.compiler.meshes.convex_decomposition import ConvexBodies
 from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshPart
 from simkit.scene import Material, SceneVisual
+
+if TYPE_CHECKING:
+    from simkit.compiler.meshes.convex_decomposition import ConvexBodies
 
 AssetKey = tuple[str, str]
 """Kind and MuJoCo name of an asset."""

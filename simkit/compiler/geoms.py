@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import mujoco
 import numpy as np
@@ -15,10 +15,7 @@ from simkit.compiler.assets import Assets, geom_colours
 from simkit.compiler.contact_friction import contact_properties
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
 from simkit.compiler.meshes.companion_files import Pixels
-from simkit.compiler.meshes.convex_decomposition import ConvexBodies, convex_bodies, convex_hull
-from simkit.compiler.meshes.mesh_part import Colour, Floats, MeshFileError, MeshPart, has_area, join_parts
-from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
-from simkit.compiler.meshes.surface_patches import TRIANGLES_FROM
+from simkit.compiler.meshes.mesh_part import Colour, Floats, MeshFileError, MeshPart, has_area, join_parts, report_once
 from simkit.compiler.name_map import GeomOwner, ModelRecord
 from simkit.compiler.wheel_cylinders import RoundMesh, TurningAxis, round_mesh
 from simkit.compiler.world_geoms import WorldGeoms
@@ -37,6 +34,9 @@ from simkit.scene import (
     SceneVisual,
     Surface,
 )
+
+if TYPE_CHECKING:
+    from simkit.compiler.meshes.convex_decomposition import ConvexBodies
 
 _HALF_SPACE = (50.0, 50.0, 0.05)
 _OVER = Pose((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))  # rotated by 180° about x
@@ -153,6 +153,8 @@ class GeomWriter:
         self, parent: GeomParent, owner: GeomOwner, collision: SceneCollision, shape: Polyline, solid: GeomSettings
     ) -> None:
         """Add the exact convex pieces of extruded outlines."""
+        from simkit.compiler.meshes.convex_decomposition import convex_hull
+
         try:
             pieces = shape_geometry.polyline_pieces(shape)
         except ValueError as problem:
@@ -172,6 +174,10 @@ class GeomWriter:
         parts: list[MeshPart],
         solid: GeomSettings,
     ) -> None:
+        # 10 ms, which a world without meshes need not take
+        from simkit.compiler.meshes.convex_decomposition import convex_bodies
+        from simkit.compiler.meshes.surface_patches import TRIANGLES_FROM
+
         shape = collision.geometry
         vertices, faces = join_parts(parts)
         optimization, most = (shape.optimization, shape.max_hulls) if isinstance(shape, Mesh) else ("", 16)
@@ -331,6 +337,8 @@ class GeomWriter:
 
     def _visual_parts(self, shape: Geometry, where: Where) -> list[MeshPart]:
         if isinstance(shape, Mesh):
+            from simkit.compiler.meshes.mesh_reader import load_mesh  # 4 ms: the formats
+
             return [] if shape.missing else load_mesh(shape, self.diagnostics, where)
         if isinstance(shape, Cone):
             return [MeshPart("cone", *shape_geometry.cone_triangles(shape))]

@@ -317,7 +317,7 @@ def exclude_self_collisions(
     joined = {frozenset((j.parent_link, j.child_link)) for j in joints}
     owns = {link.scoped: m.self_collide for m in model.all_models() for link in m.links}
     solid = [link for link in moving if link.collisions]
-    touchy = model.self_collide or any(k.self_collide or owns[k.scoped] for k in solid)
+    touchy = {k.scoped for k in solid if model.self_collide or k.self_collide or owns[k.scoped]}
     whole = _jointed_groups(model, joints)
     is_one = len({whole[link.scoped] for link in solid}) < 2
     many = is_one and len(solid) * (len(solid) - 1) // 2 > PAIRS_MOST
@@ -328,7 +328,7 @@ def exclude_self_collisions(
     for a, b in combinations(solid, 2):
         if whole[a.scoped] != whole[b.scoped]:
             continue
-        collide = model.self_collide or any(k.self_collide or owns[k.scoped] for k in (a, b))
+        collide = a.scoped in touchy or b.scoped in touchy
         if not collide or frozenset((a.scoped, b.scoped)) in joined:
             name = f"{a.scoped}|{b.scoped}"
             spec.add_exclude(name=name, bodyname1=a.scoped, bodyname2=b.scoped)

@@ -16,7 +16,6 @@ from typing import Final
 import numpy as np
 
 from simkit.compiler.kinematic_tree import KinematicTree
-from simkit.compiler.meshes.convex_pieces import hull_volume
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.shape_geometry import turn_z_to
 from simkit.pose import Pose
@@ -100,6 +99,8 @@ def _cylinder(vertices: Floats, faces: Ints, point: Floats, direction: Floats) -
     All values are in the frame of the vertices.
     """
     from scipy.spatial import ConvexHull, QhullError
+
+    from simkit.compiler.meshes.convex_pieces import hull_volume
 
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])  # length: twice the area

@@ -26,7 +26,7 @@ from simkit.loaders.resources.model_folder import model_file
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.uris import access_problem, sibling_names
 from simkit.loaders.resources.xml_reader import ALLOWED_FORMATS, Document, foreign_root_hint, parse_file, parse_text
-from simkit.loaders.xacro import expand, needs_expansion
+from simkit.loaders.xacro import needs_expansion
 from simkit.pose import Pose
 from simkit.registry import Kinds
 from simkit.run_spec import NamedValues, named_values
@@ -113,6 +113,8 @@ def find_document(
     document = _document(source, diagnostics)
     if document is None or not needs_expansion(document):
         return document, False
+    from simkit.loaders.xacro.expansion import expand  # 5 ms, and most files are not xacro
+
     return expand(document, resolver.around(document.folder), named_values(xacro_args, "xacro_args"), diagnostics), True
 
 

@@ -2,28 +2,31 @@
 
 from __future__ import annotations
 
-import ast
 import functools
 import inspect
+import re
 import sys
-from collections.abc import Iterator
 from types import ModuleType
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.options import option_types_of
 
-_READERS = frozenset(
-    ("all", "attribute", "block", "boolean", "child", "choice", "declare", "each", "has", "integer", "number")  # noqa: RUF005
-    + ("pose", "text", "vector", "vector3")
-    + ("find_element", "has_element")  # methods of gz systems; their methods `get_…` are recognised by the prefix
+# Calls that read a name, as in `params.number("gain")`. The methods from `find_element` on are those of gz systems.
+_READ_NAME = re.compile(
+    r"""
+    \.(?:all|attribute|block|boolean|child|choice|declare|each|has|integer|number|pose|text|vector3?
+        |find_element|has_element|get_\w+)
+    \(\s*(?:(?:name|element)\s*=\s*)?(?:"([^"\n]+)"|'([^'\n]+)')
+    """,
+    re.VERBOSE,
 )
 
 
 def names_read(cls: type[object]) -> frozenset[str]:
     """Return the names of the elements and attributes that the modules of a class and its base classes can read.
 
-    The source is parsed, not executed.
+    The text of the source is searched, not executed; to parse it takes 5 ms for a plugin with many parameters.
     """
     own = (c for c in cls.__mro__ if c.__module__ != "simkit.plugins.base")
     modules = dict.fromkeys(c.__module__ for c in own if c is not object)
@@ -34,23 +37,13 @@ def names_read(cls: type[object]) -> frozenset[str]:
 def _names_in_module(module: str) -> frozenset[str]:
     try:
         return _names_in_source(inspect.getsource(sys.modules[module]))
-    except (KeyError, OSError, TypeError, SyntaxError, ValueError):
+    except (KeyError, OSError, TypeError):
         return frozenset()  # the module has no source, so its names are unknown
 
 
 @functools.lru_cache(maxsize=256)
 def _names_in_source(source: str) -> frozenset[str]:
-    return frozenset(_names_in_tree(ast.parse(source)))
-
-
-def _names_in_tree(tree: ast.Module) -> Iterator[str]:
-    for node in ast.walk(tree):
-        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
-            continue
-        if node.func.attr in _READERS or node.func.attr.startswith("get_"):
-            for value in (*node.args[:1], *(k.value for k in node.keywords if k.arg in ("name", "element"))):
-                if isinstance(value, ast.Constant) and isinstance(value.value, str):
-                    yield value.value
+    return frozenset(one or two for one, two in _READ_NAME.findall(source))
 
 
 def report_unread(params: Params, owner: str, reader: object) -> None:

@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.bridges.live import socket_files
-from simkit.bridges.live.answering import answer_request
 from simkit.bridges.live.connection import ClientConnection
 from simkit.bridges.live.message_reader import message_reader
 from simkit.bridges.live.protocol import ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject
@@ -185,6 +184,8 @@ class Server:
 
     def _serve(self, peer: ClientConnection, until: float) -> bool:
         """Process a few frames of one client, until the time `until`; return True if it may have more frames."""
+        from simkit.bridges.live.answering import answer_request  # 4 ms, which a run without clients need not take
+
         try:
             take, publish = peer.reader.next, self._publish
             for _ in range(_REQUESTS_PER_TURN):

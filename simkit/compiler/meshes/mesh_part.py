@@ -1,4 +1,4 @@
-"""Triangles of one material, limits of mesh files, and parsing of numbers."""
+"""Triangles of one material, limits of mesh files, parsing of numbers, and findings about files."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics, Where
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -188,3 +190,9 @@ def unique_rows(rows: Indices) -> tuple[Indices, Ints]:
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     return rows[first[order]], rank[np.asarray(inverse).reshape(-1)].astype(np.int32)
+
+
+def report_once(diagnostics: Diagnostics, severity: Any, code: str, message: str, where: Where, hint: str = "") -> None:
+    """Record a finding about a file at its first use; further uses of the file are not reported."""
+    if not any(d.code == code and d.message == message for d in diagnostics):
+        diagnostics.add(severity, code, message, where, hint)

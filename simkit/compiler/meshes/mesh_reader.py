@@ -30,6 +30,7 @@ from simkit.compiler.meshes.mesh_part import (
     MeshFileError,
     MeshPart,
     numbers_of,
+    report_once,
 )
 from simkit.compiler.meshes.obj import read_obj
 from simkit.diagnostics import Diagnostics, Where, closest
@@ -70,12 +71,6 @@ def load_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> list[MeshPa
             report_once(diagnostics, "error", "SK-MESH-002", text, where)
             return []
     return parts
-
-
-def report_once(diagnostics: Diagnostics, severity: Any, code: str, message: str, where: Where, hint: str = "") -> None:
-    """Record a finding about a file at its first use; further uses of the file are not reported."""
-    if not any(d.code == code and d.message == message for d in diagnostics):
-        diagnostics.add(severity, code, message, where, hint)
 
 
 def load_file(file: Path, submesh: str = "") -> list[MeshPart]:

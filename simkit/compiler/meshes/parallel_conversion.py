@@ -17,10 +17,8 @@ from typing import Final
 
 from simkit import progress
 from simkit.child_process import ChildProcesses, exit_with_parent
-from simkit.compiler.meshes.convex_decomposition import convex_bodies
 from simkit.compiler.meshes.mesh_cache import cache_directory, load_converted, mesh_key
 from simkit.compiler.meshes.mesh_part import LARGEST_FILE, join_parts
-from simkit.compiler.meshes.mesh_reader import load_mesh
 from simkit.diagnostics import Diagnostics, Where
 from simkit.input_file import read_input
 from simkit.scene import Mesh, SceneModel
@@ -125,6 +123,9 @@ def _is_writable(folder: Path) -> bool:
 
 def _convert(uses: Mapping[Mesh, set[bool]]) -> None:
     """Convert shapes and their collision bodies, which the cache then has. The builder reports all problems."""
+    from simkit.compiler.meshes.convex_decomposition import convex_bodies  # 10 ms, which only these processes need
+    from simkit.compiler.meshes.mesh_reader import load_mesh
+
     for shape, kinds in uses.items():
         parts = load_mesh(shape, Diagnostics(), Where(str(shape.file)))
         for fixed in sorted(kinds) if parts else ():

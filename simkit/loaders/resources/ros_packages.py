@@ -20,6 +20,7 @@ _SEARCH_DEPTH: Final = 5  # levels of folders below a search path: workspace/src
 _MAX_FOLDERS: Final = 20_000
 _MAX_SECONDS: Final = 5.0
 _OTHER_FOLDERS: Final = frozenset(("build", "log", "node_modules", "__pycache__", "site-packages", "dist-packages"))
+_INSTALLED_FOLDERS: Final = frozenset(("bin", "include", "lib", "lib64", "libexec"))  # have no packages beside `share`
 _IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _NAME = re.compile(rb"<name>\s*([A-Za-z0-9_.-]+)\s*</name>")
 
@@ -206,7 +207,7 @@ class PackageIndex:
         """
         if folder not in self._places:
             home = enclosing_package(folder) or enclosing_project(folder)
-            above = [] if home is None else list(takewhile(lambda p: not is_top_folder(p), home.parents[:4]))
+            above = [] if home is None else list(takewhile(_can_be_workspace, home.parents[:4]))
             source = next((number for number, parent in enumerate(above) if parent.name == "src"), None)
             above = above[:3] if source is None else above[source : source + 2]
             self._places[folder] = (home or folder, *above)
@@ -242,7 +243,7 @@ class PackageIndex:
                 if not area.is_complete:
                     break
                 # a package can hold packages beside its own folders, which are not searched further
-                below += [child for child in children if not name or is_file(child / "package.xml")]
+                below += [folder / child for child in children if not name or _has_manifest(f"{folder}/{child}")]
             level = below if area.is_complete else []
         if not is_given:
             self._searched_count, self._searched_seconds = count, time.monotonic() - begin
@@ -255,8 +256,17 @@ class PackageIndex:
         return self._names[folder]
 
 
+def _can_be_workspace(folder: Path) -> bool:
+    """Check whether packages are searched in a folder above a package; the folder of all Python packages is huge."""
+    return not is_top_folder(folder) and folder.name not in _OTHER_FOLDERS
+
+
+def _has_manifest(folder: str) -> bool:
+    return os.path.isfile(f"{folder}/package.xml")  # noqa: PTH113 - a path object for each folder takes as long again
+
+
 def _read_name(folder: Path) -> str:
-    if not is_file(folder / "package.xml"):
+    if not _has_manifest(str(folder)):
         return ""
     try:
         found = _NAME.search(read_input(folder / "package.xml", 65536))
@@ -265,8 +275,11 @@ def _read_name(folder: Path) -> str:
     return folder.name if found is None else found.group(1).decode()
 
 
-def _subfolders(folder: Path) -> list[Path]:
-    """Return the folders in a folder that can hold packages; `src` is first and `install` is last."""
+def _subfolders(folder: Path) -> list[str]:
+    """Return the names of the folders in a folder that can hold packages; `src` is first and `install` is last.
+
+    Where packages are installed, they are in `share`: the headers of a distribution would be 1400 folders.
+    """
     try:
         with os.scandir(folder) as entries:
             names = [
@@ -274,8 +287,10 @@ def _subfolders(folder: Path) -> list[Path]:
             ]
     except OSError:
         return []
+    if "share" in names:
+        names = [name for name in names if name not in _INSTALLED_FOLDERS]
     names.sort(key=lambda name: (name == "install", name != "src", name))
-    return [folder / name for name in names]
+    return names
 
 
 def _own_folders(name: str, folder: Path) -> Iterator[Path]:

@@ -13,7 +13,7 @@ from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.urdf.gazebo_extensions import read_flag
 from simkit.loaders.urdf.kinematic_tree import place_links
 from simkit.loaders.urdf.robot import WORLD, build_robot, declare_robot
-from simkit.loaders.xacro import expand, needs_expansion
+from simkit.loaders.xacro import needs_expansion
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Scene, SceneModel
@@ -41,6 +41,8 @@ class UrdfLoader(IncludableLoader):
     def open_included(self, document: Document, workspace: Workspace) -> IncludedRobot | None:
         expanded: Document | None = document
         if needs_expansion(document):
+            from simkit.loaders.xacro.expansion import expand  # 5 ms, and most robots are not xacro
+
             expanded = expand(document, workspace.resolver, {}, workspace.diagnostics)
         if expanded is None:
             return None

@@ -10,9 +10,8 @@ from __future__ import annotations
 import re
 
 from simkit.loaders.resources.xml_reader import Document
-from simkit.loaders.xacro.expansion import expand
 
-__all__ = ["expand", "needs_expansion"]
+__all__ = ["needs_expansion"]
 
 _COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 

@@ -268,10 +268,13 @@ def report_unavailable_sensors(parts: Iterable[SensorsAndPlugins], diagnostics: 
 
 def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple[Plugin, ...]]:
     """Return the plugins that every world has: first those that run before the file's plugins, then those after."""
-    from simkit.plugins.actors import ActorMover
     from simkit.plugins.world.world_services import WorldServices
 
-    actors = (ActorMover(),) if world.actors else ()
+    actors: tuple[Plugin, ...] = ()
+    if world.actors:
+        from simkit.plugins.actors import ActorMover  # 5 ms
+
+        actors = (ActorMover(),)
     services: list[Plugin] = [SimulationInterfaces(), ClassicServices()]  # the first one owns the names of both
     is_classic = has_classic_plugins(world) if world.entity_services is None else world.entity_services == "classic"
     if is_classic:

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.plugins.base import Plugin
-from simkit.plugins.gz.gz_system_plugin import HOOKS, GzSystem
+from simkit.plugins.plugin_names import GZ_HOOKS
 from simkit.scene import SceneModel, SceneSensor, SceneVisual, SceneWorld
 
 if TYPE_CHECKING:
+    from simkit.plugins.gz.gz_system_plugin import GzSystem
     from simkit.runtime import Simulation
 
 SceneEntity = SceneWorld | SceneModel | SceneSensor | SceneVisual
@@ -121,6 +122,8 @@ def as_plugin(candidate: object, diagnostics: Diagnostics, where: Where = NOWHER
     if not has_hooks(candidate):
         diagnostics.error("SK-PLUGIN-022", f"found {candidate!r}; expected {describe_allowed_plugins()}", where)
         return None
+    from simkit.plugins.gz.gz_system_plugin import GzSystem  # 12 ms: gz's modules, which few worlds use
+
     plugin = GzSystem(system_of(candidate))
     plugin.name = _plugin_name(candidate)
     return plugin
@@ -135,6 +138,7 @@ def as_class(found: object) -> type[Plugin] | None:
         return None if inspect.isabstract(found) else found
     if not (isinstance(found, ModuleType) or inspect.isclass(found)) or not has_hooks(found):
         return None
+    from simkit.plugins.gz.gz_system_plugin import GzSystem  # as above
 
     def find_system(_self: GzSystem) -> object:
         return system_of(found)
@@ -147,20 +151,20 @@ def has_hooks(candidate: object) -> bool:
     """Check whether a class, an object or a module has a hook of gz, or the function `get_system`."""
     if isinstance(candidate, Plugin) or (inspect.isclass(candidate) and issubclass(candidate, Plugin)):
         return False
-    return any(callable(getattr(candidate, name, None)) for name in (*HOOKS, "get_system"))
+    return any(callable(getattr(candidate, name, None)) for name in (*GZ_HOOKS, "get_system"))
 
 
 def system_of(candidate: Any) -> object:
     """Return the object with gz's hooks: a new instance of a class, the object itself, or what `get_system` returns."""
     if inspect.isclass(candidate):
         return candidate()
-    has_own = any(callable(getattr(candidate, name, None)) for name in HOOKS)
+    has_own = any(callable(getattr(candidate, name, None)) for name in GZ_HOOKS)
     return candidate if has_own else candidate.get_system()
 
 
 def describe_allowed_plugins() -> str:
     """Return a description, for messages, of the objects that can be plugins."""
-    return f"a class derived from simkit's Plugin with a load method, or one with hooks of gz ({', '.join(HOOKS)})"
+    return f"a class derived from simkit's Plugin with a load method, or one with hooks of gz ({', '.join(GZ_HOOKS)})"
 
 
 def _plugin_name(candidate: object) -> str:

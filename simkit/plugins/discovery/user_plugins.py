@@ -16,7 +16,6 @@ from simkit.diagnostics import Diagnostics, closest, did_you_mean
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.plugins.base import Plugin
 from simkit.plugins.discovery.python_plugins import as_class, describe_allowed_plugins, has_hooks
-from simkit.plugins.gz.gz_system_plugin import line_of
 from simkit.plugins.plugin_folders import find_module, folder_help, is_inside, split_python_name
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
 from simkit.registry import entry_points_of
@@ -162,6 +161,8 @@ def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagno
         with _sibling_modules(file.resolve().parent):
             spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
+        from simkit.plugins.gz.gz_system_plugin import line_of  # 12 ms: gz's modules
+
         del sys.modules[key]
         message = f"plugin {plugin.filename!r}: importing {name!r} from {file} failed{line_of(error)}"
         diagnostics.error("SK-PLUGIN-008", f"{message}: {type(error).__name__}: {error}", plugin.where)

@@ -18,13 +18,11 @@ from simkit.plugins.gz_python.sdformat import Element
 from simkit.plugins.gz_python.sim.entity_table import WORLD_ENTITY
 from simkit.plugins.gz_python.sim.system_hub import EventManager, hub_of
 from simkit.plugins.joint_states import JointStatePublisher
+from simkit.plugins.plugin_names import GZ_HOOKS
 
 if TYPE_CHECKING:
     from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
     from simkit.runtime import Simulation
-
-HOOKS: Final = ("configure", "pre_update", "update", "post_update", "reset", "shutdown")
-"""Hooks of a system; an object without any of them is not a system."""
 
 System = Any
 """Object or module of a user with some of the hooks."""
@@ -72,7 +70,7 @@ class GzSystem(Plugin):
         try:
             with import_hook.importable(self.shadow):
                 self.system = self.find_system()
-                found = {hook: getattr(self.system, hook, None) for hook in HOOKS}
+                found = {hook: getattr(self.system, hook, None) for hook in GZ_HOOKS}
                 self._calls = {hook: call for hook, call in found.items() if callable(call)}
                 hook = "configure"
                 if hook in self._calls:

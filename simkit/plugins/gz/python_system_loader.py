@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.params import Params
-from simkit.plugins.gz.gz_system_plugin import HOOKS, GzSystem, System, line_of
+from simkit.plugins.gz.gz_system_plugin import GzSystem, System, line_of
 from simkit.plugins.gz_python import import_hook
 from simkit.plugins.options import Options, OptionsOf, text
 from simkit.plugins.plugin_folders import find_module, folder_help
-from simkit.plugins.plugin_names import ENTRY_POINT_GROUP
+from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, GZ_HOOKS
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -116,9 +116,9 @@ class PythonSystemLoader(GzSystem):
         if self._module is None:
             return None
         system = self._module.get_system()
-        if not any(callable(getattr(system, hook, None)) for hook in HOOKS):
+        if not any(callable(getattr(system, hook, None)) for hook in GZ_HOOKS):
             message = f"get_system() of {self._module_name!r} returns {type(system).__name__}, which has no hook"
-            self.params.error("SK-PLUGIN-084", message, "define one of the hooks: " + ", ".join(HOOKS))
+            self.params.error("SK-PLUGIN-084", message, "define one of the hooks: " + ", ".join(GZ_HOOKS))
             return None
         return system
 

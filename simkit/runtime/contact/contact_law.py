@@ -110,7 +110,8 @@ class ContactLaw:
         trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last item is for contacts without a geom
         collides = (model.geom_contype | model.geom_conaffinity) != 0
         self._tree_of = np.where(trees >= 0, trees, model.ntree)
-        self._colliding = np.unique(trees[:-1][collides & (trees[:-1] >= 0)])
+        moving = trees[:-1][collides & (trees[:-1] >= 0)]
+        self._colliding = np.array(sorted(set(moving.tolist())), trees.dtype)  # `np.unique` imports `numpy.ma`, 8 ms
         free = np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE)
         free = free[np.isin(model.body_treeid[model.jnt_bodyid[free]], self._colliding)]
         self._free = (model.jnt_dofadr[free][:, None] + np.arange(3)).reshape(-1).astype(np.intp)

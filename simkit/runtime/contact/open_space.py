@@ -67,7 +67,8 @@ class OpenSpace:
         self._duration, self._model = duration, model
         solid = np.flatnonzero(travel_bounds.can_collide(model))
         tree = model.body_treeid[model.geom_bodyid[solid]]
-        self._balls = [_ball_of(model, number, solid[tree == number]) for number in np.unique(tree[tree >= 0]).tolist()]
+        trees = sorted(set(tree[tree >= 0].tolist()))  # `np.unique` would import `numpy.ma`, 8 ms
+        self._balls = [_ball_of(model, number, solid[tree == number]) for number in trees]
         self.is_known = 0 < len(self._balls) <= _MOST_TREES and None not in self._balls
         self.is_known = self.is_known and not (model.nmocap or model.nflex or model.ntendon or model.neq)
         if self.is_known:

@@ -173,8 +173,9 @@ class FastBodyDetector:
         keep = (both * self._time > half[one] + half[other]) & (model.geom_bodyid[one] != model.geom_bodyid[other])
         one, other, both = one[keep], other[keep], both[keep]
         bodies = model.geom_bodyid
+        body_pairs = travel_bounds.BodyPairs(model)
         cleared = {
-            pair: travel_bounds.is_filtered(model, *pair)
+            pair: body_pairs.is_filtered(*pair)
             for pair in set(zip(bodies[one].tolist(), bodies[other].tolist(), strict=True))
         }
         keep = np.array([not cleared[int(bodies[a]), int(bodies[b])] for a, b in zip(one, other, strict=True)], bool)

@@ -71,7 +71,7 @@ def allowed_travel(model: mujoco.MjModel, half: Floats, geoms: Ints) -> Floats:
     for first, second in dict.fromkeys(map(tuple, masks.tolist())):
         kinds[first, second] = solid[(masks[:, 0] == first) & (masks[:, 1] == second)]
     static_least = {key: _minimum(half[own[tree[own] < 0]]) for key, own in kinds.items()}
-    trees = {key: set(np.unique(tree[own]).tolist()) - {-1} for key, own in kinds.items()}
+    trees = {key: set(tree[own].tolist()) - {-1} for key, own in kinds.items()}
     touchy: dict[int, bool] = {}
     allowed = np.empty(len(geoms))
     by_kind: dict[tuple[int, int, int], float] = {}
@@ -98,26 +98,32 @@ def _minimum(values: Floats) -> float:
 
 def _can_touch_itself(model: mujoco.MjModel, tree: int) -> bool:
     """Check whether two bodies of a kinematic tree may touch each other."""
-    solid = np.unique(model.geom_bodyid[can_collide(model)])
-    bodies = solid[model.body_treeid[solid] == tree].tolist()
+    solid = model.geom_bodyid[can_collide(model)]
+    bodies = sorted(set(solid[model.body_treeid[solid] == tree].tolist()))
     if len(bodies) > _MAX_COMPARED_BODIES:
         return True
-    return any(not is_filtered(model, a, b) for n, a in enumerate(bodies) for b in bodies[:n])
+    pairs = BodyPairs(model)
+    return any(not pairs.is_filtered(a, b) for n, a in enumerate(bodies) for b in bodies[:n])
 
 
-def is_filtered(model: mujoco.MjModel, one: int, other: int) -> bool:
-    """Check whether the engine ignores contacts between two bodies, whatever their masks."""
-    weld, parent = model.body_weldid, model.body_parentid
-    a, b = int(weld[one]), int(weld[other])
-    if a == b:
-        return True
-    if not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT):
-        above_a, above_b = int(weld[parent[a]]), int(weld[parent[b]])
-        if a and b and (a == above_b or b == above_a):
+class BodyPairs:
+    """Pairs of bodies whose contacts the engine ignores, whatever their masks."""
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        weld = model.body_weldid
+        self._weld: list[int] = weld.tolist()
+        self._above: list[int] = weld[model.body_parentid[weld]].tolist()
+        self._has_parents = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
+        self._excluded = set(model.exclude_signature.tolist())
+
+    def is_filtered(self, one: int, other: int) -> bool:
+        """Check whether the engine ignores contacts between two bodies."""
+        a, b = self._weld[one], self._weld[other]
+        if a == b:
             return True
-    low, high = sorted((one, other))
-    signatures = model.exclude_signature
-    return bool(((signatures == (low << 16) + high) | (signatures == (high << 16) + low)).any())
+        if self._has_parents and a and b and (a == self._above[b] or b == self._above[a]):
+            return True
+        return not self._excluded.isdisjoint(((one << 16) + other, (other << 16) + one))
 
 
 def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Floats]:

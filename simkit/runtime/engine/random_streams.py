@@ -4,31 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import weakref
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from numpy.random.bit_generator import ISeedSequence
 
 from simkit.in_process import InProcess
 
+if TYPE_CHECKING:
+    from simkit.runtime.engine.stream_key import StreamKey
+
 Values = npt.NDArray[np.float64]
 _BLOCK_VALUES = 8192
-
-
-class StreamKey(ISeedSequence):
-    """Key of a stream in the form that NumPy's generators take.
-
-    A generator that gets the key as a number draws another one from the operating system first, which takes longer than
-    the samples of an IMU.
-    """
-
-    def __init__(self, seed: int, name: tuple[int, ...]) -> None:
-        self._key = np.asarray(np.random.SeedSequence((seed, *name)).generate_state(2, np.uint64), dtype=np.uint64)
-
-    def generate_state(self, n_words: int, dtype: object = np.uint64) -> npt.NDArray[np.uint64]:
-        """Return the key, two words; Philox asks for nothing else."""
-        return self._key
 
 
 def _name_words(scoped: str, channel: str) -> tuple[int, ...]:
@@ -63,6 +50,8 @@ class RandomStream(InProcess):
     def generator(self, index: int, purpose: int = 0) -> np.random.Generator:
         """Return a new generator for one index."""
         if self._key is None:  # many streams of a world are never drawn from
+            from simkit.runtime.engine.stream_key import StreamKey  # 6 ms: NumPy's generators
+
             assert self._seed is not None
             self._name = self._name or _name_words(self.scoped, self.channel)
             self._key = StreamKey(self._seed, self._name)

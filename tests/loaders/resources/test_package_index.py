@@ -159,6 +159,27 @@ def test_a_package_of_stranger_folders_above_the_workspace_is_not_searched(packa
     assert used(ROBOT, MESH.format("sensors"))[0] == ""
 
 
+@pytest.mark.parametrize("other", ["lib/site-packages/other/share/sensors", "lib/site-packages/sensors"])
+def test_a_robot_in_an_installed_python_package_finds_the_packages_of_its_own_python_package_only(package, used, other):
+    own = "lib/site-packages/robots/share"
+    package(f"{own}/robot")
+    package(f"{own}/cameras")
+    package(other)
+    file = f"{own}/robot/urdf/r.urdf"
+    assert used(file, MESH.format("cameras"))[0] == f"{own}/cameras"
+    assert used(file, MESH.format("sensors"))[0] == ""
+
+
+@pytest.mark.parametrize("folder", ["bin", "include", "lib"])
+def test_packages_of_an_install_are_searched_in_share_and_not_in_headers_or_libraries(package, used, folder):
+    package("opt/distribution/share/robot")
+    package(f"opt/distribution/{folder}/sensors")
+    file = "opt/distribution/share/robot/urdf/r.urdf"
+    assert used(file, MESH.format("sensors"))[0] == ""
+    package("opt/distribution/share/deep/sensors")
+    assert used(file, MESH.format("sensors"))[0] == "opt/distribution/share/deep/sensors"
+
+
 def test_the_home_folder_is_not_searched(package, used, monkeypatch, tmp_path):
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     package("home/mine/robot")

@@ -14,7 +14,7 @@ import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver
 from simkit.loaders.resources.xml_reader import parse_file
-from simkit.loaders.xacro import expand
+from simkit.loaders.xacro.expansion import expand
 from simkit.loaders.xacro.expansion_limits import BoundError, Budget, ExpansionError
 from simkit.loaders.xacro.expression import Evaluator
 from simkit.loaders.xacro.expression_functions import math_functions, python_functions
