@@ -139,6 +139,12 @@ def test_an_episode_begins_with_the_motion_and_the_enabled_state_that_on_reset_l
     assert assert_same_bits(source, 60, time_limit=0.5, **options) > 20
 
 
+def test_a_message_older_than_the_episode_is_observed_until_the_next_one() -> None:
+    source = world(rover("rover", 0, COMMAND_AND_ODOMETRY + RATE.format(9)))  # one message for eleven control periods
+    options: dict[str, Any] = {"observation": {"odom": "/odom"}, "on_reset": moved, "control_period": 0.01}
+    assert assert_same_bits(source, 40, time_limit=0.1, **options) >= 9
+
+
 PUBLISHER = """</plugin><plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
 <odom_topic>true_odom</odom_topic><odom_publish_frequency>{}</odom_publish_frequency>"""
 

@@ -144,8 +144,8 @@ class Sources:
         self.sampled: list[SampledRows] = []
         self.needs_acceleration = False
 
-    def bind(self, given: Observation, bound: Any) -> Read:
-        """Return the function that reads a source in all environments.
+    def bind(self, given: Observation, name: str) -> Read:
+        """Return the function that reads the source of a named observation in all environments.
 
         Raises:
             CannotBatchError: the source needs Python for each environment.
@@ -166,7 +166,7 @@ class Sources:
         if source in tables["model"] or source in tables["link"]:
             return self._pose(source)
         if source.startswith("/") and " " not in source:
-            return self._topic(absolute_name(source), given, bound)
+            return self._topic(absolute_name(source), given, name)
         get = _expression(source, view, self._env)
         return lambda _: np.broadcast_to(value := np.asarray(get()), (view.count, *value.shape[1:]))
 
@@ -195,24 +195,28 @@ class Sources:
         limits = float(sensor.options.range_min), float(sensor.options.range_max)
         return lambda ids: np.clip(scan.read(ids).astype(np.float32), *limits)
 
-    def _topic(self, topic: str, given: Observation, bound: Any) -> Read:
+    def _topic(self, topic: str, given: Observation, name: str) -> Read:
         for sensor in self._env.sim.contents.sensors.values():
             if sensor.topic == topic:
                 return self._sensor(sensor, given)
+
+        def observed() -> Any:
+            return self._env._observations._bound[name]._read()  # each reset binds the observations again
+
         for drive in self._drives:
             read = drive.bind(topic)
             if read is not None:
-                return self._sample(read, drive.grid, bound)
+                return self._sample(read, drive.grid, observed)
         for plugin in self._env.sim.engine.structure.all_plugins():
             if type(plugin) is OdometryPublisher and topic in (plugin._odom.topic, plugin._noisy.topic):
-                return self._keep(MeanMotionRows(plugin, self._view, bound))
+                return self._keep(MeanMotionRows(plugin, self._view, observed))
             if isinstance(plugin, JointStates) and plugin.ros.topic(plugin._topic) == topic:
                 grid = self._env.sim.engine.clock.grid(plugin.after_step_rate or 0.0)
-                return self._sample(self._joint_states(plugin), grid, bound)
+                return self._sample(self._joint_states(plugin), grid, observed)
         raise CannotBatchError(f"topic {topic}")
 
-    def _sample(self, read: Callable[[Ids], Floats], grid: Any, bound: Any) -> Read:
-        return self._keep(SampledRows(read, grid, bound, self._view.count))
+    def _sample(self, read: Callable[[Ids], Floats], grid: Any, observed: Callable[[], Any]) -> Read:
+        return self._keep(SampledRows(read, grid, observed, self._view.count))
 
     def _keep(self, rows: SampledRows) -> Read:
         self.sampled.append(rows)

@@ -101,7 +101,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
             given = source if isinstance(source, Observation) else Observation(source)
             bound = env._observations._bound[name]
             try:
-                self._bound[name] = ObservationArrays(bound, self._sources.bind(given, bound))
+                self._bound[name] = ObservationArrays(bound, self._sources.bind(given, name))
             except CannotBatchError as error:
                 found.append(f"observation {name!r}: {error}")
         self._values: dict[str, Any] = {}

@@ -27,16 +27,16 @@ class SampledRows:
     Args:
         read: function that returns the present values of some environments.
         grid: ticks at which the plugin samples; None for every step.
-        bound: observation of the environment that resets all others.
+        observed: function that returns the values that the environment that resets all others observes now.
         count: number of environments.
     """
 
-    def __init__(self, read: Callable[[Ids], Floats], grid: Any, bound: Any, count: int) -> None:
-        self._read, self.grid, self._bound = read, grid, bound
-        self.values = np.zeros((count, *np.shape(bound._read())))
+    def __init__(self, read: Callable[[Ids], Floats], grid: Any, observed: Callable[[], Any], count: int) -> None:
+        self._read, self.grid, self._observed = read, grid, observed
+        self.values = np.zeros((count, *np.shape(observed())))
 
     def take(self, row: int) -> None:
-        self.values[row] = self._bound._read()
+        self.values[row] = self._observed()
 
     def next_stop(self, tick: int) -> int:
         """Return the first tick after a tick at which `note` must be called."""
@@ -56,13 +56,13 @@ class MeanMotionRows(SampledRows):
     Args:
         plugin: publisher of the environment that resets all others.
         view: state of all environments.
-        bound: observation of that environment.
+        observed: function that returns the values that this environment observes now.
 
     Raises:
         CannotBatchError: the odometry has noise, or the model is static.
     """
 
-    def __init__(self, plugin: OdometryPublisher, view: ArrayView, bound: Any) -> None:
+    def __init__(self, plugin: OdometryPublisher, view: ArrayView, observed: Callable[[], Any]) -> None:
         name = plugin._true._frame.scoped
         try:
             view.place(name)
@@ -70,7 +70,8 @@ class MeanMotionRows(SampledRows):
             raise CannotBatchError(f"the pose of the static model {name!r}") from None
         if plugin._stream is not None:
             raise CannotBatchError(f"topic {plugin._odom.topic} with <gaussian_noise>")
-        super().__init__(self._poses, plugin.sim.engine.clock.grid(plugin.after_step_rate or 0.0), bound, view.count)
+        grid = plugin.sim.engine.clock.grid(plugin.after_step_rate or 0.0)
+        super().__init__(self._poses, grid, observed, view.count)
         self._plugin, self._view, self._name = plugin, view, name
         # a free link's state has its pose without rounding errors
         state = plugin._true._link._binding.root_joint_qpos if plugin._true._frame is plugin._true._link else -1
