@@ -202,12 +202,14 @@ def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, 
 
     `pkgutil.iter_modules` would take 7 ms instead of 1 ms for the plugins.
     """
-    for folder in folders:
+    for folder in filter(os.path.isdir, folders):
         with os.scandir(folder) as entries:
             found = sorted((entry.name, entry.is_dir()) for entry in entries)
         for name, is_folder in found:
             path = os.path.join(folder, name)  # noqa: PTH118 - as above
             stem = f"{package}.{name.removesuffix('.py')}"
+            if not name.removesuffix(".py").isidentifier():  # no module, as `.#lidar.py`, the lock of an editor
+                continue
             if is_folder and os.path.isfile(init := os.path.join(path, "__init__.py")):  # noqa: PTH113, PTH118
                 yield stem, init
                 yield from _modules_below([path], stem)

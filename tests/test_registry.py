@@ -89,6 +89,12 @@ def test_computed_names_are_found(animals: Kinds[Any]) -> None:
     assert animals.written == {"dog": "Dog", "hound": "Hound", "cat": "Cat", "bird 0": "bird 0", "bird 1": "bird 1"}
 
 
+def test_lock_files_of_an_editor_and_missing_folders_have_no_modules(animals: Kinds[Any], tmp_path: Path) -> None:
+    (tmp_path / "animals" / ".#dog.py").symlink_to("someone@computer.1234")
+    sys.modules["animals"].__path__.append(str(tmp_path / "missing"))
+    assert animals["bird 1"].__name__ == "Bird"
+
+
 @pytest.mark.parametrize("name", ["wolf", "nobody", "not a class's", ""])
 def test_a_name_without_a_class_is_not_found(animals: Kinds[Any], name: str) -> None:
     assert name not in animals
