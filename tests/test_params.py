@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.xml_reader import parse_text
 from simkit.params import Params
+from simkit.plugins.unread_parameters import names_read
 
 
 def block(text: str) -> Params:
@@ -79,6 +81,24 @@ def test_unread_elements_are_reported_except_foreign_prefixes():
     p.number("a"), p.number("radius", 1.0), p.block("sub").text("z", "")
     p.report_unread("SK-PARAM-003", "plugin 'q'")
     assert problems(p) == [("SK-PARAM-003", "did you mean 'radius'?"), ("SK-PARAM-003", "")]
+
+
+READER = """
+class Reader:
+    def load(self, params):
+        self.gain = params.number(default=1.0, name="gain")
+        # self.limit = params.number("limit")
+        self.title = params.text(
+            # shown in the window
+            "title",
+        )
+"""
+
+
+def test_a_call_in_a_comment_reads_no_parameter_and_keywords_have_any_order(tmp_path, monkeypatch):
+    (tmp_path / "commented_plugin.py").write_text(READER)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert names_read(importlib.import_module("commented_plugin").Reader) == {"gain", "title"}
 
 
 def test_the_second_of_two_equal_elements_is_reported():

@@ -17,7 +17,7 @@ _READ_NAME = re.compile(
     r"""
     \.(?:all|attribute|block|boolean|child|choice|declare|each|has|integer|number|pose|text|vector3?
         |find_element|has_element|get_\w+)
-    \(\s*(?:(?:name|element)\s*=\s*)?(?:"([^"\n]+)"|'([^'\n]+)')
+    \((?:\s|\#[^\n]*\n)*(?:(?:[\w.]+\s*=\s*[\w.+-]+\s*,\s*)*(?:name|element)\s*=\s*)?(?:"([^"\n]+)"|'([^'\n]+)')
     """,
     re.VERBOSE,
 )
@@ -43,7 +43,13 @@ def _names_in_module(module: str) -> frozenset[str]:
 
 @functools.lru_cache(maxsize=256)
 def _names_in_source(source: str) -> frozenset[str]:
-    return frozenset(one or two for one, two in _READ_NAME.findall(source))
+    calls = _READ_NAME.finditer(source)
+    return frozenset(call[1] or call[2] for call in calls if not _is_in_comment(source, call.start()))
+
+
+def _is_in_comment(source: str, at: int) -> bool:
+    """Check whether the line of a position is a comment, such as a call that a user has commented out."""
+    return source[source.rfind("\n", 0, at) + 1 : at].lstrip().startswith("#")
 
 
 def report_unread(params: Params, owner: str, reader: object) -> None:
