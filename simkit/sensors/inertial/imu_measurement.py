@@ -136,10 +136,16 @@ class ImuMeasurement(Sensor):
         self.set_orientation_reference(quat_multiply(self.reference, quat_conjugate(quat_from_rpy(*rpy))))
 
     def add_white_noise(self, stddev: float) -> None:
-        """Add white noise with one standard deviation to each rate [rad/s], acceleration [m/s²] and angle [rad]."""
+        """Set white noise that is added to each rate [rad/s], acceleration [m/s²] and angle [rad]."""
+        self._replace_more_noise(NoiseModel(stddev=stddev))
+
+    def _replace_more_noise(self, model: NoiseModel | None) -> None:
+        """Replace the noise that is added to all channels; None for no such noise."""
         self._make_pending_messages()
         self.batch = None
-        self._more_noise = self._make_noise((NoiseModel(stddev=stddev),) * 9, "more")
+        if self._more_noise is not None:
+            self._noises.remove(self._more_noise)
+        self._more_noise = None if model is None else self._make_noise((model,) * 9, "more")
         self._covariances_of = None
 
     def _make_pending_messages(self) -> None:
@@ -217,6 +223,8 @@ class ImuMeasurement(Sensor):
         return super().memory(), self.reference
 
     def remember(self, memory: Memory) -> None:
+        if len(memory[0]) != len(self._noises):  # the state is from before `add_white_noise`, or from after it
+            self._replace_more_noise(NoiseModel() if self._more_noise is None else None)
         super().remember(memory[0])
         if memory[1] is self.reference:
             self._make_pending_messages()

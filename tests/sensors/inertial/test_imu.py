@@ -103,6 +103,26 @@ def test_a_restored_run_repeats_its_noise() -> None:
         assert [m.angular_velocity.x for m in sub.messages][-10:] == first
 
 
+def test_added_noise_ends_with_a_reset_and_returns_with_a_snapshot() -> None:
+    with simkit.load(SPINNER.replace("DAMPING", "0"), seed=4) as sim:
+        imu, rates = sim.sensor("m::arm::s"), sim.subscribe("/i")
+        imu.add_white_noise(5.0)
+        imu.add_white_noise(0.1)
+        sim.run(1.0)
+        noisy = sim.snapshot()
+        spread = np.std([m.angular_velocity.x for m in rates.messages])
+        assert spread == pytest.approx(0.1, rel=0.1)
+        sim.run(0.1)
+        after = [m.angular_velocity.x for m in rates.messages][-100:]
+        sim.reset()
+        sim.run(0.1)
+        assert [m.angular_velocity.x for m in rates.messages][-100:] == [0.0] * 100
+        assert imu.latest.angular_velocity_covariance[0] == 0.0
+        sim.restore(noisy)
+        sim.run(0.1)
+        assert [m.angular_velocity.x for m in rates.messages][-100:] == after
+
+
 def test_options_keep_every_noise_parameter() -> None:
     more = (
         "<bias_mean>1</bias_mean><bias_stddev>2</bias_stddev><dynamic_bias_stddev>3</dynamic_bias_stddev>"
