@@ -206,15 +206,15 @@ def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, 
         with os.scandir(folder) as entries:
             found = sorted((entry.name, entry.is_dir()) for entry in entries)
         for name, is_folder in found:
-            path = os.path.join(folder, name)  # noqa: PTH118 - as above
-            stem = f"{package}.{name.removesuffix('.py')}"
-            if not name.removesuffix(".py").isidentifier():  # no module, as `.#lidar.py`, the lock of an editor
+            path, stem = os.path.join(folder, name), name.removesuffix(".py")  # noqa: PTH118 - as above
+            if not stem.isidentifier():  # not a module, for example `.#lidar.py`, the lock file of an editor
                 continue
+            module = f"{package}.{stem}"
             if is_folder and os.path.isfile(init := os.path.join(path, "__init__.py")):  # noqa: PTH113, PTH118
-                yield stem, init
-                yield from _modules_below([path], stem)
+                yield module, init
+                yield from _modules_below([path], module)
             elif name.endswith(".py") and name != "__init__.py":
-                yield stem, path
+                yield module, path
 
 
 def _assigned_name_pattern(source: str, name: str) -> Iterator[int]:

@@ -1,4 +1,4 @@
-"""Serialisation of many samples of a sensor in one call, for recorders and sockets that need only bytes."""
+"""Groups of samples that are made into messages when they are read, or serialised in one call for a recorder."""
 
 from __future__ import annotations
 

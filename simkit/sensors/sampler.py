@@ -46,7 +46,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._publishers: list[tuple[str, Publisher, bool]] = []
         self._newest: Sample | None = None
         self._gathered: list[tuple[int, Reading]] = []
-        self._group: SampleGroup | None = None  # samples that nobody uses at once
+        self._group: SampleGroup | None = None  # samples whose readers do not need them at once
         self._revision, self._patience = -1, 0.0
         self._read_publishers: list[tuple[str, Publisher, bool]] = []
         self._is_read = self._gathers = self._is_served = self._is_unread = False

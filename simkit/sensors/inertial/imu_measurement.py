@@ -136,7 +136,7 @@ class ImuMeasurement(Sensor):
         self.set_orientation_reference(quat_multiply(self.reference, quat_conjugate(quat_from_rpy(*rpy))))
 
     def add_white_noise(self, stddev: float) -> None:
-        """Set white noise that is added to each rate [rad/s], acceleration [m/s²] and angle [rad]."""
+        """Add white noise to each rate [rad/s], acceleration [m/s²] and angle [rad], in place of noise added before."""
         self._replace_more_noise(NoiseModel(stddev=stddev))
 
     def _replace_more_noise(self, model: NoiseModel | None) -> None:
