@@ -25,6 +25,7 @@ SMALL_MODULES = frozenset(
         "diagnostic_record",
         "diagnostics",
         "errors",
+        "home_folder",
         "in_process",
         "input_file",
         "interrupts",
