@@ -172,7 +172,7 @@ def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, n
         _write_error(stage, failure)
     given = sim.world.name if sim.world.name not in ("", "default") else Path(world.file).stem
     return Manifest(
-        name=name or given or "run", **_world_fields(spec, world), missing=(*world.missing, *journal.gaps),
+        name=name or given or "run", **_world_fields(spec, world, sim), missing=(*world.missing, *journal.gaps),
         seconds=keeper.seconds, topics=keeper.topics, first=first, end=end, streams=topic_digests(iter(messages)),
         marks=tuple(keeper.marks.found), commands=journal.count, files=_file_table(stage),
     )  # fmt: skip
@@ -204,21 +204,30 @@ def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
     return _write_with_generated_name(folder, staged)
 
 
-def _world_fields(spec: RunSpec, world: StagedWorld) -> JsonObject:
-    """Return the manifest fields that describe the run and the machine."""
+def _world_fields(spec: RunSpec, world: StagedWorld, sim: Simulation | None = None) -> JsonObject:
+    """Return the manifest fields that describe the run and the machine.
+
+    Args:
+        spec: Specification of the run.
+        world: Files of the world.
+        sim: Simulation of the run; None if loading failed.
+    """
+    from simkit.sensors.cameras.rendering.renderer_choice import fixed_renderer
+
     return {
         "world": world.file,
         "base": spec.options.get("base", "auto"),
         "seed": spec.seed,
         "sleep": spec.options.get("sleep", True),
         "on_error": spec.options.get("on_error"),
+        "renderer": spec.options.get("renderer") if sim is None else fixed_renderer(sim),
         "overrides": spec.overrides,
         "spawn": tuple(world.spawn),
         "model_world": world.model_world,
         "params": tuple(world.params),
         "models": world.models,
         "code": tuple(sorted(world.code)),
-        "fingerprint": fingerprint(),
+        "fingerprint": fingerprint(sim if sim is not None and sim.engine.renderer else None),
     }
 
 

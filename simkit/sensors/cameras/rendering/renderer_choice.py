@@ -90,6 +90,8 @@ def renderer_of(sim: Simulation, quality: str = "") -> ImageRenderer:
             _free_quietly(_abandoned.pop())
         found = drawing.renderers[key] = _make(key[0], Appearance(sim.world.surroundings, QUALITIES[key[1]]))
         found.uploads.reserve(*drawing.size)
+        with contextlib.suppress(RenderError):  # each image raises the error again
+            check_available(sim)
         weakref.finalize(sim, _abandoned.append, found).atexit = False
     return drawing.renderers[key]
 
@@ -138,13 +140,18 @@ def is_ready(sim: Simulation) -> bool:
 
 
 def check_available(sim: Simulation) -> None:
-    """Open the renderer of a simulation.
+    """Open the renderer of a simulation, and store its description in `sim.engine.renderer`.
 
     Raises:
         RenderError: SK-RENDER-001 the simulation requests OpenGL, and no library provides it.
     """
     if chosen_renderer(sim) == GL:
         gl_context.ensure_open()
+        sim.engine.renderer = gl_context.describe_renderer() or "unknown"
+        return
+    import cv2
+
+    sim.engine.renderer = f"{SOFTWARE} (simkit, OpenCV {cv2.__version__})"
 
 
 def reserve_image(sim: Simulation, width: int, height: int) -> None:
@@ -165,11 +172,18 @@ def describe_renderer(sim: Simulation) -> str:
         check_available(sim)
     except RenderError as error:
         return f"none ({error.code})"
-    if chosen_renderer(sim) == GL:
-        return gl_context.describe_renderer() or "unknown"
-    import cv2
+    return sim.engine.renderer
 
-    return f"{SOFTWARE} (simkit, OpenCV {cv2.__version__})"
+
+def fixed_renderer(sim: Simulation) -> str:
+    """Return the renderer to request so that a repetition of the run draws the same images.
+
+    It is `software` also after a fallback. A run that has drawn nothing keeps `auto`, and so does a run that OpenGL has
+    drawn, because a machine without OpenGL should repeat it, too.
+    """
+    requested = sim.world.renderer
+    fell_back = requested == "auto" and _drawing_of(sim).kinds.get(requested) == SOFTWARE
+    return SOFTWARE if fell_back else requested
 
 
 def free_renderer(sim: Simulation) -> None:
