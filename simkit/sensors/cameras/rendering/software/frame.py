@@ -1,0 +1,104 @@
+"""Frame of one image: the camera's pose and frustum as the matrix and the depths that OpenCV's rasteriser needs.
+
+`triangleRasterize` knows only symmetric frusta and stores A - B/depth in single precision. The matrix here shears and
+scales any frustum into a symmetric one of 90 degrees. Its planes are at 2^30 and 2^31, far behind the scene. The stored
+value is then 2 - 2^31/depth, which keeps seven digits of the depth at every distance. It is called the key of a pixel.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from simkit.sensors.cameras.rendering.software.vectors import Array, Floats
+from simkit.sensors.cameras.rendering.view import Depths, View
+
+NEAR: Final = 2.0**30
+FAR: Final = 2.0**31
+_SHIFT: Final = (1.9e-5, 1.3e-5)
+"""Shift of the image [px] in x and y. Edges would else pass exactly through centres of pixels if the camera is parallel
+to an axis, and the rasteriser may then draw neither of two neighbours."""
+
+
+class Frame:
+    """Pose and frustum of one image.
+
+    Attributes:
+        view: image size and frustum.
+        eye: position of the camera relative to `origin` [m], shape (3,).
+        origin: point of the world [m] to which all drawn points are relative, so that single precision suffices.
+        ahead, right, up: axes of the camera in the world, shape (3,).
+        matrix: matrix for OpenCV, shape (4, 4).
+        far_key: key of the far plane; the key of a pixel without a shape.
+    """
+
+    def __init__(self, view: View, position: Array, rotation: Array, origin: Array) -> None:
+        self.view, self.origin = view, origin
+        self.eye = np.asarray(position, np.float64) - origin
+        self.ahead, self.right, self.up = rotation[:, 0].copy(), -rotation[:, 1], rotation[:, 2].copy()
+        self.half = (view.right - view.left) / 2.0, (view.top - view.bottom) / 2.0
+        middle_x = (view.right + view.left) / 2.0 - _SHIFT[0] * 2.0 * self.half[0] / view.width
+        middle_y = (view.top + view.bottom) / 2.0 - _SHIFT[1] * 2.0 * self.half[1] / view.height
+        wide, high = self.half[0] * view.height / view.width, self.half[1]
+        rows = (self.right - middle_x * self.ahead) / wide, (self.up - middle_y * self.ahead) / high, -self.ahead
+        self.matrix = np.eye(4)
+        for number, row in enumerate(rows):
+            self.matrix[number, :3] = row
+            x, y, z = row * self.eye
+            self.matrix[number, 3] = -float(x + y + z)
+        self.far_key = np.float32(2.0 - FAR / view.far)
+        self.pixels_per_tangent = max(view.width / (2.0 * self.half[0]), view.height / (2.0 * self.half[1]))
+
+    def in_camera(self, points: Array) -> tuple[Array, Array, Array]:
+        """Return the coordinates of points to the right, up and ahead of the camera [m], each of shape (n,)."""
+        away = points.astype(np.float64) - self.eye
+        x, y, z = away[:, 0], away[:, 1], away[:, 2]
+        right, up, ahead = (x * axis[0] + y * axis[1] + z * axis[2] for axis in (self.right, self.up, self.ahead))
+        return right, up, ahead
+
+    def from_camera(self, right: Array, up: Array, ahead: Array) -> Floats:
+        """Return the points at coordinates of the camera, shape (n, 3)."""
+        points = np.empty((len(right), 3), np.float32)
+        for axis in range(3):
+            points[:, axis] = (
+                self.eye[axis] + right * self.right[axis] + up * self.up[axis] + ahead * self.ahead[axis]
+            )
+        return points
+
+    def columns(self) -> Array:
+        """Return the tangents of the columns' centres to the right, shape (width,)."""
+        step = 2.0 * self.half[0] / self.view.width
+        tangents: Array = self.view.left + (np.arange(self.view.width) + 0.5) * step
+        return tangents
+
+    def rows(self) -> Array:
+        """Return the tangents of the rows' centres upwards, first the top row, shape (height,)."""
+        step = 2.0 * self.half[1] / self.view.height
+        tangents: Array = self.view.top - (np.arange(self.view.height) + 0.5) * step
+        return tangents
+
+    def raw_depths(self, keys: Floats) -> Depths:
+        """Return raw depths of keys as OpenGL's frame buffer has them: 1 at the near plane, 0 at the far one."""
+        near, far = float(np.float32(self.view.near)), float(np.float32(self.view.far))
+        scale = near * far / (far - near) / FAR
+        depths: Depths = np.subtract(self.far_key, keys)
+        depths *= np.float32(scale)
+        return depths
+
+    def raw_of(self, reciprocals: Array) -> Array:
+        """Return raw depths of reciprocal depths [1/m]."""
+        near, far = float(np.float32(self.view.near)), float(np.float32(self.view.far))
+        raw: Array = (reciprocals - 1.0 / far) * (near * far / (far - near))
+        return raw
+
+
+def keys_of(reciprocals: Array) -> Floats:
+    """Return the keys of reciprocal depths [1/m]."""
+    return (2.0 - FAR * reciprocals).astype(np.float32)
+
+
+def reciprocals_of(keys: Floats) -> Array:
+    """Return the reciprocal depths [1/m] of keys."""
+    found: Array = (2.0 - keys.astype(np.float64)) / FAR
+    return found

@@ -1,0 +1,198 @@
+"""Software renderer: images of a simulation without OpenGL, drawn with OpenCV's triangle rasteriser."""
+
+from __future__ import annotations
+
+import functools
+import logging
+import threading
+from collections.abc import Generator, Sequence
+from typing import TYPE_CHECKING, Final
+
+import mujoco
+import numpy as np
+
+from simkit.interrupts import defer_interrupts
+from simkit.sensors.cameras.rendering.scene_composition import SOLID, Composer, Composition
+from simkit.sensors.cameras.rendering.software.exact_surfaces import exact_depths
+from simkit.sensors.cameras.rendering.software.frame import Frame
+from simkit.sensors.cameras.rendering.software.lamps import CornerLight, lamps_of
+from simkit.sensors.cameras.rendering.software.rasteriser import draw_keys, draw_numbers, draw_values, fill_pinholes
+from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
+from simkit.sensors.cameras.rendering.software.shape_store import ShapeStore
+from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
+from simkit.sensors.cameras.rendering.software.triangles import View3D
+from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, dot, rotate
+from simkit.sensors.cameras.rendering.view import DrawnView, Shot
+
+if TYPE_CHECKING:
+    from simkit.sensors.cameras.rendering.renderer import Appearance
+
+_FLAGS = mujoco.mjtRndFlag
+_BLOCK: Final = 64.0
+"""Grid [m] of the points to which drawn positions are relative, so that single precision suffices far away."""
+
+
+@functools.cache
+def describe_renderer() -> str:
+    """Return a text such as `software (triangle rasteriser of OpenCV 5.0.0)`."""
+    import cv2
+
+    return f"software (triangle rasteriser of OpenCV {cv2.__version__})"
+
+
+class MemoryReservation:
+    """Counterpart of the graphics memory of the OpenGL renderer; the software renderer reserves nothing."""
+
+    def reserve(self, width: int, height: int) -> None:
+        """Accept the size of later images [px]."""
+
+    def contexts(self) -> list[mujoco.MjrContext]:
+        """Return no context, because no graphics memory is used."""
+        return []
+
+    def free(self) -> None:
+        """Free nothing."""
+
+
+class SoftwareRenderer:
+    """Renderer of the visuals of one simulation without OpenGL, with the interface of `Renderer`.
+
+    One thread may compose a scene, and another thread may draw it.
+
+    Args:
+        appearance: appearance of the images.
+
+    Attributes:
+        composer: composer of the scenes.
+        uploads: reservation of memory, which does nothing.
+    """
+
+    def __init__(self, appearance: Appearance) -> None:
+        self._appearance = appearance
+        flags = [_FLAGS.mjRND_CULL_FACE]
+        if appearance.quality.shadow_map:
+            flags.append(_FLAGS.mjRND_SHADOW)
+        self.composer = Composer(flags)
+        self.uploads = MemoryReservation()
+        self._store = ShapeStore()
+        self._lock = threading.RLock()
+        self._is_logged = False
+
+    def draw_all(self, composition: Composition, shots: Sequence[Shot]) -> Generator[DrawnView, None, None]:
+        """Draw the shots of a composition one by one; each result is valid until the next one is requested.
+
+        At the end of the generator, the composition is returned to the composer.
+        """
+        try:
+            for shot in shots:
+                yield self.draw(composition, shot)
+        finally:
+            self.composer.give_back(composition)
+
+    def draw(self, composition: Composition, shot: Shot) -> DrawnView:
+        """Draw one image."""
+        with defer_interrupts(), self._lock:
+            self._store.use_model(composition.model)
+            return self._draw(composition, shot)
+
+    def uploaded(self) -> list[mujoco.MjrContext]:
+        """Return no context, because no graphics memory is used."""
+        return []
+
+    def free(self) -> None:
+        """Forget the triangles of the model; a later image makes them again."""
+        with self._lock:
+            self._store.clear()
+
+    # ------------------------------------------------------------------ helpers
+
+    def _draw(self, composition: Composition, shot: Shot) -> DrawnView:
+        scene, view = composition.scene, shot.view
+        table = ShapeTable(scene)
+        position, rotation = _pose(composition, shot)
+        origin = np.rint(position / _BLOCK) * _BLOCK
+        frame = Frame(view, position, rotation, origin)
+        shapes = View3D(scene, table, self._store, frame, _from_behind(table, position))
+        keys = np.full((view.height, view.width), frame.far_key, np.float32)
+        if shot.ids:
+            return self._draw_ids(shapes, table, frame, shot, keys)
+        solid = np.flatnonzero(shapes.is_visible & (table.colours[:, 3] >= SOLID))
+        quads = int(composition.model.vis.quality.numquads)
+        if shot.sharp:
+            corners = shapes.corners(solid, (), 1)
+            triangles = shapes.triangles(corners, [])
+            draw_keys(frame.matrix, triangles.points, triangles.faces, keys)
+            fill_pinholes(keys, [], frame.far_key)
+            raw = frame.raw_depths(keys)
+            pixels, exact = exact_depths(frame, table, triangles, keys)
+            raw.ravel()[pixels] = frame.raw_of(exact)
+            return DrawnView(view, None, raw)
+        self._log_renderer()
+        lamps = lamps_of(scene, origin, False)
+        light = CornerLight(table, lamps, frame.eye)
+        corners = shapes.corners(solid, lamps, quads)
+        triangles = shapes.triangles(corners, shapes.lit(corners, light))
+        image = np.empty((view.height, view.width, 3), np.float32)
+        image[:] = np.array(self._appearance.surroundings.background[:3], np.float32)
+        draw_values(frame, triangles.points, triangles.faces, triangles.values[0], image, keys)
+        raw = None
+        if shot.depth:
+            raw = frame.raw_depths(keys)
+            pixels, exact = exact_depths(frame, table, triangles, keys)
+            raw.ravel()[pixels] = frame.raw_of(exact)
+        return DrawnView(view, _to_bytes(image), raw)
+
+    def _draw_ids(
+        self, shapes: View3D, table: ShapeTable, frame: Frame, shot: Shot, keys: Floats
+    ) -> DrawnView:
+        """Draw the geom id at each pixel; transparent shapes are drawn as solid ones."""
+        rows = np.flatnonzero(shapes.is_visible & (table.segments >= 0))
+        corners = shapes.corners(rows, (), 1)
+        triangles = shapes.triangles(corners, [])
+        image = np.zeros((*keys.shape, 3), np.float32)
+        geoms = table.geoms + np.int32(1)
+        draw_numbers(frame, triangles.points, triangles.faces, geoms[triangles.owners], image, keys)
+        fill_pinholes(keys, [image], frame.far_key)
+        ids = image[..., 0].astype(np.int32)
+        ids -= 1
+        raw = None
+        if shot.depth:
+            raw = frame.raw_depths(keys)
+            pixels, exact = exact_depths(frame, table, triangles, keys)
+            raw.ravel()[pixels] = frame.raw_of(exact)
+        return DrawnView(shot.view, None, raw, ids)
+
+    def _log_renderer(self) -> None:
+        """Log the renderer and the missing features, once per simulation."""
+        if self._is_logged:
+            return
+        self._is_logged = True
+        quality = self._appearance.quality
+        missing = quality.missing_features()
+        text = f"without {missing}" if missing else "with shadows and smooth edges"
+        logging.getLogger("simkit").info("renderer: %s; quality %s, %s", describe_renderer(), quality.name, text)
+
+
+def _to_bytes(image: Floats) -> Array:
+    import cv2
+
+    return cv2.convertScaleAbs(image, alpha=255.0)
+
+
+def _pose(composition: Composition, shot: Shot) -> tuple[Array, Array]:
+    """Return the position (3,) [m] and rotation (3, 3) of a shot in the world, without BLAS."""
+    position, rotation = composition.position, composition.rotation
+    if shot.position is not None:
+        position = position + rotate(np.asarray(shot.position, np.float64)[None], rotation)[0]
+    if shot.rotation is not None:
+        rotation = rotate(np.asarray(shot.rotation, np.float64).T, rotation).T
+    return position, rotation
+
+
+def _from_behind(table: ShapeTable, eye: Array) -> list[int]:
+    """Return the rows of planes seen from behind, where they are invisible."""
+    planes = np.flatnonzero(table.kinds == PLANE)
+    away = eye - table.positions[planes].astype(np.float64)
+    height = dot(away, table.rotations[planes][:, :, 2].astype(np.float64))
+    behind: list[int] = planes[height < 0.0].tolist()
+    return behind
