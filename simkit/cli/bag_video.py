@@ -38,7 +38,7 @@ def video(
     from simkit.recording.bags.reader import open_bag_to_read
     from simkit.recording.films.film import film_bag
     from simkit.recording.films.film import film_options as read_options
-    from simkit.sensors.cameras.rendering.overview_image import render_view
+    from simkit.sensors.cameras.overview_image import render_view
 
     is_gif = output.suffix.lower() == ".gif"
     found = read_options(output if is_gif else None, None if is_gif else output, resolution, fps, camera)

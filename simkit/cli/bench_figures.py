@@ -18,7 +18,7 @@ from simkit.plugins import WorldPlugin
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.scheduler import Phase
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
-from simkit.sensors.cameras.rendering.renderer_choice import GL, chosen_renderer
+from simkit.sensors.cameras.renderer_choice import GL, chosen_renderer
 from simkit.sensors.rays.lidar import Lidar
 
 if TYPE_CHECKING:

@@ -58,8 +58,8 @@ import json, logging, sys, time
 import simkit
 from simkit.mujoco_import import import_mujoco
 import_mujoco()
-from simkit.sensors.cameras.rendering.overview_image import render_view
-from simkit.sensors.cameras.rendering.renderer_choice import FALLBACK, describe_renderer
+from simkit.sensors.cameras.overview_image import render_view
+from simkit.sensors.cameras.renderer_choice import FALLBACK, describe_renderer
 logging.disable()  # the note about the fallback is part of the result
 world = ("<sdf version='1.12'><world name='w'><model name='m'><static>true</static><link name='l'><visual name='v'>"
          "<geometry><sphere><radius>1</radius></sphere></geometry></visual></link></model></world></sdf>")

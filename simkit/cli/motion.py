@@ -229,7 +229,7 @@ def _joint_ranges(names: Sequence[str]) -> str:
 
 def _draw(sim: Simulation, path: Path) -> None:
     from simkit.recording.run_picture import save_picture
-    from simkit.sensors.cameras.rendering.overview_image import render_view
+    from simkit.sensors.cameras.overview_image import render_view
 
     save_picture(sim, path, render_view)
     stdout_console().print(f"picture {path}")

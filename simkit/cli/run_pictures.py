@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
     """Draw the scene at the end, with the driven path."""
     from simkit.recording.run_picture import save_picture
-    from simkit.sensors.cameras.rendering.overview_image import render_view
+    from simkit.sensors.cameras.overview_image import render_view
 
     save_picture(sim, path, render_view, driven)
     stdout_console().print(f"picture {path}")
@@ -34,7 +34,7 @@ def check_renderer(sim: Simulation) -> None:
     Raises:
         RenderError: SK-RENDER-001 the run requests OpenGL, which is missing.
     """
-    from simkit.sensors.cameras.rendering.renderer_choice import check_available
+    from simkit.sensors.cameras.renderer_choice import check_available
 
     check_available(sim)
 
@@ -47,8 +47,8 @@ def note_missing_gl(sim: Simulation) -> None:
     """
     if not any(sensor.needs_renderer for sensor in sim.contents.sensors.values()) or sim.world.renderer == "software":
         return
+    from simkit.sensors.cameras.renderer_choice import chosen_renderer
     from simkit.sensors.cameras.rendering.gl_context import find_library
-    from simkit.sensors.cameras.rendering.renderer_choice import chosen_renderer
 
     try:
         find_library()
@@ -76,7 +76,7 @@ def film_run(
         yield lambda: None
         return
     from simkit.recording.films.film import Film
-    from simkit.sensors.cameras.rendering.overview_image import render_view
+    from simkit.sensors.cameras.overview_image import render_view
 
     film = Film(sim, options, render_view, driven)
     senders.append(film)

@@ -29,8 +29,8 @@ from simkit.sensors.cameras.image_distortion import ImageDistorter
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
 from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
 from simkit.sensors.cameras.rendered_sampler import RenderedSampler
+from simkit.sensors.cameras.renderer_choice import reserve_image
 from simkit.sensors.cameras.rendering import render_thread
-from simkit.sensors.cameras.rendering.renderer_choice import reserve_image
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot, View
 from simkit.sensors.cameras.saved_images import ImageSaver
 from simkit.sensors.sample import Memory, Reading

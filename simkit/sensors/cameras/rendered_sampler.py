@@ -15,10 +15,11 @@ from simkit.runtime import Publisher
 from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Sample, Sensor
+from simkit.sensors.cameras import renderer_choice
 from simkit.sensors.cameras.camera_options import CameraOptions
-from simkit.sensors.cameras.rendering import render_thread, renderer_choice
+from simkit.sensors.cameras.renderer_choice import ImageRenderer
+from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
-from simkit.sensors.cameras.rendering.renderer_choice import ImageRenderer
 from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
 from simkit.sensors.sample import Memory, Reading

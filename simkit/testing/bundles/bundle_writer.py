@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.errors import InputError
 from simkit.run_spec import JsonObject, RunSpec
+from simkit.sensors.cameras.renderer_choice import SOFTWARE, fell_back
 from simkit.testing.bundles.archive import MAX_BYTES, name_fault
 from simkit.testing.bundles.bundle_recorder import (
     WINDOW_SECONDS,
@@ -212,15 +213,13 @@ def _world_fields(spec: RunSpec, world: StagedWorld, sim: Simulation | None = No
         world: Files of the world.
         sim: Simulation of the run; None if loading failed.
     """
-    from simkit.sensors.cameras.rendering.renderer_choice import fixed_renderer
-
     return {
         "world": world.file,
         "base": spec.options.get("base", "auto"),
         "seed": spec.seed,
         "sleep": spec.options.get("sleep", True),
         "on_error": spec.options.get("on_error"),
-        "renderer": spec.options.get("renderer") if sim is None else fixed_renderer(sim),
+        "renderer": SOFTWARE if sim is not None and fell_back(sim) else spec.options.get("renderer"),
         "overrides": spec.overrides,
         "spawn": tuple(world.spawn),
         "model_world": world.model_world,

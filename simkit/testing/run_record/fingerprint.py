@@ -40,7 +40,7 @@ def fingerprint(drawn: Simulation | None = None) -> dict[str, str]:
     """
     found = dict(_machine_fingerprint())
     if drawn is not None:
-        from simkit.sensors.cameras.rendering.renderer_choice import describe_renderer
+        from simkit.sensors.cameras.renderer_choice import describe_renderer
 
         found[RENDERER] = describe_renderer(drawn)
     return found

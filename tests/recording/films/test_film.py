@@ -19,8 +19,8 @@ from simkit.recording.bags.recorder import Recorder
 from simkit.recording.films.film import Film, FilmOptions, film_bag, film_options
 from simkit.recording.run_picture import DrivenPath
 from simkit.runtime.engine.snapshot import state_hash
+from simkit.sensors.cameras.overview_image import render_view
 from simkit.sensors.cameras.rendering.gl_context import ensure_open
-from simkit.sensors.cameras.rendering.overview_image import render_view
 
 WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="rover"><link name="body">
   <visual name="v"><geometry><box><size>0.4 0.2 0.1</size></box></geometry></visual></link></model></world></sdf>"""

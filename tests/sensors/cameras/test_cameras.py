@@ -14,7 +14,7 @@ from sensor_worlds import box, cloud, colours, depths, noise, sensor, world
 import simkit
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.depth_range import DepthRange
-from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.overview_image import render_view
 
 pytestmark = NEEDS_RENDERER
 

@@ -14,8 +14,8 @@ from sensor_worlds import box, colours, sensor, world
 
 import simkit
 from simkit.errors import InputError
-from simkit.sensors.cameras.rendering.overview_image import render_view
-from simkit.sensors.cameras.rendering.renderer_choice import renderer_of
+from simkit.sensors.cameras.overview_image import render_view
+from simkit.sensors.cameras.renderer_choice import renderer_of
 from simkit.sensors.cameras.rendering.view import Shot, View
 from simkit.sensors.cameras.rendering.view_culling import Bounds
 

@@ -103,9 +103,9 @@ def _drawing_of(sim: Simulation) -> _Drawing:
 def _make(kind: str, appearance: Appearance) -> ImageRenderer:
     if kind == GL:
         return Renderer(appearance)
-    from simkit.sensors.cameras.rendering.software.software_renderer import SoftwareRenderer
+    from simkit.sensors.cameras.rendering.software import software_renderer
 
-    return SoftwareRenderer(appearance)
+    return software_renderer.SoftwareRenderer(appearance)
 
 
 def chosen_renderer(sim: Simulation) -> str:
@@ -149,9 +149,9 @@ def check_available(sim: Simulation) -> None:
         gl_context.ensure_open()
         sim.engine.renderer = gl_context.describe_renderer() or "unknown"
         return
-    import cv2
+    from simkit.sensors.cameras.rendering.software import software_renderer
 
-    sim.engine.renderer = f"{SOFTWARE} (simkit, OpenCV {cv2.__version__})"
+    sim.engine.renderer = software_renderer.describe_renderer()
 
 
 def reserve_image(sim: Simulation, width: int, height: int) -> None:
@@ -175,15 +175,9 @@ def describe_renderer(sim: Simulation) -> str:
     return sim.engine.renderer
 
 
-def fixed_renderer(sim: Simulation) -> str:
-    """Return the renderer to request so that a repetition of the run draws the same images.
-
-    It is `software` also after a fallback. A run that has drawn nothing keeps `auto`, and so does a run that OpenGL has
-    drawn, because a machine without OpenGL should repeat it, too.
-    """
-    requested = sim.world.renderer
-    fell_back = requested == "auto" and _drawing_of(sim).kinds.get(requested) == SOFTWARE
-    return SOFTWARE if fell_back else requested
+def fell_back(sim: Simulation) -> bool:
+    """Check whether the software renderer has drawn because OpenGL could not be opened."""
+    return _drawing_of(sim).kinds.get("auto") == SOFTWARE
 
 
 def free_renderer(sim: Simulation) -> None:
