@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import logging
 import weakref
 from collections.abc import Generator, Sequence
+from functools import cache
 from typing import Final, Protocol
 
 from simkit.errors import RenderError
 from simkit.runtime import Simulation
-from simkit.sensors.cameras.rendering import gl_context
+from simkit.runtime.engine.step_loop import stop_other_loops
+from simkit.sensors.cameras.rendering import gl_context, render_thread
 from simkit.sensors.cameras.rendering.renderer import QUALITIES, Appearance, Renderer
 from simkit.sensors.cameras.rendering.scene_composition import Composer, Composition
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
@@ -105,7 +108,19 @@ def _make(kind: str, appearance: Appearance) -> ImageRenderer:
         return Renderer(appearance)
     from simkit.sensors.cameras.rendering.software import software_renderer
 
+    _end_drawing_at_exit()
     return software_renderer.SoftwareRenderer(appearance)
+
+
+@cache
+def _end_drawing_at_exit() -> None:
+    """Finish the images that are being drawn before the interpreter ends, as the OpenGL context does for its own."""
+
+    def end() -> None:
+        stop_other_loops()
+        render_thread.end()
+
+    atexit.register(end)
 
 
 def chosen_renderer(sim: Simulation) -> str:

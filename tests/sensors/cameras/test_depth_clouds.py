@@ -8,12 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from depth_worlds import CLASSIC, OPTICAL, WALL, camera, first_messages, loaded, points_of, scene
-from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, depths, noise
 
 import simkit
-
-pytestmark = NEEDS_RENDERER
 
 # ---------------------------------------------------------------------- clouds
 
