@@ -9,17 +9,18 @@ from simkit.sensors.cameras.rendering.software.background import draw_sky
 from simkit.sensors.cameras.rendering.software.fog import add_fog
 from simkit.sensors.cameras.rendering.software.frame import Frame
 from simkit.sensors.cameras.rendering.software.lamps import CornerLight, Lamp
-from simkit.sensors.cameras.rendering.software.rasteriser import draw_values
+from simkit.sensors.cameras.rendering.software.rasteriser import draw_values, fill_pinholes
 from simkit.sensors.cameras.rendering.software.shadow_maps import ShadowMap
 from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
+from simkit.sensors.cameras.rendering.software.smoothing import Samples
 from simkit.sensors.cameras.rendering.software.textures import TexturedShapes
 from simkit.sensors.cameras.rendering.software.triangles import Triangles, View3D
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats
 
 
 class ColourImage:
-    """Colours of the shapes of one view, drawn for its frame and for frames moved by parts of a pixel.
+    """Colours of the shapes of one view.
 
     Args:
         shapes: shapes of the scene.
@@ -56,44 +57,40 @@ class ColourImage:
         if textures:
             layers.append(textures.coordinates(corners, frame))
         self.triangles = shapes.triangles(corners, layers)
+        self._corners = corners
         order = np.lexsort((-shapes.distances[glassy], table.kinds[glassy] != PLANE))
         self._glassy = glassy[order]
 
-    def draw(self, frame: Frame, chosen: Array | None = None) -> tuple[Floats, Floats]:
-        """Draw the colours of a frame.
+    def draw(self, samples: int) -> tuple[Floats, Floats]:
+        """Draw the colours.
 
         Args:
-            frame: frame of the view, or one moved by a part of a pixel.
-            chosen: True for the pixels that need shadows and textures, shape (height, width); None for all.
+            samples: samples per pixel for smooth edges; 0 or 1 for none.
 
         Returns:
             Colours (height, width, 3), and keys of the opaque shapes (height, width).
         """
-        image, keys = self.draw_basic(frame)
-        self._finish(frame, image, keys, chosen)
-        return image, keys
-
-    def draw_basic(self, frame: Frame) -> tuple[Floats, Floats]:
-        """Draw the colours without shadowed lamps, textures, fog, sky and transparent shapes."""
-        view, triangles = frame.view, self.triangles
+        frame, triangles = self._shapes.frame, self.triangles
+        view, surroundings = frame.view, self._surroundings
         keys = np.full((view.height, view.width), frame.far_key, np.float32)
         image = np.empty((view.height, view.width, 3), np.float32)
-        image[:] = np.array(self._surroundings.background[:3], np.float32)
+        image[:] = np.array(surroundings.background[:3], np.float32)
         draw_values(frame, triangles.points, triangles.faces, triangles.values[0], image, keys)
-        return image, keys
-
-    def _finish(self, frame: Frame, image: Floats, keys: Floats, chosen: Array | None) -> None:
-        self._add_shadowed_lamps(frame, image, keys, chosen)
+        self._add_shadowed_lamps(frame, image, keys)
         if self._textures:
-            self._textures.apply(frame, self.triangles, self.triangles.values[-1], image, keys, chosen)
-        if self._surroundings.fog is not None:
-            add_fog(self._surroundings.fog, frame, image, keys)
-        if self._surroundings.sky:
+            self._textures.apply(frame, triangles, triangles.values[-1], image, keys)
+        if surroundings.fog is not None:
+            add_fog(surroundings.fog, frame, image, keys)
+        if surroundings.sky:
             draw_sky(frame, image, keys)
+        fill_pinholes(keys, [image])
+        if samples > 1:
+            Samples(self._corners, triangles, triangles.values[: self._layers]).smooth(frame, image, samples)
         for row in self._glassy.tolist():
             self._add_glass(frame, row, image, keys)
+        return image, keys
 
-    def _add_shadowed_lamps(self, frame: Frame, image: Floats, keys: Floats, chosen: Array | None) -> None:
+    def _add_shadowed_lamps(self, frame: Frame, image: Floats, keys: Floats) -> None:
         """Add the light of the lamps with shadows where it reaches the surface."""
         triangles = self.triangles
         for number, shadow in enumerate(self._shadow_maps):
@@ -105,10 +102,7 @@ class ColourImage:
             where = np.zeros_like(image)
             places = triangles.values[self._layers + number]
             draw_values(frame, triangles.points, triangles.faces, places, where, nearer)
-            is_lit = light.reshape(-1, 3).any(axis=1)
-            if chosen is not None:
-                is_lit &= chosen.ravel()
-            pixels = np.flatnonzero(is_lit)
+            pixels = np.flatnonzero((light[..., 0] > 0.0) | (light[..., 1] > 0.0) | (light[..., 2] > 0.0))
             share = shadow.shares(where.reshape(-1, 3)[pixels])
             image.reshape(-1, 3)[pixels] += share[:, None] * light.reshape(-1, 3)[pixels]
 
@@ -134,7 +128,7 @@ class ColourImage:
         draw_values(part, triangles.points, triangles.faces, triangles.values[0], own, own_keys)
         is_drawn = own_keys < behind
         if self._textures.numbers[row] >= 0:
-            self._textures.apply(part, triangles, triangles.values[1], own, own_keys, is_drawn)
+            self._textures.apply(part, triangles, triangles.values[1], own, own_keys)
         if self._surroundings.fog is not None:
             add_fog(self._surroundings.fog, part, own, own_keys)
         opacity = self._table.colours[row, 3]

@@ -1,7 +1,7 @@
 """Shadow maps: the nearest surface in each direction from a light, drawn by OpenCV's rasteriser.
 
 A directional light needs parallel rays, and OpenCV draws only in perspective. A point at depth t along the rays is
-therefore given to OpenCV at the distance 1 / (1 + t/range) with coordinates that are divided by the same number. Its
+therefore given to OpenCV at the distance 1 / (2 - t/range) with coordinates that are multiplied by the same number. Its
 projection and its key are then exactly linear in the point, as for parallel rays.
 """
 
@@ -19,7 +19,9 @@ from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere, place_di
 from simkit.sensors.cameras.rendering.software.frame import FAR, Frame
 from simkit.sensors.cameras.rendering.software.lamps import Lamp
 from simkit.sensors.cameras.rendering.software.rasteriser import draw_keys
-from simkit.sensors.cameras.rendering.software.triangles import Corners, Triangles, View3D
+from simkit.sensors.cameras.rendering.software.shape_meshes import BOX, CAPSULE, CYLINDER, ELLIPSOID, SPHERE
+from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
+from simkit.sensors.cameras.rendering.software.triangles import Corners, View3D
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, cross, dot, unit
 from simkit.sensors.cameras.rendering.view import View
 
@@ -27,6 +29,8 @@ _WIDEST: Final = 160.0  # [degrees] of the cone of a spot light, as in MuJoCo
 _OFFSET: Final = 1.5
 """Distance along the normal [px of the map] at which a surface is compared, so that it does not shadow itself."""
 _SLACK: Final = 0.75  # further tolerance [px of the map] along the rays
+_NEAR: Final = 0.01  # [m] beginning of the map of a spot light
+_CLOSED: Final = (BOX, SPHERE, ELLIPSOID, CYLINDER, CAPSULE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +43,8 @@ class ShadowMap:
         axes: unit vectors to the right, up and along the rays, shape (3, 3).
         reach: half width of the map [m] for a directional light, or the tangent of half its angle.
         depth: depth of the map of a directional light [m]; 0 for a spot light.
+        far_key: key of a pixel without a surface.
+        frame: frame of the map of a spot light; None for a directional light.
     """
 
     keys: Floats
@@ -46,6 +52,8 @@ class ShadowMap:
     axes: Array
     reach: float
     depth: float
+    far_key: float
+    frame: Frame | None
 
     def coordinates(self, points: Floats, normals: Floats) -> Floats:
         """Return the coordinates of surface points for `shares`, linear in the points, shape (n, 3)."""
@@ -94,8 +102,8 @@ class ShadowMap:
 
 def _parallel_keys(along: Floats, depth: float) -> Floats:
     """Return the keys of depths along parallel rays [m]."""
-    keys = along * np.float32(1.0 / depth)
-    keys += np.float32(1.0)
+    keys = along * np.float32(-1.0 / depth)
+    keys += np.float32(2.0)
     keys *= np.float32(-FAR)
     return keys
 
@@ -108,7 +116,7 @@ def _axes(direction: Array) -> Array:
 
 
 class ShadowMaps:
-    """Shadow maps of the lights of an image.
+    """Shadow maps of the lights of an image. The shapes that do not move are drawn once for each place of a light.
 
     Args:
         size: width of a map [px].
@@ -117,6 +125,12 @@ class ShadowMaps:
     def __init__(self, size: int) -> None:
         self._size = size
         self._buffers: list[Floats] = []
+        self._static: list[tuple[bytes, Floats]] = []
+
+    def clear(self) -> None:
+        """Free the maps."""
+        self._buffers.clear()
+        self._static.clear()
 
     def place_lights(
         self, scene: mujoco.MjvScene, model: mujoco.MjModel, position: Array, frame: Frame, lit: Sphere | None
@@ -126,50 +140,97 @@ class ShadowMaps:
         place_directional_lights(scene, context, model, position, frame.ahead, frame.view.far, lit)
         return float(context.shadowClip)
 
-    def draw(self, lamps: list[Lamp], shapes: View3D, casters: Array, reach: float, far: float) -> list[ShadowMap]:
+    def draw(
+        self,
+        lamps: list[Lamp],
+        model: mujoco.MjModel,
+        table: ShapeTable,
+        shapes: View3D,
+        casters: Array,
+        reach: float,
+        far: float,
+    ) -> list[ShadowMap]:
         """Draw the shadow maps of lamps.
 
         Args:
             lamps: lamps with shadows.
-            shapes: shapes of the scene.
+            model: compiled model.
+            table: shapes of the scene.
+            shapes: triangles of the shapes.
             casters: rows of the shapes that cast shadows.
             reach: half width of the maps of directional lights [m].
-            far: depth of the maps of directional lights [m].
+            far: depth of the maps [m].
         """
-        corners = shapes.corners(casters, (), 1)
+        geoms = table.geoms[casters]
+        is_static = (geoms >= 0) & (model.body_weldid[model.geom_bodyid[np.maximum(geoms, 0)]] == 0)
+        fixed, moving = casters[is_static], casters[~is_static]
+        rows = (table.kinds, table.sizes, table.positions, table.rotations, table.geoms)
+        state = b"".join(values[fixed].tobytes() for values in rows)
         while len(self._buffers) < len(lamps):
             self._buffers.append(np.empty((self._size, self._size), np.float32))
-        return [
-            self._directional(lamp, corners, reach, far, buffer)
-            if lamp.is_parallel
-            else self._spot(lamp, shapes, casters, far, buffer)
-            for lamp, buffer in zip(lamps, self._buffers, strict=False)
-        ]
+            self._static.append((b"", np.empty((self._size, self._size), np.float32)))
+        maps = []
+        for number, lamp in enumerate(lamps):
+            found = self._map(lamp, reach, far, shapes, self._buffers[number])
+            key = b"".join((state, found.position.tobytes(), found.axes.tobytes(), np.array((reach, far)).tobytes()))
+            known, keys = self._static[number]
+            if key != known:
+                keys.fill(found.far_key)
+                self._add(found, shapes, table, fixed, keys)
+                self._static[number] = key, keys
+            np.copyto(found.keys, keys)
+            self._add(found, shapes, table, moving, found.keys)
+            maps.append(found)
+        return maps
 
-    def _directional(self, lamp: Lamp, corners: Corners, reach: float, far: float, keys: Floats) -> ShadowMap:
+    def _map(self, lamp: Lamp, reach: float, far: float, shapes: View3D, keys: Floats) -> ShadowMap:
+        """Return an empty map of a lamp."""
         axes = _axes(lamp.direction)
-        away = corners.points - lamp.place.astype(np.float32)
-        right, up, along = (dot(away, axis.astype(np.float32)) for axis in axes)
-        share = np.float32(1.0) / (np.float32(1.0) + along * np.float32(1.0 / far))
-        scale = np.float32(1.0 / reach)
-        points = np.stack((right * scale * share, up * scale * share, -share), axis=-1)
-        # what lies before the map's beginning would change sides
-        faces = corners.faces[(along > -0.9 * far)[corners.faces].all(axis=1)]
-        keys.fill(2.0)
-        draw_keys(np.eye(4), points, faces, keys, both_sides=True)
-        return ShadowMap(keys, lamp.place, axes, reach, far)
-
-    def _spot(self, lamp: Lamp, shapes: View3D, casters: Array, far: float, keys: Floats) -> ShadowMap:
-        axes = _axes(lamp.direction)
-        half = 0.5 * min(2.0 * lamp.cutoff, _WIDEST)
-        reach = math.tan(math.radians(half))
+        if lamp.is_parallel:
+            return ShadowMap(keys, lamp.place, axes, reach, far, 2.0, None)
+        wide = math.tan(math.radians(0.5 * min(2.0 * lamp.cutoff, _WIDEST)))
         rotation = np.stack((axes[2], -axes[0], axes[1]), axis=1)
-        view = View(self._size, self._size, -reach, reach, -reach, reach, 0.01, far)
-        frame = Frame(view, lamp.place + shapes.frame.origin, rotation, shapes.frame.origin, shift=0.0)
-        from_light = shapes.seen_from(frame)
-        triangles: Triangles = from_light.triangles(
-            from_light.corners(casters[from_light.is_visible[casters]], (), 1), []
-        )
-        keys.fill(float(frame.far_key))
-        draw_keys(frame.matrix, triangles.points, triangles.faces, keys, both_sides=True)
-        return ShadowMap(keys, lamp.place, axes, reach, 0.0)
+        view = View(self._size, self._size, -wide, wide, -wide, wide, _NEAR, far)
+        origin = shapes.frame.origin
+        frame = Frame(view, lamp.place + origin, rotation, origin, shift=0.0)
+        return ShadowMap(keys, lamp.place, axes, wide, 0.0, float(frame.far_key), frame)
+
+    def _add(self, found: ShadowMap, shapes: View3D, table: ShapeTable, rows: Array, keys: Floats) -> None:
+        """Draw shapes into a map; of a closed shape only the sides that face the light."""
+        if found.frame is not None:
+            from_light = shapes.seen_from(found.frame)
+            rows = rows[from_light.is_visible[rows]]
+            triangles = from_light.triangles(from_light.corners(rows, (), 1), [])
+            points, faces, owners, matrix = triangles.points, triangles.faces, triangles.owners, found.frame.matrix
+        else:
+            rows = rows[~self._is_ground(found, shapes, table)[rows]]
+            corners = shapes.corners(rows, (), 1)
+            points, faces, owners, matrix = _parallel(found, corners), corners.faces, corners.owners, np.eye(4)
+            # beyond twice the range, points would be behind OpenCV's camera
+            faces = faces[(points[:, 2] < -0.1)[faces].all(axis=1)]
+        is_closed = np.isin(table.kinds, _CLOSED)[owners[faces[:, 0]]]
+        draw_keys(matrix, points, faces[is_closed], keys)
+        draw_keys(matrix, points, faces[~is_closed], keys, both_sides=True)
+
+    def _is_ground(self, found: ShadowMap, shapes: View3D, table: ShapeTable) -> Array:
+        """Return True for each plane below everything that is lit: light and camera are above, and the map is inside.
+
+        Such a plane shadows nothing that is visible, but it would fill the map.
+        """
+        is_ground = np.zeros(len(table), bool)
+        for row in table.planes().tolist():
+            normal = table.rotations[row, :, 2].astype(np.float64)
+            eye = shapes.frame.eye - (table.positions[row].astype(np.float64) - shapes.frame.origin)
+            is_wide = bool((table.sizes[row, :2] >= found.reach).all())
+            is_ground[row] = is_wide and float(dot(normal, found.axes[2])) < 0.0 < float(dot(normal, eye))
+        return is_ground
+
+
+def _parallel(found: ShadowMap, corners: Corners) -> Floats:
+    """Return corners as OpenCV must get them for parallel rays, shape (n, 3)."""
+    away = corners.points - found.position.astype(np.float32)
+    right, up, along = (dot(away, axis.astype(np.float32)) for axis in found.axes)
+    share = np.float32(1.0) / np.maximum(np.float32(2.0) - along * np.float32(1.0 / found.depth), np.float32(1e-3))
+    scale = np.float32(1.0 / found.reach)
+    is_near = along < np.float32(1.9 * found.depth)
+    return np.stack((right * scale * share, up * scale * share, np.where(is_near, -share, np.float32(0.0))), axis=-1)

@@ -23,7 +23,6 @@ from simkit.sensors.cameras.rendering.software.shadow_maps import ShadowMap, Sha
 from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
 from simkit.sensors.cameras.rendering.software.shape_store import ShapeStore
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
-from simkit.sensors.cameras.rendering.software.smoothing import smooth
 from simkit.sensors.cameras.rendering.software.textures import Texture, TexturedShapes
 from simkit.sensors.cameras.rendering.software.triangles import View3D
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, dot, rotate
@@ -129,16 +128,14 @@ class SoftwareRenderer:
             corners = shapes.corners(solid, (), 1)
             triangles = shapes.triangles(corners, [])
             draw_keys(frame.matrix, triangles.points, triangles.faces, keys)
-            fill_pinholes(keys, [], frame.far_key)
+            fill_pinholes(keys, [])
             raw = frame.raw_depths(keys)
             pixels, exact = exact_depths(frame, table, triangles, keys)
             raw.ravel()[pixels] = frame.raw_of(exact)
             return DrawnView(view, None, raw)
         self._log_renderer()
         picture = self._picture(composition, table, shapes, solid, position)
-        image, keys = picture.draw(frame)
-        if composition.smooth and self._appearance.quality.samples:
-            image = smooth(picture, frame, image, self._appearance.quality.samples)
+        image, keys = picture.draw(self._appearance.quality.samples if composition.smooth else 0)
         colours = _to_bytes(image)
         raw = None
         if shot.depth:
@@ -163,7 +160,7 @@ class SoftwareRenderer:
         if self._shadows is not None and shadowed:
             is_endless = (table.kinds == PLANE) & (table.sizes[:, :2] <= 0.0).any(axis=1)
             casters = np.flatnonzero(table.casts_shadow & (table.colours[:, 3] >= LEAST_OPACITY) & ~is_endless)
-            shadow_maps = self._shadows.draw(shadowed, shapes, casters, reach, frame.view.far)
+            shadow_maps = self._shadows.draw(shadowed, model, table, shapes, casters, reach, frame.view.far)
         return ColourImage(
             shapes,
             table,
@@ -186,7 +183,7 @@ class SoftwareRenderer:
         image = np.zeros((*keys.shape, 3), np.float32)
         geoms = table.geoms + np.int32(1)
         draw_numbers(frame, triangles.points, triangles.faces, geoms[triangles.owners], image, keys)
-        fill_pinholes(keys, [image], frame.far_key)
+        fill_pinholes(keys, [image])
         ids = image[..., 0].astype(np.int32)
         ids -= 1
         raw = None

@@ -225,7 +225,7 @@ class TexturedShapes:
         return self._known[number]
 
     def apply(
-        self, frame: Frame, triangles: Triangles, coordinates: Floats, image: Floats, keys: Floats, chosen: Array | None
+        self, frame: Frame, triangles: Triangles, coordinates: Floats, image: Floats, keys: Floats
     ) -> None:
         """Multiply the colours of an image by the textures of its shapes.
 
@@ -235,7 +235,6 @@ class TexturedShapes:
             coordinates: texture coordinates at the corners of `triangles`, shape (n, 3).
             image: colours, shape (height, width, 3).
             keys: keys after all triangles were drawn.
-            chosen: True for the pixels that matter, shape (height, width); None for all.
         """
         faces = triangles.of_shapes(self.numbers >= 0)
         if not len(faces):
@@ -248,11 +247,10 @@ class TexturedShapes:
         numbers = owners[..., 0].astype(np.int32)
         size = _pixel_sizes(where, numbers)
         flat, flat_where = image.reshape(-1, 3), where.reshape(-1, 3)
-        visible = numbers if chosen is None else np.where(chosen, numbers, 0)
-        for number in np.unique(visible).tolist():
+        for number in np.unique(numbers).tolist():
             if not number:
                 continue
-            pixels = np.flatnonzero(visible == number)
+            pixels = np.flatnonzero(numbers == number)
             texture = self.texture(number - 1)
             at = flat_where[pixels]
             steps = size.reshape(-1, 6)[pixels]
