@@ -14,7 +14,7 @@ import numpy.typing as npt
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.renderer_choice import renderer_of
 from simkit.sensors.cameras.rendering import gl_context, render_thread
-from simkit.sensors.cameras.rendering.renderer import Appearance, Quality
+from simkit.sensors.cameras.rendering.appearance import Appearance, Quality
 from simkit.sensors.cameras.rendering.scene_composition import visuals_only_options
 from simkit.sensors.cameras.rendering.view import aim
 from simkit.sensors.rays.lidar import Lidar

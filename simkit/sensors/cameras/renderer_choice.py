@@ -14,7 +14,8 @@ from simkit.errors import RenderError
 from simkit.runtime import Simulation
 from simkit.runtime.engine.step_loop import stop_other_loops
 from simkit.sensors.cameras.rendering import gl_context, render_thread
-from simkit.sensors.cameras.rendering.renderer import QUALITIES, Appearance, Renderer
+from simkit.sensors.cameras.rendering.appearance import QUALITIES, Appearance
+from simkit.sensors.cameras.rendering.renderer import Renderer
 from simkit.sensors.cameras.rendering.scene_composition import Composer, Composition
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Generator, Sequence
 
 import mujoco
 import numpy as np
 
 from simkit.errors import RenderError
-from simkit.scene import SceneWorld, Surroundings
 from simkit.sensors.cameras.rendering import frame_buffer, gl_context
+from simkit.sensors.cameras.rendering.appearance import Appearance, Quality
 from simkit.sensors.cameras.rendering.lights_and_shadows import fit_shadow_maps, place_directional_lights
 from simkit.sensors.cameras.rendering.scene_composition import (
     Composer,
@@ -27,47 +25,6 @@ from simkit.sensors.cameras.rendering.sky_and_fog import Background, enable_fog
 from simkit.sensors.cameras.rendering.transparency import draw_transparent
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Ids, Shot, aim
 from simkit.sensors.environment.illumination import LEAST_OPACITY
-
-
-@dataclass(frozen=True, slots=True)
-class Quality:
-    """Quality settings of images.
-
-    Attributes:
-        samples: samples per pixel, for smooth edges; 0 means one sample. A driver may use fewer samples.
-        shadow_map: width of a light's shadow map [px]; 0 draws no shadows.
-        slices: number of sides of round shapes.
-    """
-
-    name: str
-    samples: int
-    shadow_map: int
-    slices: int
-
-    def missing_features(self) -> str:
-        """Return the features that Gazebo draws and this quality does not, as a text."""
-        parts = [word for word, there in (("shadows", self.shadow_map), ("smooth edges", self.samples)) if not there]
-        return " and ".join(parts)
-
-
-QUALITIES: Final[Mapping[str, Quality]] = {
-    "fast": Quality("fast", 0, 0, 28),
-    "gazebo": Quality("gazebo", 4, 2048, 32),
-    "high": Quality("high", 8, 4096, 64),
-}
-
-
-@dataclass(frozen=True, slots=True)
-class Appearance:
-    """Visual appearance of one world."""
-
-    surroundings: Surroundings
-    quality: Quality
-
-    @classmethod
-    def of(cls, world: SceneWorld) -> Appearance:
-        """Return the appearance that the file of a world defines."""
-        return cls(world.surroundings, QUALITIES[world.quality])
 
 
 class GpuModel:

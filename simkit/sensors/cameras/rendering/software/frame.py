@@ -7,6 +7,7 @@ value is then 2 - 2^31/depth, which keeps seven digits of the depth at every dis
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -24,22 +25,31 @@ to an axis, and the rasteriser may then draw neither of two neighbours."""
 class Frame:
     """Pose and frustum of one image.
 
+    Args:
+        view: image size and frustum.
+        position: position of the camera in the world [m], shape (3,).
+        rotation: rotation matrix of the camera (x forward, y left, z up), shape (3, 3).
+        origin: point of the world near the camera [m], shape (3,).
+        shift: factor of a tiny shift of the image that keeps edges off the centres of pixels.
+
     Attributes:
         view: image size and frustum.
         eye: position of the camera relative to `origin` [m], shape (3,).
         origin: point of the world [m] to which all drawn points are relative, so that single precision suffices.
+        half: half width and half height of the frustum at the distance 1.
         ahead, right, up: axes of the camera in the world, shape (3,).
         matrix: matrix for OpenCV, shape (4, 4).
         far_key: key of the far plane; the key of a pixel without a shape.
     """
 
-    def __init__(self, view: View, position: Array, rotation: Array, origin: Array) -> None:
-        self.view, self.origin = view, origin
+    def __init__(self, view: View, position: Array, rotation: Array, origin: Array, shift: float = 1.0) -> None:
+        self.view, self.origin, self._shift = view, origin, shift
+        self._position, self._rotation = position, rotation
         self.eye = np.asarray(position, np.float64) - origin
         self.ahead, self.right, self.up = rotation[:, 0].copy(), -rotation[:, 1], rotation[:, 2].copy()
         self.half = (view.right - view.left) / 2.0, (view.top - view.bottom) / 2.0
-        middle_x = (view.right + view.left) / 2.0 - _SHIFT[0] * 2.0 * self.half[0] / view.width
-        middle_y = (view.top + view.bottom) / 2.0 - _SHIFT[1] * 2.0 * self.half[1] / view.height
+        middle_x = (view.right + view.left) / 2.0 - shift * _SHIFT[0] * 2.0 * self.half[0] / view.width
+        middle_y = (view.top + view.bottom) / 2.0 - shift * _SHIFT[1] * 2.0 * self.half[1] / view.height
         wide, high = self.half[0] * view.height / view.width, self.half[1]
         rows = (self.right - middle_x * self.ahead) / wide, (self.up - middle_y * self.ahead) / high, -self.ahead
         self.matrix = np.eye(4)
@@ -49,6 +59,28 @@ class Frame:
             self.matrix[number, 3] = -float(x + y + z)
         self.far_key = np.float32(2.0 - FAR / view.far)
         self.pixels_per_tangent = max(view.width / (2.0 * self.half[0]), view.height / (2.0 * self.half[1]))
+
+    def moved(self, columns: float, rows: float) -> Frame:
+        """Return the frame of an image that is moved by a part of a pixel, to the right and downwards."""
+        view = self.view
+        x, y = columns * 2.0 * self.half[0] / view.width, -rows * 2.0 * self.half[1] / view.height
+        moved = replace(view, left=view.left + x, right=view.right + x, bottom=view.bottom + y, top=view.top + y)
+        return Frame(moved, self._position, self._rotation, self.origin, self._shift)
+
+    def part(self, columns: slice, rows: slice) -> Frame:
+        """Return the frame of a part of the image."""
+        view = self.view
+        across, down = 2.0 * self.half[0] / view.width, 2.0 * self.half[1] / view.height
+        cut = replace(
+            view,
+            width=columns.stop - columns.start,
+            height=rows.stop - rows.start,
+            left=view.left + columns.start * across,
+            right=view.left + columns.stop * across,
+            top=view.top - rows.start * down,
+            bottom=view.top - rows.stop * down,
+        )
+        return Frame(cut, self._position, self._rotation, self.origin, self._shift)
 
     def in_camera(self, points: Array) -> tuple[Array, Array, Array]:
         """Return the coordinates of points to the right, up and ahead of the camera [m], each of shape (n,)."""

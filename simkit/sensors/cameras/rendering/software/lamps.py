@@ -26,7 +26,8 @@ class Lamp:
     Attributes:
         ambient, diffuse, specular: colours, shape (3,).
         direction: unit vector of the rays, shape (3,).
-        position: position relative to the origin of the frame [m], shape (3,); None for parallel rays.
+        place: position relative to the origin of the frame [m], shape (3,).
+        is_parallel: True for a directional light, whose position only frames its shadows.
         attenuation: constant, linear and quadratic attenuation.
         cutoff: half angle of the cone [degrees].
         exponent: exponent of the cone's falloff.
@@ -37,7 +38,8 @@ class Lamp:
     diffuse: Floats
     specular: Floats
     direction: Array
-    position: Array | None
+    place: Array
+    is_parallel: bool
     attenuation: tuple[float, float, float]
     cutoff: float
     exponent: float
@@ -69,7 +71,8 @@ def lamps_of(scene: mujoco.MjvScene, origin: Array, shadows: bool) -> list[Lamp]
             Lamp(
                 *(np.array(colour, np.float32) for colour in (light.ambient, light.diffuse, light.specular)),
                 direction,
-                None if is_parallel else np.array(light.pos, np.float64) - origin,
+                np.array(light.pos, np.float64) - origin,
+                is_parallel,
                 (constant, linear, quadratic),
                 _EVERYWHERE if is_parallel else float(light.cutoff),
                 0.0 if is_parallel else float(light.exponent),
@@ -121,7 +124,7 @@ class CornerLight:
 
     def _light(self, lamp: Lamp, surface: Floats, points: Floats, normals: Floats) -> Floats:
         """Return the ambient and diffuse light of a lamp, shape (n, 3)."""
-        if lamp.is_ambient and lamp.position is None:
+        if lamp.is_ambient and lamp.is_parallel:
             return lamp.ambient * surface
         towards, share = _rays(lamp, points)
         facing = np.maximum(dot(normals, towards), np.float32(0.0))
@@ -146,9 +149,9 @@ class CornerLight:
 
 def _rays(lamp: Lamp, points: Floats) -> tuple[Floats, Floats | None]:
     """Return unit vectors towards a lamp, shape (3,) or (n, 3), and the share of its light at each point."""
-    if lamp.position is None:
+    if lamp.is_parallel:
         return (-lamp.direction).astype(np.float32), None
-    towards = lamp.position.astype(np.float32) - points
+    towards = lamp.place.astype(np.float32) - points
     distances = np.sqrt(dot(towards, towards))
     towards /= np.maximum(distances, np.float32(1e-9))[:, None]
     constant, linear, quadratic = (np.float32(part) for part in lamp.attenuation)

@@ -32,6 +32,11 @@ def draw_numbers(frame: Frame, points: Floats, faces: Integers, numbers: Integer
     """Draw the number of each triangle's first corner into the first channel; numbers below 2^24 are exact."""
     values = np.zeros((len(points), 3), np.float32)
     values[:, 0] = numbers
+    draw_flat(frame, points, faces, values, image, keys)
+
+
+def draw_flat(frame: Frame, points: Floats, faces: Integers, values: Floats, image: Floats, keys: Floats) -> None:
+    """Draw the three values of each triangle's first corner; see `draw_values`."""
     _rasterize(frame, points, faces, values, image, keys, _settings(True))
 
 
@@ -67,7 +72,7 @@ def _settings(is_flat: bool, both_sides: bool = False) -> Any:
     return settings
 
 
-def fill_pinholes(keys: Floats, images: list[Array], far_key: np.float32) -> None:
+def fill_pinholes(keys: Floats, images: list[Array]) -> None:
     """Give pixels that lie clearly behind all their eight neighbours the values of a neighbour, in place.
 
     Rounding may leave a pixel open on the common edge of two large triangles.

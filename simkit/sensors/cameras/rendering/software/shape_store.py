@@ -51,12 +51,13 @@ class ShapeStore:
         self._meshes: dict[tuple[int, int], ShapeMesh] = {}
         self._placed: dict[int, tuple[bytes, Placed]] = {}
 
-    def use_model(self, model: mujoco.MjModel) -> None:
-        """Forget the triangles of other models."""
-        if model is not self._model:
-            self._model = model
-            self._meshes.clear()
-            self._placed.clear()
+    def use_model(self, model: mujoco.MjModel) -> bool:
+        """Forget the triangles of another model; return True if the model differs from the last one."""
+        if model is self._model:
+            return False
+        self.clear()
+        self._model = model
+        return True
 
     def clear(self) -> None:
         """Forget all triangles."""

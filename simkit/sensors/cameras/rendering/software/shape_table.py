@@ -28,7 +28,8 @@ class ShapeTable:
         rotations: rotation matrices, shape (n, 3, 3).
         colours: red, green, blue and opacity, shape (n, 4).
         emission, specular, shininess: properties of the surfaces, shape (n,).
-        is_decoration: True for a shape that casts no shadow.
+        segments: numbers of the shapes in images of ids, -1 for a shape that these do not show.
+        casts_shadow: True for a shape that casts a shadow if its light has shadows.
     """
 
     def __init__(self, scene: mujoco.MjvScene) -> None:
@@ -50,7 +51,7 @@ class ShapeTable:
         self.shininess: Floats = np.array([shape.shininess for shape in shapes], np.float32)
         self.segments: Integers = np.array([shape.segid for shape in shapes], np.int32)
         decoration = int(mujoco.mjtCatBit.mjCAT_DECOR)
-        self.is_decoration = np.array([shape.category == decoration for shape in shapes], bool)
+        self.casts_shadow = np.array([shape.category != decoration and shape.castshadow for shape in shapes], bool)
         self.textures: Integers = np.array([shape.texid for shape in shapes], np.int32)
         self.repeats: Floats = np.array([shape.texrepeat for shape in shapes], np.float32).reshape(count, 2)
         self.is_uniform = np.array([bool(shape.texuniform) for shape in shapes], bool)

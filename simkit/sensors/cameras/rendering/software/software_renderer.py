@@ -6,26 +6,28 @@ import functools
 import logging
 import threading
 from collections.abc import Generator, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import mujoco
 import numpy as np
 
 from simkit.interrupts import defer_interrupts
+from simkit.sensors.cameras.rendering.appearance import Appearance
 from simkit.sensors.cameras.rendering.scene_composition import SOLID, Composer, Composition
+from simkit.sensors.cameras.rendering.software.colour_image import ColourImage
 from simkit.sensors.cameras.rendering.software.exact_surfaces import exact_depths
 from simkit.sensors.cameras.rendering.software.frame import Frame
-from simkit.sensors.cameras.rendering.software.lamps import CornerLight, lamps_of
-from simkit.sensors.cameras.rendering.software.rasteriser import draw_keys, draw_numbers, draw_values, fill_pinholes
+from simkit.sensors.cameras.rendering.software.lamps import lamps_of
+from simkit.sensors.cameras.rendering.software.rasteriser import draw_keys, draw_numbers, fill_pinholes
+from simkit.sensors.cameras.rendering.software.shadow_maps import ShadowMap, ShadowMaps
 from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
 from simkit.sensors.cameras.rendering.software.shape_store import ShapeStore
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
+from simkit.sensors.cameras.rendering.software.textures import Texture, TexturedShapes
 from simkit.sensors.cameras.rendering.software.triangles import View3D
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, dot, rotate
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
-
-if TYPE_CHECKING:
-    from simkit.sensors.cameras.rendering.renderer import Appearance
+from simkit.sensors.environment.illumination import LEAST_OPACITY
 
 _FLAGS = mujoco.mjtRndFlag
 _BLOCK: Final = 64.0
@@ -75,6 +77,9 @@ class SoftwareRenderer:
         self.composer = Composer(flags)
         self.uploads = MemoryReservation()
         self._store = ShapeStore()
+        self._textures: dict[int, Texture] = {}
+        width = appearance.quality.shadow_map
+        self._shadows = ShadowMaps(width) if width else None
         self._lock = threading.RLock()
         self._is_logged = False
 
@@ -92,7 +97,8 @@ class SoftwareRenderer:
     def draw(self, composition: Composition, shot: Shot) -> DrawnView:
         """Draw one image."""
         with defer_interrupts(), self._lock:
-            self._store.use_model(composition.model)
+            if self._store.use_model(composition.model):
+                self._textures.clear()
             return self._draw(composition, shot)
 
     def uploaded(self) -> list[mujoco.MjrContext]:
@@ -103,6 +109,7 @@ class SoftwareRenderer:
         """Forget the triangles of the model; a later image makes them again."""
         with self._lock:
             self._store.clear()
+            self._textures.clear()
 
     # ------------------------------------------------------------------ helpers
 
@@ -117,30 +124,54 @@ class SoftwareRenderer:
         if shot.ids:
             return self._draw_ids(shapes, table, frame, shot, keys)
         solid = np.flatnonzero(shapes.is_visible & (table.colours[:, 3] >= SOLID))
-        quads = int(composition.model.vis.quality.numquads)
         if shot.sharp:
             corners = shapes.corners(solid, (), 1)
             triangles = shapes.triangles(corners, [])
             draw_keys(frame.matrix, triangles.points, triangles.faces, keys)
-            fill_pinholes(keys, [], frame.far_key)
+            fill_pinholes(keys, [])
             raw = frame.raw_depths(keys)
             pixels, exact = exact_depths(frame, table, triangles, keys)
             raw.ravel()[pixels] = frame.raw_of(exact)
             return DrawnView(view, None, raw)
         self._log_renderer()
-        lamps = lamps_of(scene, origin, False)
-        light = CornerLight(table, lamps, frame.eye)
-        corners = shapes.corners(solid, lamps, quads)
-        triangles = shapes.triangles(corners, shapes.lit(corners, light))
-        image = np.empty((view.height, view.width, 3), np.float32)
-        image[:] = np.array(self._appearance.surroundings.background[:3], np.float32)
-        draw_values(frame, triangles.points, triangles.faces, triangles.values[0], image, keys)
+        picture = self._picture(composition, table, shapes, solid, position)
+        image, keys = picture.draw(self._appearance.quality.samples if composition.smooth else 0)
+        colours = _to_bytes(image)
         raw = None
         if shot.depth:
             raw = frame.raw_depths(keys)
-            pixels, exact = exact_depths(frame, table, triangles, keys)
+            pixels, exact = exact_depths(frame, table, picture.triangles, keys)
             raw.ravel()[pixels] = frame.raw_of(exact)
-        return DrawnView(view, _to_bytes(image), raw)
+        return DrawnView(view, colours, raw)
+
+    def _picture(
+        self, composition: Composition, table: ShapeTable, shapes: View3D, solid: Array, position: Array
+    ) -> ColourImage:
+        """Return the colours of a view, with the shadow maps of its lamps."""
+        scene, model, frame = composition.scene, composition.model, shapes.frame
+        glassy = np.flatnonzero(shapes.is_visible & (table.colours[:, 3] < SOLID))
+        shadow_maps: list[ShadowMap] = []
+        has_shadows = self._shadows is not None
+        reach = 1.0
+        if self._shadows is not None:
+            reach = self._shadows.place_lights(scene, model, position, frame, composition.lit)
+        lamps = lamps_of(scene, frame.origin, has_shadows)
+        shadowed = [lamp for lamp in lamps if lamp.has_shadow and not lamp.is_ambient]
+        if self._shadows is not None and shadowed:
+            is_endless = (table.kinds == PLANE) & (table.sizes[:, :2] <= 0.0).any(axis=1)
+            casters = np.flatnonzero(table.casts_shadow & (table.colours[:, 3] >= LEAST_OPACITY) & ~is_endless)
+            shadow_maps = self._shadows.draw(shadowed, model, table, shapes, casters, reach, frame.view.far)
+        return ColourImage(
+            shapes,
+            table,
+            lamps,
+            TexturedShapes(model, table, self._textures),
+            self._appearance.surroundings,
+            int(model.vis.quality.numquads),
+            solid,
+            glassy,
+            shadow_maps,
+        )
 
     def _draw_ids(
         self, shapes: View3D, table: ShapeTable, frame: Frame, shot: Shot, keys: Floats
@@ -152,7 +183,7 @@ class SoftwareRenderer:
         image = np.zeros((*keys.shape, 3), np.float32)
         geoms = table.geoms + np.int32(1)
         draw_numbers(frame, triangles.points, triangles.faces, geoms[triangles.owners], image, keys)
-        fill_pinholes(keys, [image], frame.far_key)
+        fill_pinholes(keys, [image])
         ids = image[..., 0].astype(np.int32)
         ids -= 1
         raw = None

@@ -79,12 +79,19 @@ class View3D:
         store: triangles of the shapes.
         frame: pose and frustum of the image.
         hidden: rows of shapes that are not drawn.
+
+    Attributes:
+        frame: pose and frustum of the image.
+        is_visible: True for each shape that may be in the image, shape (n,).
+        needs_clipping: True for each shape that may reach behind the camera or far around the image, shape (n,).
+        distances: distances of the middle of each shape [m], shape (n,).
     """
 
     def __init__(
         self, scene: mujoco.MjvScene, table: ShapeTable, store: ShapeStore, frame: Frame, hidden: Sequence[int]
     ) -> None:
-        self._scene, self._table, self._store, self._frame = scene, table, store, frame
+        self._scene, self._table, self._store, self.frame = scene, table, store, frame
+        self._hidden = hidden
         centres, radii = store.spheres(table)
         right, up, ahead = frame.in_camera(centres - frame.origin)
         view = frame.view
@@ -96,11 +103,14 @@ class View3D:
         self.is_visible = ~outside
         self.is_visible[list(hidden)] = False
         self.is_visible[table.kinds == int(mujoco.mjtGeom.mjGEOM_NONE)] = False
-        nearest = np.maximum(ahead - radii, view.near)
-        pixels = frame.pixels_per_tangent / nearest
+        pixels = frame.pixels_per_tangent / np.maximum(ahead - radii, view.near)
         self.needs_clipping = (ahead - radii < 1.01 * view.near) | (2.0 * radii * pixels > _LARGEST)
-        self._sides = store.sides(table, np.minimum(pixels, frame.pixels_per_tangent / np.maximum(ahead, view.near)))
-        self.distances = ahead
+        self.distances = np.sqrt(right * right + up * up + ahead * ahead)
+        self._sides = store.sides(table, frame.pixels_per_tangent / np.maximum(self.distances, view.near))
+
+    def seen_from(self, frame: Frame) -> View3D:
+        """Return the same shapes as seen in another frame."""
+        return View3D(self._scene, self._table, self._store, frame, self._hidden)
 
     def corners(self, rows: Array, lamps: Sequence[Lamp], quads: int) -> Corners:
         """Return the corners of shapes.
@@ -110,8 +120,8 @@ class View3D:
             lamps: lights of the scene; they decide how finely flat sides are divided.
             quads: divisions of an edge of a box with uneven light.
         """
-        table, frame = self._table, self._frame
-        near_lamp = any(lamp.position is not None and not lamp.is_ambient for lamp in lamps)
+        table, frame = self._table, self.frame
+        near_lamp = any(not lamp.is_parallel and not lamp.is_ambient for lamp in lamps)
         shines = near_lamp | ((table.specular > 0.0) & any(lamp.specular.any() for lamp in lamps))
         found, points, normals, faces, parts, coordinates, counts = [], [], [], [], [], [], []
         start = 0
@@ -178,7 +188,7 @@ class View3D:
             return Triangles(corners.points, corners.faces, corners.owners, corners.parts, values)
         doubtful = corners.faces[chosen]
         joined = np.concatenate(values, axis=1) if values else np.zeros((len(corners.points), 0), np.float32)
-        whole, points, new_values, sources = clip(self._frame, corners.points, joined, doubtful)
+        whole, points, new_values, sources = clip(self.frame, corners.points, joined, doubtful)
         first = np.repeat(doubtful[sources, 0], 3)
         new_faces = (len(corners.points) + np.arange(len(points), dtype=np.int32)).reshape(-1, 3)
         layers = [
