@@ -70,12 +70,12 @@ class _ProcessContext:
     def current(self) -> Iterator[None]:
         with defer_interrupts(), self.lock:
             if self.failure is not None:
-                raise self.failure
+                raise _copy(self.failure)  # a raised error would keep the simulations of its traceback alive
             if self.context is None:
                 try:
                     self.context, self.description = _open()
                 except RenderError as error:
-                    self.failure = error
+                    self.failure = _copy(error)
                     raise
                 atexit.register(self.close)
             with self.context.as_current():
@@ -107,6 +107,10 @@ class _ProcessContext:
             atexit.unregister(terminate)
         self.context = None
         self.failure = RenderError(_FORKED, "SK-RENDER-011")
+
+
+def _copy(error: RenderError) -> RenderError:
+    return RenderError(error.message, error.code)
 
 
 _process = _ProcessContext()
