@@ -93,10 +93,12 @@ class Frame:
         """Return the points at coordinates of the camera, shape (n, 3)."""
         points = np.empty((len(right), 3), np.float32)
         for axis in range(3):
-            points[:, axis] = (
-                self.eye[axis] + right * self.right[axis] + up * self.up[axis] + ahead * self.ahead[axis]
-            )
+            points[:, axis] = self.eye[axis] + right * self.right[axis] + up * self.up[axis] + ahead * self.ahead[axis]
         return points
+
+    def empty_keys(self) -> Floats:
+        """Return the keys of an image without shapes, shape (height, width)."""
+        return np.full((self.view.height, self.view.width), self.far_key, np.float32)
 
     def columns(self) -> Array:
         """Return the tangents of the columns' centres to the right, shape (width,)."""
