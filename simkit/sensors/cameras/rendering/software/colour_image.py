@@ -121,7 +121,7 @@ class ColourImage:
             return
         rows, columns = window
         part, behind = frame.part(columns, rows), keys[rows, columns]
-        own_keys = np.ascontiguousarray(behind)
+        own_keys = behind.copy()
         own = np.zeros((*own_keys.shape, 3), np.float32)
         draw_values(part, triangles.points, triangles.faces, triangles.values[0], own, own_keys)
         is_drawn = own_keys < behind
