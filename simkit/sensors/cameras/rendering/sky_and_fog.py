@@ -15,7 +15,8 @@ _ZENITH: Final = (0.26, 0.47, 0.80)
 _HORIZON: Final = (0.78, 0.87, 0.95)
 _BELOW: Final = (0.55, 0.58, 0.60)
 SKY_SIDES: Final = 24  # number of sides of the sky
-SKY_ELEVATIONS: Final = (-90.0, -12.0, -2.0, 0.0, 4.0, 10.0, 20.0, 35.0, 60.0, 90.0)  # [degrees] elevations of its rings
+SKY_ELEVATIONS: Final = (-90.0, -12.0, -2.0, 0.0, 4.0, 10.0, 20.0, 35.0, 60.0, 90.0)
+"""Elevations [degrees] of the rings of the sky."""
 
 
 class Background:

@@ -40,7 +40,9 @@ def draw_sky(frame: Frame, image: Floats, keys: Floats) -> None:
 @functools.cache
 def _rings() -> tuple[Floats, Floats, Integers]:
     """Return directions (n, 3), colours (n, 3) and faces of the sky, visible from inside."""
-    directions, colours, faces = [], [], []
+    directions: list[tuple[float, float, float]] = []
+    colours: list[tuple[float, float, float]] = []
+    faces: list[tuple[int, int, int]] = []
     for low, high in itertools.pairwise(SKY_ELEVATIONS):
         start = len(directions)
         for side in range(SKY_SIDES + 1):

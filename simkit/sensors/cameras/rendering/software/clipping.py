@@ -17,9 +17,7 @@ _MARGIN: Final = 1.5
 """Size of the frustum at which triangles are cut, relative to the frustum of the image."""
 
 
-def clip(
-    frame: Frame, points: Floats, values: Floats, faces: Integers
-) -> tuple[Integers, Floats, Floats, Integers]:
+def clip(frame: Frame, points: Floats, values: Floats, faces: Integers) -> tuple[Integers, Floats, Floats, Integers]:
     """Clip triangles at the near plane and at a frustum around the image.
 
     Args:
@@ -41,11 +39,12 @@ def clip(
     outside = np.zeros((len(points), 5), bool)
     outside[corners] = distances < 0.0
     of_faces = outside[faces]
-    seen = np.flatnonzero(~of_faces.all(axis=1).any(axis=1))
+    is_outside: Array = np.asarray(of_faces.all(axis=1))
+    seen = np.flatnonzero(~is_outside.any(axis=1))
     wide = np.zeros(len(points), bool)
-    wide[corners] = (
-        _distances(frame, right - middle[0] * ahead, up - middle[1] * ahead, ahead, _MARGIN) < 0.0
-    ).any(axis=1)
+    wide[corners] = (_distances(frame, right - middle[0] * ahead, up - middle[1] * ahead, ahead, _MARGIN) < 0.0).any(
+        axis=1
+    )
     crosses = wide[faces[seen]].any(axis=1)
     whole, cut = faces[seen[~crosses]], seen[crosses]
     place = np.zeros(len(points), np.intp)
@@ -61,9 +60,7 @@ def clip(
         away = _distances(frame, flat[:, 0], flat[:, 1], flat[:, 2], _MARGIN)[:, plane]
         data = _cut(data, away.reshape(-1, 3))
     flat = data.reshape(-1, data.shape[2])
-    new_points = frame.from_camera(
-        flat[:, 0] + middle[0] * flat[:, 2], flat[:, 1] + middle[1] * flat[:, 2], flat[:, 2]
-    )
+    new_points = frame.from_camera(flat[:, 0] + middle[0] * flat[:, 2], flat[:, 1] + middle[1] * flat[:, 2], flat[:, 2])
     sources: Integers = np.rint(flat[::3, -1]).astype(np.int32)
     return whole, new_points, flat[:, 3:-1].astype(np.float32), sources
 

@@ -72,7 +72,7 @@ class ColourImage:
         """
         frame, triangles = self._shapes.frame, self.triangles
         view, surroundings = frame.view, self._surroundings
-        keys = np.full((view.height, view.width), frame.far_key, np.float32)
+        keys = frame.empty_keys()
         image = np.empty((view.height, view.width, 3), np.float32)
         image[:] = np.array(surroundings.background[:3], np.float32)
         draw_values(frame, triangles.points, triangles.faces, triangles.values[0], image, keys)
@@ -96,9 +96,7 @@ class ColourImage:
         for number, shadow in enumerate(self._shadow_maps):
             nearer = np.nextafter(keys, np.float32(np.inf))
             light = np.zeros_like(image)
-            draw_values(
-                frame, triangles.points, triangles.faces, triangles.values[1 + number], light, nearer.copy()
-            )
+            draw_values(frame, triangles.points, triangles.faces, triangles.values[1 + number], light, nearer.copy())
             where = np.zeros_like(image)
             places = triangles.values[self._layers + number]
             draw_values(frame, triangles.points, triangles.faces, places, where, nearer)
@@ -123,7 +121,7 @@ class ColourImage:
             return
         rows, columns = window
         part, behind = frame.part(columns, rows), keys[rows, columns]
-        own_keys = np.ascontiguousarray(behind)
+        own_keys = behind.copy()
         own = np.zeros((*own_keys.shape, 3), np.float32)
         draw_values(part, triangles.points, triangles.faces, triangles.values[0], own, own_keys)
         is_drawn = own_keys < behind

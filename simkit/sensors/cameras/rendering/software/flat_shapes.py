@@ -41,7 +41,10 @@ def plane_points(table: ShapeTable, row: int, frame: Frame, squares: int) -> tup
     first = (np.arange(squares)[:, None] * (squares + 1) + np.arange(squares)).ravel().astype(np.int32)
     step = squares + 1
     faces = np.concatenate(
-        (np.column_stack((first, first + step, first + step + 1)), np.column_stack((first, first + step + 1, first + 1)))
+        (
+            np.column_stack((first, first + step, first + step + 1)),
+            np.column_stack((first, first + step + 1, first + 1)),
+        )
     )
     # squares outside a finite plane have no width
     is_flat = (along[faces] == along[faces[:, :1]]).all(axis=1) | (across[faces] == across[faces[:, :1]]).all(axis=1)
@@ -69,7 +72,8 @@ def line_points(table: ShapeTable, row: int, frame: Frame) -> tuple[Floats, Floa
     points = np.stack(strips, axis=1).reshape(-1, 3).astype(np.float32)
     base = 4 * np.arange(len(a), dtype=np.int32)[:, None]
     # both directions, because a strip has no front
-    faces = np.concatenate([base + np.array(corners, np.int32) for corners in ((0, 1, 3), (0, 3, 2), (0, 3, 1), (0, 2, 3))])
+    halves = ((0, 1, 3), (0, 3, 2), (0, 3, 1), (0, 2, 3))
+    faces = np.concatenate([base + np.array(corners, np.int32) for corners in halves])
     return points, np.zeros_like(points), faces
 
 

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats
-from simkit.sensors.cameras.rendering.view import Depths, View
+from simkit.sensors.cameras.rendering.view import Depths, View, depth_line
 
 NEAR: Final = 2.0**30
 FAR: Final = 2.0**31
@@ -93,10 +93,12 @@ class Frame:
         """Return the points at coordinates of the camera, shape (n, 3)."""
         points = np.empty((len(right), 3), np.float32)
         for axis in range(3):
-            points[:, axis] = (
-                self.eye[axis] + right * self.right[axis] + up * self.up[axis] + ahead * self.ahead[axis]
-            )
+            points[:, axis] = self.eye[axis] + right * self.right[axis] + up * self.up[axis] + ahead * self.ahead[axis]
         return points
+
+    def empty_keys(self) -> Floats:
+        """Return the keys of an image without shapes, shape (height, width)."""
+        return np.full((self.view.height, self.view.width), self.far_key, np.float32)
 
     def columns(self) -> Array:
         """Return the tangents of the columns' centres to the right, shape (width,)."""
@@ -111,23 +113,20 @@ class Frame:
         return tangents
 
     def raw_depths(self, keys: Floats) -> Depths:
-        """Return raw depths of keys as OpenGL's frame buffer has them: 1 at the near plane, 0 at the far one."""
-        near, far = float(np.float32(self.view.near)), float(np.float32(self.view.far))
-        scale = near * far / (far - near) / FAR
+        """Return raw depths of keys, which `depth_line` converts to metres: 1 at the near plane, 0 without a shape."""
+        slope, offset = (float(number) for number in depth_line(self.view.near, self.view.far))
         depths: Depths = np.subtract(self.far_key, keys)
-        depths *= np.float32(scale)
+        depths *= np.float32(slope / FAR)
+        # the difference is that to the far plane, without cancellation; its raw depth is not exactly 0
+        depths += np.float32(slope / self.view.far - offset)
+        depths[keys >= self.far_key] = 0.0
         return depths
 
     def raw_of(self, reciprocals: Array) -> Array:
         """Return raw depths of reciprocal depths [1/m]."""
-        near, far = float(np.float32(self.view.near)), float(np.float32(self.view.far))
-        raw: Array = (reciprocals - 1.0 / far) * (near * far / (far - near))
+        slope, offset = (float(number) for number in depth_line(self.view.near, self.view.far))
+        raw: Array = reciprocals * slope - offset
         return raw
-
-
-def keys_of(reciprocals: Array) -> Floats:
-    """Return the keys of reciprocal depths [1/m]."""
-    return (2.0 - FAR * reciprocals).astype(np.float32)
 
 
 def reciprocals_of(keys: Floats) -> Array:

@@ -69,14 +69,16 @@ def lamps_of(scene: mujoco.MjvScene, origin: Array, shadows: bool) -> list[Lamp]
         constant, linear, quadratic = (float(part) for part in light.attenuation)
         found.append(
             Lamp(
-                *(np.array(colour, np.float32) for colour in (light.ambient, light.diffuse, light.specular)),
-                direction,
-                np.array(light.pos, np.float64) - origin,
-                is_parallel,
-                (constant, linear, quadratic),
-                _EVERYWHERE if is_parallel else float(light.cutoff),
-                0.0 if is_parallel else float(light.exponent),
-                shadows and bool(light.castshadow) and not light.headlight,
+                ambient=np.array(light.ambient, np.float32),
+                diffuse=np.array(light.diffuse, np.float32),
+                specular=np.array(light.specular, np.float32),
+                direction=direction,
+                place=np.array(light.pos, np.float64) - origin,
+                is_parallel=is_parallel,
+                attenuation=(constant, linear, quadratic),
+                cutoff=_EVERYWHERE if is_parallel else float(light.cutoff),
+                exponent=0.0 if is_parallel else float(light.exponent),
+                has_shadow=shadows and bool(light.castshadow) and not light.headlight,
             )
         )
     return found

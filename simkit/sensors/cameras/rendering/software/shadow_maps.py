@@ -172,7 +172,16 @@ class ShadowMaps:
         maps = []
         for number, lamp in enumerate(lamps):
             found = self._map(lamp, reach, far, shapes, self._buffers[number])
-            key = b"".join((state, found.position.tobytes(), found.axes.tobytes(), np.array((reach, far)).tobytes()))
+            ground = self._is_ground(found, shapes, table)
+            key = b"".join(
+                (
+                    state,
+                    ground.tobytes(),
+                    found.position.tobytes(),
+                    found.axes.tobytes(),
+                    np.array((reach, far)).tobytes(),
+                )
+            )
             known, keys = self._static[number]
             if key != known:
                 keys.fill(found.far_key)
@@ -200,11 +209,11 @@ class ShadowMaps:
         if found.frame is not None:
             from_light = shapes.seen_from(found.frame)
             rows = rows[from_light.is_visible[rows]]
-            triangles = from_light.triangles(from_light.corners(rows, (), 1), [])
+            triangles = from_light.triangles(from_light.casters(rows), [])
             points, faces, owners, matrix = triangles.points, triangles.faces, triangles.owners, found.frame.matrix
         else:
             rows = rows[~self._is_ground(found, shapes, table)[rows]]
-            corners = shapes.corners(rows, (), 1)
+            corners = shapes.casters(rows)
             points, faces, owners, matrix = _parallel(found, corners), corners.faces, corners.owners, np.eye(4)
             # beyond twice the range, points would be behind OpenCV's camera
             faces = faces[(points[:, 2] < -0.1)[faces].all(axis=1)]

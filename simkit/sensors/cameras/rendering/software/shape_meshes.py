@@ -117,9 +117,7 @@ def box(squares: int) -> ShapeMesh:
             corners[:, axis], corners[:, (axis + 1) % 3], corners[:, (axis + 2) % 3] = sign, columns, rows
             normal[axis] = sign
             faces = _grid_faces(squares + 1, squares + 1)
-            sides.append(
-                ShapeMesh.of(corners, np.tile(normal, (len(rows), 1)), faces if sign > 0 else faces[:, ::-1])
-            )
+            sides.append(ShapeMesh.of(corners, np.tile(normal, (len(rows), 1)), faces if sign > 0 else faces[:, ::-1]))
     return merge(sides)
 
 
@@ -141,11 +139,11 @@ def _revolve(profile: list[tuple[float, float, float, float]], sides: int, parts
         target[:, :, :2] = rows[:, radial, None, None] * around
         target[:, :, 2] = rows[:, upward, None]
     faces = _grid_faces(len(rows), sides, closed=True)
-    corners, normals = corners.reshape(-1, 3), normals.reshape(-1, 3)
-    a, b, c = (corners[faces[:, k]] for k in range(3))
+    points = corners.reshape(-1, 3)
+    a, b, c = (points[faces[:, k]] for k in range(3))
     area = cross(b - a, c - a)
     faces = faces[dot(area, area) > 1e-24]
-    return ShapeMesh.of(corners, normals, faces, np.repeat(np.array(parts, np.int32), sides))
+    return ShapeMesh.of(points, normals.reshape(-1, 3), faces, np.repeat(np.array(parts, np.int32), sides))
 
 
 def _arc(first: float, last: float, steps: int) -> list[tuple[float, float]]:

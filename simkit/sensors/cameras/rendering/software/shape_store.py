@@ -17,6 +17,7 @@ from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Int
 _SIDES: Final = (12, 16, 24, 32, 48, 64, 96, 128)
 _SIDES_PER_ROOT: Final = 5.0
 """Sides per square root of the radius [px]: the middle of a side is then at most 0.2 px inside the circle."""
+_MOST_PLACED: Final = 4096  # number of placed shapes that are kept
 _GLOSSY_STACKS, _MATT_STACKS = 4, 1
 _SURROUNDING: Final = 1e9  # radius [m] of shapes that may be anywhere
 _DRAWN: Final = frozenset(
@@ -49,7 +50,7 @@ class ShapeStore:
     def __init__(self) -> None:
         self._model: mujoco.MjModel | None = None
         self._meshes: dict[tuple[int, int], ShapeMesh] = {}
-        self._placed: dict[int, tuple[bytes, Placed]] = {}
+        self._placed: dict[tuple[int, int], tuple[bytes, Placed]] = {}
 
     def use_model(self, model: mujoco.MjModel) -> bool:
         """Forget the triangles of another model; return True if the model differs from the last one."""
@@ -115,7 +116,8 @@ class ShapeStore:
             return None
         pose = b"".join((table.positions[row].tobytes(), table.rotations[row].tobytes(), frame.origin.tobytes()))
         key = b"".join((pose, table.sizes[row].tobytes(), bytes((kind, sides, squares))))
-        known = self._placed.get(row)
+        place = row, sides * 1000 + squares
+        known = self._placed.get(place)
         if known is not None and known[0] == key:
             return known[1]
         mesh = self._mesh(kind, int(table.numbers[row]), table.sizes[row], sides, squares)
@@ -129,7 +131,9 @@ class ShapeStore:
         points = rotate(corners, rotation)
         points += (table.positions[row].astype(np.float64) - frame.origin).astype(np.float32)
         placed = Placed(mesh, points, rotate(normals, rotation))
-        self._placed[row] = key, placed
+        if len(self._placed) > _MOST_PLACED:
+            self._placed.clear()
+        self._placed[place] = key, placed
         return placed
 
     def _mesh(self, kind: int, number: int, size: Floats, sides: int, squares: int) -> ShapeMesh:

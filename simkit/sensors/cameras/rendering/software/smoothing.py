@@ -85,8 +85,7 @@ class Samples:
         """Return the numbers of the visible sides, 0 for none, and their packed colours, shape (height, width)."""
         view, triangles = frame.view, self._triangles
         image = np.zeros((view.height, view.width, 3), np.float32)
-        keys = np.full((view.height, view.width), frame.far_key, np.float32)
-        draw_flat(frame, triangles.points, triangles.faces, self._values, image, keys)
+        draw_flat(frame, triangles.points, triangles.faces, self._values, image, frame.empty_keys())
         return np.ascontiguousarray(image[..., 0]), image[..., 1]
 
 

@@ -24,9 +24,9 @@ from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
 from simkit.sensors.cameras.rendering.software.shape_store import ShapeStore
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
 from simkit.sensors.cameras.rendering.software.textures import Texture, TexturedShapes
-from simkit.sensors.cameras.rendering.software.triangles import View3D
+from simkit.sensors.cameras.rendering.software.triangles import Triangles, View3D
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, dot, rotate
-from simkit.sensors.cameras.rendering.view import DrawnView, Shot
+from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot
 from simkit.sensors.environment.illumination import LEAST_OPACITY
 
 _FLAGS = mujoco.mjtRndFlag
@@ -98,7 +98,7 @@ class SoftwareRenderer:
         """Draw one image."""
         with defer_interrupts(), self._lock:
             if self._store.use_model(composition.model):
-                self._textures.clear()
+                self._forget_pictures()
             return self._draw(composition, shot)
 
     def uploaded(self) -> list[mujoco.MjrContext]:
@@ -109,40 +109,30 @@ class SoftwareRenderer:
         """Forget the triangles of the model; a later image makes them again."""
         with self._lock:
             self._store.clear()
-            self._textures.clear()
+            self._forget_pictures()
 
     # ------------------------------------------------------------------ helpers
 
+    def _forget_pictures(self) -> None:
+        self._textures.clear()
+        if self._shadows is not None:
+            self._shadows.clear()
+
     def _draw(self, composition: Composition, shot: Shot) -> DrawnView:
-        scene, view = composition.scene, shot.view
-        table = ShapeTable(scene)
+        table = ShapeTable(composition.scene)
         position, rotation = _pose(composition, shot)
-        origin = np.rint(position / _BLOCK) * _BLOCK
-        frame = Frame(view, position, rotation, origin)
-        shapes = View3D(scene, table, self._store, frame, _from_behind(table, position))
-        keys = np.full((view.height, view.width), frame.far_key, np.float32)
+        frame = Frame(shot.view, position, rotation, np.rint(position / _BLOCK) * _BLOCK)
+        shapes = View3D(composition.scene, table, self._store, frame, _from_behind(table, position))
         if shot.ids:
-            return self._draw_ids(shapes, table, frame, shot, keys)
+            return _draw_ids(shapes, table, shot)
         solid = np.flatnonzero(shapes.is_visible & (table.colours[:, 3] >= SOLID))
         if shot.sharp:
-            corners = shapes.corners(solid, (), 1)
-            triangles = shapes.triangles(corners, [])
-            draw_keys(frame.matrix, triangles.points, triangles.faces, keys)
-            fill_pinholes(keys, [])
-            raw = frame.raw_depths(keys)
-            pixels, exact = exact_depths(frame, table, triangles, keys)
-            raw.ravel()[pixels] = frame.raw_of(exact)
-            return DrawnView(view, None, raw)
+            return _draw_depths(shapes, table, shot, solid)
         self._log_renderer()
         picture = self._picture(composition, table, shapes, solid, position)
         image, keys = picture.draw(self._appearance.quality.samples if composition.smooth else 0)
-        colours = _to_bytes(image)
-        raw = None
-        if shot.depth:
-            raw = frame.raw_depths(keys)
-            pixels, exact = exact_depths(frame, table, picture.triangles, keys)
-            raw.ravel()[pixels] = frame.raw_of(exact)
-        return DrawnView(view, colours, raw)
+        depths = _raw_depths(frame, table, picture.triangles, keys) if shot.depth else None
+        return DrawnView(shot.view, _to_bytes(image), depths)
 
     def _picture(
         self, composition: Composition, table: ShapeTable, shapes: View3D, solid: Array, position: Array
@@ -173,26 +163,6 @@ class SoftwareRenderer:
             shadow_maps,
         )
 
-    def _draw_ids(
-        self, shapes: View3D, table: ShapeTable, frame: Frame, shot: Shot, keys: Floats
-    ) -> DrawnView:
-        """Draw the geom id at each pixel; transparent shapes are drawn as solid ones."""
-        rows = np.flatnonzero(shapes.is_visible & (table.segments >= 0))
-        corners = shapes.corners(rows, (), 1)
-        triangles = shapes.triangles(corners, [])
-        image = np.zeros((*keys.shape, 3), np.float32)
-        geoms = table.geoms + np.int32(1)
-        draw_numbers(frame, triangles.points, triangles.faces, geoms[triangles.owners], image, keys)
-        fill_pinholes(keys, [image])
-        ids = image[..., 0].astype(np.int32)
-        ids -= 1
-        raw = None
-        if shot.depth:
-            raw = frame.raw_depths(keys)
-            pixels, exact = exact_depths(frame, table, triangles, keys)
-            raw.ravel()[pixels] = frame.raw_of(exact)
-        return DrawnView(shot.view, None, raw, ids)
-
     def _log_renderer(self) -> None:
         """Log the renderer and the missing features, once per simulation."""
         if self._is_logged:
@@ -204,10 +174,44 @@ class SoftwareRenderer:
         logging.getLogger("simkit").info("renderer: %s; quality %s, %s", describe_renderer(), quality.name, text)
 
 
-def _to_bytes(image: Floats) -> Array:
+def _draw_ids(shapes: View3D, table: ShapeTable, shot: Shot) -> DrawnView:
+    """Draw the geom id at each pixel; transparent shapes are drawn as solid ones."""
+    frame = shapes.frame
+    keys = frame.empty_keys()
+    rows = np.flatnonzero(shapes.is_visible & (table.segments >= 0))
+    triangles = shapes.triangles(shapes.corners(rows, (), 1), [])
+    image = np.zeros((*keys.shape, 3), np.float32)
+    geoms = table.geoms + np.int32(1)
+    draw_numbers(frame, triangles.points, triangles.faces, geoms[triangles.owners], image, keys)
+    fill_pinholes(keys, [image])
+    ids = image[..., 0].astype(np.int32)
+    ids -= 1
+    return DrawnView(shot.view, None, _raw_depths(frame, table, triangles, keys) if shot.depth else None, ids)
+
+
+def _draw_depths(shapes: View3D, table: ShapeTable, shot: Shot, solid: Array) -> DrawnView:
+    """Draw only the depths of opaque shapes."""
+    frame = shapes.frame
+    keys = frame.empty_keys()
+    triangles = shapes.triangles(shapes.corners(solid, (), 1), [])
+    draw_keys(frame.matrix, triangles.points, triangles.faces, keys)
+    fill_pinholes(keys, [])
+    return DrawnView(shot.view, None, _raw_depths(frame, table, triangles, keys))
+
+
+def _raw_depths(frame: Frame, table: ShapeTable, triangles: Triangles, keys: Floats) -> Depths:
+    """Return the raw depths of an image, with the exact surfaces of round shapes."""
+    raw = frame.raw_depths(keys)
+    pixels, exact = exact_depths(frame, table, triangles, keys)
+    raw.ravel()[pixels] = frame.raw_of(exact)
+    return raw
+
+
+def _to_bytes(image: Floats) -> Colours:
     import cv2
 
-    return cv2.convertScaleAbs(image, alpha=255.0)
+    colours: Colours = cv2.convertScaleAbs(image, alpha=255.0)
+    return colours
 
 
 def _pose(composition: Composition, shot: Shot) -> tuple[Array, Array]:

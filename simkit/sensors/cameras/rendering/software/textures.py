@@ -51,7 +51,8 @@ class Texture:
         """Return colours of a planar texture, shape (n, 3).
 
         Args:
-            s, t: texture coordinates, shape (n,); the texture repeats at whole numbers.
+            s: texture coordinates to the right, shape (n,); the texture repeats at whole numbers.
+            t: texture coordinates downwards, shape (n,).
             texels: size of a pixel in the finest level [texels], shape (n,).
         """
         return self._between_levels(texels, lambda level, rows: self._planar(level, s[rows], t[rows]))
@@ -224,9 +225,7 @@ class TexturedShapes:
             self._known[number] = Texture(self._model, number)
         return self._known[number]
 
-    def apply(
-        self, frame: Frame, triangles: Triangles, coordinates: Floats, image: Floats, keys: Floats
-    ) -> None:
+    def apply(self, frame: Frame, triangles: Triangles, coordinates: Floats, image: Floats, keys: Floats) -> None:
         """Multiply the colours of an image by the textures of its shapes.
 
         Args:

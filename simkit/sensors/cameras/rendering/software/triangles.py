@@ -1,4 +1,4 @@
-"""Triangles of an image: those of all visible shapes together, with light at the corners, clipped for the rasteriser."""
+"""Triangles of an image: those of all visible shapes together, with light at the corners, clipped at the view."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ _LARGEST: Final = 1500.0
 """Radius of a shape in the image [px] above which its triangles are clipped."""
 _MATT_SQUARES: Final = 24  # divisions of a plane without gloss
 _GLOSSY_SQUARES: Final = 48
+_CASTER_SIDES: Final = 48  # number of sides of round shapes that cast shadows
 
 
 @dataclass(slots=True)
@@ -112,6 +113,15 @@ class View3D:
         """Return the same shapes as seen in another frame."""
         return View3D(self._scene, self._table, self._store, frame, self._hidden)
 
+    def casters(self, rows: Array) -> Corners:
+        """Return the corners of shapes that cast shadows; they do not depend on the camera.
+
+        Args:
+            rows: rows of the shapes in the table.
+        """
+        is_round = self._sides > 0
+        return self._collect(rows, np.where(is_round, _CASTER_SIDES, 0), np.zeros(len(self._table), bool), 1, 1)
+
     def corners(self, rows: Array, lamps: Sequence[Lamp], quads: int) -> Corners:
         """Return the corners of shapes.
 
@@ -120,25 +130,35 @@ class View3D:
             lamps: lights of the scene; they decide how finely flat sides are divided.
             quads: divisions of an edge of a box with uneven light.
         """
-        table, frame = self._table, self.frame
+        table = self._table
         near_lamp = any(not lamp.is_parallel and not lamp.is_ambient for lamp in lamps)
         shines = near_lamp | ((table.specular > 0.0) & any(lamp.specular.any() for lamp in lamps))
+        return self._collect(rows, self._sides, shines, quads, _MATT_SQUARES)
+
+    def _collect(self, rows: Array, sides: Array, shines: Array, quads: int, squares: int) -> Corners:
+        """Return the corners of shapes.
+
+        Args:
+            rows: rows of the shapes in the table.
+            sides: number of sides of each round shape, for all rows of the table.
+            shines: True for each shape with uneven light on flat sides, for all rows of the table.
+            quads: divisions of an edge of a box with uneven light.
+            squares: divisions of an edge of a plane with even light.
+        """
+        table, frame = self._table, self.frame
         found, points, normals, faces, parts, coordinates, counts = [], [], [], [], [], [], []
         start = 0
         for row in rows.tolist():
             kind = int(table.kinds[row])
             texture: Array | None = None
             if kind == shape_meshes.PLANE:
-                squares = _GLOSSY_SQUARES if shines[row] else _MATT_SQUARES
-                at, up, of = plane_points(table, row, frame, squares)
+                at, up, of = plane_points(table, row, frame, _GLOSSY_SQUARES if shines[row] else squares)
                 part = np.zeros(len(at), np.int32)
             elif kind in (shape_meshes.LINE, shape_meshes.LINEBOX):
                 at, up, of = line_points(table, row, frame)
                 part = np.zeros(len(at), np.int32)
             else:
-                placed = self._store.place(
-                    self._scene, table, row, int(self._sides[row]), quads if shines[row] else 1, frame
-                )
+                placed = self._store.place(self._scene, table, row, int(sides[row]), quads if shines[row] else 1, frame)
                 if placed is None:
                     continue
                 at, up, of, part = placed.points, placed.normals, placed.mesh.faces, placed.mesh.parts
