@@ -36,10 +36,10 @@ _BLOCK: Final = 64.0
 
 @functools.cache
 def describe_renderer() -> str:
-    """Return a text such as `software (triangle rasteriser of OpenCV 5.0.0)`."""
+    """Return a text such as `software (simkit, OpenCV 5.0.0)`."""
     import cv2
 
-    return f"software (triangle rasteriser of OpenCV {cv2.__version__})"
+    return f"software (simkit, OpenCV {cv2.__version__})"
 
 
 class MemoryReservation:

@@ -16,9 +16,10 @@ from simkit.compiler.geom_groups import VISUAL
 from simkit.compiler.name_map import LinkBinding
 from simkit.pose import Vector
 from simkit.runtime import Simulation
+from simkit.sensors.cameras.renderer_choice import renderer_of
 from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere
-from simkit.sensors.cameras.rendering.renderer import Composition, renderer_of
+from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import Colours, Shot, View, look_at
 from simkit.sensors.values_with_expiry import temporary_values
 
