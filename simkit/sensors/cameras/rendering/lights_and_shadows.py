@@ -102,6 +102,11 @@ def convert_point_lights(scene: mujoco.MjvScene) -> None:
             light.castshadow = 0
 
 
+def suns_of(scene: mujoco.MjvScene) -> list[mujoco.MjvLight]:
+    """Return the directional lights of a scene, without the headlight."""
+    return [light for light in scene.lights[: scene.nlight] if light.type == _DIRECTIONAL and not light.headlight]
+
+
 def place_directional_lights(
     scene: mujoco.MjvScene,
     context: ShadowSettings,
@@ -126,7 +131,7 @@ def place_directional_lights(
         far: far clip plane [m].
         lit: sphere that the maps cover; None for the scene or the part ahead of the camera.
     """
-    suns = [li for li in scene.lights[: scene.nlight] if li.type == _DIRECTIONAL and not li.headlight and li.castshadow]
+    suns = [light for light in suns_of(scene) if light.castshadow]
     if not suns:
         return
     extent, middle = float(model.stat.extent), np.asarray(model.stat.center)

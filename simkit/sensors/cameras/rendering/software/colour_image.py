@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from simkit.scene import Surroundings
@@ -9,14 +11,15 @@ from simkit.sensors.cameras.rendering.software.background import draw_sky
 from simkit.sensors.cameras.rendering.software.fog import add_fog
 from simkit.sensors.cameras.rendering.software.frame import Frame
 from simkit.sensors.cameras.rendering.software.lamps import CornerLight, Lamp
-from simkit.sensors.cameras.rendering.software.rasteriser import draw_values, fill_pinholes
-from simkit.sensors.cameras.rendering.software.shadow_maps import ShadowMap
+from simkit.sensors.cameras.rendering.software.rasteriser import draw_values, fill_pinholes, nearer
+from simkit.sensors.cameras.rendering.software.shadow_maps import Shadow
 from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
-from simkit.sensors.cameras.rendering.software.smoothing import Samples
+from simkit.sensors.cameras.rendering.software.smoothing import smooth
 from simkit.sensors.cameras.rendering.software.textures import TexturedShapes
 from simkit.sensors.cameras.rendering.software.triangles import Triangles, View3D
-from simkit.sensors.cameras.rendering.software.vectors import Array, Floats
+from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Integers
+from simkit.sensors.cameras.rendering.software.visibility import Visibility
 
 
 class ColourImage:
@@ -31,7 +34,7 @@ class ColourImage:
         quads: divisions of an edge of a box with uneven light.
         opaque: rows of the opaque shapes.
         glassy: rows of the transparent shapes.
-        shadow_maps: shadow maps of the lamps with shadows, in their order.
+        shadows: shadows of the lamps with shadows, in their order.
     """
 
     def __init__(
@@ -44,20 +47,19 @@ class ColourImage:
         quads: int,
         opaque: Array,
         glassy: Array,
-        shadow_maps: list[ShadowMap],
+        shadows: Sequence[Shadow],
     ) -> None:
         self._shapes, self._table, self._lamps, self._quads = shapes, table, lamps, quads
-        self._textures, self._surroundings, self._shadow_maps = textures, surroundings, shadow_maps
+        self._textures, self._surroundings, self._shadows = textures, surroundings, shadows
         frame = shapes.frame
         corners = shapes.corners(opaque, lamps, quads)
         self._light = CornerLight(table, lamps, frame.eye)
         layers = shapes.lit(corners, self._light)
         self._layers = len(layers)
-        layers += [shadow.coordinates(corners.points, corners.normals) for shadow in shadow_maps]
+        layers += [shadow.coordinates(corners.points, corners.normals) for shadow in shadows]
         if textures:
             layers.append(textures.coordinates(corners, frame))
         self.triangles = shapes.triangles(corners, layers)
-        self._corners = corners
         order = np.lexsort((-shapes.distances[glassy], table.kinds[glassy] != PLANE))
         self._glassy = glassy[order]
 
@@ -72,11 +74,17 @@ class ColourImage:
         """
         frame, triangles = self._shapes.frame, self.triangles
         view, surroundings = frame.view, self._surroundings
-        keys = frame.empty_keys()
         image = np.empty((view.height, view.width, 3), np.float32)
         image[:] = np.array(surroundings.background[:3], np.float32)
-        draw_values(frame, triangles.points, triangles.faces, triangles.values[0], image, keys)
-        self._add_shadowed_lamps(frame, image, keys)
+        visibility: Visibility | None = None
+        if samples > 1 or self._shadows:
+            visibility = Visibility(frame, triangles)
+            keys = visibility.keys
+            draw_values(frame, triangles.points, visibility.faces, triangles.values[0], image, nearer(keys))
+            self._add_shadowed_lamps(frame, visibility.faces, image, keys)
+        else:
+            keys = frame.empty_keys()
+            draw_values(frame, triangles.points, triangles.faces, triangles.values[0], image, keys)
         if self._textures:
             self._textures.apply(frame, triangles, triangles.values[-1], image, keys)
         if surroundings.fog is not None:
@@ -84,25 +92,23 @@ class ColourImage:
         if surroundings.sky:
             draw_sky(frame, image, keys)
         fill_pinholes(keys, [image])
-        if samples > 1:
-            Samples(self._corners, triangles, triangles.values[: self._layers]).smooth(frame, image, samples)
+        if visibility is not None and samples > 1:
+            smooth(visibility, triangles, triangles.values[: self._layers], image, samples)
         for row in self._glassy.tolist():
             self._add_glass(frame, row, image, keys)
         return image, keys
 
-    def _add_shadowed_lamps(self, frame: Frame, image: Floats, keys: Floats) -> None:
+    def _add_shadowed_lamps(self, frame: Frame, faces: Integers, image: Floats, keys: Floats) -> None:
         """Add the light of the lamps with shadows where it reaches the surface."""
-        triangles = self.triangles
-        for number, shadow in enumerate(self._shadow_maps):
-            nearer = np.nextafter(keys, np.float32(np.inf))
+        points, values = self.triangles.points, self.triangles.values
+        for number, shadow in enumerate(self._shadows):
             light = np.zeros_like(image)
-            draw_values(frame, triangles.points, triangles.faces, triangles.values[1 + number], light, nearer.copy())
+            draw_values(frame, points, faces, values[1 + number], light, nearer(keys))
             where = np.zeros_like(image)
-            places = triangles.values[self._layers + number]
-            draw_values(frame, triangles.points, triangles.faces, places, where, nearer)
+            draw_values(frame, points, faces, values[self._layers + number], where, nearer(keys))
             pixels = np.flatnonzero((light[..., 0] > 0.0) | (light[..., 1] > 0.0) | (light[..., 2] > 0.0))
-            share = shadow.shares(where.reshape(-1, 3)[pixels])
-            image.reshape(-1, 3)[pixels] += share[:, None] * light.reshape(-1, 3)[pixels]
+            share = shadow.shares(where.reshape(-1, 3).take(pixels, axis=0))
+            image.reshape(-1, 3)[pixels] += share[:, None] * light.reshape(-1, 3).take(pixels, axis=0)
 
     def _add_glass(self, frame: Frame, row: int, image: Floats, keys: Floats) -> None:
         """Blend one transparent shape over the image; a nearer opaque shape hides it."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit.sensors.cameras.rendering.software import shape_meshes
 from simkit.sensors.cameras.rendering.software.frame import Frame, reciprocals_of
-from simkit.sensors.cameras.rendering.software.rasteriser import draw_numbers
+from simkit.sensors.cameras.rendering.software.rasteriser import draw_numbers, nearer
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
 from simkit.sensors.cameras.rendering.software.triangles import Triangles
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, rotate
@@ -38,8 +38,7 @@ def exact_depths(frame: Frame, table: ShapeTable, triangles: Triangles, keys: Fl
         return np.zeros(0, np.intp), np.zeros(0)
     image = np.zeros((*keys.shape, 3), np.float32)
     numbers = triangles.owners * _PARTS + triangles.parts
-    # a triangle draws the same key as before, so exactly the visible pixels are a little nearer than these keys
-    draw_numbers(frame, triangles.points, faces, numbers, image, np.nextafter(keys, np.float32(np.inf)))
+    draw_numbers(frame, triangles.points, faces, numbers, image, nearer(keys))
     number = image[..., 0].ravel()
     pixels = np.flatnonzero(number)
     found = number[pixels].astype(np.intp)

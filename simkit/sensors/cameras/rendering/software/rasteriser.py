@@ -28,6 +28,11 @@ def draw_values(frame: Frame, points: Floats, faces: Integers, values: Floats, i
     _rasterize(frame, points, faces, values, image, keys, _settings(False))
 
 
+def nearer(keys: Floats) -> Floats:
+    """Return keys that only the same surface passes: a triangle that is drawn again has the same key as before."""
+    return np.nextafter(keys, np.float32(np.inf))
+
+
 def draw_numbers(frame: Frame, points: Floats, faces: Integers, numbers: Integers, image: Floats, keys: Floats) -> None:
     """Draw the number of each triangle's first corner into the first channel; numbers below 2^24 are exact."""
     values = np.zeros((len(points), 3), np.float32)

@@ -8,9 +8,10 @@ projection and its key are then exactly linear in the point, as for parallel ray
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Final
+from typing import Final, Protocol
 
 import mujoco
 import numpy as np
@@ -22,15 +23,26 @@ from simkit.sensors.cameras.rendering.software.rasteriser import draw_keys
 from simkit.sensors.cameras.rendering.software.shape_meshes import BOX, CAPSULE, CYLINDER, ELLIPSOID, SPHERE
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
 from simkit.sensors.cameras.rendering.software.triangles import Corners, View3D
-from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, cross, dot, unit
+from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, cross, dot, rotate, unit
 from simkit.sensors.cameras.rendering.view import View
 
 _WIDEST: Final = 160.0  # [degrees] of the cone of a spot light, as in MuJoCo
 _OFFSET: Final = 1.5
 """Distance along the normal [px of the map] at which a surface is compared, so that it does not shadow itself."""
 _SLACK: Final = 0.75  # further tolerance [px of the map] along the rays
+_EDGE: Final = 4  # number of directions at the edge of a disc that must agree
 _NEAR: Final = 0.01  # [m] beginning of the map of a spot light
 _CLOSED: Final = (BOX, SPHERE, ELLIPSOID, CYLINDER, CAPSULE)
+
+
+class Shadow(Protocol):
+    """Shadow in the light of one lamp."""
+
+    def coordinates(self, points: Floats, normals: Floats) -> Floats:
+        """Return the coordinates of surface points for `shares`, linear in the points, shape (n, 3)."""
+
+    def shares(self, at: Floats) -> Floats:
+        """Return the share of the light that reaches points at coordinates (n, 3), from 0 to 1, shape (n,)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +110,46 @@ class ShadowMap:
         share: Floats = upper + down * (lower - upper)
         share[is_outside] = 1.0
         return share
+
+
+class SoftShadow:
+    """Shadow of a directional light that is a disc: the mean of the shadows from several directions.
+
+    Where four directions at the edge of the disc agree, all do; only the other points are compared with all maps.
+
+    Args:
+        middle: map from the middle of the disc, for the coordinates.
+        draw: function that returns the map from one of the directions; it may overwrite the one before.
+        count: number of directions, the last ones at the edge of the disc.
+    """
+
+    def __init__(self, middle: ShadowMap, draw: Callable[[int], ShadowMap], count: int) -> None:
+        self._middle, self._draw, self._count = middle, draw, count
+
+    def coordinates(self, points: Floats, normals: Floats) -> Floats:
+        """Return the coordinates of surface points for `shares`, linear in the points, shape (n, 3)."""
+        return self._middle.coordinates(points, normals)
+
+    def shares(self, at: Floats) -> Floats:
+        """Return the share of the light that reaches points at coordinates (n, 3), from 0 to 1, shape (n,)."""
+        points = rotate(at, self._middle.axes.T)
+        points += self._middle.position.astype(np.float32)
+        first = min(_EDGE, self._count)
+        edge = [self._from(self._count - 1 - number, points) for number in range(first)]
+        total = edge[0].copy()
+        for share in edge[1:]:
+            total += share
+        uneven = np.flatnonzero(np.max(edge, axis=0) > np.min(edge, axis=0))
+        mean: Floats = total * np.float32(1.0 / first)
+        some = points[uneven]
+        for number in range(self._count - first):
+            total[uneven] += self._from(number, some)
+        mean[uneven] = total[uneven] * np.float32(1.0 / self._count)
+        return mean
+
+    def _from(self, number: int, points: Floats) -> Floats:
+        found = self._draw(number)
+        return found.shares(rotate(points - found.position.astype(np.float32), found.axes))
 
 
 def _parallel_keys(along: Floats, depth: float) -> Floats:
@@ -168,6 +220,7 @@ class ShadowMaps:
         state = b"".join(values[fixed].tobytes() for values in rows)
         while len(self._buffers) < len(lamps):
             self._buffers.append(np.empty((self._size, self._size), np.float32))
+        while len(self._static) < len(lamps):
             self._static.append((b"", np.empty((self._size, self._size), np.float32)))
         maps = []
         for number, lamp in enumerate(lamps):
@@ -191,6 +244,17 @@ class ShadowMaps:
             self._add(found, shapes, table, moving, found.keys)
             maps.append(found)
         return maps
+
+    def draw_once(
+        self, lamp: Lamp, table: ShapeTable, shapes: View3D, casters: Array, reach: float, far: float
+    ) -> ShadowMap:
+        """Draw the shadow map of one lamp, and overwrite the map before; see `draw`."""
+        if not self._buffers:
+            self._buffers.append(np.empty((self._size, self._size), np.float32))
+        found = self._map(lamp, reach, far, shapes, self._buffers[0])
+        found.keys.fill(found.far_key)
+        self._add(found, shapes, table, casters, found.keys)
+        return found
 
     def _map(self, lamp: Lamp, reach: float, far: float, shapes: View3D, keys: Floats) -> ShadowMap:
         """Return an empty map of a lamp."""

@@ -10,10 +10,9 @@ from typing import Final
 
 import numpy as np
 
-from simkit.sensors.cameras.rendering.software.frame import Frame
-from simkit.sensors.cameras.rendering.software.rasteriser import draw_flat
-from simkit.sensors.cameras.rendering.software.triangles import Corners, Triangles
-from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Integers
+from simkit.sensors.cameras.rendering.software.triangles import Triangles
+from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Integers, cross
+from simkit.sensors.cameras.rendering.software.visibility import Visibility
 
 _FOUR: Final = ((-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375))
 """Places of four samples in a pixel [px], to the right and downwards, as graphics libraries choose them."""
@@ -21,72 +20,58 @@ _EIGHT: Final = (
     (0.0625, -0.1875), (-0.0625, 0.1875), (0.3125, 0.0625), (-0.1875, -0.3125),
     (-0.3125, 0.3125), (-0.4375, -0.0625), (0.1875, 0.4375), (0.4375, -0.4375),
 )  # fmt: skip
-_SIDES: Final = 8  # numbers of one shape: six directions of a normal, one for clipped triangles
+_SIDES: Final = 6  # sides of one shape: main directions of a normal
 
 
-class Samples:
-    """Sides of the shapes of a view, to be drawn at several places per pixel.
+def smooth(visibility: Visibility, triangles: Triangles, layers: list[Floats], image: Floats, count: int) -> None:
+    """Smooth the edges in an image, in place.
 
     Args:
-        corners: corners of the shapes.
-        triangles: their triangles, clipped for the rasteriser.
+        visibility: triangles at the middles of the pixels.
+        triangles: triangles of the image.
         layers: layers of light at the corners of `triangles`, each of shape (n, 3).
+        image: colours at the middle of each pixel, shape (height, width, 3).
+        count: number of samples per pixel.
     """
+    np.clip(image, 0.0, 1.0, out=image)
+    places = _FOUR if count <= len(_FOUR) else _EIGHT
+    values = _side_values(triangles, layers)
+    middle = np.append(np.float32(0.0), values[:, 0])[visibility.numbers]
+    width = middle.shape[1]
+    padded = np.pad(middle, 1, constant_values=-1.0)
+    colours = image.reshape(-1, 3)
+    change = np.zeros_like(colours)
+    for place, drawn in zip(places, visibility.draw_samples(values, places), strict=True):
+        pixels = np.flatnonzero(drawn[..., 0] != middle)
+        wanted, packed = (drawn[..., k].ravel()[pixels] for k in (0, 1))
+        found = _unpack(packed)
+        at = pixels + 2 * (pixels // width) + width + 3  # places in the padded array
+        is_open = np.ones(len(pixels), bool)
+        for across, down in _neighbours(*place):
+            rows = np.flatnonzero(is_open & (padded.ravel()[at + down * (width + 2) + across] == wanted))
+            found[rows] = colours[pixels[rows] + down * width + across]
+            is_open[rows] = False
+        # a sample of the background that no neighbour shows keeps the colour of its pixel
+        lost = is_open & (wanted == 0.0)
+        found[lost] = colours[pixels[lost]]
+        change[pixels] += found - colours[pixels]
+    change *= np.float32(1.0 / len(places))
+    colours += change
 
-    def __init__(self, corners: Corners, triangles: Triangles, layers: list[Floats]) -> None:
-        self._triangles = triangles
-        values = np.zeros((len(triangles.points), 3), np.float32)
-        count = len(corners.points)
-        sides = np.full(len(triangles.points), _SIDES - 1, np.int32)
-        sides[:count] = _directions(corners.normals)
-        values[:, 0] = triangles.owners * np.int32(_SIDES) + sides + np.int32(1)
-        total = layers[0].copy()
-        for layer in layers[1:]:
-            total += layer
-        steps = np.rint(np.clip(total, 0.0, 1.0) * np.float32(255.0))
-        values[:, 1] = (steps[:, 0] * np.float32(256.0) + steps[:, 1]) * np.float32(256.0) + steps[:, 2]
-        self._values = values
 
-    def smooth(self, frame: Frame, image: Floats, count: int) -> None:
-        """Smooth the edges in an image, in place.
-
-        Args:
-            frame: frame of the image.
-            image: colours at the middle of each pixel, shape (height, width, 3).
-            count: number of samples per pixel.
-        """
-        np.clip(image, 0.0, 1.0, out=image)
-        places = _FOUR if count <= len(_FOUR) else _EIGHT
-        middle, _ = self._draw(frame)
-        width = frame.view.width
-        padded = np.pad(middle, 1, constant_values=-1.0)
-        colours = image.reshape(-1, 3)
-        change = np.zeros_like(colours)
-        for place in places:
-            numbers, packed = self._draw(frame.moved(*place))
-            pixels = np.flatnonzero(numbers != middle)
-            wanted = numbers.ravel()[pixels]
-            found = _unpack(packed.ravel()[pixels])
-            at = pixels + 2 * (pixels // width) + width + 3  # places in the padded array
-            is_open = np.ones(len(pixels), bool)
-            for across, down in _neighbours(*place):
-                matches = is_open & (padded.ravel()[at + down * (width + 2) + across] == wanted)
-                rows = np.flatnonzero(matches)
-                found[rows] = colours[pixels[rows] + down * width + across]
-                is_open[rows] = False
-            # a sample of the background that no neighbour shows keeps the colour of its pixel
-            lost = is_open & (wanted == 0.0)
-            found[lost] = colours[pixels[lost]]
-            change[pixels] += found - colours[pixels]
-        change *= np.float32(1.0 / len(places))
-        colours += change
-
-    def _draw(self, frame: Frame) -> tuple[Floats, Floats]:
-        """Return the numbers of the visible sides, 0 for none, and their packed colours, shape (height, width)."""
-        view, triangles = frame.view, self._triangles
-        image = np.zeros((view.height, view.width, 3), np.float32)
-        draw_flat(frame, triangles.points, triangles.faces, self._values, image, frame.empty_keys())
-        return np.ascontiguousarray(image[..., 0]), image[..., 1]
+def _side_values(triangles: Triangles, layers: list[Floats]) -> Floats:
+    """Return for each face the number of its side, from 1, and its colour as one number, shape (m, 2)."""
+    first = triangles.faces[:, 0]
+    a, b, c = (triangles.points[triangles.faces[:, k]] for k in range(3))
+    sides = _directions(cross(b - a, c - a))
+    values = np.empty((len(first), 2), np.float32)
+    values[:, 0] = triangles.owners[first] * np.int32(_SIDES) + sides + np.int32(1)
+    total = layers[0][first]
+    for layer in layers[1:]:
+        total += layer[first]
+    steps = np.rint(np.clip(total, 0.0, 1.0) * np.float32(255.0))
+    values[:, 1] = (steps[:, 0] * np.float32(256.0) + steps[:, 1]) * np.float32(256.0) + steps[:, 2]
+    return values
 
 
 def _neighbours(right: float, down: float) -> list[tuple[int, int]]:

@@ -13,13 +13,14 @@ import numpy as np
 
 from simkit.interrupts import defer_interrupts
 from simkit.sensors.cameras.rendering.appearance import Appearance
+from simkit.sensors.cameras.rendering.lights_and_shadows import suns_of
 from simkit.sensors.cameras.rendering.scene_composition import SOLID, Composer, Composition
 from simkit.sensors.cameras.rendering.software.colour_image import ColourImage
 from simkit.sensors.cameras.rendering.software.exact_surfaces import exact_depths
 from simkit.sensors.cameras.rendering.software.frame import Frame
-from simkit.sensors.cameras.rendering.software.lamps import lamps_of
+from simkit.sensors.cameras.rendering.software.lamps import Lamp, lamps_of
 from simkit.sensors.cameras.rendering.software.rasteriser import draw_keys, draw_numbers, fill_pinholes
-from simkit.sensors.cameras.rendering.software.shadow_maps import ShadowMap, ShadowMaps
+from simkit.sensors.cameras.rendering.software.shadow_maps import Shadow, ShadowMap, ShadowMaps, SoftShadow
 from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
 from simkit.sensors.cameras.rendering.software.shape_store import ShapeStore
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
@@ -30,6 +31,7 @@ from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Sh
 from simkit.sensors.environment.illumination import LEAST_OPACITY
 
 _FLAGS = mujoco.mjtRndFlag
+_SOFT_SAMPLES: Final = 8  # samples per pixel of an image with soft shadows
 _BLOCK: Final = 64.0
 """Grid [m] of the points to which drawn positions are relative, so that single precision suffices far away."""
 
@@ -101,6 +103,20 @@ class SoftwareRenderer:
                 self._forget_pictures()
             return self._draw(composition, shot)
 
+    def draw_soft(self, composition: Composition, shot: Shot, directions: Sequence[Sequence[Array]]) -> DrawnView:
+        """Draw one image of colours with smooth edges and soft shadows.
+
+        Args:
+            composition: composition to draw.
+            shot: size and frustum; colours with or without depths.
+            directions: directions of all directional lights for each of several shadows, the last ones at the edge of
+                the disc of each light.
+        """
+        with defer_interrupts(), self._lock:
+            if self._store.use_model(composition.model):
+                self._forget_pictures()
+            return self._draw(composition, shot, directions)
+
     def uploaded(self) -> list[mujoco.MjrContext]:
         """Return no context, because no graphics memory is used."""
         return []
@@ -118,7 +134,9 @@ class SoftwareRenderer:
         if self._shadows is not None:
             self._shadows.clear()
 
-    def _draw(self, composition: Composition, shot: Shot) -> DrawnView:
+    def _draw(
+        self, composition: Composition, shot: Shot, directions: Sequence[Sequence[Array]] | None = None
+    ) -> DrawnView:
         table = ShapeTable(composition.scene)
         position, rotation = _pose(composition, shot)
         frame = Frame(shot.view, position, rotation, np.rint(position / _BLOCK) * _BLOCK)
@@ -129,39 +147,71 @@ class SoftwareRenderer:
         if shot.sharp:
             return _draw_depths(shapes, table, shot, solid)
         self._log_renderer()
-        picture = self._picture(composition, table, shapes, solid, position)
-        image, keys = picture.draw(self._appearance.quality.samples if composition.smooth else 0)
-        depths = _raw_depths(frame, table, picture.triangles, keys) if shot.depth else None
-        return DrawnView(shot.view, _to_bytes(image), depths)
-
-    def _picture(
-        self, composition: Composition, table: ShapeTable, shapes: View3D, solid: Array, position: Array
-    ) -> ColourImage:
-        """Return the colours of a view, with the shadow maps of its lamps."""
-        scene, model, frame = composition.scene, composition.model, shapes.frame
-        glassy = np.flatnonzero(shapes.is_visible & (table.colours[:, 3] < SOLID))
-        shadow_maps: list[ShadowMap] = []
-        has_shadows = self._shadows is not None
-        reach = 1.0
-        if self._shadows is not None:
-            reach = self._shadows.place_lights(scene, model, position, frame, composition.lit)
-        lamps = lamps_of(scene, frame.origin, has_shadows)
-        shadowed = [lamp for lamp in lamps if lamp.has_shadow and not lamp.is_ambient]
-        if self._shadows is not None and shadowed:
-            is_endless = (table.kinds == PLANE) & (table.sizes[:, :2] <= 0.0).any(axis=1)
-            casters = np.flatnonzero(table.casts_shadow & (table.colours[:, 3] >= LEAST_OPACITY) & ~is_endless)
-            shadow_maps = self._shadows.draw(shadowed, model, table, shapes, casters, reach, frame.view.far)
-        return ColourImage(
+        shadows, lamps = self._lights(composition, table, shapes, position, directions)
+        picture = ColourImage(
             shapes,
             table,
             lamps,
-            TexturedShapes(model, table, self._textures),
+            TexturedShapes(composition.model, table, self._textures),
             self._appearance.surroundings,
-            int(model.vis.quality.numquads),
+            int(composition.model.vis.quality.numquads),
             solid,
-            glassy,
-            shadow_maps,
+            np.flatnonzero(shapes.is_visible & (table.colours[:, 3] < SOLID)),
+            shadows,
         )
+        samples = self._appearance.quality.samples if composition.smooth else 0
+        image, keys = picture.draw(_SOFT_SAMPLES if directions else samples)
+        depths = _raw_depths(frame, table, picture.triangles, keys) if shot.depth else None
+        return DrawnView(shot.view, _to_bytes(image), depths)
+
+    def _lights(
+        self,
+        composition: Composition,
+        table: ShapeTable,
+        shapes: View3D,
+        position: Array,
+        directions: Sequence[Sequence[Array]] | None,
+    ) -> tuple[Sequence[Shadow], list[Lamp]]:
+        """Return the shadows of the lamps with shadows, and all lamps."""
+        scene, model, frame = composition.scene, composition.model, shapes.frame
+        shadow_maps = self._shadows
+        if shadow_maps is None:
+            return (), lamps_of(scene, frame.origin, False)
+
+        def place(maps: ShadowMaps) -> tuple[float, list[Lamp], list[Lamp]]:
+            reach = maps.place_lights(scene, model, position, frame, composition.lit)
+            lamps = lamps_of(scene, frame.origin, True)
+            return reach, lamps, [lamp for lamp in lamps if lamp.has_shadow and not lamp.is_ambient]
+
+        reach, lamps, shadowed = place(shadow_maps)
+        if not shadowed:
+            return (), lamps
+        is_endless = (table.kinds == PLANE) & (table.sizes[:, :2] <= 0.0).any(axis=1)
+        casters = np.flatnonzero(table.casts_shadow & (table.colours[:, 3] >= LEAST_OPACITY) & ~is_endless)
+        far = frame.view.far
+        hard = shadow_maps.draw(shadowed, model, table, shapes, casters, reach, far)
+        if directions is None:
+            return hard, lamps
+        soft_maps = ShadowMaps(self._appearance.quality.shadow_map // 2)
+        suns = suns_of(scene)
+        middle = [np.array(sun.dir) for sun in suns]
+        moved = []
+        for moment in directions:
+            for sun, direction in zip(suns, moment, strict=True):
+                sun.dir = direction
+            moved.append(place(soft_maps))
+        for sun, direction in zip(suns, middle, strict=True):
+            sun.dir = direction
+
+        def draw(lamp: int, number: int) -> ShadowMap:
+            reach, _, lamps = moved[number]
+            return soft_maps.draw_once(lamps[lamp], table, shapes, casters, reach, far)
+
+        soft: list[Shadow] = [
+            SoftShadow(found, functools.partial(draw, number), len(moved)) if shadowed[number].is_parallel else found
+            for number, found in enumerate(hard)
+        ]
+        return soft, lamps
 
     def _log_renderer(self) -> None:
         """Log the renderer and the missing features, once per simulation."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit.sensors.cameras.rendering.software import shape_meshes
 from simkit.sensors.cameras.rendering.software.frame import Frame
-from simkit.sensors.cameras.rendering.software.rasteriser import draw_numbers, draw_values
+from simkit.sensors.cameras.rendering.software.rasteriser import draw_numbers, draw_values, nearer
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
 from simkit.sensors.cameras.rendering.software.triangles import Corners, Triangles
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, rotate
@@ -238,11 +238,10 @@ class TexturedShapes:
         faces = triangles.of_shapes(self.numbers >= 0)
         if not len(faces):
             return
-        nearer = np.nextafter(keys, np.float32(np.inf))
         owners = np.zeros((*keys.shape, 3), np.float32)
-        draw_numbers(frame, triangles.points, faces, triangles.owners + np.int32(1), owners, nearer.copy())
+        draw_numbers(frame, triangles.points, faces, triangles.owners + np.int32(1), owners, nearer(keys))
         where = np.zeros((*keys.shape, 3), np.float32)
-        draw_values(frame, triangles.points, faces, coordinates, where, nearer)
+        draw_values(frame, triangles.points, faces, coordinates, where, nearer(keys))
         numbers = owners[..., 0].astype(np.int32)
         size = _pixel_sizes(where, numbers)
         flat, flat_where = image.reshape(-1, 3), where.reshape(-1, 3)
