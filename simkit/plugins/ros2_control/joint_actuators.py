@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import dot
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
@@ -235,7 +236,7 @@ class JointActuators(SharedByCopies):
             shift = self.gravity_shares * weight
             effort = state - now.kp * data.qpos.take(self._qpos) - now.kv * data.qvel.take(self._dofs)
             state += np.minimum(np.maximum(effort, now.lowest + shift), now.highest + shift) - effort
-        if not np.vdot(state, state) < _LARGEST_CONTROL**2:
+        if not dot(state, state) < _LARGEST_CONTROL**2:
             state = np.minimum(np.maximum(state, -_LARGEST_CONTROL), _LARGEST_CONTROL)
         data.act[self._state_index] = state
         data.ctrl[self._control_index] = now.servo_stiffness * rate
