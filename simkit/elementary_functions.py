@@ -21,11 +21,10 @@ Floats = NDArray[np.float64]
 
 def _each(function: Callable[..., float], *arrays: ArrayLike) -> Any:
     """Apply a function to each number: an array of the broadcast shape, or a float for plain numbers."""
-    if len(arrays) == 1:
-        (first,) = columns = (np.asarray(arrays[0], np.float64),)
-    else:
-        columns = np.broadcast_arrays(*(np.asarray(a, np.float64) for a in arrays))
-        first = columns[0]
+    columns = [np.asarray(array, np.float64) for array in arrays]
+    if len(columns) > 1:
+        columns = list(np.broadcast_arrays(*columns))
+    first = columns[0]
     if not first.ndim:
         return function(*(float(c) for c in columns))
     numbers = map(function, *(c.ravel().tolist() for c in columns))

@@ -52,14 +52,13 @@ def matmul(first: Any, second: Any, *more: Any) -> Any:
 
 def _columns(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
     """Return the product of many short rows and a small matrix; five times as fast as einsum for 5000 rows of three."""
-    if len(b) != a.shape[1] or not len(b):
-        return np.einsum("ij,jk->ik", a, b)  # raises the error about the shapes
+    if len(b) != a.shape[1]:
+        raise ValueError(f"arrays of shapes {a.shape} and {b.shape} cannot be multiplied")
     rows = np.ascontiguousarray(a.T)
-    found = np.empty((b.shape[1], len(a)), np.result_type(a, b))
+    found = np.zeros((b.shape[1], len(a)), np.result_type(a, b))
     for k, column in enumerate(found):
-        np.multiply(rows[0], b[0, k], out=column)
-        for j in range(1, len(b)):
-            column += rows[j] * b[j, k]
+        for j, row in enumerate(rows):
+            column += row * b[j, k]
     return found.T
 
 

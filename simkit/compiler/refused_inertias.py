@@ -315,13 +315,15 @@ def _file_inertia(inertial: Inertial) -> BodyInertia:
 def _rotate_tensor(target: SceneLink, source: SceneLink, tensor: Matrix) -> Matrix:
     """Rotate a tensor from the axes of one link to those of another."""
     turn = matmul(target.pose_world.matrix.T, source.pose_world.matrix)
-    return matmul(turn, tensor, turn.T)
+    turned: Matrix = matmul(turn, tensor, turn.T)
+    return turned
 
 
 def _rotate_from_world(link: SceneLink, tensor: Matrix) -> Matrix:
     """Rotate a tensor from world axes to those of a link."""
     turn = link.pose_world.matrix
-    return matmul(turn.T, tensor, turn)
+    turned: Matrix = matmul(turn.T, tensor, turn)
+    return turned
 
 
 def _with_inertial(inertial: Inertial, moments: Matrix, axes: Matrix) -> Inertial:

@@ -89,7 +89,8 @@ class ArrayView:
         found: Floats = self._xpos[:, body]
         if offset is None:
             return found.copy()
-        return found + matmul(np.asarray(self._xmat[:, body]).reshape(-1, 3, 3), offset.position)
+        shift: Floats = matmul(np.asarray(self._xmat[:, body]).reshape(-1, 3, 3), offset.position)
+        return found + shift
 
     def quaternion(self, name: str) -> Floats:
         """Return the orientations w, x, y, z of a model or link in the world, shape (count, 4)."""

@@ -104,7 +104,8 @@ def _turn_points(points: Points | None, pose: Pose, corner: Points) -> Points | 
     """
     if points is None:
         return None
-    return matmul(points, pose.matrix.T) + (np.asarray(pose.position) - corner)
+    turned: Points = matmul(points, pose.matrix.T)
+    return turned + (np.asarray(pose.position) - corner)
 
 
 def _region(population: Params, name: str) -> _Region | None:

@@ -193,7 +193,7 @@ def _worlds(skin: Skin, frames: dict[int, Floats], count: int) -> list[Floats]:
 
 def _size(matrices: Floats) -> float:
     """Return the scale factor of a transform."""
-    return float(np.cbrt(abs(det(matrices[0, :3, :3])))) or 1.0
+    return float(abs(det(matrices[0, :3, :3])) ** (1.0 / 3.0)) or 1.0
 
 
 def _quaternions(matrices: Floats) -> Floats:

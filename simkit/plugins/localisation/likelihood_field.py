@@ -46,10 +46,10 @@ class Hits:
 
     def terms(self, distances: Values) -> Values:
         """Return the terms of rays that end at these distances from an obstacle [m]."""
-        likelihood = self.hit * exp(-(np.minimum(distances, self.farthest) ** 2) / (2 * self.sigma**2)) + self.rand
-        if self.is_product:
-            return log(np.maximum(likelihood, _LEAST))
-        return likelihood * likelihood * likelihood
+        share: Values = exp(-(np.minimum(distances, self.farthest) ** 2) / (2 * self.sigma**2))
+        likelihood = self.hit * share + self.rand
+        terms: Values = log(np.maximum(likelihood, _LEAST)) if self.is_product else likelihood * likelihood * likelihood
+        return terms
 
     def likelihoods(self, means: Values, count: int) -> Values:
         """Return the likelihoods of a scan, up to a factor, from the means of the terms of its rays."""

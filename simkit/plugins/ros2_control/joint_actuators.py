@@ -221,7 +221,7 @@ class JointActuators(SharedByCopies):
         if self._has_mimics:  # the command of a mimic joint is computed from its leader's command
             offset = np.where(now.is_position, self._mimic_law[1], 0.0)
             commands = np.where(self._is_leader, commands, self._mimic_law[0] * commands[self._leaders] + offset)
-        if commands.dot(now.zeros) != 0.0:  # fast check: 0 times NaN or infinity is not 0
+        if dot(commands, now.zeros) != 0.0:  # fast check: 0 times NaN or infinity is not 0
             commands = np.where(np.isfinite(commands), commands, np.where(now.is_position, self.targets, 0.0))
         reference, rate = self._move_references(now, commands, period)
         weight = self._gravity.efforts()

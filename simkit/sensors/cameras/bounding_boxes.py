@@ -151,7 +151,8 @@ class PosedShapes:
         if len(visuals) == 1 and position in self.shapes.single_boxes:
             return self._single_box(item, position)
         points, _ = self.points(visuals)
-        _, axes = eigh(np.cov(points.T, bias=True))
+        away = points - points.mean(axis=0)
+        _, axes = eigh(matmul(away.T, away) / len(points))
         axes = axes * np.where(axes[np.abs(axes).argmax(axis=0), range(3)] < 0, -1.0, 1.0)
         axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
         return _box_around(item, points, axes)

@@ -219,19 +219,20 @@ def _mean_colour(model: mujoco.MjModel, texture: int) -> Vector:
     return mean if channels >= 3 else np.full(3, mean[0])
 
 
-@lru_cache(maxsize=32)
 def _edge_inverses(edges: Vector) -> Vector:
     """Return the pseudo-inverses (m, 3, 2) of the two edges of each triangle, shape (m, 2, 3) [m]."""
     a, b = (edges * edges).sum(axis=2).T
     c = (edges[:, 0] * edges[:, 1]).sum(axis=1)
     determinant = a * b - c * c
     is_flat = determinant <= 1e-12 * a * b  # both edges lie on one line
-    scale = np.where(is_flat, np.maximum(a + b, 1e-300), np.where(is_flat, 1.0, determinant))[:, None]
+    scale = np.where(is_flat, np.maximum(a + b, 1e-300), determinant)[:, None, None]
     first, second = edges[:, 0], edges[:, 1]
     both = np.stack((b[:, None] * first - c[:, None] * second, a[:, None] * second - c[:, None] * first), axis=2)
-    return np.where(is_flat[:, None, None], edges.transpose(0, 2, 1), both) / scale[:, :, None]
+    found: Vector = np.where(is_flat[:, None, None], edges.transpose(0, 2, 1), both) / scale
+    return found
 
 
+@lru_cache(maxsize=32)
 def _load_heat_texture(path: Path) -> HeatTexture:
     red = np.ascontiguousarray(read_pixels(path)[..., 0], np.float32) / np.float32(255.0)
     return HeatTexture(np.pad(red, 1, mode="wrap"), float(red.mean(dtype=np.float64)))

@@ -32,7 +32,7 @@ RENDERER: Final = "renderer"
 RAY_TRACER: Final = "ray tracer"
 """Key of Embree and its instructions. Where a ray meets the edge of two triangles, either may be the nearest."""
 PROCESSOR_FEATURES: Final = "processor features"
-"""Key of the instructions by which NumPy and BLAS choose their code; simkit itself uses no function that depends on it."""
+"""Key of the instructions by which NumPy and BLAS choose their code; simkit uses no function that depends on them."""
 _INFORMATION_ONLY: Final = ("simkit code", "python", "libc", PROCESSOR_FEATURES)
 """Keys that help to find a cause, but should not change any bit of a run."""
 _LEVEL_3: Final = ("AVX2", "FMA3")  # what MuJoCo's and the C library's code for x86-64-v3 needs
