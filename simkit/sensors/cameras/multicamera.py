@@ -12,6 +12,7 @@ import numpy as np
 from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import norm
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
@@ -24,7 +25,7 @@ from simkit.sensors.cameras.camera_options import CameraOptions, read_camera
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
 from simkit.sensors.cameras.image_noise import CameraReading
 from simkit.sensors.cameras.rendered_camera import PictureMaker, RenderedCamera
-from simkit.sensors.cameras.rendering.renderer import renderer_of
+from simkit.sensors.cameras.renderer_choice import reserve_image
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
@@ -183,8 +184,7 @@ class MultiCamera(RenderedCamera):
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         for eye in self.eyes:
-            view = eye.options.model
-            renderer_of(self.sim).uploads.reserve(view.width, view.height)
+            reserve_image(self.sim, eye.options.model.width, eye.options.model.height)
 
     # ------------------------------------------------------------------ images
 
@@ -239,7 +239,7 @@ class MultiCamera(RenderedCamera):
 
 def _is_parallel(relative: Pose) -> bool:
     """Check whether a pose relative to the reference camera has parallel axes and lies in its image plane."""
-    angle = 2 * math.atan2(float(np.linalg.norm(relative.quaternion[1:])), abs(relative.quaternion[0]))
+    angle = 2 * math.atan2(norm(relative.quaternion[1:]), abs(relative.quaternion[0]))
     return angle < _PARALLEL and abs(relative.position[0]) < _PARALLEL
 
 

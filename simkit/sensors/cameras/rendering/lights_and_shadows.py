@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Final
+from typing import Final, Protocol
 
 import mujoco
 import numpy as np
 
 from simkit.compiler.lights import MOST_LIGHTS
+from simkit.linear_algebra import matmul, norm
 from simkit.pose import Vector
 from simkit.sensors.values_with_expiry import temporary_values
 
@@ -22,6 +23,18 @@ Lights = Sequence[Vector]
 """Poses and states of the lights of a model at one time."""
 Sphere = tuple[Vector, float]
 """Centre [m], shape (3,), and radius [m]."""
+
+
+class ShadowSettings(Protocol):
+    """Size of the shadow maps of a renderer.
+
+    Attributes:
+        shadowSize: width of a map [px].
+        shadowClip: half width of the map of a directional light [m].
+    """
+
+    shadowSize: int  # noqa: N815 - names of MuJoCo
+    shadowClip: float  # noqa: N815
 
 
 def read_lights(model: mujoco.MjModel) -> Lights:
@@ -89,9 +102,14 @@ def convert_point_lights(scene: mujoco.MjvScene) -> None:
             light.castshadow = 0
 
 
+def suns_of(scene: mujoco.MjvScene) -> list[mujoco.MjvLight]:
+    """Return the directional lights of a scene, without the headlight."""
+    return [light for light in scene.lights[: scene.nlight] if light.type == _DIRECTIONAL and not light.headlight]
+
+
 def place_directional_lights(
     scene: mujoco.MjvScene,
-    context: mujoco.MjrContext,
+    context: ShadowSettings,
     model: mujoco.MjModel,
     position: Vector,
     forward: Vector,
@@ -106,14 +124,14 @@ def place_directional_lights(
 
     Args:
         scene: scene whose lights are moved.
-        context: MuJoCo's rendering context.
+        context: size of the maps; their half width is written into it, as into MuJoCo's rendering context.
         model: compiled model.
         position: position of the camera in the world [m], shape (3,).
         forward: direction of the view, shape (3,).
         far: far clip plane [m].
         lit: sphere that the maps cover; None for the scene or the part ahead of the camera.
     """
-    suns = [li for li in scene.lights[: scene.nlight] if li.type == _DIRECTIONAL and not li.headlight and li.castshadow]
+    suns = [light for light in suns_of(scene) if light.castshadow]
     if not suns:
         return
     extent, middle = float(model.stat.extent), np.asarray(model.stat.center)
@@ -152,10 +170,10 @@ def fit_shadow_maps(context: mujoco.MjrContext) -> None:
 def _snap_to_pixel_grid(position: Vector, direction: Vector, pixel: float) -> Vector:
     """Return a position rounded to a grid [m] that is fixed in the world and perpendicular to a direction."""
     side = np.cross(direction, (0.0, 0.0, 1.0) if abs(direction[2]) < 0.9 else (1.0, 0.0, 0.0))
-    side /= np.linalg.norm(side)
+    side /= norm(side)
     up = np.cross(direction, side)
     moved: Vector = position.copy()
     for axis in (side, up):
-        offset = float(axis @ position)
+        offset = float(matmul(axis, position))
         moved += (round(offset / pixel) * pixel - offset) * axis
     return moved
