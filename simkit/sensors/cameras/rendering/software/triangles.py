@@ -22,6 +22,7 @@ _LARGEST: Final = 1500.0
 """Radius of a shape in the image [px] above which its triangles are clipped."""
 _MATT_SQUARES: Final = 24  # divisions of a plane without gloss
 _GLOSSY_SQUARES: Final = 48
+_LARGE, _GLOSSY_SIDES = 32, 96  # number of sides from which a glossy round shape has more sides
 _MOST_LAMPS: Final = 3  # number of lamps below which planes are divided finely
 _CASTER_SIDES: Final = 48  # number of sides of round shapes that cast shadows
 
@@ -134,7 +135,9 @@ class View3D:
         table = self._table
         places = [lamp.place for lamp in lamps if not lamp.is_parallel and not lamp.is_ambient]
         shines = bool(places) | ((table.specular > 0.0) & any(lamp.specular.any() for lamp in lamps))
-        return self._collect(rows, self._sides, shines, quads, _MATT_SQUARES, places[:_MOST_LAMPS])
+        # a highlight between corners is interpolated, so round shapes need more of them
+        sides = np.where(shines & (self._sides >= _LARGE), _GLOSSY_SIDES, self._sides)
+        return self._collect(rows, sides, shines, quads, _MATT_SQUARES, places[:_MOST_LAMPS])
 
     def _collect(
         self, rows: Array, sides: Array, shines: Array, quads: int, squares: int, places: Sequence[Array] = ()
