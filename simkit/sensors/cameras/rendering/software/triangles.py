@@ -95,6 +95,7 @@ class View3D:
     ) -> None:
         self._scene, self._table, self._store, self.frame = scene, table, store, frame
         self._hidden = hidden
+        store.use_origin(frame.origin)
         centres, radii = store.spheres(table)
         right, up, ahead = frame.in_camera(centres - frame.origin)
         view = frame.view
