@@ -104,7 +104,7 @@ def test_a_picture_changes_no_bit_of_the_run_and_shows_shadows(tmp_path: Path) -
                 try:
                     save_picture(sim, tmp_path / "out.png", render_view)
                 except RenderError as error:
-                    pytest.skip(f"{error}; apt install libegl1 libgl1-mesa-dri")
+                    pytest.skip(f"{error}; apt install libegl1 libopengl0 libgl1-mesa-dri")
                 images = [
                     render_view(
                         sim, 80, 60, eye=(0.0, -6.0, 6.0), target=(0.3, 0.3, 0.0), quality=quality, passes=passes

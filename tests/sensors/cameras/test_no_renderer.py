@@ -63,9 +63,29 @@ def test_other_sensors_continue_and_the_camera_reports_the_missing_renderer() ->
     )
     assert done.returncode == 0, done.stderr
     assert "SK-RENDER-001" in done.stdout
-    assert "libegl1 libgl1-mesa-dri" in done.stdout
+    assert "libegl1 libopengl0 libgl1-mesa-dri" in done.stdout
     assert "libosmesa6" in done.stdout
     assert "Traceback" not in done.stderr
+
+
+def test_an_egl_without_a_library_of_functions_is_reported_with_the_name_of_the_library() -> None:
+    done = run(
+        """
+        import ctypes
+        class OnlyEgl(ctypes.CDLL):
+            def __init__(self, name, *more, **options):
+                if str(name).startswith(("libOpenGL", "libGL")):
+                    raise OSError(name)
+                super().__init__(name, *more, **options)
+        ctypes.CDLL = OnlyEgl
+        from simkit.sensors.cameras.rendering import gl_context
+        print(gl_context._egl_problem())
+        """,
+        broken=False,
+    )
+    if "libEGL.so.1" in done.stdout:
+        pytest.skip("there is no EGL; apt install libegl1")
+    assert done.stdout == "libOpenGL.so.0 not found\n", done.stderr
 
 
 def test_opengl_can_be_switched_off() -> None:
@@ -249,4 +269,4 @@ def test_an_error_of_all_cameras_is_logged_once_and_reported_for_each() -> None:
     )
     assert done.stdout.split() == ["3"], done.stderr
     assert done.stderr.count("SK-RENDER-001") == 1
-    assert "libegl1 libgl1-mesa-dri" in done.stderr
+    assert "libegl1 libopengl0 libgl1-mesa-dri" in done.stderr

@@ -62,7 +62,7 @@ def test_the_page_shows_what_was_compared_and_both_worlds(golden: Path, tmp_path
     assert simkit("golden", "check", golden, "--html", page, "--no-causes")[0] == 5
     text = page.read_text(encoding="utf-8")
     if "no pictures of the worlds" in text:
-        pytest.skip("there is no renderer; apt install libegl1 libgl1-mesa-dri")
+        pytest.skip("there is no renderer; apt install libegl1 libopengl0 libgl1-mesa-dri")
     pictures = re.findall(r'alt="world of the (\w+)" src="data:image/jpeg;base64,([^"]+)"', text)
     assert [name for name, _ in pictures] == ["golden", "run"]
     assert pictures[0][1] != pictures[1][1]

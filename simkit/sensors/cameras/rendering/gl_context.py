@@ -23,12 +23,15 @@ from simkit.interrupts import defer_interrupts
 from simkit.runtime.engine.step_loop import stop_other_loops
 from simkit.sensors.cameras.rendering import render_thread
 
-WAYS_TO_GET_GL = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6)"
+WAYS_TO_GET_GL = "on Debian and Ubuntu: apt install libegl1 libopengl0 libgl1-mesa-dri (or libosmesa6)"
 HINT = f"{WAYS_TO_GET_GL}, or draw with --renderer software; run `simkit doctor` for details"
 _OFF = {"disable", "disabled", "off", "false", "0"}
 _ON = {"", "enable", "enabled", "on", "true", "1"}
 _LIBRARIES = {"egl": "egl", "osmesa": "osmesa", "glfw": "glfw", "glx": "glfw", "cgl": "cgl", "wgl": "glfw"}
 """Library of each renderer that `MUJOCO_GL` accepts."""
+
+_FUNCTION_LIBRARIES = ("libOpenGL.so.0", "libGL.so.1", "libGLESv2.so.2")
+"""Libraries in which PyOpenGL searches its functions when EGL provides the context; libEGL depends on none of them."""
 
 _PLATFORM_DEVICE = 0x313F
 
@@ -195,6 +198,8 @@ def _egl_problem() -> str:
         egl = ctypes.CDLL(ctypes.util.find_library("EGL") or "libEGL.so.1")
     except OSError:
         return "libEGL.so.1 not found"
+    if not _is_any_loadable(_FUNCTION_LIBRARIES):
+        return f"{_FUNCTION_LIBRARIES[0]} not found"
     egl.eglGetProcAddress.restype = ctypes.c_void_p
     egl.eglGetProcAddress.argtypes = [ctypes.c_char_p]
     query = egl.eglGetProcAddress(b"eglQueryDevicesEXT")
@@ -215,13 +220,18 @@ def _egl_problem() -> str:
 
 
 def _osmesa_problem() -> str:
-    for name in (ctypes.util.find_library("OSMesa"), "libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"):
+    names = (ctypes.util.find_library("OSMesa"), "libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so")
+    return "" if _is_any_loadable(names) else "libOSMesa not found"
+
+
+def _is_any_loadable(names: Sequence[str | None]) -> bool:
+    for name in filter(None, names):
         try:
-            if name and ctypes.CDLL(name):
-                return ""
+            ctypes.CDLL(name)
         except OSError:
             continue
-    return "libOSMesa not found"
+        return True
+    return False
 
 
 def _glfw_problem() -> str:
