@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import importlib
 
+from simkit.garbage_collection import no_collection
 from simkit.version import __version__
 
 TYPE_CHECKING = False  # `typing` takes 3 ms
@@ -94,7 +95,8 @@ def __getattr__(name: str) -> Any:
     if name not in _LAZY:
         raise AttributeError(f"module 'simkit' has no attribute {name!r}")
 
-    value = getattr(importlib.import_module(_LAZY[name]), name)
+    with no_collection():
+        value = getattr(importlib.import_module(_LAZY[name]), name)
     globals()[name] = value
     return value
 
