@@ -67,11 +67,12 @@ def test_a_variable_that_forces_colours_brings_them_to_a_pipe(capsys, monkeypatc
     assert capsys.readouterr().out == "\x1b[31mred\x1b[0m\n"
 
 
-def test_a_run_whose_output_is_a_pipe_imports_no_rich():
+@pytest.mark.parametrize("world", ["empty", "turtlebot3_world"])
+def test_a_run_in_a_pipe_imports_neither_rich_nor_the_types_of_messages(world):
     code = (
-        "import sys; from simkit.cli import main; sys.argv = ['simkit', 'run', 'empty', '--duration', '0']\n"
+        f"import sys; from simkit.cli import main; sys.argv = ['simkit', 'run', '{world}', '--duration', '0.1']\n"
         "try: main()\n"
-        "finally: print(sorted({'rich', 'numpy.ma', 'rosbags'} & set(sys.modules)))"
+        "finally: print(sorted({'rich', 'numpy.ma', 'rosbags.typesys.stores.ros2_jazzy'} & set(sys.modules)))"
     )
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.splitlines()[-1] == "[]"
