@@ -30,6 +30,7 @@ SMALL_MODULES = frozenset(
         "input_file",
         "interrupts",
         "lifecycle",
+        "light_dataclass",
         "msgs",
         "mujoco_import",
         "number_text",

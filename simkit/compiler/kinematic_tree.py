@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
+from simkit.light_dataclass import dataclass
 from simkit.scene import SceneJoint, SceneLink
 
 WORLD: Final = "world"

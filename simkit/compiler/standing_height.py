@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 import mujoco
@@ -11,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.geom_groups import COLLISION_RAY, SEEN_AS_COLLISIONS
+from simkit.light_dataclass import dataclass
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]

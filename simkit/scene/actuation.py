@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from simkit.diagnostics import NOWHERE, Where
+from simkit.light_dataclass import dataclass
 from simkit.params import Params
 
 

@@ -14,9 +14,11 @@ from __future__ import annotations
 import csv
 import functools
 import itertools
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from pathlib import Path
+
+from simkit.light_dataclass import dataclass
 
 
 class Use(Enum):

@@ -11,11 +11,12 @@ differ from the values in the drive.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from simkit.light_dataclass import dataclass
 from simkit.plugins.drives.odometry import UNKNOWN, BodyTwist, DeadReckoning
 from simkit.plugins.options import Options, number
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import mujoco
@@ -11,6 +10,7 @@ import numpy as np
 
 from simkit.compiler import Compiled
 from simkit.in_process import InProcess
+from simkit.light_dataclass import dataclass
 from simkit.number_text import number_or_nan
 from simkit.params import LARGEST, Params
 from simkit.pose import Vector, quat_from_rpy, quat_multiply

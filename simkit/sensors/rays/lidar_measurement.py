@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -12,6 +11,7 @@ import numpy.typing as npt
 from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.diagnostics import Diagnostics
+from simkit.light_dataclass import dataclass
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.scene import SceneSensor
