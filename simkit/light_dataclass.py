@@ -80,7 +80,7 @@ def _add_methods(cls: type, *, frozen: bool, slots: bool, has_repr: bool, eq: bo
 def _initialiser(cls: type, *, frozen: bool, slots: bool) -> Callable[..., None]:
     """Compile the method `__init__` of a class."""
     values: dict[str, Any] = {"_set_": object.__setattr__, "_factory_": _FACTORY}
-    positional, keywords, body = ["self"], [], []
+    positional, keywords, body = ["self"], list[str](), list[str]()
     for f in fields(cls):
         parameters = keywords if f.kw_only else positional
         default, value = f"_{f.name}_", f.name
@@ -133,7 +133,7 @@ def _hash_function(values: Callable[[Any], tuple[Any, ...]]) -> Callable[[Any], 
     return lambda self: hash(values(self))
 
 
-def _frozen_methods(cls: type) -> dict[str, Callable[..., None]]:
+def _frozen_methods(cls: Any) -> dict[str, Callable[..., None]]:
     """Return the methods that refuse to change an attribute."""
     names = {f.name for f in fields(cls)}
 
