@@ -3,8 +3,8 @@
 python benchmarks/import_time.py [--rounds N]
 
 The runs are measured in turn, in CPU time of their processes, with all modules compiled to bytecode. Aims: below 0.3 s;
-at most 1.7 times the time of `import mujoco` for an empty world (1.5 if simkit is installed from a wheel), and 2.0 times
-for the world of TurtleBot3.
+for an empty world at most 1.7 times the time of `import mujoco` (1.5 if simkit is installed from a wheel), and for the
+world of TurtleBot3 2.0 times.
 """
 
 from __future__ import annotations

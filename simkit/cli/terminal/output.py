@@ -167,8 +167,9 @@ def _print_entry(equal: list[Diagnostic], target: Console) -> None:
         rest = len(equal) - 1 - len(others)
         more = f" and {rest} more" if rest else ""
         pieces.append((f"\n    also at {', '.join(others)}{more}", "dim"))
-    if isinstance(target, PlainConsole):
-        target.print("".join(printable(text) for text, _ in pieces))
+    plain: object = target
+    if isinstance(plain, PlainConsole):
+        plain.print("".join(printable(text) for text, _ in pieces))
         return
     from rich.text import Text
 
