@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.cli.terminal.given_interfaces import interface_folders
 from simkit.cli.terminal.options import source_arguments
-from simkit.light_dataclass import dataclass
 from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 
 if TYPE_CHECKING:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
-from simkit.light_dataclass import dataclass
 from simkit.scene import SceneJoint, SceneLink
 
 WORLD: Final = "world"

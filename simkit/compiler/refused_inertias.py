@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import mujoco
@@ -26,7 +27,6 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
-from simkit.light_dataclass import dataclass
 from simkit.scene import Inertial, SceneLink
 
 Matrix = npt.NDArray[np.float64]

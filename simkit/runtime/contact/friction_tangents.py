@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from simkit.light_dataclass import dataclass
 from simkit.runtime.contact.friction_contacts import (
     AnyFrictionContacts,
     Floats,
