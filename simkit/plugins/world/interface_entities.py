@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul, norm
 from simkit.plugins.world.service_entities import (
     RequestRefused,
     find_entity,
@@ -192,7 +193,7 @@ def _corners(sim: Simulation, kind: str, scoped: str, frame: Pose = IDENTITY) ->
         centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
         rotation = data.geom_xmat[geom].reshape(3, 3)
         for signs in itertools.product((-1.0, 1.0), repeat=3):
-            points.append(back.transform(data.geom_xpos[geom] + rotation @ (centre + half * signs)))
+            points.append(back.transform(data.geom_xpos[geom] + matmul(rotation, centre + half * signs)))
     return np.array([np.min(points, axis=0), np.max(points, axis=0)]) if points else None
 
 
@@ -223,4 +224,4 @@ def _corners_or_point(sim: Simulation, name: str) -> Any:
 
 def _distance(sim: Simulation, name: str, centre: Vector) -> float:
     low, high = _corners_or_point(sim, name)
-    return float(np.linalg.norm(centre - np.clip(centre, low, high)))
+    return norm(centre - np.clip(centre, low, high))
