@@ -88,7 +88,7 @@ def hashes(
             topic: sim.subscribe(topic)
             for topic, kind in kinds.items()
             if not topic.endswith(("/stats", "/rosout"))
-            and (pictures or "Image" not in kind and not topic.endswith("points"))
+            and (pictures or ("Image" not in kind and not topic.endswith("points")))
         }
         act(sim, seconds)
         found = {}
@@ -119,4 +119,4 @@ WORLDS: dict[str, Callable[[], dict[str, str]]] = {
 
 if __name__ == "__main__":
     for name in sys.argv[1:] or WORLDS:
-        print(json.dumps({"world": name, "hashes": WORLDS[name]()}), flush=True)
+        sys.stdout.write(json.dumps({"world": name, "hashes": WORLDS[name]()}) + "\n")
