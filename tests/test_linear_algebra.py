@@ -44,6 +44,14 @@ def test_dot_and_norm_are_exact_to_rounding_at_every_length(size: int) -> None:
     assert algebra.norm(a) == pytest.approx(float(np.linalg.norm(a)), rel=1e-14)
 
 
+def test_a_squared_length_next_to_its_limit_is_that_of_the_fixed_order() -> None:
+    vector = draw(40)
+    limit = algebra.dot(vector, vector)
+    assert algebra.squared_length(vector, limit) == limit
+    assert algebra.squared_length(vector, 2.0 * limit) == pytest.approx(limit, rel=1e-12)
+    assert algebra.squared_length(vector * np.inf, 1.0) == math.inf
+
+
 def test_a_norm_that_overflows_is_infinite_without_a_warning() -> None:
     assert algebra.norm([1e200, 1e200, 0.0]) == math.inf
 
