@@ -203,8 +203,8 @@ class TrajectoryMessages(SharedByCopies):
         measured = len(self._group.states)
         reference, actual = self._point(desired, 3), self._point(state, measured)
         points = reference, actual, self._point(errors, measured), self._command_point(commands)
-        none = (self._empty_multi_dof_point() for _ in range(4))
-        return self._state_type(msgs.header(now, ""), list(self._names), *points, [], *none, scaling)
+        header, none = msgs.header(now, ""), self._empty_multi_dof_point
+        return self._state_type(header, list(self._names), *points, [], none(), none(), none(), none(), scaling)
 
     def _empty_multi_dof_point(self) -> MultiDOFJointTrajectoryPoint:
         return self._multi_dof_point_type([], [], [], msgs.duration(0))
