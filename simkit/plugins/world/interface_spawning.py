@@ -177,8 +177,10 @@ def _pose(sim: Simulation, stamped: Any) -> Pose:
 
 def _load_code(error: LoadError) -> int:
     """Return the result code for a model that cannot be read."""
-    codes = [item.code for item in error.diagnostics if item.severity == "error"]
-    if codes[:1] == ["SK-LOAD-002"]:
+    errors = [item for item in error.diagnostics if item.severity == "error"]
+    codes = [item.code for item in errors]
+    # the place of a URI that is not found is the URI itself
+    if codes[:1] == ["SK-LOAD-002"] or (errors and "://" in (errors[0].file or "")):
         return NO_RESOURCE
     if any(code.startswith(("SK-URI-", "SK-MESH-")) for code in codes):
         return MISSING_ASSETS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -78,6 +79,8 @@ def test_a_model_is_spawned_at_the_pose_renamed_and_deleted() -> None:
         ({"entity_resource": {"resource_string": "box.sdf"}}, 103),
         ({"entity_resource": {}}, 104),
         ({"entity_resource": {"uri": "missing.sdf"}}, 104),
+        ({"entity_resource": {"uri": "model://missing"}}, 104),
+        ({"entity_resource": {"uri": "file:///missing.sdf"}}, 104),
         ({"entity_namespace": "a b"}, 105),
         ({"entity_resource": {"resource_string": "<sdf"}}, 106),
         ({"initial_pose": {"header": {"frame_id": "nowhere"}}}, 109),
@@ -330,6 +333,16 @@ def test_a_listed_model_can_be_spawned() -> None:
         other = sim.call("/get_spawnables", {"sources": ["https://example.org"]})
         assert other.result.result == OK and "https://example.org" in other.result.error_message
         assert len(other.spawnables) == len(listed)
+
+
+def test_a_model_is_spawned_from_a_uri(tmp_path: Path) -> None:
+    file = tmp_path / "a box.sdf"
+    file.write_text(model("one"), encoding="utf-8")
+    with load() as sim:
+        for uri in ("model://turtlebot3_world", "model://ground_plane", file.as_uri()):
+            request = {"name": "new", "entity_resource": {"uri": uri}}
+            assert result_of(sim, "/spawn_entity", request) == OK and "new" in sim.models
+            assert result_of(sim, "/delete_entity", {"entity": "new"}) == OK
 
 
 @pytest.mark.parametrize("service", ["get_named_poses", "load_world", "get_available_worlds"])
