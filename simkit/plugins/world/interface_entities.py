@@ -38,6 +38,8 @@ _MOST_ALTERNATIVES: Final = 8  # each may double the time of a search
 _LONGEST_FILTER: Final = 200
 _EMPTY, _BOX, _HULL, _SPHERE = range(4)
 _INVALID_POSE: Final = 101
+_FARTHEST: Final = 1e10
+"""Largest coordinate [m] of a position: beyond it, MuJoCo takes the state for diverged."""
 _QUATERNION_TOLERANCE: Final = 0.01
 """Largest difference of a quaternion's squared length from 1, as in tf2."""
 
@@ -129,12 +131,17 @@ def requested_pose(sim: Simulation, header: Any, pose: Any, what: str) -> Pose:
     """Return a pose of a request in the world frame; the header names its frame.
 
     Raises:
-        RequestRefused: there is no such frame, a number is NaN or infinite, or the quaternion is not normalised.
+        RequestRefused: there is no such frame, a number is NaN, infinite or outside of the world, or the quaternion is
+            not normalised.
     """
     frame, found = frame_of(sim, header.frame_id), pose_of(pose, what)
     length = math.hypot(*(float(getattr(pose.orientation, axis)) for axis in "xyzw"))
     if abs(length * length - 1.0) > _QUATERNION_TOLERANCE:
         raise RequestRefused(f"found {what}.orientation of length {length:.4g}; expected a quaternion of length 1")
+    position = frame.transform(found.position)
+    if not np.abs(position).max() <= _FARTHEST:
+        farthest = max(map(abs, found.position.tolist()))
+        raise RequestRefused(f"found {what}.position at {farthest:.4g} m; a world ends at {_FARTHEST:g} m")
     return frame @ found
 
 

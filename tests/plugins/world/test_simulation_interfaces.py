@@ -85,6 +85,7 @@ def test_a_model_is_spawned_at_the_pose_renamed_and_deleted() -> None:
         ({"entity_resource": {"resource_string": "<sdf"}}, 106),
         ({"initial_pose": {"header": {"frame_id": "nowhere"}}}, 109),
         ({"initial_pose": {"pose": {"position": {"x": float("nan")}}}}, 109),
+        ({"initial_pose": {"pose": {"position": {"x": -2e10}}}}, 109),
         ({"initial_pose": {"pose": {"orientation": {"w": float("inf")}}}}, 109),
         ({"initial_pose": {"pose": {"orientation": {"z": 0.2}}}}, 109),
         ({"initial_pose": {"pose": {"orientation": {"w": 0.0}}}}, 109),
@@ -142,6 +143,7 @@ def test_entities_are_selected_by_name_category_and_bounds() -> None:
     [
         {"header": {"frame_id": "nowhere"}},
         {"pose": {"position": {"y": float("nan")}}},
+        {"pose": {"position": {"y": 1e300}}},
         {"pose": {"orientation": {"x": 1.0}}},
         {"pose": {"orientation": {"w": 0.0}}},
     ],
