@@ -1,4 +1,4 @@
-"""mypy plugin: `@` and `**` of NumPy arrays are errors, because their bits depend on the processor.
+"""Refuse with mypy: `@` and `**` of NumPy arrays are errors, because their bits depend on the processor.
 
 `simkit.linear_algebra.matmul` and `simkit.elementary_functions.power` replace them. Only the types can tell an array
 from a pose, so `tests/test_processor_independence.py`, which reads the syntax, cannot check these two operators.

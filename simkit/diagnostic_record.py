@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, field
+from dataclasses import asdict, dataclass, field
 from typing import Any, Final, Literal
-
-from simkit.light_dataclass import dataclass
 
 TEXT_SOURCE: Final = "<string>"
 """Name of XML that was passed as text, instead of a file name."""

@@ -10,12 +10,11 @@ import fnmatch
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal, Protocol, TypedDict, cast
 
 from simkit.errors import InputError
-from simkit.light_dataclass import dataclass
 
 FilePath = str | os.PathLike[str]
 JsonObject = dict[str, Any]

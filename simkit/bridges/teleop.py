@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
-from simkit.light_dataclass import dataclass
 
 if TYPE_CHECKING:
     from simkit.runtime import Model, Simulation

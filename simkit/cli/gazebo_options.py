@@ -7,11 +7,11 @@ import re
 import shlex
 import tomllib
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
-from simkit.light_dataclass import dataclass
 
 _TABLE = Path(__file__).parent / "gazebo_options.toml"
 

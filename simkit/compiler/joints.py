@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import mujoco
@@ -16,7 +16,6 @@ from simkit.compiler.engine_options import SOFT_SOLIMP, contact_time_constant
 from simkit.compiler.kinematic_tree import WORLD, TreeEdge
 from simkit.compiler.name_map import Follower, JointBinding, ModelRecord
 from simkit.diagnostics import Diagnostics
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul, norm
 from simkit.pose import IDENTITY, Pose, Vector
 from simkit.scene import Axis, SceneJoint, SceneLink

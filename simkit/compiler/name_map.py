@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar
 
 import mujoco
@@ -11,7 +11,6 @@ import mujoco
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION
 from simkit.compiler.state_transfer import JOINT_WIDTHS
 from simkit.diagnostics import did_you_mean
-from simkit.light_dataclass import dataclass
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneJoint, SceneLight, SceneLink, SceneModel
 

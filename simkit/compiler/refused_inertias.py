@@ -27,7 +27,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
-from simkit.linear_algebra import det, eigh, matmul
+from simkit.linear_algebra import det, matmul
+from simkit.matrix_decompositions import eigh
 from simkit.scene import Inertial, SceneLink
 
 Matrix = npt.NDArray[np.float64]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import mujoco
@@ -13,7 +14,6 @@ import numpy.typing as npt
 from simkit.compiler.first_state import first_mass_matrix, first_state, inverse_inertia
 from simkit.compiler.name_map import ActuatorRef
 from simkit.diagnostics import Diagnostics, Where
-from simkit.light_dataclass import dataclass
 from simkit.pose import Vector
 
 FULL_EFFORT_ERROR_ROTARY: Final = 0.01

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import warnings
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import mujoco
@@ -12,7 +13,6 @@ import numpy as np
 
 from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshFileError, MeshPart
 from simkit.input_file import read_input
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import dot
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Heightmap, Plane, Polyline, Sphere

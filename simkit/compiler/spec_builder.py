@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,6 @@ from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_ar
 from simkit.compiler.state_transfer import transfer_state
 from simkit.compiler.world_geoms import WorldGeoms
 from simkit.diagnostics import Diagnostics
-from simkit.light_dataclass import dataclass
 from simkit.pose import Pose
 from simkit.scene import SceneJoint, SceneModel, SceneWorld
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Final
 
 import mujoco
@@ -11,7 +12,6 @@ import numpy.typing as npt
 
 from simkit.compiler.geom_groups import COLLISION_RAY, SEEN_AS_COLLISIONS
 from simkit.elementary_functions import arctan2
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul, norm
 
 Floats = npt.NDArray[np.float64]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -17,7 +18,6 @@ import numpy as np
 from simkit.compiler.kinematic_tree import KinematicTree
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.shape_geometry import turn_z_to
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose
 from simkit.scene import SceneLink

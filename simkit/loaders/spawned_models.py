@@ -5,12 +5,11 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
 from simkit.diagnostics import Diagnostics
-from simkit.light_dataclass import dataclass
 from simkit.loaders import Resolver, find_document
 from simkit.loaders.resources.model_list import spawnable_models
 from simkit.pose import Pose

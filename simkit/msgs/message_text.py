@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sized
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
-from simkit.light_dataclass import dataclass
 from simkit.msgs.definition_parser import ARRAY, NAME, SEQUENCE, FieldNode
 from simkit.msgs.message_types import FieldValue, Message, type_store
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -17,7 +18,6 @@ from simkit.diagnostic_record import Diagnostic
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InterfaceError
 from simkit.input_file import read_failure, read_input_text
-from simkit.light_dataclass import dataclass
 from simkit.msgs.definition_parser import (
     PARTS,
     UNKNOWN_TYPE,

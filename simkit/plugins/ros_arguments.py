@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostics, did_you_mean
-from simkit.light_dataclass import dataclass
 from simkit.params import Params
 from simkit.plugins.not_deep_copied import SharedByCopies
 

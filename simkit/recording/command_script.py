@@ -11,13 +11,13 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 from simkit.input_file import read_failure, read_input_text
-from simkit.light_dataclass import dataclass
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from simkit.diagnostics import NOWHERE, Where
-from simkit.light_dataclass import dataclass
 from simkit.params import Params
 
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import Any, Final
 
-from simkit.light_dataclass import dataclass
 from simkit.scene.model import SceneJoint, SceneLink, SceneModel, SceneSensor, SceneVisual
 from simkit.scene.world import SceneWorld
 

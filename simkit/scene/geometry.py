@@ -6,9 +6,8 @@ Each shape is centred in its own frame. Its axis of symmetry is z; a plane has t
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
-
-from simkit.light_dataclass import dataclass
 
 Vec3 = tuple[float, float, float]
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
-from simkit.light_dataclass import dataclass
 from simkit.pose import IDENTITY, Pose
 
 Mass = tuple[float, tuple[float, ...], tuple[float, ...], tuple[float, ...]]

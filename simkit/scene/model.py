@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from simkit.diagnostics import NOWHERE, Where
-from simkit.light_dataclass import dataclass
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.actuation import Calibration, Safety, Transmission

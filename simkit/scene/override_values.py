@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from simkit.light_dataclass import dataclass
 from simkit.pose import Pose
 
 _POSE_PARTS = ("x", "y", "z", "roll", "pitch", "yaw")

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from simkit.diagnostics import NOWHERE, Where
-from simkit.light_dataclass import dataclass
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Vec3
 from simkit.scene.model import Colour, SceneFrame, SceneJoint, SceneLight, SceneModel, ScenePlugin, SceneVisual

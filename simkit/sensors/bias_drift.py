@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit.elementary_functions import exp, expm1
-from simkit.light_dataclass import dataclass
 from simkit.pose import Vector
 
 if TYPE_CHECKING:

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from operator import add, mul
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from simkit.light_dataclass import dataclass
 from simkit.params import LARGEST, Params
 from simkit.pose import Vector
 from simkit.sensors.bias_drift import (

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
-
-from simkit.light_dataclass import dataclass
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.physics_state import HeldState

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final
 
-from simkit.light_dataclass import dataclass
 from simkit.params import Params
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.runtime.engine.scheduler import Timetable

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Final
 
 from simkit.diagnostics import Diagnostics
-from simkit.light_dataclass import dataclass
 from simkit.params import Params
 from simkit.scene import SceneSensor, SceneWorld
 from simkit.sensors.noise import NoiseModel, read_noise

@@ -13,7 +13,8 @@ from simkit.compiler.first_state import first_state
 from simkit.compiler.name_map import LinkBinding
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
-from simkit.linear_algebra import eigvalsh, matmul
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import eigvalsh
 from simkit.scene import SceneModel, SceneWorld
 
 Floats = npt.NDArray[np.float64]

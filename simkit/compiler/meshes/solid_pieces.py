@@ -17,7 +17,8 @@ from simkit.compiler.meshes.convex_pieces import hull_volume
 from simkit.compiler.meshes.flat_areas import connected_areas
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.patch_division import Patch, area_vectors, divide
-from simkit.linear_algebra import dot, eigh, matmul, norm
+from simkit.linear_algebra import dot, matmul, norm
+from simkit.matrix_decompositions import eigh
 
 TRIANGLES_PER_PIECE: Final = 12
 """Least number of triangles for one piece; height fields and patches do not need fewer pieces than that."""

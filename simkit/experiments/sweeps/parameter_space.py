@@ -26,7 +26,8 @@ from typing import Any, Final
 import numpy as np
 
 from simkit.diagnostics import did_you_mean, shorten
-from simkit.linear_algebra import cholesky, matmul
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import cholesky
 from simkit.run_spec import JsonObject
 
 Names = tuple[str, ...]

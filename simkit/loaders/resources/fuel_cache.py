@@ -6,14 +6,13 @@ import json
 import os
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from urllib.parse import quote, unquote
 
 from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
 from simkit.input_file import read_failure, read_input_text
-from simkit.light_dataclass import dataclass
 from simkit.loaders.resources.uris import is_small_integer
 
 TIP = "tip"

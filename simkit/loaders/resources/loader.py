@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.light_dataclass import dataclass
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
 from simkit.params import Params

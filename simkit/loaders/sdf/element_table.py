@@ -14,11 +14,9 @@ from __future__ import annotations
 import csv
 import functools
 import itertools
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-
-from simkit.light_dataclass import dataclass
 
 
 class Use(Enum):

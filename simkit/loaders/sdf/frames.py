@@ -7,10 +7,9 @@ defaults).
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
-from simkit.light_dataclass import dataclass
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from simkit.linear_algebra import eigvalsh, matmul
+from simkit.linear_algebra import matmul
 from simkit.loaders.resources.loader import MeshReader
 from simkit.loaders.sdf.solid_moments import Solid, solid_of, solid_of_triangles
+from simkit.matrix_decompositions import eigvalsh
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Inertial, Mesh, SceneCollision

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
-from simkit.light_dataclass import dataclass
 from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, MjcfParser
 from simkit.loaders.resources.model_folder import NEWEST_SDF, sdf_version
 from simkit.loaders.resources.uri_resolver import Resolver

@@ -8,13 +8,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
 from simkit.input_file import read_input_text
-from simkit.light_dataclass import dataclass
 from simkit.loaders.sdf.gazebo_materials import gazebo_colours
 from simkit.scene.model import Colour
 

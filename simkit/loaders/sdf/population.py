@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import hashlib
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul
 from simkit.loaders.sdf.entity_names import read_name
 from simkit.loaders.sdf.load_context import MAX_MODELS, EntitySource, SdfFile, Workspace, read_pose

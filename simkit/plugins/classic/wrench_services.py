@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit import msgs
-from simkit.light_dataclass import dataclass
 from simkit.plugins.classic.property_services import joint_of
 from simkit.plugins.world.service_entities import RequestRefused, find_entity, frame_of, require_finite, vector_of
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
-from simkit.light_dataclass import dataclass
 from simkit.plugins.base import Plugin
 from simkit.plugins.plugin_names import GZ_HOOKS
 from simkit.scene import SceneModel, SceneSensor, SceneVisual, SceneWorld

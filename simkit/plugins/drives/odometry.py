@@ -6,12 +6,12 @@ import abc
 import copy
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit.light_dataclass import dataclass
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
 

@@ -11,12 +11,11 @@ differ from the values in the drive.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul
 from simkit.plugins.drives.odometry import UNKNOWN, BodyTwist, DeadReckoning
 from simkit.plugins.options import Options, number

@@ -6,13 +6,13 @@ The module provides `gz::sim::systems::WheelSlip`, `libgazebo_ros_wheel_slip.so`
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit import msgs
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul, norm
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from simkit.linear_algebra import matmul, norm, pinv, svd
+from simkit.linear_algebra import matmul, norm
+from simkit.matrix_decompositions import pinv, svd
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import fnmatch
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from simkit.errors import InputError
-from simkit.light_dataclass import dataclass
 
 
 def matches_topic(topic: str, patterns: Iterable[str]) -> bool:

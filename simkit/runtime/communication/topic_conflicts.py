@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
-from simkit.light_dataclass import dataclass
 from simkit.runtime.communication.publisher import Listener, Publisher
 
 Side = tuple[str, Publisher | Listener, tuple[str, ...], str]

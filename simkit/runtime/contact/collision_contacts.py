@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit.light_dataclass import dataclass
 from simkit.runtime.contact.friction_contacts import (
     AnyFrictionContacts,
     Floats,

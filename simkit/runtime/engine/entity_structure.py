@@ -6,10 +6,9 @@ This package does not import the classes of sensors and plugins.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
-from simkit.light_dataclass import dataclass
 from simkit.scene import SceneModel
 
 if TYPE_CHECKING:

@@ -9,11 +9,11 @@ from __future__ import annotations
 import sys
 import traceback
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 from simkit.errors import InputError, InterfaceError, PluginError, SimkitError, SimulationDiverged
-from simkit.light_dataclass import dataclass
 from simkit.run_spec import PluginErrorPolicy
 
 if TYPE_CHECKING:

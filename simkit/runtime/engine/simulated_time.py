@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from typing import Final
 
 from simkit.argument_checks import checked_integer, checked_number
-from simkit.light_dataclass import dataclass
 
 _MAX_DENOMINATOR = 1_000_000  # largest denominator of a rate that is interpreted as a fraction
 

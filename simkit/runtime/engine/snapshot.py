@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import hashlib
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn, Protocol
 
 import mujoco
@@ -15,7 +16,6 @@ from simkit.argument_checks import wrong_type
 from simkit.compiler.state_transfer import restore_compiled_fields
 from simkit.errors import ArgumentValueError
 from simkit.in_process import InProcess
-from simkit.light_dataclass import dataclass
 from simkit.runtime.engine.physics_state import STALE, StepWindow
 
 if TYPE_CHECKING:

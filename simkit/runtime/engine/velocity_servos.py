@@ -26,14 +26,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit.compiler.engine_options import SHORTEST_STEP
 from simkit.compiler.servo_gains import ServoTraits, servo_traits
-from simkit.light_dataclass import dataclass
 from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import mujoco
 
 from simkit.argument_checks import check_kind, checked_number, checked_vector, wrong_value
 from simkit.compiler.lights import drawn_fields, drawn_position
-from simkit.light_dataclass import dataclass
 from simkit.pose import IDENTITY, Pose, Vector, checked_pose
 from simkit.runtime.handles.handle import Handle
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
 import mujoco
@@ -10,7 +11,6 @@ import numpy as np
 
 from simkit.compiler import Compiled
 from simkit.in_process import InProcess
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul
 from simkit.number_text import number_or_nan
 from simkit.params import LARGEST, Params

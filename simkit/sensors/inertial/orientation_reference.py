@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul, norm
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose, Vector, quat_from_rpy, quat_multiply

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
-
-from simkit.light_dataclass import dataclass
 
 Settings = Mapping[str, Any]
 """Elements of a `<sensor>` by name: a mapping is an element with children, a key `@name` is an attribute."""

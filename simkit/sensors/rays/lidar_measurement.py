@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -11,7 +12,6 @@ import numpy.typing as npt
 from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.diagnostics import Diagnostics
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.light_dataclass import dataclass
 from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose, Vector
 

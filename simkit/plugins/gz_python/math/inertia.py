@@ -8,7 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from simkit.linear_algebra import det, eigh, eigvalsh, matmul
+from simkit.linear_algebra import det, matmul
+from simkit.matrix_decompositions import eigh, eigvalsh
 from simkit.plugins.gz_python.math.matrices import Matrix3d
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
