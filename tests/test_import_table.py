@@ -25,6 +25,7 @@ SMALL_MODULES = frozenset(
         "diagnostic_record",
         "diagnostics",
         "errors",
+        "float_sum",
         "in_process",
         "input_file",
         "interrupts",

@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.float_sum import float_sum
 from simkit.runtime.contact import travel_bounds
 
 _GROWTH: Final = 2.0
@@ -150,7 +151,7 @@ def _ball_of(model: mujoco.MjModel, tree: int, geoms: npt.NDArray[np.intp]) -> _
         joints = range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body]))
         if any(model.jnt_type[k] != _HINGE for k in joints):
             return None
-        anchors = 2.0 * sum(float(np.linalg.norm(model.jnt_pos[k])) for k in joints)
+        anchors = 2.0 * float_sum(float(np.linalg.norm(model.jnt_pos[k])) for k in joints)
         reach[body] = reach[int(model.body_parentid[body])] + float(np.linalg.norm(model.body_pos[body])) + anchors
     offsets = np.linalg.norm(model.geom_pos[geoms], axis=1) + model.geom_rbound[geoms]
     radius = max(

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from simkit.float_sum import float_sum
 from simkit.pose import Pose, Vector
 from simkit.testing.golden.cause.first_tick import distinct_digits
 from simkit.testing.golden.compare.world_edits import Edit, entity_kind, parent_path, scoped_name, split_entity_path
@@ -94,7 +95,7 @@ def _is_pose(value: object) -> bool:
         return False
     if not all(isinstance(v, (int, float)) and abs(v) < _FARTHEST for v in value):
         return False
-    return bool(sum(v * v for v in value[3:]) > _CLOSE)
+    return bool(float_sum(v * v for v in value[3:]) > _CLOSE)
 
 
 def local_path(path: str) -> str:
