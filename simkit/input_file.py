@@ -90,8 +90,8 @@ def _open_handle(path: Path) -> int:
     """Open a file without waiting for the writer of a named pipe."""
     try:
         return os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    except ValueError as error:  # a name with a zero byte
-        raise OSError(errno.EINVAL, str(error), repr(str(path))) from None
+    except ValueError:
+        raise OSError(errno.EINVAL, "the name has a zero byte", repr(str(path))) from None
 
 
 def _check_kind(handle: int, path: Path, *, allow_pipe: bool) -> bool:

@@ -26,6 +26,7 @@ SMALL_MODULES = frozenset(
         "diagnostics",
         "errors",
         "garbage_collection",
+        "float_sum",
         "in_process",
         "input_file",
         "interrupts",

@@ -31,6 +31,7 @@ from simkit.experiments.sweeps.sweep import (
     make_executor,
 )
 from simkit.experiments.sweeps.sweep_spec import INVALID, SweepSpec, name_problems, raise_problems
+from simkit.float_sum import float_sum
 
 _TOGETHER: Final = 8
 """Number of points that are asked for together; more would use fewer results for each point."""
@@ -143,7 +144,7 @@ def _mean(rows: list[dict[str, Any]], metric: str) -> float:
     texts = [value for value in values if not isinstance(value, (bool, int, float))]
     if texts:
         raise InputError(f"{INVALID} metric {metric!r}: found {texts[0]!r:.60}; a search needs numbers", INVALID)
-    return sum(values) / len(values)
+    return float_sum(values) / len(values)
 
 
 class _Search:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul
 from simkit.loaders.resources.loader import MeshReader
 from simkit.loaders.sdf.solid_moments import Solid, solid_of, solid_of_triangles
@@ -128,7 +129,7 @@ def _automatic(
         mass = volume * (common if density is None else density)
         turn = collision.pose_link.matrix
         parts.append((mass, collision.pose_link.transform(centre), matmul(turn, moments, turn.T) * (mass / volume)))
-    total = sum(mass for mass, _, _ in parts)
+    total = float_sum(mass for mass, _, _ in parts)
     if total <= 0:
         block.warning("SK-SDF-022", f"link {name!r} has no collision for automatic inertia; 1 kg is used")
         return Inertial()
