@@ -25,6 +25,7 @@ SMALL_MODULES = frozenset(
         "diagnostic_record",
         "diagnostics",
         "errors",
+        "file_lock",
         "in_process",
         "input_file",
         "interrupts",
@@ -34,6 +35,7 @@ SMALL_MODULES = frozenset(
         "number_text",
         "params",
         "pose",
+        "process_control",
     }
     | {"progress", "registry", "run_spec", "save_path", "topic_logger", "version", "yaml_reader"}
 )
@@ -72,6 +74,7 @@ HEAVY = {
     "coacd": "optional: the extra `decompose`",
     "coal": "optional: the extra `labs`",
     "cloudpickle": "optional: the extra `experiments`",
+    "ctypes": "only functions of Windows need it",
     "cv2": "0.1 s",
     "embreex": "optional: has no wheels for some machines",
     "concurrent": "0.02 s; few commands start processes",

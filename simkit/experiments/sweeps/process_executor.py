@@ -23,6 +23,7 @@ from simkit.experiments.sweeps.executor import SweepTask
 from simkit.experiments.sweeps.row_runner import CRASHED, RowResult
 from simkit.experiments.sweeps.sweep_spec import SweepSpec
 from simkit.experiments.sweeps.worker import receive_message, send_message
+from simkit.process_control import kill_process_tree
 
 NOT_SENDABLE: Final = "SK-SWEEP-009"
 _MOST_WAITING: Final = 64  # tasks that a worker has received and not ended
@@ -114,11 +115,7 @@ class _Worker:
 
     def kill(self) -> None:
         """Kill the process and its own child processes."""
-        with suppress(OSError):
-            if hasattr(os, "killpg"):
-                os.killpg(self._process.pid, signal.SIGKILL)
-            else:
-                self._process.kill()
+        kill_process_tree(self._process)
 
     def close(self) -> None:
         """Kill the process and wait for its end."""
