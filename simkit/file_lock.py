@@ -29,7 +29,7 @@ def try_lock(handle: int) -> bool:
     """Lock an open file; return False if another open file has the lock.
 
     Args:
-        handle: file descriptor, open for writing. On POSIX systems it may also be a folder.
+        handle: file descriptor of a file that is open for writing. On POSIX systems it may also be a folder.
 
     Raises:
         OSError: the file system has no locks.

@@ -230,9 +230,9 @@ def read_token_file(path: Path) -> TokenFile:
 
 
 def _open(path: Path) -> int:
-    """Open a token file for reading; a link is not followed, and a pipe is not waited for."""
+    """Open a token file for reading and for locks; a link is not followed, and a pipe is not waited for."""
     flags = (getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
-    return os.open(path, os.O_RDONLY | sum(flags))
+    return os.open(path, os.O_RDWR | sum(flags))  # some systems lock only files that are open for writing
 
 
 def _privacy_fault(found: os.stat_result) -> str:
