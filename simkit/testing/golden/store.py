@@ -18,6 +18,7 @@ from typing import Final
 from simkit import file_lock
 from simkit.errors import InputError
 from simkit.input_file import read_input
+from simkit.install_command import install_command
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
 from simkit.testing.golden.record_encoding import decode_record, decode_scenario, encode_record, encode_scenario
@@ -148,7 +149,7 @@ def read_main(folder: Path) -> JsonObject:
     if main["format"] > FORMAT:
         raise InputError(
             f"SK-GOLDEN-004 {path} has format {main['format']}; this version of simkit reads formats up to {FORMAT}\n"
-            "    help: pip install --upgrade simkit-robotics",
+            f"    help: {install_command(option='--upgrade')}",
             "SK-GOLDEN-004",
         )
     if main["format"] < 1 or not isinstance(main.get("scenario"), dict):
