@@ -25,6 +25,7 @@ import numpy as np
 from mujoco.batch import Batch
 
 import simkit.gym
+from simkit.install_command import install_command
 
 ENVIRONMENT, SENSOR, PERIOD = "simkit/TurtleBot3Goal-v0", "turtlebot3::base_scan::lds", 0.1
 _VELOCITIES = int(mujoco.mjtStage.mjSTAGE_VEL)
@@ -203,7 +204,7 @@ def peers(rounds: int) -> None:
     for name, make in (("PyBullet, steps of 1 ms", pybullet_robot), ("Gymnasium's Ant-v5, steps of 10 ms", ant)):
         try:
             sides[name] = make()
-        except ImportError as error:
+            print(f"{name:34s} left out: {error}; {install_command('compare')} 'gymnasium[mujoco]'")
             print(f"{name:34s} left out: {error}; pip install 'simkit-robotics[compare]' 'gymnasium[mujoco]'")
     found = medians(sides, rounds, time.process_time)
     ours = found["simkit, steps of 1 ms"]

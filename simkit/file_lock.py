@@ -11,13 +11,15 @@ import errno
 import os
 import time
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, Final
 
+fcntl: Any
 try:
-    import fcntl
+    fcntl = import_module("fcntl")
 except ImportError:  # Windows
-    fcntl = None  # type: ignore[assignment]
+    fcntl = None
 
 _LOCKED_BYTE: Final = 1 << 40  # position of the byte that Windows locks; no lock file is that long
 _WAIT: Final = 0.05  # [s] between two attempts on Windows, whose own waiting lock gives up after ten seconds

@@ -136,7 +136,7 @@ class Server:
         return bool(ready)
 
     def fileno(self) -> int:
-        """Return a file descriptor for `select`; it is readable when `poll` has work to do."""
+        """Return a file descriptor for `select`, except on Windows; it is readable when `poll` has work to do."""
         found: int = self._selector.fileno()
         return found
 

@@ -13,7 +13,7 @@ from simkit.loaders.resources.uris import path_of_file_uri
         ("/C:/worlds/a.sdf", "C:/worlds/a.sdf"),
         ("C:/worlds/a.sdf", "C:/worlds/a.sdf"),
         ("meshes/a.stl", "meshes/a.stl"),
-        ("/home/a.sdf", "/home/a.sdf"),
+        ("/srv/a.sdf", "/srv/a.sdf"),
         ("", ""),
     ],
 )
