@@ -204,8 +204,8 @@ def peers(rounds: int) -> None:
     for name, make in (("PyBullet, steps of 1 ms", pybullet_robot), ("Gymnasium's Ant-v5, steps of 10 ms", ant)):
         try:
             sides[name] = make()
+        except ImportError as error:
             print(f"{name:34s} left out: {error}; {install_command('compare')} 'gymnasium[mujoco]'")
-            print(f"{name:34s} left out: {error}; pip install 'simkit-robotics[compare]' 'gymnasium[mujoco]'")
     found = medians(sides, rounds, time.process_time)
     ours = found["simkit, steps of 1 ms"]
     for name, seconds in found.items():
