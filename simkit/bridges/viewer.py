@@ -32,9 +32,7 @@ def check_possible() -> None:
 
         _ = glfw.init  # the first use loads the library
     except ImportError as error:
-        text = (
-            f"SK-CLI-015 --view: the window library is missing ({error})\n    help: {install_command('view')}"
-        )
+        text = f"SK-CLI-015 --view: the window library is missing ({error})\n    help: {install_command('view')}"
         raise InputError(text, "SK-CLI-015") from None
 
 
