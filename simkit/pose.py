@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from simkit.argument_checks import checked_number, checked_vector, shown, wrong_value
 from simkit.errors import ArgumentTypeError
+from simkit.linear_algebra import dot
 
 Vector = npt.NDArray[np.float64]
 VectorLike = Sequence[float] | Vector
@@ -125,7 +126,7 @@ class Pose:
             _raise_pose_error(position, quaternion)
         if p.shape != (3,) or q.shape != (4,):
             _raise_pose_error(position, quaternion)
-        norm = math.sqrt(np.vdot(q, q))  # `vdot` gives the bits of `dot`, but no warning for an overflow
+        norm = math.sqrt(dot(q, q))  # `vdot` gives the bits of `dot`, but no warning for an overflow
         x, y, z = p.tolist()
         if not (1e-12 < norm < math.inf and math.isfinite(x) and math.isfinite(y) and math.isfinite(z)):
             _raise_pose_error(p, q)
@@ -235,7 +236,7 @@ class Pose:
 def _make_pose(position: tuple[float, float, float], quaternion: tuple[float, float, float, float]) -> Pose:
     """Create `Pose(position, quaternion)` faster, with the same bits."""
     p, q = np.array(position), np.array(quaternion)
-    norm = math.sqrt(np.vdot(q, q))
+    norm = math.sqrt(dot(q, q))
     if not (1e-12 < norm < math.inf and all(map(math.isfinite, position))):
         return Pose(position, quaternion)  # raises with the reason
     if abs(norm - 1.0) > 1e-15:

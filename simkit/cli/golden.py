@@ -115,7 +115,8 @@ def _print_results(results: Sequence[CheckResult], *, blessed: bool, quiet: bool
             print_error(result.error)
         elif verdict is not None and _was_blessed(verdict, blessed):
             count = len(verdict.comparison.differences)
-            stdout_console().print(f"{verdict.name}: updated, with {count} difference{'s' if count > 1 else ''}:")
+            what = f"with {count} difference{'s' if count > 1 else ''}:" if count else "with the bits of this machine"
+            stdout_console().print(f"{verdict.name}: updated, {what}")
             for difference in verdict.comparison.differences[:5]:
                 stdout_console().print(f"  {difference.words}")
         elif verdict is not None and not (verdict.passed and quiet):
@@ -127,7 +128,7 @@ def _print_results(results: Sequence[CheckResult], *, blessed: bool, quiet: bool
 
 
 def _was_blessed(verdict: Verdict, blessed: bool) -> bool:
-    return blessed and not verdict.comparison.passed and all(check.passed for check in verdict.checks)
+    return blessed and verdict.comparison.can_be_blessed and all(check.passed for check in verdict.checks)
 
 
 def _write_junit(path: Path, results: Sequence[CheckResult], verdicts: list[Verdict]) -> None:

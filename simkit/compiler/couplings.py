@@ -10,6 +10,7 @@ import numpy as np
 
 from simkit.compiler.name_map import Follower, JointBinding, ModelRecord
 from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.linear_algebra import dot
 from simkit.pose import Vector
 from simkit.scene import Mimic, SceneJoint
 
@@ -102,7 +103,7 @@ class Couplings:
             if not turns or ends != {joint.gearbox_reference, link}:
                 continue
             own = other.scene.axes[0].xyz_world
-            along = float(np.dot(joint.axes[axis].xyz_world, own)) if axis < len(joint.axes) else 1.0
+            along = dot(joint.axes[axis].xyz_world, own) if axis < len(joint.axes) else 1.0
             if abs(along) < _ALONG:
                 continue
             sign = 1.0 if along > 0.0 else -1.0

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import norm
 from simkit.scene import SceneWorld
 
 CONTACT_SOLIMP: Final = (0.9, 0.999, 0.0005, 0.5, 2.0)
@@ -133,7 +134,7 @@ def set_extent(model: mujoco.MjModel, data: mujoco.MjData) -> None:
     low = (centres - radii[:, None])[near].min(axis=0)
     high = (centres + radii[:, None])[near].max(axis=0)
     model.stat.center[:] = (low + high) / 2
-    model.stat.extent = float(np.clip(np.linalg.norm(high - low) / 2, 0.5, 1000.0))
+    model.stat.extent = float(np.clip(norm(high - low) / 2, 0.5, 1000.0))
 
 
 def _median(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -20,6 +20,7 @@ from simkit.compiler.name_map import GeomOwner, ModelRecord
 from simkit.compiler.wheel_cylinders import RoundMesh, TurningAxis, round_mesh
 from simkit.compiler.world_geoms import WorldGeoms
 from simkit.diagnostics import Diagnostics, Where
+from simkit.linear_algebra import matmul
 from simkit.pose import Pose
 from simkit.scene import (
     Cone,
@@ -217,15 +218,15 @@ class GeomWriter:
         geoms += [(b.centre, b.axes, {"type": box, "size": b.half}) for b in bodies.boxes]
         for tile, name in zip(bodies.tiles, self.assets.tiles(bodies), strict=True):
             middle = 0.5 * tile.cell * (tile.heights.shape[1] - 1, tile.heights.shape[0] - 1)
-            at = tile.origin + tile.axes[:, :2] @ middle
+            at = tile.origin + matmul(tile.axes[:, :2], middle)
             geoms.append((at, tile.axes, {"type": field, "hfieldname": name}))
         frame, rotation = parent.offset @ pose, np.zeros(9)
         mujoco.mju_quat2Mat(rotation, frame.quaternion)
         turn = rotation.reshape(3, 3)
         for at, axes, own in geoms:
             quaternion = np.zeros(4)
-            mujoco.mju_mat2Quat(quaternion, (turn @ axes).reshape(9))
-            self._add_at(parent, owner, frame.position + turn @ at, quaternion, **own, **settings)
+            mujoco.mju_mat2Quat(quaternion, matmul(turn, axes).reshape(9))
+            self._add_at(parent, owner, frame.position + matmul(turn, at), quaternion, **own, **settings)
 
     def _wheel(
         self, parent: GeomParent, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, solid: GeomSettings

@@ -16,6 +16,7 @@ from simkit.compiler.engine_options import SOFT_SOLIMP, contact_time_constant
 from simkit.compiler.kinematic_tree import WORLD, TreeEdge
 from simkit.compiler.name_map import Follower, JointBinding, ModelRecord
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import matmul, norm
 from simkit.pose import IDENTITY, Pose, Vector
 from simkit.scene import Axis, SceneJoint, SceneLink
 
@@ -317,8 +318,8 @@ def _plane_axes(joint: SceneJoint, at: Pose) -> list[Vector]:
     back = at.inverse()
     normal = np.asarray(joint.axes[0].xyz_world if joint.axes else joint.pose_world.rotate((0.0, 0.0, 1.0)))
     x = joint.pose_world.rotate((1.0, 0.0, 0.0))
-    if abs(float(x @ normal)) > 0.9:
+    if abs(float(matmul(x, normal))) > 0.9:
         x = joint.pose_world.rotate((0.0, 1.0, 0.0))
-    x = x - float(x @ normal) * normal
-    x = x / np.linalg.norm(x)
+    x = x - float(matmul(x, normal)) * normal
+    x = x / norm(x)
     return [back.rotate(x), back.rotate(np.cross(normal, x)), back.rotate(normal)]

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics, Where
+from simkit.linear_algebra import norm
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneLight, SceneWorld
 
@@ -37,7 +38,7 @@ def drawn_position(light: SceneLight, position: npt.ArrayLike) -> npt.NDArray[np
     """
     place = np.asarray(position, float)
     most = FARTHEST if light.type == "directional" else _FARTHEST_LAMP
-    length = float(np.linalg.norm(place))
+    length = norm(place)
     return place * (most / length) if length > most else place
 
 

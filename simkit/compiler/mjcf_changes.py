@@ -13,6 +13,7 @@ import numpy as np
 from simkit.compiler.contact_friction import MU_MOST
 from simkit.compiler.refused_inertias import inertia_matrix
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import det, eigh
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneCollision, SceneJoint, SceneLight, SceneLink, SceneModel, SceneVisual, SceneWorld
 from simkit.scene import geometry as shapes
@@ -49,8 +50,8 @@ def changed_source(model: SceneModel) -> MjcfSource | None:
 
 def _mass(link: SceneLink) -> Mass:
     """Return mass, centre of mass, axes of inertia and principal moments."""
-    values, axes = np.linalg.eigh(inertia_matrix(link.inertial.inertia))
-    if np.linalg.det(axes) < 0.0:
+    values, axes = eigh(inertia_matrix(link.inertial.inertia))
+    if det(axes) < 0.0:
         axes[:, 0] = -axes[:, 0]
     quat = np.zeros(4)
     mujoco.mju_mat2Quat(quat, axes.flatten())

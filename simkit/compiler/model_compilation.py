@@ -18,6 +18,7 @@ from simkit.compiler.name_map import JointBinding, ModelRecord, NameMap
 from simkit.compiler.refused_inertias import restore_file_inertias
 from simkit.compiler.servo_gains import tune_servos
 from simkit.diagnostics import Diagnostics, Where
+from simkit.linear_algebra import matmul
 from simkit.scene import SceneWorld
 
 _NO_INERTIA: Final = 1e-9
@@ -43,7 +44,7 @@ def apply_velocity_decay(model: mujoco.MjModel, records: Iterable[ModelRecord]) 
             rotation = np.zeros(9)
             mujoco.mju_quat2Mat(rotation, model.body_iquat[body])
             turned = rotation.reshape(3, 3)
-            moments = np.diag(turned @ np.diag(model.body_inertia[body]) @ turned.T)
+            moments = np.diag(matmul(turned, np.diag(model.body_inertia[body]), turned.T))
             model.dof_damping[dof : dof + 3] = linear * model.body_mass[body]
             model.dof_damping[dof + 3 : dof + 6] = angular * moments
 

@@ -27,6 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import det, eigh, matmul
 from simkit.scene import Inertial, SceneLink
 
 Matrix = npt.NDArray[np.float64]
@@ -113,7 +114,7 @@ def repair_inertia(inertial: Inertial, slack: float = 2 * _ROUNDING) -> InertiaR
         a, b, c = sorted(float(v) for v in inertial.inertia[:3])
         if a > 1e-14 and c - b - a <= -_ROUNDING * c:
             return InertiaRepair(inertial, "sound", (a, b, c), (a, b, c))
-    values, axes = np.linalg.eigh(inertia_matrix(inertial.inertia))
+    values, axes = eigh(inertia_matrix(inertial.inertia))
     old = _as_vector(values)
     floor = max(LEAST_MOMENT, LEAST_RADIUS**2 * inertial.mass)
     lack = float(values[2] - values[1] - values[0])
@@ -265,8 +266,8 @@ def restore_file_inertias(model: mujoco.MjModel, exact: Mapping[str, tuple[float
     for name, (mass, six) in exact.items():
         body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
         share = float(model.body_mass[body]) / mass if mass > 0 else 1.0
-        values, axes = np.linalg.eigh(inertia_matrix(six))
-        if np.linalg.det(axes) < 0:
+        values, axes = eigh(inertia_matrix(six))
+        if det(axes) < 0:
             axes[:, 0] = -axes[:, 0]
         quaternion = np.empty(4)
         mujoco.mju_mat2Quat(quaternion, axes.reshape(-1))
@@ -287,8 +288,8 @@ def rigid_sum(links: Sequence[SceneLink]) -> tuple[float, Matrix]:
     total = np.zeros((3, 3))
     for m, centre in zip(links, centres, strict=True):
         turn, d = m.pose_world.matrix, centre - middle
-        total += turn @ inertia_matrix(m.inertial.inertia) @ turn.T
-        total += m.inertial.mass * (float(d @ d) * np.eye(3) - np.outer(d, d))
+        total += matmul(turn, inertia_matrix(m.inertial.inertia), turn.T)
+        total += m.inertial.mass * (float(matmul(d, d)) * np.eye(3) - np.outer(d, d))
     return mass, total
 
 
@@ -313,18 +314,20 @@ def _file_inertia(inertial: Inertial) -> BodyInertia:
 
 def _rotate_tensor(target: SceneLink, source: SceneLink, tensor: Matrix) -> Matrix:
     """Rotate a tensor from the axes of one link to those of another."""
-    turn = target.pose_world.matrix.T @ source.pose_world.matrix
-    return turn @ tensor @ turn.T
+    turn = matmul(target.pose_world.matrix.T, source.pose_world.matrix)
+    turned: Matrix = matmul(turn, tensor, turn.T)
+    return turned
 
 
 def _rotate_from_world(link: SceneLink, tensor: Matrix) -> Matrix:
     """Rotate a tensor from world axes to those of a link."""
     turn = link.pose_world.matrix
-    return turn.T @ tensor @ turn
+    turned: Matrix = matmul(turn.T, tensor, turn)
+    return turned
 
 
 def _with_inertial(inertial: Inertial, moments: Matrix, axes: Matrix) -> Inertial:
-    return _replace_inertials(inertial, (axes * moments) @ axes.T)
+    return _replace_inertials(inertial, matmul(axes * moments, axes.T))
 
 
 def _replace_inertials(inertial: Inertial, tensor: Matrix) -> Inertial:

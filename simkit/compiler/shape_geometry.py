@@ -13,6 +13,7 @@ import numpy as np
 
 from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshFileError, MeshPart
 from simkit.input_file import read_input
+from simkit.linear_algebra import dot
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Heightmap, Plane, Polyline, Sphere
 
@@ -188,7 +189,7 @@ def _triangulate(rings: list[Floats]) -> tuple[Floats, Ints]:
 
 def _signed_area(ring: Floats) -> float:
     x, y = ring[:, 0], ring[:, 1]
-    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+    return 0.5 * float(dot(x, np.roll(y, -1)) - dot(y, np.roll(x, -1)))
 
 
 def _encloses(ring: Floats, point: Floats) -> bool:

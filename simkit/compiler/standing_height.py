@@ -11,6 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.geom_groups import COLLISION_RAY, SEEN_AS_COLLISIONS
+from simkit.elementary_functions import arctan2
+from simkit.linear_algebra import matmul, norm
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -132,11 +134,11 @@ class StandingHeight:
             local = down[None] * a
         elif kind == mujoco.mjtGeom.mjGEOM_ELLIPSOID:
             size = np.array((a, b, c))
-            local = (size**2 * down / np.linalg.norm(size * down))[None]
+            local = (size**2 * down / norm(size * down))[None]
         elif kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
             local = np.array(((0.0, 0.0, b), (0.0, 0.0, -b))) + down * a
         elif kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
-            angles = np.append(_RIM, np.arctan2(down[1], down[0]))
+            angles = np.append(_RIM, arctan2(down[1], down[0]))
             rim = np.column_stack((a * np.cos(angles), a * np.sin(angles), np.full(len(angles), b)))
             local = np.concatenate((rim, rim * (1.0, 1.0, -1.0)))
         elif kind in (mujoco.mjtGeom.mjGEOM_MESH, mujoco.mjtGeom.mjGEOM_SDF) and model.geom_dataid[geom] >= 0:
@@ -147,7 +149,7 @@ class StandingHeight:
             local = _CORNERS * (a, b, c)
         else:
             local = np.zeros((1, 3))
-        points: Floats = centre + local @ matrix.T
+        points: Floats = centre + matmul(local, matrix.T)
         return points
 
     @staticmethod
@@ -165,7 +167,7 @@ class StandingHeight:
     def _grid(self, points: Floats) -> Iterator[Floats]:
         """Return the underside of the model on a grid; points of the underside can be far from all corners."""
         low, high = points.min(axis=0), points.max(axis=0)
-        start = float(low[2]) - max(1.0, float(np.linalg.norm(high - low)))
+        start = float(low[2]) - max(1.0, norm(high - low))
         for x in np.linspace(low[0], high[0], _CELLS + 1):
             for y in np.linspace(low[1], high[1], _CELLS + 1):
                 distance, _ = self._ray(float(x), float(y), start, 1.0, _OWN)

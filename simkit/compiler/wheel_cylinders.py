@@ -18,6 +18,7 @@ import numpy as np
 from simkit.compiler.kinematic_tree import KinematicTree
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.shape_geometry import turn_z_to
+from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose
 from simkit.scene import SceneLink
 
@@ -88,7 +89,7 @@ def round_mesh(shapes: Sequence[tuple[Floats, Ints]], pose: Pose, axis: TurningA
     found = _cylinder(vertices, faces, to_mesh.transform(axis.point), to_mesh.rotate(axis.direction))
     if found is None or len(shapes) == 1:
         return found
-    points = (np.vstack([corners for corners, _ in shapes]) - found.pose.position) @ found.pose.matrix
+    points = matmul(np.vstack([corners for corners, _ in shapes]) - found.pose.position, found.pose.matrix)
     is_inside = (np.hypot(points[:, 0], points[:, 1]) <= _INSIDE * found.radius).all()
     return found if is_inside and (np.abs(points[:, 2]) <= _INSIDE * found.length / 2).all() else None
 
@@ -104,13 +105,13 @@ def _cylinder(vertices: Floats, faces: Ints, point: Floats, direction: Floats) -
 
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])  # length: twice the area
-    along = normals @ direction
+    along = matmul(normals, direction)
     ends = np.abs(along) > _ALIGNED * np.linalg.norm(normals, axis=1)
     own = (normals[ends] * np.sign(along[ends])[:, None]).sum(axis=0)
     if not own.any():
         return None
-    turn = Pose((0.0, 0.0, 0.0), turn_z_to((*(own / np.linalg.norm(own)).tolist(),)))
-    points = (vertices - point) @ turn.matrix
+    turn = Pose((0.0, 0.0, 0.0), turn_z_to((*(own / norm(own)).tolist(),)))
+    points = matmul(vertices - point, turn.matrix)
     try:
         outline = ConvexHull(points[:, :2])
     except (QhullError, ValueError):
@@ -120,9 +121,9 @@ def _cylinder(vertices: Floats, faces: Ints, point: Floats, direction: Floats) -
     areas = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
     centre = ((ring + following) * areas[:, None]).sum(axis=0) / (3.0 * areas.sum())
     radius = float(np.linalg.norm(ring - centre, axis=1).max())
-    inscribed = float(-(outline.equations[:, :2] @ centre + outline.equations[:, 2]).max())
+    inscribed = float(-(matmul(outline.equations[:, :2], centre) + outline.equations[:, 2]).max())
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
-    if inscribed < LEAST_ROUND * radius or np.linalg.norm(centre) > _CENTRED * radius:
+    if inscribed < LEAST_ROUND * radius or norm(centre) > _CENTRED * radius:
         return None
     if hull_volume(vertices) < LEAST_FILLED * outline.volume * (high - low):
         return None

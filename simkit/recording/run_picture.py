@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simkit.errors import InputError
+from simkit.linear_algebra import matmul
 from simkit.pose import Pose
 from simkit.recording.pictures.frames import Look, Render, choose_camera, draw_frame
 from simkit.recording.pictures.overlay import Marks
@@ -65,7 +66,7 @@ class DrivenPath:
 
         def keep(message: PoseStamped) -> None:
             at, frame = message.pose.position, _frame_pose(self._sim, message.header.frame_id)
-            position = frame.matrix @ (at.x, at.y, at.z) + frame.position
+            position = matmul(frame.matrix, (at.x, at.y, at.z)) + frame.position
             if np.isfinite(position).all():
                 self.goals[topic] = position
 

@@ -17,6 +17,7 @@ from simkit.compiler import Compiled, SpecBuilder
 from simkit.compiler.name_map import NameMap
 from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import Diagnostics, Severity, Where
+from simkit.linear_algebra import matmul
 from simkit.msgs.message_types import Message
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
@@ -336,7 +337,7 @@ class Sensor(Sampler):
     def _frame_in_world(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """Return the position (3,) [m] and the rotation matrix (3, 3) of the sensor in the world."""
         rotation = data.xmat[self._body].reshape(3, 3)
-        return data.xpos[self._body] + rotation @ self._offset_position, rotation @ self._offset_rotation
+        return data.xpos[self._body] + matmul(rotation, self._offset_position), matmul(rotation, self._offset_rotation)
 
     def _velocity_in_world(self, model: mujoco.MjModel, data: mujoco.MjData, lever: Vector) -> Vector:
         """Return the velocity [m/s] in the world of the point at `lever` (world axes, [m]) from the body's origin."""

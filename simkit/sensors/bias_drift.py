@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.elementary_functions import exp, expm1
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -58,8 +59,8 @@ class BiasDrift:
         # T·(1 - exp(-2dt/T)) would lose digits for a long correlation time, expm1 does not
         with np.errstate(invalid="ignore", over="ignore"):
             exponent = -dt / self.time
-            variance_time = np.where(np.isfinite(self.time), -0.5 * self.time * np.expm1(2.0 * exponent), dt)
-        return np.exp(exponent), self.driving * np.sqrt(variance_time)
+            variance_time = np.where(np.isfinite(self.time), -0.5 * self.time * expm1(2.0 * exponent), dt)
+        return exp(exponent), self.driving * np.sqrt(variance_time)
 
     @property
     def is_idle(self) -> bool:

@@ -13,7 +13,9 @@ import numpy.typing as npt
 
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.shape_geometry import textured_triangles
+from simkit.elementary_functions import arctan2
 from simkit.errors import InputError
+from simkit.linear_algebra import matmul
 from simkit.pose import Pose
 from simkit.scene import Capsule, Cylinder, Ellipsoid, Geometry, Sphere
 
@@ -169,9 +171,9 @@ class _Grid:
         normals = np.vstack((normals[lengths > 0] / lengths[lengths > 0, None], np.eye(2)))
         overlaps = np.ones(centres.shape[:2], bool)
         for normal in normals:
-            along = polygon @ normal
+            along = matmul(polygon, normal)
             reach = np.abs(normal).sum() * self._side / 2 - _OVERLAP
-            at = centres @ normal
+            at = matmul(centres, normal)
             overlaps &= (at + reach > along.min()) & (at - reach < along.max())
         rows, columns = len(overlaps), len(overlaps.T)
         self.cells[top : top + rows, left : left + columns][overlaps] = OCCUPIED
@@ -222,12 +224,12 @@ def _slice(model: mujoco.MjModel, data: mujoco.MjData, geom: int, height: float)
     if abs(data.geom_xpos[geom, 2] - height) > model.geom_rbound[geom]:
         return None
     vertices, edges = _edges(model, geom)
-    points = vertices @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
+    points = matmul(vertices, data.geom_xmat[geom].reshape(3, 3).T) + data.geom_xpos[geom]
     crossings = _crossings(points, edges, height)
     if len(crossings) < 3:
         return None
     around = crossings - crossings.mean(axis=0)
-    return crossings[np.argsort(np.arctan2(around[:, 1], around[:, 0]), kind="stable")]
+    return crossings[np.argsort(arctan2(around[:, 1], around[:, 0]), kind="stable")]
 
 
 def _crossings(points: Floats, edges: Ints, height: float) -> Floats:
@@ -294,7 +296,7 @@ class _HeightField:
         self._height = height
         half_z = (self._heights.max() + self._base) / 2
         box = _CUBE * (self._half_x, self._half_y, half_z) + (0.0, 0.0, half_z - self._base)
-        crossings = _crossings(box @ self._turn.T + self._at, _CUBE_EDGES, height)
+        crossings = _crossings(matmul(box, self._turn.T) + self._at, _CUBE_EDGES, height)
         self.outline = np.array([crossings.min(axis=0), crossings.max(axis=0)]) if len(crossings) else crossings
 
     def surface_points(self) -> Floats:
@@ -308,12 +310,12 @@ class _HeightField:
             np.column_stack((a.ravel(), b.ravel()))
             for a, b in ((number[:, :-1], number[:, 1:]), (number[:-1], number[1:]), (number[:-1, :-1], number[1:, 1:]))
         ]
-        return _crossings(points @ self._turn.T + self._at, np.concatenate(edges).astype(np.int32), self._height)
+        return _crossings(matmul(points, self._turn.T) + self._at, np.concatenate(edges).astype(np.int32), self._height)
 
     def is_inside(self, places: Floats) -> npt.NDArray[np.bool_]:
         """Check which places at the height are inside; x and y [m], shape (n, 2)."""
         points = np.column_stack((places, np.full(len(places), self._height)))
-        x, y, z = ((points - self._at) @ self._turn).T
+        x, y, z = matmul(points - self._at, self._turn).T
         rows, columns = self._heights.shape
         u = (x / self._half_x + 1) / 2 * (columns - 1)
         v = (y / self._half_y + 1) / 2 * (rows - 1)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from simkit.bridges.view.packet import Head, make_packet
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, DRAWN_COLLISION, VISUAL
+from simkit.linear_algebra import matmul
 
 if TYPE_CHECKING:
     from simkit.runtime import Model, Simulation
@@ -242,8 +243,8 @@ def _sensor_dict(sim: Simulation, sensor: Any) -> Head:
     data = sim.mj_data
     rotation, origin = data.xmat[body].reshape(3, 3), data.xpos[body]
     pose, turned = sensor.pose, np.empty(4)
-    mujoco.mju_mat2Quat(turned, (rotation.T @ pose.matrix).ravel())
-    place = [*(rotation.T @ (pose.position - origin)).tolist(), *turned.tolist()]
+    mujoco.mju_mat2Quat(turned, matmul(rotation.T, pose.matrix).ravel())
+    place = [*matmul(rotation.T, pose.position - origin).tolist(), *turned.tolist()]
     return {
         "name": sensor.scoped,
         "kind": sensor.kind,

@@ -13,6 +13,7 @@ import numpy as np
 from simkit import msgs
 from simkit.bridges.view.packet import Arrays, make_packet
 from simkit.errors import SimkitError
+from simkit.linear_algebra import matmul
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
 from simkit.msgs.field_units import unit_of
 from simkit.msgs.message_text import NUMBER_CODES, field_nodes
@@ -312,7 +313,7 @@ def true_values(sim: Simulation, name: str) -> list[float]:
     link = next(iter(model.links.values()), None)
     linear = np.zeros(3) if link is None else np.asarray(link.linear_velocity)
     turning = 0.0 if link is None else float(link.angular_velocity[2])
-    own = pose.matrix.T @ linear
+    own = matmul(pose.matrix.T, linear)
     return [*map(float, (*pose.position, *pose.rpy, *linear, own[0], own[1])), turning]
 
 

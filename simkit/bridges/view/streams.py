@@ -15,6 +15,7 @@ from simkit.bridges.view.packet import make_packet
 from simkit.bridges.view.panel_streams import PANEL_STREAMS
 from simkit.bridges.view.topic_display import DisplayList, TopicDisplay
 from simkit.errors import SimkitError
+from simkit.linear_algebra import matmul
 from simkit.runtime.communication.transform_buffer import TransformBuffer
 
 if TYPE_CHECKING:
@@ -90,7 +91,7 @@ class LidarStream:
         if sensor.options.vertical.samples > _SINGLE_LAYER:
             ends = _thinned(ends[np.isfinite(ends[:, 0])])
         pose: Pose = sensor.pose
-        self._seen[name] = (index, pose.position, ends @ pose.matrix.T + pose.position)
+        self._seen[name] = (index, pose.position, matmul(ends, pose.matrix.T) + pose.position)
         return True
 
     def close(self) -> None:
@@ -138,7 +139,7 @@ class ContactStream:
         forces, local = np.zeros((count, 3)), np.zeros(6)
         for contact in range(count):
             mujoco.mj_contactForce(model, data, contact, local)
-            forces[contact] = data.contact.frame[contact].reshape(3, 3).T @ local[:3]
+            forces[contact] = matmul(data.contact.frame[contact].reshape(3, 3).T, local[:3])
         arrays = {"position": data.contact.pos[:count], "normal": normals, "force": forces}
         return make_packet({"kind": "contacts", "time": sim.time}, arrays)
 
@@ -225,7 +226,7 @@ class CloudStream:
         if pose is None:
             text = f"the frame {message.header.frame_id!r:.80} is unknown"
             return make_packet({"kind": f"cloud:{self._topic}", "error": text}, {})
-        arrays = {"points": place[usable] @ pose.matrix.T + pose.position}
+        arrays = {"points": matmul(place[usable], pose.matrix.T) + pose.position}
         if "rgb" in (points.dtype.names or ()):
             packed = np.ascontiguousarray(points["rgb"][usable]).view(np.uint32)
             arrays["colours"] = np.stack([packed >> 16, packed >> 8, packed], axis=1).astype(np.uint8)

@@ -13,6 +13,7 @@ from simkit.compiler.first_state import first_state
 from simkit.compiler.name_map import LinkBinding
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import eigvalsh, matmul
 from simkit.scene import SceneModel, SceneWorld
 
 Floats = npt.NDArray[np.float64]
@@ -76,7 +77,7 @@ def _check_inertia(
     if corners is None or mass <= 0:
         return
     farthest = max(float(np.linalg.norm(corners - centre, axis=1).max()), LEAST_EXTENT)
-    gyration = float(np.sqrt(max(np.linalg.eigvalsh(tensor)[2], 0.0) / mass))
+    gyration = float(np.sqrt(max(eigvalsh(tensor)[2], 0.0) / mass))
     if gyration > LARGEST_GYRATION_RATIO * farthest:
         diagnostics.warning(
             "SK-LINT-008",
@@ -125,12 +126,14 @@ def _total_inertia(model: mujoco.MjModel, data: mujoco.MjData, bodies: Iterable[
     masses = np.array([model.body_mass[b] for b in ids])
     if masses.sum() <= 0:
         return 0.0, np.zeros(3), np.zeros((3, 3))
-    centre = masses @ data.xipos[ids] / masses.sum()
+    centre = matmul(masses, data.xipos[ids]) / masses.sum()
     total = np.zeros((3, 3))
     for b in ids:
         turn = data.ximat[b].reshape(3, 3)
         d = data.xipos[b] - centre
-        total += (turn * model.body_inertia[b]) @ turn.T + model.body_mass[b] * (d @ d * np.eye(3) - np.outer(d, d))
+        total += matmul(turn * model.body_inertia[b], turn.T) + model.body_mass[b] * (
+            matmul(d, d) * np.eye(3) - np.outer(d, d)
+        )
     return float(masses.sum()), centre, total
 
 
@@ -146,7 +149,7 @@ def _corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]) -
         if _is_unbounded(model, g):
             continue
         box = model.geom_aabb[g]
-        found.append(data.geom_xpos[g] + (box[:3] + signs * box[3:]) @ data.geom_xmat[g].reshape(3, 3).T)
+        found.append(data.geom_xpos[g] + matmul(box[:3] + signs * box[3:], data.geom_xmat[g].reshape(3, 3).T))
     return np.concatenate(found) if found else None
 
 

@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simkit.compiler.meshes.mesh_part import Floats, Indices
+from simkit.linear_algebra import det, matmul
 
 _ROUNDING: Final = 1e-5
 """Largest distance of a corner from that of a box, relative to the largest coordinate: the rounding of a file."""
@@ -52,7 +53,7 @@ def box_pieces(pieces: list[Floats]) -> list[BoxPiece | None]:
     edges = np.take_along_axis(ends, chosen[:, :, None], axis=1)
     axes = _right_angles(edges)
     half = 0.5 * np.abs(np.einsum("nij,nij->ni", edges, axes))
-    places = np.abs((corners - centres[:, None]) @ axes.transpose(0, 2, 1)) - half[:, None]
+    places = np.abs(matmul(corners - centres[:, None], axes.transpose(0, 2, 1))) - half[:, None]
     is_box = (np.abs(places).max(axis=(1, 2)) <= tolerance) & (half.min(axis=1) > 4.0 * tolerance)
     for k in np.flatnonzero(is_box).tolist():
         result[numbers[k]] = BoxPiece(centres[k], np.ascontiguousarray(axes[k].T), half[k])
@@ -68,7 +69,7 @@ def _right_angles(edges: Floats) -> Floats:
     second = second / np.maximum(np.linalg.norm(second, axis=1), 1e-300)[:, None]
     axes = np.empty_like(edges)
     np.put_along_axis(axes, order[:, :, None], np.stack([first, second, np.cross(first, second)], axis=1), axis=1)
-    axes[np.linalg.det(axes) < 0.0, 2] *= -1.0
+    axes[det(axes) < 0.0, 2] *= -1.0
     return axes
 
 
@@ -81,7 +82,7 @@ def _straightest(ends: Floats, gaps: Floats, tolerance: Floats) -> Indices:
         tolerance: largest distance of a corner from that of a box [m], shape (n,).
     """
     units = ends / np.maximum(np.linalg.norm(ends, axis=2), 1e-300)[:, :, None]
-    cosines = np.abs(units @ units.transpose(0, 2, 1))
+    cosines = np.abs(matmul(units, units.transpose(0, 2, 1)))
     i, j, k = _TRIPLES.T
     worst = np.maximum(np.maximum(cosines[:, i, j], cosines[:, i, k]), cosines[:, j, k])
     worst[np.linalg.norm(gaps, axis=2) > 4.0 * tolerance[:, None]] = np.inf

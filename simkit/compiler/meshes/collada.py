@@ -27,6 +27,7 @@ from simkit.compiler.meshes.mesh_part import (
     numbers_of,
     unique_rows,
 )
+from simkit.linear_algebra import det, matmul
 
 _DEEPEST: Final = 500  # levels of XML elements; a node has one level, its geometry has a few
 _PRIMITIVES: Final = ("triangles", "polylist", "polygons", "tristrips", "trifans")
@@ -141,7 +142,7 @@ class ColladaFile:
         if depth > DEEPEST_NODE or self.nodes > MOST_NODES:
             raise MeshFileError(f"has nodes nested deeper than {DEEPEST_NODE} or more than {MOST_NODES} of them")
         name = node.get("name") or named
-        matrix = above @ node_transform(node)
+        matrix = matmul(above, node_transform(node))
         for child in node.iterfind("{*}node"):
             self._node(child, matrix, name, depth + 1)
         for instance in node.iterfind("{*}instance_node"):
@@ -171,7 +172,7 @@ class ColladaFile:
             e.get("symbol", ""): e.get("target", "").lstrip("#")
             for e in instance.iterfind("{*}bind_material/{*}technique_common/{*}instance_material")
         }
-        mirrored = float(np.linalg.det(matrix[:3, :3])) < 0.0
+        mirrored = float(det(matrix[:3, :3])) < 0.0
         names = (node.get("id"), node.get("name"), geometry.get("id"), geometry.get("name"))
         aliases = tuple(n for n in dict.fromkeys(names) if n and n != name)
         for part, symbol in self._geometry(geometry):
@@ -184,7 +185,7 @@ class ColladaFile:
             self.out.append(
                 MeshPart(
                     name or part.name,
-                    part.vertices @ matrix[:3, :3].T + matrix[:3, 3],
+                    matmul(part.vertices, matrix[:3, :3].T) + matrix[:3, 3],
                     faces,
                     part.uv,
                     look.colour,
@@ -312,10 +313,10 @@ def node_transform(node: XmlElement) -> Floats:
         matrix[:3, 3] = _exact_count(move, 3)
     for turn in node.iterfind("{*}rotate"):
         x, y, z, degrees = _exact_count(turn, 4)
-        matrix = matrix @ _rotation((x, y, z), math.radians(degrees))
+        matrix = matmul(matrix, _rotation((x, y, z), math.radians(degrees)))
     stretch = node.find("{*}scale")
     if stretch is not None:
-        matrix = matrix @ np.diag([*_exact_count(stretch, 3), 1.0])
+        matrix = matmul(matrix, np.diag([*_exact_count(stretch, 3), 1.0]))
     return matrix
 
 
@@ -326,7 +327,7 @@ def _rotation(axis: tuple[float, float, float], angle: float) -> Floats:
     if length > 0.0 and math.isfinite(angle):
         x, y, z = (c / length for c in axis)
         cross = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-        matrix[:3, :3] += math.sin(angle) * cross + (1.0 - math.cos(angle)) * (cross @ cross)
+        matrix[:3, :3] += math.sin(angle) * cross + (1.0 - math.cos(angle)) * matmul(cross, cross)
     return matrix
 
 

@@ -27,6 +27,7 @@ from simkit.compiler.meshes.mesh_part import (
     integers_of,
 )
 from simkit.input_file import read_input
+from simkit.linear_algebra import matmul
 
 _LEAST_FRACTION: Final = 0.012
 """Least fraction of all vertices for a bone; a smaller bone passes its vertices to its parent bone."""
@@ -136,10 +137,10 @@ class _SkinFile(ColladaFile):
         if node.get("type") == "JOINT":
             words = [w for w in (node.get("name"), node.get("sid"), node.get("id")) if w]
             self.of_node[node] = len(self.bones)
-            self.bones.append(Bone(words[0] if words else "", frozenset(words), parent, above @ matrix))
+            self.bones.append(Bone(words[0] if words else "", frozenset(words), parent, matmul(above, matrix)))
             above, parent = np.eye(4), len(self.bones) - 1
         else:
-            above = above @ matrix
+            above = matmul(above, matrix)
         for child in node.iterfind("{*}node"):
             self._skeleton(child, above, parent, depth + 1)
 
@@ -175,8 +176,8 @@ class _SkinFile(ColladaFile):
             for local in sorted(set(joint_of_vertex.tolist())):
                 mine = (joint_of_vertex[part.faces] == local).any(axis=1)
                 used, faces = np.unique(part.faces[mine], return_inverse=True)
-                matrix = inverses[local] @ bind
-                points = part.vertices[used] @ matrix[:3, :3].T + matrix[:3, 3]
+                matrix = matmul(inverses[local], bind)
+                points = matmul(part.vertices[used], matrix[:3, :3].T) + matrix[:3, 3]
                 uv = None if part.uv is None else part.uv[used]
                 piece = MeshPart(
                     part.name, points, faces.reshape(-1, 3).astype(np.int32), uv, look.colour,

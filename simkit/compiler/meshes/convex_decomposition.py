@@ -39,6 +39,7 @@ from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.meshes.surface_patches import LEAST_TOLERANCE, TRIANGLES_FROM, is_large, large_surface_pieces
 from simkit.install_command import install_command
+from simkit.linear_algebra import matmul, norm
 
 THRESHOLD: Final = 0.05
 """Concavity of CoACD, relative to the size of the mesh, below which a piece counts as convex."""
@@ -313,9 +314,9 @@ def _is_thick_prism(points: Floats) -> bool:
     if np.abs(shift - shift[0]).max() > 1e-9:
         return False
     u, v = points[1] - points[0], points[2] - points[0]
-    area = float(np.linalg.norm(np.cross(u, v)))
-    edge = float(max(u @ u, v @ v, (u - v) @ (u - v)))
-    return area > 1e-3 * edge and float(shift[0] @ shift[0]) > 1e-8 * edge
+    area = norm(np.cross(u, v))
+    edge = float(max(matmul(u, u), matmul(v, v), matmul(u - v, u - v)))
+    return area > 1e-3 * edge and float(matmul(shift[0], shift[0])) > 1e-8 * edge
 
 
 # ---------------------------------------------------------------------- cache

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from simkit.compiler.meshes.connected_triangles import is_closed, members_of, part_numbers
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
+from simkit.linear_algebra import matmul, norm
 
 HULLS_MOST: Final = 64
 THICKNESS: Final = 0.05
@@ -130,7 +131,7 @@ def _is_closed_convex(vertices: Floats, faces: Ints) -> bool:
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1)
-    over = vertices @ normals.T - np.einsum("ij,ij->i", a, normals)
+    over = matmul(vertices, normals.T) - np.einsum("ij,ij->i", a, normals)
     return bool((over <= 1e-4 * float(np.ptp(vertices, axis=0).max()) * lengths).all())
 
 
@@ -219,10 +220,10 @@ def _fills_its_hull(mesh: Trimesh, facet: Patch, boundary: Patch) -> bool:
     if len(points) < 3:  # faces that coincide have no outline
         return False
     u, v, normal = _patch_axes(mesh.face_normals[facet[0]])
-    if np.ptp(points @ normal) > 1e-6 * max(1.0, float(mesh.scale)):
+    if np.ptp(matmul(points, normal)) > 1e-6 * max(1.0, float(mesh.scale)):
         return False
     try:
-        area = ConvexHull(np.column_stack([points @ u, points @ v])).volume
+        area = ConvexHull(np.column_stack([matmul(points, u), matmul(points, v)])).volume
     except (QhullError, ValueError):
         return False
     return bool(mesh.area_faces[facet].sum() > (1.0 - 1e-6) * area)
@@ -237,7 +238,7 @@ def _patch_outline(mesh: Trimesh, patch: Patch) -> tuple[Floats, Floats]:
 def _patch_axes(normal: Floats) -> tuple[Floats, Floats, Floats]:
     helper = np.eye(3)[int(np.argmin(np.abs(normal)))]
     u = np.cross(normal, helper)
-    u /= np.linalg.norm(u)
+    u /= norm(u)
     return u, np.cross(normal, u), np.asarray(normal, float)
 
 

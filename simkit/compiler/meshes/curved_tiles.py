@@ -18,6 +18,7 @@ from simkit.compiler.meshes.connected_triangles import part_numbers
 from simkit.compiler.meshes.height_tiles import HeightTile, Mask
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.sampled_fields import SampledFields, heights_above, sampled_heights, surface_points
+from simkit.linear_algebra import eigh, matmul
 
 _CELLS: Final = 25
 """Largest number of cells of a tile; the engine keeps at most 50 contacts with a height field, one per triangle."""
@@ -205,11 +206,11 @@ def _patches_of(surface: _Surface, members: Indices, labels: Indices, depths: Fl
     across = units - np.einsum("ij,ij->i", units, up[of])[:, None] * up[of]
     areas = np.linalg.norm(normals, axis=1)
     bends = np.add.reduceat((across * areas[:, None])[:, :, None] * across[:, None], starts)
-    along = np.linalg.eigh(bends)[1][:, :, 2]
+    along = eigh(bends)[1][:, :, 2]
     along = along - np.einsum("ij,ij->i", along, up)[:, None] * up
     along /= np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
     axes = np.stack([along, np.cross(up, along), up], axis=2)
-    local = surface.corners[members] @ axes[of]
+    local = matmul(surface.corners[members], axes[of])
     low = np.minimum.reduceat(local.min(axis=1), starts)
     high = np.maximum.reduceat(local.max(axis=1), starts)
     slopes = np.einsum("ij,ijk->ik", units, axes[of])
@@ -247,7 +248,7 @@ def _fitted_tiles(
     centres = np.einsum("ijk,ij->ik", axes[of], surface.centres[triangles] - middle[of])
     is_close = all_of_three(np.abs(centres) <= half[of] + surface.radii[triangles, None])
     of, triangles = of[is_close], triangles[is_close]
-    local = surface.corners[triangles] @ axes[of]
+    local = matmul(surface.corners[triangles], axes[of])
     lowest, highest = (end(end(local[:, 0], local[:, 1]), local[:, 2]) for end in (np.minimum, np.maximum))
     is_inside = all_of_three((lowest < high[of] - snap) & (highest > low[of] + snap))
     is_top = is_inside & (np.einsum("ij,ij->i", surface.units[triangles], axes[of, :, 2]) > _LEAST_SLOPE_AROUND)

@@ -9,6 +9,7 @@ import numpy as np
 
 from simkit.compiler.meshes.connected_triangles import members_of, part_numbers
 from simkit.compiler.meshes.mesh_part import Floats, Indices
+from simkit.linear_algebra import matmul, norm
 
 _LEAST_AREA: Final = 8.0
 """Area relative to the median triangle from which triangles in one plane are divided along their own outline."""
@@ -80,9 +81,9 @@ def dividing_line(corners: Floats, up: Floats) -> tuple[Floats, float] | None:
         up: unit normal of the area.
     """
     u = np.cross(up, np.eye(3)[int(np.abs(up).argmin())])
-    u /= np.linalg.norm(u)
+    u /= norm(u)
     v = np.cross(up, u)
-    flat = np.stack([corners @ u, corners @ v], axis=-1)
+    flat = np.stack([matmul(corners, u), matmul(corners, v)], axis=-1)
     size = float(np.ptp(flat.reshape(-1, 2), axis=0).max())
     lines = _outline_lines(flat, size)
     middles, best, least = flat.mean(axis=1), None, np.inf
@@ -90,10 +91,10 @@ def dividing_line(corners: Floats, up: Floats) -> tuple[Floats, float] | None:
     covered = 0.5 * float(np.abs(a * d - b * c).sum())
     for direction, offset in lines:
         across = np.array((-direction[1], direction[0]))
-        distances = flat @ across - offset
+        distances = matmul(flat, across) - offset
         if distances.max() < _LEAST_DISTANCE * size or distances.min() > -_LEAST_DISTANCE * size:
             continue
-        is_above = middles @ across > offset
+        is_above = matmul(middles, across) > offset
         total = _hull_area(flat[is_above]) + _hull_area(flat[~is_above])
         if total < least * (1.0 - 1e-6):
             best, least = (across[0] * u + across[1] * v, float(offset)), total

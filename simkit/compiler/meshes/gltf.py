@@ -26,6 +26,7 @@ from simkit.compiler.meshes.mesh_part import (
     MeshPart,
     fan_triangles,
 )
+from simkit.linear_algebra import det, matmul
 
 _TYPES: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _NUMBERS: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -106,7 +107,7 @@ class _Gltf:
             raise MeshFileError(f"has nodes nested deeper than {DEEPEST_NODE} or more than {MOST_NODES} of them")
         node = _entry(self.tree["nodes"], index)
         name = str(node.get("name") or named)
-        matrix = above @ _transform(node)
+        matrix = matmul(above, _transform(node))
         if node.get("mesh") is not None:
             self._place(node["mesh"], name, matrix)
         for child in node.get("children") or []:
@@ -117,7 +118,7 @@ class _Gltf:
             mesh = _entry(self.tree["meshes"], index)
             found = [self._primitive(p) for p in mesh.get("primitives") or []]
             self.meshes[index] = [(MeshPart(str(mesh.get("name", "")), *a), m) for a, m in filter(None, found)]
-        mirrored = float(np.linalg.det(matrix[:3, :3])) < 0.0
+        mirrored = float(det(matrix[:3, :3])) < 0.0
         for part, material in self.meshes[index]:
             self.faces += len(part.faces)
             if self.faces > LARGEST_FACES:
@@ -127,7 +128,7 @@ class _Gltf:
             self.out.append(
                 MeshPart(
                     name or part.name,
-                    part.vertices @ matrix[:3, :3].T + matrix[:3, 3],
+                    matmul(part.vertices, matrix[:3, :3].T) + matrix[:3, 3],
                     np.ascontiguousarray(part.faces[:, ::-1]) if mirrored else part.faces,
                     uv,
                     colour,
@@ -284,7 +285,7 @@ class _Gltf:
         if change:
             angle = float(change.get("rotation", 0.0))
             c, s = np.cos(angle), np.sin(angle)
-            uv = (uv * np.asarray(change.get("scale", (1.0, 1.0)), float)) @ np.array(((c, -s), (s, c)))
+            uv = matmul(uv * np.asarray(change.get("scale", (1.0, 1.0)), float), np.array(((c, -s), (s, c))))
             uv = uv + np.asarray(change.get("offset", (0.0, 0.0)), float)
         return np.column_stack([uv[:, 0], 1.0 - uv[:, 1]])
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from simkit.compiler.meshes.convex_pieces import layer_depths
 from simkit.compiler.meshes.mesh_part import Floats, Ints
+from simkit.linear_algebra import matmul
 
 _TRIANGLES_FROM: Final = 2000
 """Number of triangles on one side of a mesh from which a grid is searched for."""
@@ -71,10 +72,10 @@ def height_tiles(vertices: Floats, faces: Ints, corners: Floats, tolerance: floa
     tiles: list[HeightTile] = []
     is_left = np.ones(len(corners), bool)
     for axes in _directions():
-        chosen = np.flatnonzero(is_left & (normals @ axes[:, 2] > _LEAST_SLOPE))
+        chosen = np.flatnonzero(is_left & (matmul(normals, axes[:, 2]) > _LEAST_SLOPE))
         if len(chosen) < _TRIANGLES_FROM:
             continue
-        grid = _grid_of(corners[chosen] @ axes)
+        grid = _grid_of(matmul(corners[chosen], axes))
         if grid is None:
             continue
         inside = grid.triangles
@@ -220,6 +221,6 @@ def _tile(grid: _Grid, axes: Floats, is_turned: bool, block: _Block) -> HeightTi
         u += m * float(cell[0])
         heights = heights.T[::-1]
         cell, turned = cell[::-1], np.column_stack([axes[:, 1], -axes[:, 0], axes[:, 2]])
-    origin = axes @ (u, v, low)
+    origin = matmul(axes, (u, v, low))
     base = float(grid.depths[i : i + m, j : j + n].min())
     return HeightTile(origin, turned, np.array(cell), np.ascontiguousarray(heights - low), base)

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from simkit.compiler.meshes.mesh_part import Floats
+from simkit.linear_algebra import eigh, matmul
 
 _FEW_TRIANGLES: Final = 6
 """Number of triangles up to which a patch is divided between triangles, and never through one: a triangle is exact."""
@@ -65,8 +66,8 @@ def plane_between_layers(levels: Floats, up: Floats, width: float) -> tuple[Floa
 def middle_plane(points: Floats, corners: Floats) -> tuple[Floats, float]:
     """Return the plane across the longest side of a patch, through the median of its triangles."""
     along = np.eye(3)[int(np.ptp(points, axis=0).argmax())]
-    low, high = (corners @ along).min(), (corners @ along).max()
-    at = float(np.median(corners.mean(axis=1) @ along))
+    low, high = matmul(corners, along).min(), matmul(corners, along).max()
+    at = float(np.median(matmul(corners.mean(axis=1), along)))
     return along, float(np.clip(at, low + 0.2 * (high - low), high - 0.2 * (high - low)))
 
 
@@ -74,18 +75,18 @@ def best_plane(patch: Patch, up: Floats, areas: Floats) -> tuple[Floats, float]:
     """Return the plane across the bend through the deepest point, or through the middle."""
     points = patch.corners.reshape(-1, 3)
     if patch.deepest is not None:
-        across = patch.normals - (patch.normals @ up)[:, None] * up
-        values, vectors = np.linalg.eigh((across * areas[:, None]).T @ across)
+        across = patch.normals - matmul(patch.normals, up)[:, None] * up
+        values, vectors = eigh(matmul((across * areas[:, None]).T, across))
         direction = vectors[:, 2]
-        places = points @ direction
-        at, start, end = float(patch.deepest @ direction), places.min(), places.max()
+        places = matmul(points, direction)
+        at, start, end = float(matmul(patch.deepest, direction)), places.min(), places.max()
         if values[2] > 0.0 and start + 0.15 * (end - start) < at < end - 0.15 * (end - start):
             return direction, float(at)
-    flat = points - (points @ up)[:, None] * up
+    flat = points - matmul(points, up)[:, None] * up
     flat -= flat.mean(axis=0)
-    _, vectors = np.linalg.eigh(flat.T @ flat)
+    _, vectors = eigh(matmul(flat.T, flat))
     direction = vectors[:, 2]
-    places = points @ direction
+    places = matmul(points, direction)
     return direction, float(0.5 * (places.min() + places.max()))
 
 
@@ -93,7 +94,7 @@ def divide(patch: Patch, snap: float) -> list[Patch]:
     """Return the parts of a patch on both sides of its plane; triangles across the plane are divided."""
     assert patch.cut is not None
     normal, offset = patch.cut
-    sides = patch.corners @ normal - offset
+    sides = matmul(patch.corners, normal) - offset
     if len(sides) <= _FEW_TRIANGLES:
         places = sides.mean(axis=1)
         is_above = places >= 0.0

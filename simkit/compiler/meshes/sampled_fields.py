@@ -10,6 +10,7 @@ import numpy as np
 from simkit.compiler.meshes.box_overlaps import ragged
 from simkit.compiler.meshes.height_tiles import HeightTile, Mask
 from simkit.compiler.meshes.mesh_part import Floats, Indices
+from simkit.linear_algebra import matmul
 
 _INSIDE: Final = 1e-6
 """Rounding of barycentric coordinates."""
@@ -79,7 +80,7 @@ class SampledFields:
         fine = self.heights[self.first[k] : self.first[k] + columns * rows].reshape(columns, rows)
         heights = np.ascontiguousarray(fine[::2, ::2].T)
         least = float(heights.min())
-        origin = axes @ (low[0], low[1], least + shift)
+        origin = matmul(axes, (low[0], low[1], least + shift))
         return HeightTile(origin, axes.copy(), self.lengths[k].copy(), heights - least, float(depth))
 
 

@@ -17,6 +17,7 @@ from simkit.compiler.meshes.convex_pieces import hull_volume
 from simkit.compiler.meshes.flat_areas import connected_areas
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.patch_division import Patch, area_vectors, divide
+from simkit.linear_algebra import eigh, matmul, norm
 
 TRIANGLES_PER_PIECE: Final = 12
 """Least number of triangles for one piece; height fields and patches do not need fewer pieces than that."""
@@ -185,7 +186,7 @@ def _measure(cell: _Cell, snap: float) -> bool:
     except (QhullError, ValueError):
         return False
     cell.points = points[hull.vertices]
-    across = hull.equations[:, :3] @ cell.planes[:, :3].T
+    across = matmul(hull.equations[:, :3], cell.planes[:, :3].T)
     is_cut = ((across > 1.0 - 1e-6) & (np.abs(hull.equations[:, 3:] + cell.planes[:, 3]) < 100.0 * snap)).any(axis=1)
     planes = hull.equations[~is_cut]
     if not len(planes):
@@ -193,7 +194,7 @@ def _measure(cell: _Cell, snap: float) -> bool:
     cell.outside = hull.points[hull.simplices[~is_cut]]
     middles = np.concatenate([cell.corners.mean(axis=1)[:, None], 0.5 * (cell.corners + cell.corners[:, (1, 2, 0)])], 1)
     probes = np.concatenate([points, middles.reshape(-1, 3)])
-    depths = -(probes @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+    depths = -(matmul(probes, planes[:, :3].T) + planes[:, 3]).max(axis=1)
     deepest = int(depths.argmax())
     cell.error, cell.deepest = float(depths[deepest]), probes[deepest]
     return True
@@ -269,7 +270,7 @@ def _divided(cell: _Cell, snap: float) -> list[_Cell]:
     patch = Patch(triangles, triangles[:, 0], np.zeros(len(triangles)), cut=(normal, offset))
     result = []
     for part in divide(patch, snap):
-        sign = 1.0 if float(part.corners.mean(axis=(0, 1)) @ normal) < offset else -1.0
+        sign = 1.0 if float(matmul(part.corners.mean(axis=(0, 1)), normal)) < offset else -1.0
         planes = np.vstack([cell.planes, np.append(sign * normal, sign * offset)])
         members = connected_areas(part.corners, np.zeros(len(part.corners), np.int64))
         pieces = [part.corners[of] for of in members]
@@ -286,7 +287,9 @@ def _is_enclosed(corners: Floats, planes: Floats, snap: float) -> bool:
     one plane are open lines.
     """
     start, end = corners.reshape(-1, 3), corners[:, (1, 2, 0)].reshape(-1, 3)
-    heights_of_start, heights_of_end = (np.abs(at @ planes[:, :3].T - planes[:, 3]) <= snap for at in (start, end))
+    heights_of_start, heights_of_end = (
+        np.abs(matmul(at, planes[:, :3].T) - planes[:, 3]) <= snap for at in (start, end)
+    )
     is_border = heights_of_start & heights_of_end
     for k, plane in enumerate(planes):
         a, b = start[is_border[:, k]], end[is_border[:, k]]
@@ -294,8 +297,8 @@ def _is_enclosed(corners: Floats, planes: Floats, snap: float) -> bool:
             continue
         origin = a.mean(axis=0)
         length = float(np.linalg.norm(b - a, axis=1).sum())
-        area = -0.5 * float(np.cross(a - origin, b - origin).sum(axis=0) @ plane[:3])
-        if float(np.linalg.norm((b - a).sum(axis=0))) > max(1e-3 * length, snap) or area <= 0.0:
+        area = -0.5 * float(matmul(np.cross(a - origin, b - origin).sum(axis=0), plane[:3]))
+        if norm((b - a).sum(axis=0)) > max(1e-3 * length, snap) or area <= 0.0:
             return False
     return True
 
@@ -306,14 +309,16 @@ def _best_plane(cell: _Cell) -> tuple[Floats, float]:
     points, weights = triangles.reshape(-1, 3), np.linalg.norm(area_vectors(triangles), axis=1)
     offsets = points - np.average(triangles.mean(axis=1), axis=0, weights=weights)
     middles = offsets.reshape(-1, 3, 3).sum(axis=1)
-    moments = (offsets * np.repeat(weights, 3)[:, None]).T @ offsets + (middles * weights[:, None]).T @ middles
-    axes = np.linalg.eigh(moments)[1].T
-    lows, highs = (points @ axes.T).min(axis=0), (points @ axes.T).max(axis=0)
+    moments = matmul((offsets * np.repeat(weights, 3)[:, None]).T, offsets) + matmul(
+        (middles * weights[:, None]).T, middles
+    )
+    axes = eigh(moments)[1].T
+    lows, highs = matmul(points, axes.T).min(axis=0), matmul(points, axes.T).max(axis=0)
     order = np.argsort(lows - highs, kind="stable")
     # across the shortest axis, the parts would be layers, and the surface of a layer does not have all of its corners
     planes = [(axes[k], 0.5 * float(lows[k] + highs[k])) for k in order[:2].tolist()]
     first = int(order[0])
-    deepest = float(cell.deepest @ axes[first]) if cell.deepest is not None else -np.inf
+    deepest = float(matmul(cell.deepest, axes[first])) if cell.deepest is not None else -np.inf
     margin = _MARGIN * float(highs[first] - lows[first])
     if lows[first] + margin < deepest < highs[first] - margin:
         planes.append((axes[first], deepest))

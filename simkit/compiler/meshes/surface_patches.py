@@ -26,6 +26,7 @@ from simkit.compiler.meshes.patch_division import (
     plane_between_layers,
 )
 from simkit.compiler.meshes.solid_pieces import solid_parts
+from simkit.linear_algebra import matmul
 
 TRIANGLES_FROM: Final = 4000
 """Number of triangles up to which a static mesh is divided into prisms, which are exact, instead of patches."""
@@ -291,7 +292,7 @@ def _measure_hull(patch: Patch, up: Floats, middles: Floats, covered: float, tol
         if len(points) > _FEW_POINTS:
             chosen = points[_support_points(points, up)]
             hull = ConvexHull(np.concatenate([chosen, chosen - depth * up]))
-            outside = float((points @ hull.equations[:, :3].T + hull.equations[:, 3]).max())
+            outside = float((matmul(points, hull.equations[:, :3].T) + hull.equations[:, 3]).max())
         if len(points) <= _FEW_POINTS or outside > tolerance:
             chosen, outside = points, 0.0
             hull = ConvexHull(np.concatenate([points, points - depth * up]))
@@ -299,17 +300,17 @@ def _measure_hull(patch: Patch, up: Floats, middles: Floats, covered: float, tol
         patch.error = 0.0
         return
     planes, offsets = hull.equations[:, :3], hull.equations[:, 3]
-    slopes = planes @ up
+    slopes = matmul(planes, up)
     probes = np.concatenate([points, middles])
     is_top, is_bottom = slopes > _STEEP, slopes < -_STEEP
-    sags = -(probes @ planes[is_top].T + offsets[is_top]).max(axis=1)
-    lows = (points @ planes[is_bottom].T + (offsets[is_bottom] - depth * slopes[is_bottom])).max(axis=1)
+    sags = -(matmul(probes, planes[is_top].T) + offsets[is_top]).max(axis=1)
+    lows = (matmul(points, planes[is_bottom].T) + (offsets[is_bottom] - depth * slopes[is_bottom])).max(axis=1)
     low = max(0.0, -float(lows.min()))
     triangles = hull.points[hull.simplices]
-    shadow = 0.25 * float(np.abs(area_vectors(triangles) @ up).sum())  # the hull has two sides
-    flat = points - (points @ up)[:, None] * up
+    shadow = 0.25 * float(np.abs(matmul(area_vectors(triangles), up)).sum())  # the hull has two sides
+    flat = points - matmul(points, up)[:, None] * up
     sides = flat.max(axis=0) - flat.min(axis=0)
-    gap = max(0.0, shadow - covered) / max(2.0 * float(np.sqrt(sides @ sides)), 1e-300)
+    gap = max(0.0, shadow - covered) / max(2.0 * float(np.sqrt(matmul(sides, sides))), 1e-300)
     deepest = int(sags.argmax())
     sag = float(sags[deepest])
     patch.error = max(sag, low - depth, gap, outside)
@@ -334,9 +335,9 @@ def _support_points(points: Floats, up: Floats) -> Ints:
     length = (u[0] ** 2 + u[1] ** 2 + u[2] ** 2) ** 0.5
     a, b, c = u[0] / length, u[1] / length, u[2] / length
     axes = np.array([(a, b, c), (y * c - z * b, z * a - x * c, x * b - y * a), (x, y, z)])
-    directions = _DIRECTIONS @ axes
+    directions = matmul(_DIRECTIONS, axes)
     chosen = np.zeros(len(points), bool)
-    chosen[(points @ directions.T).argmax(axis=0)] = True
+    chosen[matmul(points, directions.T).argmax(axis=0)] = True
     return np.flatnonzero(chosen).astype(np.int32)
 
 

@@ -10,6 +10,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.elementary_functions import arctan2
+from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose
 from simkit.runtime import Simulation
 from simkit.sensors.inertial.inertial_kinematics import hamilton_product
@@ -87,7 +89,8 @@ class ArrayView:
         found: Floats = self._xpos[:, body]
         if offset is None:
             return found.copy()
-        return found + np.asarray(self._xmat[:, body]).reshape(-1, 3, 3) @ offset.position
+        shift: Floats = matmul(np.asarray(self._xmat[:, body]).reshape(-1, 3, 3), offset.position)
+        return found + shift
 
     def quaternion(self, name: str) -> Floats:
         """Return the orientations w, x, y, z of a model or link in the world, shape (count, 4)."""
@@ -98,7 +101,7 @@ class ArrayView:
     def yaw(self, name: str) -> Floats:
         """Return the yaw of a model or link [rad], shape (count,)."""
         w, x, y, z = self.quaternion(name).T
-        found: Floats = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+        found: Floats = arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
         return found
 
     def linear_velocity(self, link: str) -> Floats:
@@ -174,11 +177,11 @@ class _TouchSearch:
         collides = (model.geom_contype | model.geom_conaffinity) != 0
         is_ground = np.isin(model.geom_type, _GROUND) & (model.body_weldid[model.geom_bodyid] == 0)
         gravity = model.opt.gravity.copy()
-        up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array((0.0, 0.0, 1.0))
+        up = -gravity / norm(gravity) if gravity.any() else np.array((0.0, 0.0, 1.0))
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
         # the front of a plane that is steeper than a ramp is a wall
-        steep = data.geom_xmat[:, 2::3] @ up < math.cos(math.radians(45.0))
+        steep = matmul(data.geom_xmat[:, 2::3], up) < math.cos(math.radians(45.0))
         is_wall = (model.geom_type == _GROUND[0]) & steep
         self._mine = np.flatnonzero(mine & collides)
         self._others = np.flatnonzero(others & collides & ~(is_ground & ~is_wall))

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.elementary_functions import arctan2
 from simkit.experiments.environments.array_view import ArrayView
 from simkit.experiments.environments.cannot_batch import CannotBatchError
 from simkit.experiments.environments.due_ticks import NEVER, Grid, is_due, last_due, next_due, next_odometry_tick
@@ -147,7 +148,7 @@ class DriveArrays(abc.ABC):
     def read_wheels(self, ids: Ids) -> Floats:
         """Return the odometry of the wheels in some environments; the yaw is from -π to π."""
         found: Floats = self.odometry[ids]
-        found[:, 2] = np.arctan2(np.sin(found[:, 2]), np.cos(found[:, 2]))
+        found[:, 2] = arctan2(np.sin(found[:, 2]), np.cos(found[:, 2]))
         return found
 
     def _rims(self, speeds: Floats) -> Floats:
@@ -374,7 +375,7 @@ def true_odometry(view: ArrayView, motion: TrueMotion) -> Read:
         spin = _rotate_back(quaternion, view.angular_velocity(link)[ids])
         linear = linear + np.cross(spin, arm)
         w, x, y, z = quaternion.T
-        yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+        yaw = arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
         return np.column_stack((position[:, 0], position[:, 1], yaw, linear[:, 0], linear[:, 1], spin[:, 2]))
 
     return read

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit.elementary_functions import arctan2, exp, power, tan
 from simkit.experiments.environments.array_view import ArrayView
 from simkit.experiments.environments.cannot_batch import CannotBatchError
 from simkit.testing.conditions import syntax_tree as syntax
@@ -28,10 +29,10 @@ _COMPARISONS: Final[dict[str, Callable[[Any, Any], Any]]] = {
     "<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal, "==": np.equal, "!=": np.not_equal,
 }  # fmt: skip
 _OPERATORS: Final[dict[str, Callable[[Any, Any], Any]]] = {
-    "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "%": np.mod, "**": np.power,
+    "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "%": np.mod, "**": power,
 }  # fmt: skip
 _FUNCTIONS: Final[dict[str, Callable[..., Any]]] = {
-    "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "sin": np.sin, "cos": np.cos, "tan": np.tan, "atan2": np.arctan2,
+    "abs": np.abs, "sqrt": np.sqrt, "exp": exp, "sin": np.sin, "cos": np.cos, "tan": tan, "atan2": arctan2,
     "clamp": lambda value, low, high: np.minimum(np.maximum(value, low), high),
 }  # fmt: skip
 _AXES: Final = {"x": 0, "y": 1, "z": 2}

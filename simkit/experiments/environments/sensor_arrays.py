@@ -9,6 +9,7 @@ import numpy.typing as npt
 from mujoco.batch import Batch
 
 from simkit.experiments.environments.array_view import ArrayView, multiply
+from simkit.linear_algebra import matmul
 from simkit.runtime.engine.random_streams import RandomStream
 from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.sensors.inertial.imu import Imu
@@ -158,10 +159,13 @@ class ScanArrays:
         shape = (view.count, fan.count, 3)
         positions, turns = view._xpos[:, sensor._body], view._xmat[:, sensor._body].reshape(-1, 3, 3)
         if sensor._is_moved:
-            positions = positions + turns @ sensor._offset_position
+            positions = positions + matmul(turns, sensor._offset_position)
         if sensor._is_turned:
-            turns = turns @ sensor._offset_rotation
-        positions, directions = np.nan_to_num(positions), np.nan_to_num(fan.directions @ turns.transpose(0, 2, 1))
+            turns = matmul(turns, sensor._offset_rotation)
+        positions, directions = (
+            np.nan_to_num(positions),
+            np.nan_to_num(matmul(fan.directions, turns.transpose(0, 2, 1))),
+        )
         distances = np.full(shape[:2], np.inf)
         if self._batch is not None:
             if self._moved is not None:
@@ -239,10 +243,10 @@ class ImuArrays:
         spin = view._cvel[:, root, :3]
         growth = np.einsum("nij,nj->ni", turn, self._acceleration[:, dof + 3 : dof + 6])
         own = view._xmat[:, sensor._body].reshape(-1, 3, 3)
-        arm = view._xpos[:, sensor._body] + own @ sensor._offset_position - view._xpos[:, root]
+        arm = view._xpos[:, sensor._body] + matmul(own, sensor._offset_position) - view._xpos[:, root]
         force = self._acceleration[:, dof : dof + 3] - self._gravity
         force = force + np.cross(growth, arm) + np.cross(spin, np.cross(spin, arm))
-        axes = own @ sensor._offset_rotation
+        axes = matmul(own, sensor._offset_rotation)
         motion = np.hstack((np.einsum("nij,ni->nj", axes, spin), np.einsum("nij,ni->nj", axes, force)))
         attitude = multiply(view._xquat[:, sensor._body], sensor._offset.quaternion)
         attitude = multiply(self._reference, attitude)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.experiments.environments.specification import Environment, EnvironmentSpec, JointVelocities, Observation
+from simkit.linear_algebra import norm
 from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ def _place_goal(env: Environment) -> None:
 
 
 def _distance_to(env: Environment, goal: Vector) -> float:
-    return float(np.linalg.norm(goal - _hand(env).position))
+    return norm(goal - _hand(env).position)
 
 
 def _reach_reward(env: Environment) -> float:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit.elementary_functions import arctan2
 from simkit.experiments.environments.specification import Batched, Environment, EnvironmentSpec, Observation
 from simkit.pose import Pose
 from simkit.run_spec import RunSpec
@@ -129,7 +130,7 @@ def _has_ended(env: Environment) -> bool:
 
 def _observe_goals(view: ArrayView) -> Any:
     x, y = (view.memory["goal"] - view.position(ROBOT)[:, :2]).T
-    bearing = np.arctan2(y, x) - view.yaw(ROBOT)
+    bearing = arctan2(y, x) - view.yaw(ROBOT)
     return np.stack((np.minimum(np.hypot(x, y), FARTHEST), np.cos(bearing), np.sin(bearing)), axis=1)
 
 

@@ -26,6 +26,7 @@ from typing import Any, Final
 import numpy as np
 
 from simkit.diagnostics import did_you_mean, shorten
+from simkit.linear_algebra import cholesky, matmul
 from simkit.run_spec import JsonObject
 
 Names = tuple[str, ...]
@@ -237,7 +238,7 @@ def _correlated(names: Names, given: JsonObject, value: object) -> ParameterSpac
         matrix = np.array(given.get("correlation", np.eye(count)), dtype=float)
         if matrix.shape != (count, count) or not np.array_equal(matrix, matrix.T) or not np.all(np.diag(matrix) == 1.0):
             raise ValueError
-        factor = np.linalg.cholesky(matrix)
+        factor = cholesky(matrix)
     except (ValueError, np.linalg.LinAlgError):
         expected = f"a symmetric, positive definite matrix of {count} × {count} numbers with 1 on its diagonal"
         raise InvalidSpace(f"found the correlation {given.get('correlation')!r}; expected {expected}") from None
@@ -246,7 +247,7 @@ def _correlated(names: Names, given: JsonObject, value: object) -> ParameterSpac
     standard = NormalDist()
 
     def convert(unit: Sequence[float]) -> list[Any]:
-        drawn = factor @ [standard.inv_cdf(number) for number in unit]
+        drawn = matmul(factor, [standard.inv_cdf(number) for number in unit])
         return [mean + deviation * float(one) for mean, deviation, one in zip(means, deviations, drawn, strict=True)]
 
     return ParameterSpace(names, given, convert=convert)

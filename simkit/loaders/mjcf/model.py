@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
 
+from simkit.linear_algebra import matmul
 from simkit.loaders.mjcf.compiled_file import CompiledFile, ModelPlacement
 from simkit.loaders.mjcf.joints import read_joints
 from simkit.loaders.mjcf.lights import read_lights
@@ -102,7 +103,7 @@ class ModelReader:
     def _inertial(self, body: int) -> Inertial:
         model = self._model
         turn = Pose((0.0, 0.0, 0.0), model.body_iquat[body]).matrix
-        i = (turn * model.body_inertia[body]) @ turn.T
+        i = matmul(turn * model.body_inertia[body], turn.T)
         return Inertial(float(model.body_mass[body]), vec3(model.body_ipos[body]), moments_of(i))
 
     def _frames(self, body: int) -> Iterable[SceneFrame]:

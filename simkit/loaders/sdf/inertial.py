@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import eigvalsh, matmul
 from simkit.loaders.resources.loader import MeshReader
 from simkit.loaders.sdf.solid_moments import Solid, solid_of, solid_of_triangles
 from simkit.params import Params
@@ -69,7 +70,7 @@ def rotated_moments(values: Sequence[float], pose: Pose) -> Moments:
     """Rotate moments and products of inertia from the axes of `pose` to the frame that contains the pose."""
     if pose.quaternion[0] != 1.0:
         turn = pose.matrix
-        return moments_of(turn @ _matrix(values) @ turn.T)
+        return moments_of(matmul(turn, _matrix(values), turn.T))
     ixx, iyy, izz, ixy, ixz, iyz = values
     return ixx, iyy, izz, ixy, ixz, iyz
 
@@ -91,7 +92,7 @@ def _check(name: str, mass: float, values: Sequence[float], block: Params, stati
     elif mass == 0:
         place.warning("SK-SDF-029", f"link {name!r} has mass 0; a link without mass cannot move by itself")
     if any(values[3:]):
-        small, middle, large = (float(v) for v in np.linalg.eigvalsh(_matrix(values)))
+        small, middle, large = (float(v) for v in eigvalsh(_matrix(values)))
     else:
         small, middle, large = sorted(values[:3])
     place = block.child_or_self("inertia")
@@ -125,7 +126,7 @@ def _automatic(
         volume, centre, moments = solid
         mass = volume * (common if density is None else density)
         turn = collision.pose_link.matrix
-        parts.append((mass, collision.pose_link.transform(centre), turn @ moments @ turn.T * (mass / volume)))
+        parts.append((mass, collision.pose_link.transform(centre), matmul(turn, moments, turn.T) * (mass / volume)))
     total = sum(mass for mass, _, _ in parts)
     if total <= 0:
         block.warning("SK-SDF-022", f"link {name!r} has no collision for automatic inertia; 1 kg is used")
@@ -134,7 +135,7 @@ def _automatic(
     inertia = np.zeros((3, 3))
     for mass, at, moments in parts:
         d = at - com
-        inertia += moments + mass * (float(d @ d) * np.eye(3) - np.outer(d, d))
+        inertia += moments + mass * (float(matmul(d, d)) * np.eye(3) - np.outer(d, d))
     given = block.number("mass", total, maximum=_MAX_MOMENT)
     if not (total <= _MAX_MOMENT and np.abs(inertia).max() <= _MAX_MOMENT):
         weight = f"link {name!r} has mass {total:g} kg from its collisions"

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
+from simkit.linear_algebra import matmul
 from simkit.loaders.sdf.entity_names import read_name
 from simkit.loaders.sdf.load_context import MAX_MODELS, EntitySource, SdfFile, Workspace, read_pose
 from simkit.params import Params
@@ -103,7 +104,8 @@ def _turn_points(points: Points | None, pose: Pose, corner: Points) -> Points | 
     """
     if points is None:
         return None
-    return points @ pose.matrix.T + (np.asarray(pose.position) - corner)
+    turned: Points = matmul(points, pose.matrix.T)
+    return turned + (np.asarray(pose.position) - corner)
 
 
 def _region(population: Params, name: str) -> _Region | None:

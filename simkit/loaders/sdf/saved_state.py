@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable
 
 from simkit.diagnostics import did_you_mean
+from simkit.linear_algebra import matmul
 from simkit.loaders.sdf.frames import Frame, world_pose
 from simkit.loaders.sdf.load_context import ModelDraft
 from simkit.params import Params
@@ -122,7 +123,7 @@ def report_unapplied(draft: ModelDraft) -> None:
 
 
 def _is_different(a: Pose, b: Pose) -> bool:
-    cosine = min(1.0, abs(float(a.quaternion @ b.quaternion)))
+    cosine = min(1.0, abs(float(matmul(a.quaternion, b.quaternion))))
     return math.dist(a.position, b.position) > _SAME_POSE or 2 * math.acos(cosine) > _SAME_POSE
 
 

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.elementary_functions import arcsin
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Capsule, Cylinder, Ellipsoid, Geometry, PersonLook, Sphere
 
@@ -151,8 +152,9 @@ def walking_angles(distance: Floats, speed: Floats) -> Floats:
         since = 2.0 * (part - 0.5)  # fraction of the half cycle in which the foot is in the air, 0 to 1
         # relative to the hips, a foot on the ground moves back at walking speed, so that it does not slide
         foot = STRIDE * np.where(stands, 0.25 - part, -0.25 * np.cos(math.pi * since))
-        bend = np.where(stands, 0.0, 0.95 * np.abs(np.sin(math.pi * since)) ** 1.5)
-        thigh = np.arcsin(np.clip(foot / (KNEE + SOLE), -1.0, 1.0)) + 0.5 * bend
+        lift = np.abs(np.sin(math.pi * since))
+        bend = np.where(stands, 0.0, 0.95 * lift * np.sqrt(lift))
+        thigh = arcsin(np.clip(foot / (KNEE + SOLE), -1.0, 1.0)) + 0.5 * bend
         angles[:, side] = amplitude * thigh
         angles[:, 2 + side] = -0.02 - amplitude * bend
         swing = np.cos(2.0 * math.pi * part)

@@ -16,6 +16,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.elementary_functions import arccos, arctan2
+from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose
 from simkit.scene import SceneActor, Trajectory
 
@@ -131,7 +133,7 @@ class Script:
         track = self.tracks[number]
         row, part = track.row(inside)
         pose = track.poses[row] * (1.0 - part) + track.poses[row + 1] * part
-        return Pose(pose[:3], pose[3:] / np.linalg.norm(pose[3:]))
+        return Pose(pose[:3], pose[3:] / norm(pose[3:]))
 
 
 def _poses(points: Sequence[Pose], times: Floats, grid: Floats, tension: float) -> Floats:
@@ -159,18 +161,23 @@ def _spline(points: Floats, tension: float, stretch: npt.NDArray[np.intp], part:
     tangents[-1] = (points[1] if closed else points[-1]) - points[-2]
     tangents *= 0.5 * (1.0 - tension)
     t = part[:, None]
+    square = t * t
+    cube = square * t
     a, b, c, d = points[stretch], points[stretch + 1], tangents[stretch], tangents[stretch + 1]
     return np.asarray(
-        (2 * t**3 - 3 * t**2 + 1) * a + (3 * t**2 - 2 * t**3) * b + (t**3 - 2 * t**2 + t) * c + (t**3 - t**2) * d
+        (2 * cube - 3 * square + 1) * a
+        + (3 * square - 2 * cube) * b
+        + (cube - 2 * square + t) * c
+        + (cube - square) * d
     )
 
 
 def _rotation_spline(turns: Floats, stretch: npt.NDArray[np.intp], part: Floats) -> Floats:
     turns = turns.copy()
     for i in range(1, len(turns)):
-        if turns[i] @ turns[i - 1] < 0.0:
+        if matmul(turns[i], turns[i - 1]) < 0.0:
             turns[i] = -turns[i]
-    closed = abs(turns[0] @ turns[-1]) > 1.0 - 1e-9
+    closed = abs(matmul(turns[0], turns[-1])) > 1.0 - 1e-9
     count = len(turns)
     before = [i - 1 if i else (count - 2 if closed else 0) for i in range(count)]
     after = [i + 1 if i < count - 1 else (1 if closed else i) for i in range(count)]
@@ -201,7 +208,7 @@ def _log(q: Floats) -> Floats:
     """Return the logarithms of quaternions, shape (n, 3): q or −q is exp(v), with the smaller angle."""
     q = np.where(q[:, :1] < 0.0, -q, q)
     size = np.linalg.norm(q[:, 1:], axis=1, keepdims=True)
-    angle = np.arctan2(size, q[:, :1])
+    angle = arctan2(size, q[:, :1])
     return np.asarray(q[:, 1:] * np.where(size > _TINY, angle / np.where(size > _TINY, size, 1.0), 1.0))
 
 
@@ -213,7 +220,7 @@ def _exp(v: Floats) -> Floats:
 def _slerp(a: Floats, b: Floats, t: Floats) -> Floats:
     cos = np.sum(a * b, axis=1, keepdims=True)
     b = np.where(cos < 0.0, -b, b)
-    angle = np.arccos(np.clip(np.abs(cos), -1.0, 1.0))
+    angle = arccos(np.clip(np.abs(cos), -1.0, 1.0))
     sin = np.sin(angle)
     wide = sin > 1e-6
     safe = np.where(wide, sin, 1.0)

@@ -10,6 +10,7 @@ import numpy as np
 from simkit.compiler.meshes.collada_skin import Skin, read_skin
 from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import det, matmul, norm, svd
 from simkit.plugins.actors.animated_actor import (
     AT_THE_HIPS,
     ROOT_LINK,
@@ -186,13 +187,13 @@ def _worlds(skin: Skin, frames: dict[int, Floats], count: int) -> list[Floats]:
     found: list[Floats] = []
     for i, bone in enumerate(skin.bones):
         own = np.broadcast_to(frames[i], (count, 4, 4))
-        found.append(own if bone.parent < 0 else found[bone.parent] @ own)
+        found.append(own if bone.parent < 0 else matmul(found[bone.parent], own))
     return found
 
 
 def _size(matrices: Floats) -> float:
     """Return the scale factor of a transform."""
-    return float(np.cbrt(abs(np.linalg.det(matrices[0, :3, :3])))) or 1.0
+    return float(abs(det(matrices[0, :3, :3])) ** (1.0 / 3.0)) or 1.0
 
 
 def _quaternions(matrices: Floats) -> Floats:
@@ -200,9 +201,9 @@ def _quaternions(matrices: Floats) -> Floats:
 
     Successive quaternions have the same sign, so that they can be interpolated.
     """
-    left, _, right = np.linalg.svd(matrices)
-    turn = left @ right
-    turn *= np.sign(np.linalg.det(turn))[:, None, None]
+    left, _, right = svd(matrices)
+    turn = matmul(left, right)
+    turn *= np.sign(det(turn))[:, None, None]
     found = np.empty((len(turn), 4))
     for k, m in enumerate(turn):
         # Shepperd's method: start with the largest of the four components
@@ -218,8 +219,8 @@ def _quaternions(matrices: Floats) -> Floats:
             q[1 + a] = 1.0 + m[a, a] - m[b, b] - m[c, c]
             q[1 + b] = m[a, b] + m[b, a]
             q[1 + c] = m[a, c] + m[c, a]
-        found[k] = q / np.linalg.norm(q)
-        if k and found[k] @ found[k - 1] < 0.0:
+        found[k] = q / norm(q)
+        if k and matmul(found[k], found[k - 1]) < 0.0:
             found[k] = -found[k]
     return found
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul, norm
 from simkit.plugins.autopilots.mavlink import Value
 from simkit.pose import Vector, quat_multiply
 
@@ -85,8 +86,8 @@ def state_message(time: int, link: Link, place: tuple[float, float, float]) -> d
     axes, velocity = link.pose.matrix, link.linear_velocity
     attitude = quat_multiply(quat_multiply(_NED_OF_ENU, link.pose.quaternion), _FRD_OF_FLU)
     attitude = -attitude if attitude[0] < 0 else attitude
-    rates = (link.angular_velocity @ axes * _FLIP).tolist()
-    forces = (link.linear_acceleration @ axes * _FLIP).tolist()
+    rates = (matmul(link.angular_velocity, axes) * _FLIP).tolist()
+    forces = (matmul(link.linear_acceleration, axes) * _FLIP).tolist()
     east, north, up = velocity.tolist()
     return {
         "time_usec": time,
@@ -96,8 +97,8 @@ def state_message(time: int, link: Link, place: tuple[float, float, float]) -> d
         "vx": 100 * north,
         "vy": 100 * east,
         "vz": -100 * up,
-        "ind_airspeed": 100 * max(float(velocity @ axes[:, 0]), 0.0),
-        "true_airspeed": 100 * float(np.linalg.norm(velocity)),
+        "ind_airspeed": 100 * max(float(matmul(velocity, axes[:, 0])), 0.0),
+        "true_airspeed": 100 * norm(velocity),
         **{name: 1000 * value for name, value in zip(("xacc", "yacc", "zacc"), forces, strict=True)},
     }
 

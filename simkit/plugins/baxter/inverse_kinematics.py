@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import mujoco
 import numpy as np
 
+from simkit.linear_algebra import matmul, norm, solve
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.controllers.baxter_controllers import limb_joints
 from simkit.pose import Pose, Vector
@@ -85,7 +86,7 @@ class ArmInverseKinematics(SharedByCopies):
         frame, links = str(stamped.header.frame_id).lstrip("/") or "base", self._robot.links
         if not np.isfinite(numbers).all() or not 1e-3 < np.abs(numbers[3:]).max() < 1e6:
             return None
-        pose = Pose(numbers[:3], numbers[3:] / np.linalg.norm(numbers[3:]))
+        pose = Pose(numbers[:3], numbers[3:] / norm(numbers[3:]))
         if frame == "world":
             return pose
         return links[frame].pose @ pose if frame in links else None
@@ -124,6 +125,6 @@ class ArmInverseKinematics(SharedByCopies):
                 return angles
             mujoco.mj_jac(model, data, jacobian[:3], jacobian[3:], np.array(pose.position, float), tip.body)
             own = jacobian[:, dofs]
-            step = own.T @ np.linalg.solve(own @ own.T + _DAMPING * np.eye(6), error)
+            step = matmul(own.T, solve(matmul(own, own.T) + _DAMPING * np.eye(6), error))
             angles = np.clip(angles + step * min(1.0, _LONGEST_STEP / np.abs(step).max()), self._low, self._high)
         return None

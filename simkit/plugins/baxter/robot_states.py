@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import lstsq
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.controllers.baxter_controllers import (
     BaxterGripperController,
@@ -189,7 +190,7 @@ class BaxterStates(SharedByCopies):
         point = np.array(tip.pose.position, float)
         mujoco.mj_jac(model, data, jacobian[:3], jacobian[3:], point, names.link(tip.scoped).body)
         unexplained = gravity - effort + model.dof_damping[dofs] * velocity
-        return np.asarray(np.linalg.lstsq(jacobian[:, dofs].T, unexplained, rcond=1e-3)[0], float)
+        return lstsq(jacobian[:, dofs].T, unexplained, rcond=1e-3)
 
     # ------------------------------------------------------------------ grippers
 

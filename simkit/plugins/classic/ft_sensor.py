@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
@@ -101,10 +102,10 @@ class GazeboRosFtSensor(ModelPlugin):
         joint = names.joint(self._joint)
         child = names.link(joint.scene.child_link)
         turn = data.xmat[child.body].reshape(3, 3)
-        axes = turn @ child.offset.matrix
-        origin = data.xpos[child.body] + turn @ (child.offset @ joint.pose_child).position
+        axes = matmul(turn, child.offset.matrix)
+        origin = data.xpos[child.body] + matmul(turn, (child.offset @ joint.pose_child).position)
         force, torque = transmitted_wrench(self.sim.mj_model, data, joint, origin)
-        return -force @ axes, -torque @ axes
+        return matmul(-force, axes), matmul(-torque, axes)
 
     def _of_link(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         model, body = self.sim.mj_model, self.sim.engine.names.link(self._link).body
@@ -115,9 +116,9 @@ class GazeboRosFtSensor(ModelPlugin):
         mujoco.mj_objectVelocity(model, data, _BODY, body, velocity, 1)
         mujoco.mj_objectAcceleration(model, data, _BODY, body, acceleration, 1)
         axes, moments, turning = data.ximat[body].reshape(3, 3), model.body_inertia[body], velocity[:3]
-        force = model.body_mass[body] * (axes @ acceleration[3:] + model.opt.gravity)
+        force = model.body_mass[body] * (matmul(axes, acceleration[3:]) + model.opt.gravity)
         torque = moments * acceleration[:3] + np.cross(turning, moments * turning)
-        return force, axes @ torque
+        return force, matmul(axes, torque)
 
     def _message(self, time_ns: int, values: Vector, index: int) -> object:
         if self._stream is not None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul, norm
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.find_entities import find_link
@@ -151,10 +152,10 @@ class GraspFix(ModelPlugin):
         """Check whether two of the forces [N] are opposite and of similar length."""
         for i, one in enumerate(forces):
             for other in forces[i + 1 :]:
-                a, b = float(np.linalg.norm(one)), float(np.linalg.norm(other))
+                a, b = norm(one), norm(other)
                 if min(a, b) <= 0 or min(a, b) < _LEAST_RATIO * max(a, b):
                     continue
-                if math.acos(max(-1.0, min(1.0, float(one @ other) / (a * b)))) > self._angle:
+                if math.acos(max(-1.0, min(1.0, float(matmul(one, other)) / (a * b)))) > self._angle:
                     return True
         return False
 
@@ -186,7 +187,7 @@ class GraspFix(ModelPlugin):
         for touch in self._touches:
             gap = into_object.transform(self.sim.link(touch.link).pose.transform(touch.on_link)) - touch.on_object
             # without collisions the fingers close through the object
-            if np.linalg.norm(gap) > self._opening and gap @ touch.push < 0:
+            if norm(gap) > self._opening and matmul(gap, touch.push) < 0:
                 return True
         return False
 

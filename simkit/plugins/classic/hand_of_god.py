@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import norm
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
@@ -118,7 +119,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         pose = link.pose
         turn = (pose.inverse() @ desired).quaternion
         turn = turn if turn[0] >= 0.0 else -turn
-        sine = float(np.linalg.norm(turn[1:]))
+        sine = norm(turn[1:])
         # the quaternion's logarithm: half the angle
         half = turn[1:] * (math.atan2(sine, float(turn[0])) / sine) if sine > 1e-12 else turn[1:]
         force = kl * (desired.position - pose.position) - cl * link.linear_velocity

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.elementary_functions import exp
 from simkit.params import LARGEST, Params
 from simkit.pose import Vector
 
@@ -62,7 +63,7 @@ class HectorError:
             dt: time since the last instant [s].
         """
         drawn = self._stream.normal(index)
-        left = np.exp(-self._frequency * dt)
+        left = exp(-self._frequency * dt)
         self._drift = left * self._drift + self._deviation * np.sqrt(1 - left**2) * drawn[: self._size]
         error: Vector = self._offset + self._drift + self.noise * drawn[self._size :]
         return error

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul, norm
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, SensorPlugin
 from simkit.plugins.classic.hector_error import HectorError
@@ -151,14 +152,14 @@ class HectorImu(HectorSensor):
 
     def _message(self, acceleration_error: Vector, rate_error: Vector, heading_error: Vector) -> object:
         link, axes = self._link, self._link.pose.matrix
-        gravity = self.sim.mj_model.opt.gravity @ axes
-        acceleration = link.linear_acceleration @ axes - gravity + acceleration_error
-        rate = link.angular_velocity @ axes + rate_error
+        gravity = matmul(self.sim.mj_model.opt.gravity, axes)
+        acceleration = matmul(link.linear_acceleration, axes) - gravity + acceleration_error
+        rate = matmul(link.angular_velocity, axes) + rate_error
         turn = float(heading_error[0])
         attitude = quat_multiply((math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2)), link.pose.quaternion)
         w, x, y, z = quat_multiply(attitude, _tilt(gravity, acceleration_error)).tolist()
         noise = self._acceleration.noise**2
-        own = float(gravity @ gravity)
+        own = float(matmul(gravity, gravity))
         spread = (noise[0] / own, noise[1] / own) if own > 0 else (-1.0, -1.0)
         return msgs.make(
             IMU,
@@ -293,7 +294,7 @@ class HectorMagnetic(HectorSensor):
             return
         header, field = (
             msgs.header(self.sim.time_ns, self._frame),
-            _vector(self._field @ self._link.pose.matrix + error),
+            _vector(matmul(self._field, self._link.pose.matrix) + error),
         )
         if self.options.as_field:
             self._out.publish(msgs.make(FIELD, header=header, magnetic_field=field))
@@ -341,10 +342,10 @@ def _vector(values: Vector) -> dict[str, float]:
 def _tilt(gravity: Vector, error: Vector) -> Vector:
     """Return the rotation from the direction of gravity to that of a measured gravity, as a quaternion (w, x, y, z)."""
     measured = gravity + error
-    scale = float(np.linalg.norm(gravity) * np.linalg.norm(measured))
+    scale = float(norm(gravity) * norm(measured))
     if scale == 0.0 or not error.any():
         return np.array((1.0, 0.0, 0.0, 0.0))
-    half = np.array((scale + float(gravity @ measured), *np.cross(gravity, measured)))
-    length = float(np.linalg.norm(half))
+    half = np.array((scale + float(matmul(gravity, measured)), *np.cross(gravity, measured)))
+    length = norm(half)
     found: Vector = half / length if length > 0 else np.array((0.0, 1.0, 0.0, 0.0))
     return found

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin, SensorPlugin
 from simkit.plugins.endpoints import offers, publishes
@@ -98,7 +99,7 @@ class GazeboRosImu(ModelPlugin):
             axes = Pose(pose.position, attitude).matrix.T
         else:
             acceleration = acceleration - self.sim.mj_model.opt.gravity
-        motion = np.concatenate((rate @ axes, acceleration @ axes))
+        motion = np.concatenate((matmul(rate, axes), matmul(acceleration, axes)))
         self._out.publish_later(partial(self._message, self.sim.time_ns, attitude, motion, self._index))
 
     def _message(self, time_ns: int, attitude: Vector, motion: Vector, index: int) -> object:

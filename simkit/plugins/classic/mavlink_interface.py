@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.autopilots.autopilot_plugin import AutopilotPlugin
@@ -281,7 +282,7 @@ class GazeboMavlinkInterface(AutopilotPlugin):
         self._once.warn("SK-PILOT-005", "imu", message)
         axes = self._link.pose.matrix
         force = self._link.linear_acceleration - self.sim.mj_model.opt.gravity
-        return self._link.angular_velocity @ axes, force @ axes
+        return matmul(self._link.angular_velocity, axes), matmul(force, axes)
 
     def _sensors(self, time: int, gyro: np.ndarray, force: np.ndarray) -> dict[str, float]:
         magnetometer, barometer = self._sensor(Px4Magnetometer), self._sensor(Px4Barometer)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
+from simkit.linear_algebra import norm
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import BodyTwist
@@ -143,4 +143,4 @@ class GazeboRosP3D(ModelPlugin):
 def _is_unchanged_by_zero_offset(pose: Pose) -> bool:
     """Check whether a zero offset changes no bit of a pose: no number is zero, and the quaternion is unit."""
     turn = pose.quaternion
-    return abs(math.sqrt(turn.dot(turn)) - 1.0) <= 1e-15 and bool(pose.position.all() and turn.all())
+    return abs(norm(turn) - 1.0) <= 1e-15 and bool(pose.position.all() and turn.all())

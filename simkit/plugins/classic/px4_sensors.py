@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
+from simkit.linear_algebra import matmul, norm
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin, Plugin
 from simkit.plugins.find_entities import find_named_link
@@ -149,8 +150,8 @@ class Px4Imu(Px4Sensor, ModelPlugin):
     def measure(self) -> tuple[Vector, Vector]:
         link, step = self._link, self.period
         axes, drawn = link.pose.matrix, np.asarray(self._stream.normal(self.sim.tick))
-        force = (link.linear_acceleration - self.sim.mj_model.opt.gravity) @ axes
-        gyro = link.angular_velocity @ axes
+        force = matmul(link.linear_acceleration - self.sim.mj_model.opt.gravity, axes)
+        gyro = matmul(link.angular_velocity, axes)
         return gyro + self._gyro.advance(step, drawn[:6]), force + self._force.advance(step, drawn[6:])
 
 
@@ -179,13 +180,13 @@ class Px4Magnetometer(Px4Sensor, ModelPlugin):
         self.begin(self.sim.link(self._name), options.rate)
         planet = WorldOnPlanet(home_of(self.sim))
         field = MagneticModel(DEFAULT_DATE).at(*planet.origin.tolist())
-        self._field = planet.axes.T @ field * _GAUSS
+        self._field = matmul(planet.axes.T, field) * _GAUSS
         self._noise = GaussMarkovNoise(options.density, options.walk, options.time_constant, 0.0, np.zeros(3))
         self._stream = self.random("noise", 6)
 
     def measure(self) -> Vector:
         step = 1.0 / self._rate if self._rate else self.period
-        field: Vector = self._field @ self._link.pose.matrix
+        field: Vector = matmul(self._field, self._link.pose.matrix)
         return field + self._noise.advance(step, np.asarray(self._stream.normal(self.sim.tick)))
 
 
@@ -219,7 +220,7 @@ class Px4Barometer(Px4Sensor, ModelPlugin):
         error = float(np.asarray(self._stream.normal(self.sim.tick))[0]) + self.options.drift * self.sim.time
         pressure = _PRESSURE / ratio**5.256 + error
         density = _DENSITY / ratio**4.256
-        gravity = max(float(np.linalg.norm(self.sim.mj_model.opt.gravity)), 1e-3)
+        gravity = max(norm(self.sim.mj_model.opt.gravity), 1e-3)
         return pressure / 100, altitude - error / (gravity * density), temperature - 273.0
 
 
@@ -258,7 +259,7 @@ class Px4Gps(Px4Sensor):
         self.begin(self.sim.link(self._name), own or options.update_rate)
         self._planet = WorldOnPlanet(home_of(self.sim))
         home = home_of(self.sim)
-        self._to_enu = east_north_up(home.latitude, home.longitude).T @ self._planet.axes
+        self._to_enu = matmul(east_north_up(home.latitude, home.longitude).T, self._planet.axes)
         xy, z = (options.xy_walk, options.xy_density, options.vxy_density), (options.z_walk,)
         self._scales = np.array([xy[0], xy[0], *z, xy[1], xy[1], options.z_density, xy[2], xy[2], options.vz_density])
         self._bias, self._white = np.zeros(3), np.zeros(9)
@@ -272,7 +273,7 @@ class Px4Gps(Px4Sensor):
             self._bias = self._bias + self._white[:3] * step - self._bias * (step / _GPS_TIME_CONSTANT)
         link, delay = self._link, round(self.options.delay / self.period)
         position = link.pose.position + self._bias + self._white[3:6]
-        self._late.append((self.sim.tick, position, self._to_enu @ link.linear_velocity + self._white[6:]))
+        self._late.append((self.sim.tick, position, matmul(self._to_enu, link.linear_velocity) + self._white[6:]))
         while len(self._late) > 1 and self._late[1][0] <= self.sim.tick - delay:
             self._late.popleft()
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import NOWHERE
+from simkit.linear_algebra import matmul
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
@@ -194,7 +195,7 @@ class SolarSensor(ModelPlugin):
             )
         if any(self._rpy):
             orientation = quat_multiply(self._turn, orientation)
-            turned = self._turn_matrix @ covariance.reshape(3, 3) @ self._turn_matrix.T
+            turned = matmul(self._turn_matrix, covariance.reshape(3, 3), self._turn_matrix.T)
             covariance = turned.reshape(9) if self._angular > 0 else covariance
         return orientation, covariance
 
@@ -203,7 +204,7 @@ class SolarSensor(ModelPlugin):
         assert self._light is not None
         is_parallel = self._options.towards == "direction" and self._light.scene.type == "directional"
         towards = -light.rotate(self._light.scene.direction) if is_parallel else light.position - pose.position
-        distance = math.sqrt(towards @ towards)
+        distance = math.sqrt(matmul(towards, towards))
         seen = quat_rotate(quat_conjugate(pose.quaternion), towards / distance if distance > 0 else towards)
         x, y, z = (a + b for a, b in zip(seen.tolist(), self._xyz, strict=True))
         return math.asin(-max(-1.0, min(1.0, z))), math.atan2(y, x)

@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
 from simkit.params import LARGEST
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.not_deep_copied import SharedByCopies
@@ -124,18 +125,18 @@ class KinematicMover(SharedByCopies):
             falls = move.falls and index not in touched
             origin, axes = move.frame.position, move.frame.matrix
             shift, turn = _screw(move.linear, move.angular, step)
-            turn, target = axes @ turn @ axes.T, origin + axes @ shift
-            turning = axes @ move.angular
+            turn, target = matmul(axes, turn, axes.T), origin + matmul(axes, shift)
+            turning = matmul(axes, move.angular)
             for dof, qpos, body in move.motion.addresses:
                 root = data.qpos[qpos : qpos + 3]
-                velocity = (target + turn @ (root - origin) - root) / step
+                velocity = (target + matmul(turn, root - origin) - root) / step
                 lacking = -data.qacc_smooth[dof : dof + 6]
                 if falls:
                     lacking[2] += gravity[2] * (1.0 - weightless[body])
                     velocity[2] = data.qvel[dof + 2]
                 data.qfrc_applied[dof : dof + 6] += _solve_force(mobility[:, dof : dof + 6], lacking)
                 data.qvel[dof : dof + 3] = velocity
-                data.qvel[dof + 3 : dof + 6] = turning @ data.xmat[body].reshape(3, 3)
+                data.qvel[dof + 3 : dof + 6] = matmul(turning, data.xmat[body].reshape(3, 3))
                 physics.one_shot = True
                 physics.changed_body(VELOCITY, body)
 
@@ -228,7 +229,7 @@ def _screw(linear: Triple, angular: Triple, step: float) -> tuple[Vector, Vector
     This is the exponential map of SE(3). For small angles a series replaces the quotients, which would lose digits.
     """
     v, w = (np.clip(motion, -LARGEST, LARGEST) * step for motion in (linear, angular))
-    square = float(w @ w)
+    square = float(matmul(w, w))
     if square > 1e-6:
         angle = math.sqrt(square)
         first, second = (1 - math.cos(angle)) / square, (angle - math.sin(angle)) / (angle * square)
@@ -236,7 +237,7 @@ def _screw(linear: Triple, angular: Triple, step: float) -> tuple[Vector, Vector
         first, second = 0.5 - square / 24, 1 / 6 - square / 120
     x, y, z = w
     across = np.array(((0, -z, y), (z, 0, -x), (-y, x, 0)))
-    turn = np.eye(3) + (1 - square * second) * across + first * across @ across
-    shift = v + first * (across @ v) + second * (across @ (across @ v))
+    turn = np.eye(3) + (1 - square * second) * across + matmul(first * across, across)
+    shift = v + first * matmul(across, v) + second * matmul(across, matmul(across, v))
     shift.flags.writeable = turn.flags.writeable = False
     return shift, turn

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.plugins.drives.odometry import UNKNOWN, BodyTwist, DeadReckoning
 from simkit.plugins.options import Options, number
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
@@ -161,14 +162,14 @@ class NoisyOdometry:
                 [-1 / self._separation, 1 / self._separation],
             ]
         )
-        self.covariance = along @ self.covariance @ along.T + (by_wheel * variances) @ by_wheel.T
+        self.covariance = matmul(along, self.covariance, along.T) + matmul(by_wheel * variances, by_wheel.T)
 
     def _update_twist(self, rolled: list[float], variances: Vector, elapsed: float, sideways: float) -> None:
         width = self._separation
         ahead, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / width
         self.twist = BodyTwist((ahead / elapsed, sideways / elapsed, 0.0), (0.0, 0.0, turn / elapsed))
         by_wheel = np.array([[0.5, 0.5], [-1 / width, 1 / width]]) / elapsed
-        self.twist_covariance = (by_wheel * variances) @ by_wheel.T
+        self.twist_covariance = matmul(by_wheel * variances, by_wheel.T)
 
 
 class EquivalentWheelAngles:

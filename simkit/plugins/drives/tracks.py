@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit.compiler.contact_friction import has_directional_friction
+from simkit.linear_algebra import matmul
 from simkit.plugins.drives.odometry import BodyTwist, DeadReckoning
 from simkit.pose import Pose
 from simkit.runtime.contact.moving_surface import Belt, BeltMotion
@@ -36,7 +37,7 @@ def belt_of(
         friction: Coefficients along and across the belt; None to use the values of the file.
     """
     found = sim.engine.names.link(link)
-    x, y, z = (found.offset @ track).matrix @ np.array((0.0, 1.0, 0.0))
+    x, y, z = matmul((found.offset @ track).matrix, np.array((0.0, 1.0, 0.0)))
     return Belt(found.geoms, found.body, (float(x), float(y), float(z)), now, friction)
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul, norm
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
@@ -216,7 +217,7 @@ class _ClassicWheelSlip(WheelSlipBase):
         super().load(parent, params)
         self._model = parent
         down = self.sim.mj_model.opt.gravity
-        size = float(np.linalg.norm(down))
+        size = norm(down)
         # in Classic the downward direction is constant in the model's frame, so this direction turns with the model
         world = down / size if size > 0 else np.array([0.0, 0.0, -1.0])
         self._down = quat_rotate(quat_conjugate(parent.scene.pose_world.quaternion), world).tolist()
@@ -231,7 +232,7 @@ class _ClassicWheelSlip(WheelSlipBase):
         for wheel, link, joint in zip(self.wheels, self._links, self._joints, strict=True):
             axle = data.xaxis[self.sim.engine.names.joint(wheel.contact.joint).joint_ids[0]]
             velocity, rim = link.linear_velocity, wheel.radius * float(joint.velocity)
-            found.append((wheel, float(np.cross(down, axle) @ velocity), float(axle @ velocity), rim))
+            found.append((wheel, float(matmul(np.cross(down, axle), velocity)), float(matmul(axle, velocity)), rim))
         return found
 
     def set_all(self, side: int, value: float) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.fluids.added_mass import SmoothedAcceleration, own_inertia
@@ -83,8 +84,8 @@ class BoatDragBase(ModelPlugin):
         axes: Vector = data.xmat[body].reshape(3, 3)
         spin = data.cvel[bodies, :3]
         linear = self._links.velocities(data) + cross(spin, data.xipos[bodies] - data.xpos[bodies])
-        velocity = np.concatenate((linear[0] @ axes, spin[0] @ axes))
+        velocity = np.concatenate((matmul(linear[0], axes), matmul(spin[0], axes)))
         acceleration = self._acceleration.update(velocity, self.period)
         wrench = -self._added * acceleration - (self._linear + self._quadratic * np.abs(velocity)) * velocity
-        force, torque = np.clip((axes @ wrench[:3], axes @ wrench[3:]), -self._limit, self._limit)
+        force, torque = np.clip((matmul(axes, wrench[:3]), matmul(axes, wrench[3:])), -self._limit, self._limit)
         self._links.push(data, force[None], torque[None])

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
 from simkit.plugins.fluids.collision_volumes import Hull
 from simkit.plugins.fluids.link_forces import PushedLinks, cross
 from simkit.plugins.fluids.submerged_volume import Solid
@@ -258,7 +259,7 @@ class BuoyantForces(SharedByCopies):
         """
         places, layers = cuts.T
         hulls = rows[places]
-        turned = axes[places] @ self._solid_axes[hulls]
+        turned = matmul(axes[places], self._solid_axes[hulls])
         starts = origins[places] + (axes[places] * self._solid_origins[hulls][:, None, :]).sum(axis=2)
         depths = self._heights[layers] - starts[:, 2]
         found = np.array(

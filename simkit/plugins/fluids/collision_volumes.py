@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import matmul
 from simkit.plugins.fluids.submerged_volume import Solid, Triangles, solid_of
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
@@ -59,7 +60,7 @@ class HullFactory(SharedByCopies):
         if solid is None:
             return None
         axes, origin = collision.pose_link.matrix, np.asarray(collision.pose_link.position, float)
-        return Hull(solid.volume, origin + axes @ solid.centre, solid.reach, solid, axes, origin)
+        return Hull(solid.volume, origin + matmul(axes, solid.centre), solid.reach, solid, axes, origin)
 
     def _triangles(self, shape: Geometry, collision: SceneCollision) -> Triangles | None:
         from simkit.compiler.meshes.convex_decomposition import convex_hull

@@ -11,6 +11,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit.elementary_functions import arccos
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Mesh, Polyline, Sphere
 
@@ -143,13 +145,16 @@ class Polyhedron(Solid):
     def _cut_many(self, x: float, y: float, z: float, height: float) -> Part:
         normal = np.array((x, y, z))
         by_corner, sums = self._by_corner
-        over, flux = by_corner @ normal - height, self._areas @ normal  # for n triangles: shapes (3, n) and (n,)
+        over, flux = (
+            matmul(by_corner, normal) - height,
+            matmul(self._areas, normal),
+        )  # for n triangles: shapes (3, n) and (n,)
         is_above = over > 0
         dry, total = is_above.sum(axis=0), over.sum(axis=0)
         shares = np.where(dry <= 1, flux / 12, 0.0)
-        volume = 4 * float(shares @ total)
-        moment = (shares * total) @ sums + (shares * over).ravel() @ by_corner.reshape(-1, 3)
-        lean = float(shares @ (total * total + (over * over).sum(axis=0)))
+        volume = 4 * float(matmul(shares, total))
+        moment = matmul(shares * total, sums) + matmul((shares * over).ravel(), by_corner.reshape(-1, 3))
+        lean = float(matmul(shares, total * total + (over * over).sum(axis=0)))
         split = np.flatnonzero((dry == 1) | (dry == 2))
         if len(split):
             is_one_dry = dry[split] == 1
@@ -161,8 +166,8 @@ class Polyhedron(Solid):
             shares = flux[split] * parts[:, 0] * parts[:, 1] * np.where(is_one_dry, -1.0, 1.0) * first / 12
             volume += 4 * float(shares.sum())
             edges = parts[:, :, None] * (corners[:, 1:] - corners[:, :1])
-            moment += shares @ (4 * corners[:, 0] + edges.sum(axis=1))
-            lean += 2 * float(shares @ first)
+            moment += matmul(shares, 4 * corners[:, 0] + edges.sum(axis=1))
+            lean += 2 * float(matmul(shares, first))
         mx, my, mz = (moment - normal * (lean / 2)).tolist()
         return volume, mx, my, mz
 
@@ -175,7 +180,7 @@ def _enclosed(corners: Triangles) -> tuple[float, Vector]:
     a, b, c = corners.transpose(1, 2, 0)
     sixth = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
     sixth /= 6.0
-    return float(sixth.sum()), corners.sum(axis=1).T @ (sixth / 4)
+    return float(sixth.sum()), matmul(corners.sum(axis=1).T, sixth / 4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,9 +242,9 @@ class SolidOfRevolution(Solid):
                     places = middle + half * _PLACES
                     squares = np.maximum(segment.square(places), 0.0)
                     areas, moments = _segments(squares, height - z * places, aside)
-                    volume += half * float(areas @ _SHARES)
-                    up += half * float(areas @ (places * _SHARES))
-                    out += half * float(moments @ _SHARES)
+                    volume += half * float(matmul(areas, _SHARES))
+                    up += half * float(matmul(areas, places * _SHARES))
+                    out += half * float(matmul(moments, _SHARES))
         if aside > 0:
             out /= aside
         return volume, out * x, out * y, up
@@ -260,7 +265,7 @@ def _segments(squares: Vector, room: Vector, aside: float) -> tuple[Vector, Vect
     cut = np.clip(room / np.maximum(aside * radii, 1e-300), -1.0, 1.0)
     rest = 1.0 - cut * cut
     root = np.sqrt(rest)
-    areas = squares * (np.arccos(-cut) + cut * root)
+    areas = squares * (arccos(-cut) + cut * root)
     return areas, -2 / 3 * squares * radii * rest * root
 
 

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
@@ -158,19 +159,19 @@ class Hydrodynamics(ModelPlugin):
         body = self._links.ids[0]
         axes: Vector = data.xmat[body].reshape(3, 3)
         relative = self._links.velocities(data)[0] - self._current
-        velocity = np.concatenate((relative @ axes, data.cvel[body, :3] @ axes))
+        velocity = np.concatenate((matmul(relative, axes), matmul(data.cvel[body, :3], axes)))
         wrench = self._wrench(velocity)
-        force, torque = axes @ wrench[:3], axes @ wrench[3:]
+        force, torque = matmul(axes, wrench[:3]), matmul(axes, wrench[3:])
         arm = data.xpos[body] - data.xipos[body]
         self._links.push(data, force[None], (torque + np.cross(arm, force))[None])
 
     def _wrench(self, velocity: Vector) -> Vector:
         """Return force [N] and torque [N·m] at the link's origin, in its axes, and store the velocity."""
         acceleration = self._acceleration.update(velocity, self.period)
-        wrench = self._linear @ velocity - self._applied_mass @ acceleration
-        wrench += self._absolute @ np.abs(velocity) @ velocity + self._signed @ velocity @ velocity
+        wrench = matmul(self._linear, velocity) - matmul(self._applied_mass, acceleration)
+        wrench += matmul(self._absolute, np.abs(velocity), velocity) + matmul(self._signed, velocity, velocity)
         if not self.options.disable_coriolis:
-            momentum = self._added @ velocity
+            momentum = matmul(self._added, velocity)
             linear, angular = velocity[:3], velocity[3:]
             wrench[:3] += np.cross(momentum[:3], angular)
             wrench[3:] += np.cross(momentum[:3], linear) + np.cross(momentum[3:], angular)

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import dot
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.find_entities import find_named_link, read_topic
@@ -73,4 +74,4 @@ class KineticEnergyMonitor(ModelPlugin):
         mujoco.mj_objectVelocity(sim.mj_model, sim.engine.physics.fresh(), _BODY, body, twist, 1)
         turning, moving = twist[:3], twist[3:]
         inertia: Vector = sim.mj_model.body_inertia[body]
-        return 0.5 * float(sim.mj_model.body_mass[body] * moving.dot(moving) + inertia.dot(turning * turning))
+        return 0.5 * (float(sim.mj_model.body_mass[body]) * dot(moving, moving) + dot(inertia, turning * turning))

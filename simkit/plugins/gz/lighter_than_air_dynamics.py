@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.find_entities import find_named_link
@@ -89,9 +90,9 @@ class LighterThanAirDynamics(ModelPlugin):
         data, bodies = moving_data(self.sim), self._links.bodies
         axes: Vector = data.xmat[bodies[0]].reshape(3, 3)
         through = self._links.velocities(data)[0] - np.array(self.sim.engine.wind.at(self.sim.tick))
-        velocity = np.concatenate((through @ axes, data.cvel[bodies[0], :3] @ axes))
+        velocity = np.concatenate((matmul(through, axes), matmul(data.cvel[bodies[0], :3], axes)))
         wrench = self._wrench(velocity)
-        force, torque = (axes @ wrench[:3])[None], (axes @ wrench[3:])[None]
+        force, torque = matmul(axes, wrench[:3])[None], matmul(axes, wrench[3:])[None]
         self._links.push(data, force, torque + cross(data.xpos[bodies] - data.xipos[bodies], force))
 
     def _wrench(self, velocity: Vector) -> Vector:
@@ -110,9 +111,9 @@ class LighterThanAirDynamics(ModelPlugin):
             y, z = y / across, z / across
         slope = math.cos(math.atan2(w, u)) ** 2
         drag = math.copysign(o.axial_drag * 0.5 * o.air_density * (u * u + v * v + w * w) * slope, -u)
-        momentum = self._added @ velocity
+        momentum = matmul(self._added, velocity)
         wrench: Vector = np.array((drag, -force * y, -force * z, 0.0, moment * z, -moment * y))
-        wrench -= self._added @ self._acceleration.update(velocity, self.period)
+        wrench -= matmul(self._added, self._acceleration.update(velocity, self.period))
         wrench[:3] -= np.cross(angular, momentum[:3])
-        wrench[3:] -= np.cross(linear, self._added[:3, 3:] @ angular) + np.cross(angular, momentum[3:])
+        wrench[3:] -= np.cross(linear, matmul(self._added[:3, 3:], angular)) + np.cross(angular, momentum[3:])
         return wrench

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
+from simkit.linear_algebra import matmul, norm, pinv, svd
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
@@ -98,12 +99,12 @@ class MulticopterVelocityControl(ModelPlugin):
         sizes = np.linalg.norm(effects, axis=1)  # a Crazyflie's torque at 1 rad/s is only 1e-10 N·m
         if params.diagnostics.error_count > faults:
             return  # rotors that could not be read are reported already
-        if not sizes.all() or np.linalg.matrix_rank(effects / sizes[:, np.newaxis], tol=1e-6) < 4:
+        if not sizes.all() or (svd(effects / sizes[:, np.newaxis])[1] > 1e-6).sum() < 4:
             found = f"<rotorConfiguration> has {len(rows)} rotors that cannot push and turn the vehicle about all axes"
             hint = "list at least four rotors that are not in one line, with both directions"
             params.error("SK-PLUGIN-116", f"{found}", hint)
             return
-        self._allocation = np.linalg.pinv(effects)
+        self._allocation = pinv(effects)
 
     def _read_rotor(self, scene: SceneModel, rotor: RotorOptions) -> tuple[float, float, float, float] | None:
         """Return the effects of a rotor at 1 rad/s in the axes of the link: torques [N·m] and thrust [N]."""
@@ -182,17 +183,17 @@ class MulticopterVelocityControl(ModelPlugin):
         spin, motion = data.cvel[body, :3], data.cvel[body, 3:]
         root = self.sim.mj_model.body_rootid[body]
         velocity = self._with_noise("linear", motion + np.cross(spin, data.xpos[body] - data.subtree_com[root]))
-        turning = self._with_noise("angular", axes.T @ spin)
-        asked = (velocity - axes @ linear) * options.velocity_gain / self._mass
+        turning = self._with_noise("angular", matmul(axes.T, spin))
+        asked = (velocity - matmul(axes, linear)) * options.velocity_gain / self._mass
         most = np.abs(options.most_acceleration)
         force = np.clip(asked, -most, most) + self.sim.mj_model.opt.gravity  # points down
         aim = _attitude(axes, -force)
-        skew = 0.5 * (aim.T @ axes - axes.T @ aim)
+        skew = 0.5 * (matmul(aim.T, axes) - matmul(axes.T, aim))
         angle = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
-        lag = turning - axes.T @ aim[:, 2] * rate
+        lag = turning - matmul(axes.T, aim[:, 2]) * rate
         torques = -angle * options.attitude_gain - lag * options.rate_gain
-        thrust = -self._mass * float(force @ axes[:, 2])
-        squared: Vector = self._allocation @ np.append(torques, thrust)
+        thrust = -self._mass * float(matmul(force, axes[:, 2]))
+        squared: Vector = matmul(self._allocation, np.append(torques, thrust))
         return np.sqrt(np.maximum(squared, 0.0))
 
     def _with_noise(self, name: str, value: Vector) -> Vector:
@@ -205,9 +206,9 @@ class MulticopterVelocityControl(ModelPlugin):
 
 def _attitude(axes: Vector, upward: Vector) -> Vector:
     """Return the rotation matrix whose z axis is `upward` and whose x axis is closest to that of `axes`."""
-    length = float(np.linalg.norm(upward))
+    length = norm(upward)
     z = upward / length if length > 0 else axes[:, 2]
     x = next((a for a in axes.T if float(np.sum(np.cross(a, z) ** 2)) >= _PARALLEL), axes[:, 0])
     y = np.cross(z, x)
-    y /= np.linalg.norm(y)
+    y /= norm(y)
     return np.column_stack([np.cross(y, z), y, z])

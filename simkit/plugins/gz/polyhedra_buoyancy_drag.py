@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import find_named_link
@@ -171,7 +172,7 @@ class PolyhedraBuoyancyDrag(WavesBase):
             row = links.names.index(item.link)
             body = links.ids[row]
             frame: Vector = data.xmat[body].reshape(3, 3)
-            axes, origin = frame @ item.axes, data.xpos[body] + frame @ item.origin
+            axes, origin = matmul(frame, item.axes), data.xpos[body] + matmul(frame, item.origin)
             volume, moment, rise = self._submerged(item, axes, origin)
             if volume <= _LEAST:
                 continue
@@ -180,7 +181,7 @@ class PolyhedraBuoyancyDrag(WavesBase):
             force = -options.fluid_density * volume * gravity
             force += options.linear_drag * mass * (np.array((0.0, 0.0, rise)) - velocities[row])
             force[2] = max(force[2], 0.0)
-            centre = origin + axes @ (moment / volume)
+            centre = origin + matmul(axes, moment / volume)
             forces[row] += force
             torques[row] += np.cross(centre - data.xipos[body], force)
             torques[row] -= options.angular_drag * mass * item.length**2 * spins[row]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul, norm
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.battery import Battery, BatteryConsumer
@@ -167,7 +168,7 @@ class Thruster(BatteryConsumer):
         if self.options.velocity_control:
             self._joint.turn(speed)
         elif len(self._links):
-            shown = float(data.cvel[self._links.ids[0], :3] @ axis)
+            shown = float(matmul(data.cvel[self._links.ids[0], :3], axis))
             if abs(shown - speed) > _CLOSE:
                 torque = self._pid.update(shown - speed, self.period)
         if len(self._links) and (thrust or torque):
@@ -183,7 +184,7 @@ class Thruster(BatteryConsumer):
         options = self.options
         if options.params.has("thrust_coefficient") or abs(self._speed) <= sys.float_info.epsilon:
             return
-        speed = float(np.linalg.norm(self._links.velocities(moving_data(self.sim))[0])) if len(self._links) else 0.0
+        speed = norm(self._links.velocities(moving_data(self.sim))[0]) if len(self._links) else 0.0
         advance = (1 - options.wake_fraction) * speed / (self._speed * options.propeller_diameter)
         self._coefficient = options.alpha_1 + options.alpha_2 * advance
 

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul, norm
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.pose import Vector
 
@@ -127,7 +128,7 @@ class KinematicTrees:
 
     def times(self, matrices: Vector, values: Vector) -> Vector:
         """Multiply a matrix of each tree (trees, slots, slots) by the values of its joints (n,)."""
-        found: Vector = (matrices @ self.spread(values)[..., None])[..., 0][self.is_used]
+        found: Vector = matmul(matrices, self.spread(values)[..., None])[..., 0][self.is_used]
         return found
 
     def any_of_tree(self, flags: Flags) -> Flags:
@@ -155,7 +156,7 @@ def _weights(model: mujoco.MjModel, dofs: Sequence[int]) -> Vector:
         joint, body = int(model.dof_jntid[dof]), int(model.dof_bodyid[dof])
         weight = float(model.body_subtreemass[model.body_rootid[body]]) * _GRAVITY
         is_slider = model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE
-        found.append(weight * (1.0 if is_slider else reach[body] + float(np.linalg.norm(model.jnt_pos[joint]))))
+        found.append(weight * (1.0 if is_slider else reach[body] + norm(model.jnt_pos[joint])))
     return np.array(found)
 
 

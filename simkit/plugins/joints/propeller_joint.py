@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.plugins.joints.joint_axis import JointAxis
 
 if TYPE_CHECKING:
@@ -48,4 +49,4 @@ def propeller_inertia(scene: SceneModel, joint: SceneJoint) -> float:
     arm = np.cross(axis, np.subtract(link.inertial.com, into_link.transform(joint.pose_world.position)))
     xx, yy, zz, xy, xz, yz = link.inertial.inertia
     tensor = np.array(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
-    return float(axis @ tensor @ axis + link.inertial.mass * (arm @ arm))
+    return float(matmul(axis, tensor, axis) + link.inertial.mass * matmul(arm, arm))

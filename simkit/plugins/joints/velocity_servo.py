@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import mujoco
 import numpy as np
 
+from simkit.linear_algebra import inverse, matmul, solve
 from simkit.params import LARGEST
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.kinematic_trees import Keys, KinematicTrees
@@ -123,11 +124,11 @@ class VelocityServo:
         The change `pushed` [N·m or N] of the efforts caused the change `gained` [rad/s² or m/s²] of the accelerations.
         """
         s, y, known = layout.spread(pushed), layout.spread(gained), self.learnt
-        guess = (known @ y[..., None])[..., 0]
+        guess = matmul(known, y[..., None])[..., 0]
         scale, size = (s * guess).sum(1), (s * s).sum(1)
         # a very small or opposite effect means that a contact changed: restart from the inertia without contacts
         is_clear, is_moved = scale > 1e-6 * size, size > 0.0
-        row = (s[:, None, :] @ known)[:, 0]
+        row = matmul(s[:, None, :], known)[:, 0]
         update = (s - guess)[:, :, None] * row[:, None, :] / np.where(is_clear, scale, 1.0)[:, None, None]
         clear, moved = (is_clear & is_moved)[:, None, None], is_moved[:, None, None]
         self.learnt = np.where(clear, known + update, np.where(moved, free, known))
@@ -229,7 +230,7 @@ class _EffortEvaluation:
         mobility = self._mobilities()
         damping = self._sim.mj_model.dof_damping[layout.all] * layout.is_any * self.step
         implicit = np.eye(mobility.shape[1]) + mobility * damping[:, None, :]
-        return _tree_by_tree(np.linalg.solve, implicit, accelerations)
+        return _tree_by_tree(solve, implicit, accelerations)
 
     def bound(self, free: Vector, efforts: Vector) -> None:
         """Limit the efforts of joints without a limit of their own, so that they cannot push through an obstacle.
@@ -266,7 +267,7 @@ class _EffortEvaluation:
             mobility = self._damped(mobility)
         slots = is_used.shape[1]
         both = is_used[:, :, None] & is_used[:, None, :]
-        return _tree_by_tree(np.linalg.inv, np.where(both, mobility[:, :slots, :slots], np.eye(slots)))
+        return _tree_by_tree(inverse, np.where(both, mobility[:, :slots, :slots], np.eye(slots)))
 
     def _mobilities(self) -> Vector:
         """Return the inverse inertia of all relevant degrees of freedom of each tree (trees, all slots, all slots)."""

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.errors import ArgumentTypeError, ArgumentValueError, TransformError
+from simkit.linear_algebra import eigh, matmul
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
@@ -141,9 +142,9 @@ class Amcl(Plugin):
 
     def _begin(self, pose: npt.NDArray[np.float64], covariance: npt.NDArray[np.float64]) -> None:
         """Spread the particles around a pose x, y, yaw [m, rad]."""
-        values, axes = np.linalg.eigh((covariance + covariance.T) / 2)
+        values, axes = eigh((covariance + covariance.T) / 2)
         normal = self._generator().standard_normal((int(self._value("max_particles")), 3))
-        poses = pose + (normal * np.sqrt(np.maximum(values, 0.0))) @ axes.T
+        poses = pose + matmul(normal * np.sqrt(np.maximum(values, 0.0)), axes.T)
         poses[:, 2] = wrapped_angles(poses[:, 2])
         self._restart(poses)
 
@@ -302,7 +303,7 @@ class Amcl(Plugin):
         is_hit = (ranges > low) & (ranges < high)  # not NaN
         ranges, angles = ranges[is_hit], scan.angle_min + scan.angle_increment * numbers[is_hit]
         points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))))
-        flat: npt.NDArray[np.float64] = (points @ sensor.matrix.T + sensor.position)[:, :2]
+        flat: npt.NDArray[np.float64] = (matmul(points, sensor.matrix.T) + sensor.position)[:, :2]
         return flat
 
     def _publish_particles(self, stamp: Any, known: ParticleFilter) -> None:

@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import inverse, matmul
 from simkit.pose import Vector
 
 SIZE: Final = 15
@@ -93,9 +94,9 @@ class ExtendedKalmanFilter:
         noise = self.process_noise
         if self.has_dynamic_noise:
             noise = noise.copy()
-            noise[POSE, POSE] *= float(self.state[TWIST] @ self.state[TWIST])
+            noise[POSE, POSE] *= float(matmul(self.state[TWIST], self.state[TWIST]))
         self.state, jacobian = predict_state(self.state, period)
-        self.covariance = jacobian @ self.covariance @ jacobian.T + noise * period
+        self.covariance = matmul(jacobian, self.covariance, jacobian.T) + noise * period
         self.time_ns = time_ns
 
     def correct(self, measurement: Measurement) -> None:
@@ -111,18 +112,18 @@ class ExtendedKalmanFilter:
         innovation[is_angle] = wrapped(innovation[is_angle])
         cross = self.covariance[:, used]
         try:
-            inverse = np.linalg.inv(cross[used] + noise)
+            weights = inverse(cross[used] + noise)
         except np.linalg.LinAlgError:  # values that depend on each other, without noise
             return
-        if innovation @ inverse @ innovation >= measurement.threshold**2:
+        if matmul(innovation, weights, innovation) >= measurement.threshold**2:
             return
-        gain = cross @ inverse
-        self.state = self.state + gain @ innovation
+        gain = matmul(cross, weights)
+        self.state = self.state + matmul(gain, innovation)
         self.state[ANGLES] = wrapped(self.state[ANGLES])
         residual = np.eye(SIZE)
         residual[:, used] -= gain
         # the Joseph form keeps the covariance symmetric and positive
-        self.covariance = residual @ self.covariance @ residual.T + gain @ noise @ gain.T
+        self.covariance = matmul(residual, self.covariance, residual.T) + matmul(gain, noise, gain.T)
 
 
 def predict_state(state: Vector, period: float) -> tuple[Vector, Vector]:
@@ -141,13 +142,13 @@ def predict_state(state: Vector, period: float) -> tuple[Vector, Vector]:
     )
     euler = np.array(((1.0, sr * tp, cr * tp), (0.0, cr, -sr), (0.0, sr / cp, cr / cp)))  # rates of the Euler angles
     travel = state[VELOCITY] * period + state[ACCELERATION] * (period**2 / 2)  # in the axes of the base
-    moved = rotation @ travel
+    moved = matmul(rotation, travel)
     _, q, r = state[RATES].tolist()
 
     jacobian = np.eye(SIZE)
     jacobian[POSITION, VELOCITY] = rotation * period
     jacobian[POSITION, ACCELERATION] = rotation * (period**2 / 2)
-    jacobian[POSITION, 3] = rotation @ (0.0, -travel[2], travel[1])
+    jacobian[POSITION, 3] = matmul(rotation, (0.0, -travel[2], travel[1]))
     jacobian[POSITION, 4] = (cy * moved[2], sy * moved[2], -sy * moved[1] - cy * moved[0])
     jacobian[POSITION, 5] = (-moved[1], moved[0], 0.0)
     jacobian[ANGLES, RATES] = euler * period
@@ -158,7 +159,7 @@ def predict_state(state: Vector, period: float) -> tuple[Vector, Vector]:
 
     after = state.copy()
     after[POSITION] += moved
-    after[ANGLES] = wrapped(state[ANGLES] + euler @ state[RATES] * period)
+    after[ANGLES] = wrapped(state[ANGLES] + matmul(euler, state[RATES]) * period)
     after[VELOCITY] += state[ACCELERATION] * period
     return after, jacobian
 

@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul, norm
 from simkit.plugins.localisation import extended_kalman_filter as ekf
 from simkit.plugins.localisation.extended_kalman_filter import Measurement
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate, quat_to_matrix
@@ -80,7 +81,7 @@ def unit_quaternion(q: Any) -> Vector | None:
     """Return w, x, y, z of a message's quaternion with length 1; None for NaN."""
     found = np.array((q.w, q.x, q.y, q.z), np.float64)
     with np.errstate(over="ignore"):
-        length = float(np.linalg.norm(found))
+        length = norm(found)
     if not math.isfinite(length):
         return None
     return found / length if length > 0 else np.array((1.0, 0.0, 0.0, 0.0))
@@ -100,9 +101,9 @@ def rotated(part: slice, values: Vector, covariance: Any, used: Flags, quaternio
     turn = np.zeros((size, size))
     for k in range(0, size, 3):
         turn[k : k + 3, k : k + 3] = quat_to_matrix(quaternion)
-    shares = np.sqrt(turn**2 @ used.astype(np.float64))
+    shares = np.sqrt(matmul(turn**2, used.astype(np.float64)))
     with np.errstate(invalid="ignore", over="ignore"):  # the filter leaves out NaN and infinite numbers
-        turned = turn @ found @ turn.T
+        turned = matmul(turn, found, turn.T)
     return MeasuredBlock(part, values, turned, shares >= _LEAST_PART)
 
 

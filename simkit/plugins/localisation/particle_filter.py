@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
 from simkit.plugins.localisation.likelihood_field import Poses
 from simkit.plugins.localisation.motion_models import wrapped_angles
 
@@ -46,7 +47,8 @@ class Adaptation:
         """Return the number of particles for numbers of occupied cells of the histogram (Fox: KLD-sampling, 2003)."""
         k = np.maximum(cells - 1, 1)
         b = 2.0 / (9.0 * k)
-        count = np.ceil(k / (2 * self.error) * (1 - b + np.sqrt(b) * self.quantile) ** 3)
+        root = 1 - b + np.sqrt(b) * self.quantile
+        count = np.ceil(k / (2 * self.error) * (root * root * root))
         found: npt.NDArray[np.float64] = np.clip(np.where(cells <= 1, self.least, count), self.least, self.most)
         return found
 
@@ -100,7 +102,7 @@ class ParticleFilter:
             agreements: how well the scan agrees with the map, on the same scale for all scans; for the recovery.
             adaptation: rates of the two averages.
         """
-        agreement = float(self.weights @ agreements)
+        agreement = float(matmul(self.weights, agreements))
         self.scans += 1
         # plain means at first: the agreement is low while the particles are everywhere, and must not be the standard
         self.slow += max(adaptation.slow, 1 / self.scans) * (agreement - self.slow)
@@ -143,11 +145,11 @@ class ParticleFilter:
         best = int(np.argmax(shares))
         inside = groups == best
         poses, weights = self.poses[inside], self.weights[inside] / shares[best]
-        mean = weights @ poses[:, :2]
-        cos, sin = float(weights @ np.cos(poses[:, 2])), float(weights @ np.sin(poses[:, 2]))
+        mean = matmul(weights, poses[:, :2])
+        cos, sin = float(matmul(weights, np.cos(poses[:, 2]))), float(matmul(weights, np.sin(poses[:, 2])))
         yaw = math.atan2(sin, cos)
         offsets = np.column_stack((poses[:, :2] - mean, wrapped_angles(poses[:, 2] - yaw)))
-        covariance = (offsets * weights[:, None]).T @ offsets
+        covariance = matmul((offsets * weights[:, None]).T, offsets)
         return Estimate((float(mean[0]), float(mean[1]), yaw), covariance, float(shares[best]))
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul, norm
 from simkit.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit.plugins.move_group.group_model import GroupModel
 from simkit.plugins.move_group.inverse_kinematics import PoseGoal, solve
@@ -99,15 +100,15 @@ def follow_line(model: GroupModel, link: str, poses: Sequence[Pose], options: Li
     placements = [model.pose_and_jacobian(model.tip(link), model.start)[0], *(se3(pose) for pose in poses)]
     targets = []
     for a, b in pairwise(placements):
-        turn = float(np.linalg.norm(pinocchio.log3(a.rotation.T @ b.rotation)))
-        length = float(np.linalg.norm(b.translation - a.translation))
+        turn = norm(pinocchio.log3(matmul(a.rotation.T, b.rotation)))
+        length = norm(b.translation - a.translation)
         needed = max(1.0, np.ceil(max(length / options.step, turn / _TURN_STEP)))
         if not needed <= _MOST_POSES:
             raise PlanningFailed(Code.FAILURE, f"max_step makes {needed:.6g} poses; expected at most {_MOST_POSES}")
         count = int(needed)
         for k in range(1, count + 1):
             share = k / count
-            rotation = a.rotation @ pinocchio.exp3(share * pinocchio.log3(a.rotation.T @ b.rotation))
+            rotation = matmul(a.rotation, pinocchio.exp3(share * pinocchio.log3(matmul(a.rotation.T, b.rotation))))
             targets.append(pinocchio.SE3(rotation, a.translation + share * (b.translation - a.translation)))
     return _positions_along(model, link, targets, options)
 
@@ -142,7 +143,7 @@ def limit_tip_speed(model: GroupModel, link: str, course: TimedPath, limit: floa
     """
     tip = model.tip(link)
     speeds = [
-        float(np.linalg.norm((model.pose_and_jacobian(tip, q)[1] @ v)[:3]))
+        norm(matmul(model.pose_and_jacobian(tip, q)[1], v)[:3])
         for q, v in zip(course.positions, course.velocities, strict=True)
     ]
     factor = max(1.0, max(speeds) / limit)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import mujoco
 import numpy as np
 
+from simkit.linear_algebra import matmul, norm
 from simkit.plugins.move_group.collision_shapes import shape_of_geom
 from simkit.plugins.move_group.state_copy import copied_state, link_pose_at, quaternion_of, se3
 from simkit.plugins.play_motion.collision_check import SELF_TOLERANCE, CollisionCheck
@@ -147,13 +148,13 @@ class GroupModel:
         The rows of the Jacobian are the linear and then the angular velocity for each joint velocity.
         """
         pin, model, data = self._pin, self._model, self._pin_data
-        own = self._ratios @ q + self._offsets
+        own = matmul(self._ratios, q) + self._offsets
         pin.computeJointJacobians(model, data, own)
         joint, offset = tip
         if joint == 0:
             return offset, np.zeros((6, len(q)))
         jacobian = pin.getJointJacobian(model, data, joint, pin.ReferenceFrame.LOCAL)
-        return data.oMi[joint] * offset, offset.inverse().action @ jacobian @ self._ratios
+        return data.oMi[joint] * offset, matmul(offset.inverse().action, jacobian, self._ratios)
 
     # ------------------------------------------------------------------ collisions
 
@@ -271,7 +272,7 @@ class GroupModel:
         if not np.isfinite(obstacle.shape.aabb_radius):
             return True
         centre = self._frames[1].translation if len(self._frames) > 1 else np.zeros(3)
-        away = float(np.linalg.norm(se3(obstacle.pose).act(obstacle.shape.aabb_center) - centre))
+        away = norm(se3(obstacle.pose).act(obstacle.shape.aabb_center) - centre)
         return away < self._reach + float(obstacle.shape.aabb_radius)
 
     def _set_levers(self, moving: Sequence[int]) -> None:
@@ -286,10 +287,10 @@ class GroupModel:
         for i in moving:
             item = self._geometry.geometryObjects[i]
             box = item.geometry
-            length = np.linalg.norm(item.placement.act(box.aabb_center)) + box.aabb_radius
+            length = norm(item.placement.act(box.aabb_center)) + box.aabb_radius
             own[item.parentJoint] = max(own[item.parentJoint], float(length))
         for number in range(count - 1, 0, -1):
-            step = float(np.linalg.norm(model.jointPlacements[number].translation)) + strokes[number]
+            step = norm(model.jointPlacements[number].translation) + strokes[number]
             parent = parents[number]
             if parent:
                 own[parent] = max(own[parent], own[number] + step)
@@ -299,10 +300,10 @@ class GroupModel:
                 for number, joint in enumerate(self._mj_joints, start=1)
             ]
         )
-        self.levers = np.abs(self._ratios).T @ levers
+        self.levers = matmul(np.abs(self._ratios).T, levers)
         roots = [number for number in range(1, count) if not parents[number]]
         origin = self._frames[1].translation if count > 1 else np.zeros(3)
-        away = [float(np.linalg.norm(self._frames[r].translation - origin)) + strokes[r] + own[r] for r in roots]
+        away = [norm(self._frames[r].translation - origin) + strokes[r] + own[r] for r in roots]
         self._reach = max(away, default=0.0) + self._margin
 
     def _set_margins(self, margins: Sequence[float]) -> None:
@@ -323,7 +324,7 @@ class GroupModel:
         pin.computeCollisions(self._model, self._pin_data, self._geometry, self._geometry_data, own, False)
 
     def _own(self, q: Vector) -> Vector:
-        own: Vector = self._ratios @ q + self._offsets
+        own: Vector = matmul(self._ratios, q) + self._offsets
         return own
 
     def is_free(self, q: Vector) -> bool:

@@ -8,6 +8,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit import linear_algebra
+from simkit.linear_algebra import matmul
 from simkit.plugins.move_group.group_model import GroupModel
 from simkit.pose import Vector
 
@@ -72,7 +74,7 @@ def solve(model: GroupModel, goal: PoseGoal, seed: Vector) -> Vector | None:
         if goal.turns:
             error = pinocchio.log6(pose.actInv(goal.pose)).vector
         else:
-            error, jacobian = pose.rotation.T @ (goal.pose.translation - pose.translation), jacobian[:3]
+            error, jacobian = matmul(pose.rotation.T, goal.pose.translation - pose.translation), jacobian[:3]
         if np.abs(error).max() < _PRECISION:
             return q
         step = _limited_step(jacobian, error, q, model)
@@ -84,11 +86,11 @@ def solve(model: GroupModel, goal: PoseGoal, seed: Vector) -> Vector | None:
 
 def _limited_step(jacobian: Vector, error: Vector, q: Vector, model: GroupModel) -> Vector:
     """Return the step of the joints; joints that would leave their limits are held."""
-    damping = _DAMPING * float(error @ error) * np.eye(len(error)) + 1e-12 * np.eye(len(error))
+    damping = _DAMPING * float(matmul(error, error)) * np.eye(len(error)) + 1e-12 * np.eye(len(error))
     held = np.zeros(len(q), dtype=bool)
     while True:
         own = np.where(held, 0.0, jacobian)
-        step: Vector = own.T @ np.linalg.solve(own @ own.T + damping, error)
+        step: Vector = matmul(own.T, linear_algebra.solve(matmul(own, own.T) + damping, error))
         out = ~held & (((q <= model.lower) & (step < 0)) | ((q >= model.upper) & (step > 0)))
         if not out.any():
             return step

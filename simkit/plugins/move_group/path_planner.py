@@ -1,6 +1,7 @@
 """Collision-free paths of a group of joints: RRT-Connect and shortcuts.
 
 J. Kuffner, S. LaValle: "RRT-Connect: An efficient approach to single-query path planning", ICRA 2000. Two trees grow
+
 from the start and from the goals towards random positions and towards each other.
 """
 
@@ -12,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.plugins.move_group.group_model import GroupModel
 from simkit.plugins.move_group.inverse_kinematics import finite_limits
 from simkit.pose import Vector
@@ -72,7 +74,7 @@ class PathPlanner:
         index, last = tree.nearest(target), None
         for _ in range(steps):
             here = tree.nodes[index]
-            away = float(self._model.levers @ np.abs(target - here))
+            away = float(matmul(self._model.levers, np.abs(target - here)))
             if away == 0.0:
                 return index
             there = target if away <= _STEP else here + (target - here) * (_STEP / away)
@@ -87,7 +89,7 @@ class PathPlanner:
         Raises:
             BudgetSpent: The number of checks is used up.
         """
-        length = float(self._model.levers @ np.abs(end - start))
+        length = float(matmul(self._model.levers, np.abs(end - start)))
         count = max(1, int(np.ceil(length / self._spacing)))
         order = np.arange(1, count + 1)
         if count > 2:  # collisions are likely in the middle and at the end
@@ -107,7 +109,7 @@ class PathPlanner:
             for _ in range(_SHORTCUTS):
                 if len(path) < 3:
                     return path
-                lengths = [float(self._model.levers @ np.abs(b - a)) for a, b in pairwise(path)]
+                lengths = [float(matmul(self._model.levers, np.abs(b - a))) for a, b in pairwise(path)]
                 ends = np.concatenate([[0.0], np.cumsum(lengths)])
                 first, second = np.sort(self._random.uniform(0.0, ends[-1], 2))
                 i, a = self._at(path, ends, first)
@@ -151,7 +153,7 @@ class _Tree:
 
     def nearest(self, target: Vector) -> int:
         """Return the number of the node that is nearest to a target."""
-        away = np.abs(self._array[: len(self.nodes)] - target) @ self._levers
+        away = matmul(np.abs(self._array[: len(self.nodes)] - target), self._levers)
         return int(np.argmin(away))
 
     def add(self, node: Vector, parent: int) -> int:

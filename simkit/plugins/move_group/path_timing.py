@@ -13,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from simkit.linear_algebra import norm
 from simkit.pose import Vector
 
 SAMPLE_TIME: Final = 0.05  # [s] between two points of a trajectory
@@ -143,4 +144,4 @@ def _within_limits(times: Vector, positions: Vector, velocities: Vector, speeds:
 
 
 def _length(vector: Vector) -> float:
-    return float(np.linalg.norm(vector))
+    return norm(vector)

@@ -11,6 +11,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
+from simkit.linear_algebra import matmul
 from simkit.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit.plugins.move_group.group_model import GroupModel, Obstacle
 from simkit.plugins.move_group.inverse_kinematics import PoseGoal, seeds_of, solutions
@@ -170,7 +171,7 @@ def refuse_constraints(constraints: Message, kind: str = "path") -> None:
 
 def fine_positions(model: GroupModel, start: Vector, end: Vector) -> list[Vector]:
     """Return the positions of a straight line that the final check of a path uses, from after its start to its end."""
-    count = max(1, int(np.ceil(float(model.levers @ np.abs(end - start)) / _FINE)))
+    count = max(1, int(np.ceil(float(matmul(model.levers, np.abs(end - start))) / _FINE)))
     return [start + (end - start) * (k / count) for k in range(1, count + 1)]
 
 
@@ -252,7 +253,7 @@ class Planner:
                 raise PlanningFailed(Code.NO_IK_SOLUTION, "no joint positions within the limits lead to the pose")
             text = f"the pose is in collision: {' and '.join(colliding)} touch or are too close"
             raise PlanningFailed(Code.GOAL_IN_COLLISION, text)
-        return sorted(found, key=lambda q: float(model.levers @ np.abs(q - model.start)))
+        return sorted(found, key=lambda q: float(matmul(model.levers, np.abs(q - model.start))))
 
     # ------------------------------------------------------------------ plans
 

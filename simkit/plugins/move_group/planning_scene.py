@@ -10,6 +10,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
+from simkit.linear_algebra import norm
 from simkit.plugins.move_group.collision_shapes import shape_of_primitive, triangle_mesh, voxels
 from simkit.plugins.move_group.error_codes import Code, PlanningFailed, check_packages
 from simkit.plugins.move_group.goal_constraints import Frames, pose_of_message
@@ -73,7 +74,7 @@ class SceneObject(SharedByCopies):
                 return shape_of_primitive(shape)
             if kind == "planes":
                 a, b, c, d = (float(v) for v in shape.coef)
-                length = float(np.linalg.norm([a, b, c]))
+                length = norm([a, b, c])
                 if not np.isfinite([length, d]).all() or length < 1e-9:
                     raise ValueError(f"the plane {[a, b, c, d]} has no normal")
                 return coal.Halfspace(np.array([a, b, c]) / length, -d / length)

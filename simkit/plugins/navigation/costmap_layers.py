@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
+from simkit.elementary_functions import exp
 from simkit.params import Params
 from simkit.plugins.navigation.cost_grid import FREE, INSCRIBED, LETHAL, UNKNOWN, Cells, CostGrid, grid_of_map
 from simkit.plugins.navigation.planar_pose import Floats, PlanarPose, look_up
@@ -240,7 +241,7 @@ class InflationLayer:
         metres = distance.astype(np.float64) * grid.resolution
         costs = np.zeros(grid.cells.shape, np.uint8)
         near = metres <= options.inflation_radius + _OVERLAP
-        decay = np.exp(-options.cost_scaling_factor * np.maximum(metres[near] - inscribed, 0.0))
+        decay = exp(-options.cost_scaling_factor * np.maximum(metres[near] - inscribed, 0.0))
         costs[near] = np.where(metres[near] <= inscribed + _OVERLAP, INSCRIBED, decay * (INSCRIBED - 1))
         costs[is_lethal] = LETHAL
         is_unknown = grid.cells == UNKNOWN

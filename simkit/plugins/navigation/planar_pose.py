@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.errors import ArgumentValueError, TransformError
+from simkit.linear_algebra import matmul
 from simkit.pose import Pose, rpy_from_quat
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ class PlanarPose(NamedTuple):
     def transform(self, points: Floats) -> Floats:
         """Return points of this pose's frame, shape (n, 2) [m], in the frame in which this pose is given."""
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
-        found: Floats = points @ np.array([[cos, sin], [-sin, cos]]) + (self.x, self.y)
+        found: Floats = matmul(points, np.array([[cos, sin], [-sin, cos]])) + np.array((self.x, self.y))
         return found
 
 

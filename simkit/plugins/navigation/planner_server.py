@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 import numpy as np
 
 from simkit import msgs
+from simkit.elementary_functions import arctan2
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.endpoints import listens
@@ -108,7 +109,7 @@ class PlannerServer(CostmapReader, ServerPlugin):
             poses, frame = self._path_for(goal.request)
         except _NoPlanError as error:
             self.log.warning("no path: %s", error)
-            goal.abort({"error_code": error.code}, str(error))
+            goal.abort({"error_code": error.code, "error_msg": str(error)}, str(error))
             return
         path = path_message(poses, msgs.header(self.sim.time_ns, frame))
         self._plan.publish(path)
@@ -176,4 +177,4 @@ def _as_poses(found: Any, last: float) -> Floats | None:
     if poses.shape[1] == 3:
         return poses
     ahead = np.diff(poses, axis=0)
-    return np.column_stack((poses, [*np.arctan2(ahead[:, 1], ahead[:, 0]).tolist(), last]))
+    return np.column_stack((poses, [*arctan2(ahead[:, 1], ahead[:, 0]).tolist(), last]))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.plugins.navigation.cost_grid import CostGrid
 from simkit.plugins.navigation.planar_pose import Floats, PlanarPose
@@ -134,7 +135,7 @@ def _carrot(places: Floats, distances: Floats, lookahead: float) -> tuple[float,
         x, y = places[0].tolist()
         return x, y
     inner, step = places[at - 1], places[at] - places[at - 1]
-    a, b, c = float(step @ step), float(2 * inner @ step), float(inner @ inner) - lookahead**2
+    a, b, c = float(matmul(step, step)), float(matmul(2 * inner, step)), float(matmul(inner, inner)) - lookahead**2
     part = (-b + math.sqrt(max(b * b - 4 * a * c, 0.0))) / (2 * a)  # where the segment crosses the circle
     x, y = (inner + part * step).tolist()
     return x, y

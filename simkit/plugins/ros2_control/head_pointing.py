@@ -10,7 +10,9 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
+from simkit.elementary_functions import arcsin
 from simkit.errors import InputError
+from simkit.linear_algebra import matmul, solve
 from simkit.pose import IDENTITY, Pose, Vector
 
 if TYPE_CHECKING:
@@ -67,7 +69,7 @@ class HeadJoints:
             step = 1e-6
             nudged = self._direction_differences(angles + step * np.eye(2), target)
             slope = ((nudged - miss) / step).T
-            move = np.linalg.solve(slope.T @ slope + damping * np.eye(2), -slope.T @ miss)
+            move = solve(matmul(slope.T, slope) + damping * np.eye(2), matmul(-slope.T, miss))
             new = np.clip(angles + move, low, high)
             better = self.error(new, target)
             if better < error - 1e-15:
@@ -80,7 +82,7 @@ class HeadJoints:
 
     def _errors(self, angles: Vector, target: Vector) -> Vector:
         differences = self._direction_differences(angles, target)
-        errors: Vector = 2.0 * np.arcsin(np.clip(np.linalg.norm(differences, axis=1) / 2.0, 0.0, 1.0))
+        errors: Vector = 2.0 * arcsin(np.clip(np.linalg.norm(differences, axis=1) / 2.0, 0.0, 1.0))
         return errors
 
     def _direction_differences(self, angles: Vector, target: Vector) -> Vector:
@@ -102,7 +104,7 @@ class HeadJoints:
 def _rotate_vectors(vectors: Vector, axis: Vector, angles: Vector) -> Vector:
     """Rotate each vector (k, 3) about an axis by its own angle (Rodrigues' formula)."""
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
-    along = (vectors @ axis)[:, None]
+    along = matmul(vectors, axis)[:, None]
     turned: Vector = vectors * cos + np.cross(axis, vectors) * sin + axis * along * (1.0 - cos)
     return turned
 

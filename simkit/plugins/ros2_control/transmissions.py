@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.linear_algebra import inverse, matmul
 from simkit.params import Params
 from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION
 from simkit.pose import Vector
@@ -56,8 +57,8 @@ class TransmissionLaw:
     def actuate(self, interface: str, joints: Vector) -> Vector:
         """Convert values of one interface from the joints to the actuators."""
         if interface == EFFORT:
-            return np.asarray(self.force @ joints)
-        return np.asarray(self.motion @ (joints - self.offset if interface == POSITION else joints))
+            return np.asarray(matmul(self.force, joints))
+        return np.asarray(matmul(self.motion, joints - self.offset if interface == POSITION else joints))
 
 
 def transmission_laws(
@@ -109,7 +110,7 @@ def _transmission_law(transmission: Transmission) -> TransmissionLaw | None:
         force = 1.0 / motion
     elif transmission.kind == "differential" and two:
         motion = np.array([[n_a[0] * n_j[0], n_a[0] * n_j[1]], [n_a[1] * n_j[0], -n_a[1] * n_j[1]]])
-        force = np.linalg.inv(motion.T)
+        force = inverse(motion.T)
     elif transmission.kind == "four_bar_linkage" and two:
         motion = np.array([[n_a[0] * n_j[0], 0.0], [n_a[1], n_a[1] * n_j[1]]])
         force = np.array([[1.0 / (n_a[0] * n_j[0]), 0.0], [1.0 / n_a[1], 1.0 / (n_a[1] * n_j[1])]])

@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 
@@ -103,8 +104,8 @@ class SunPath(SharedByCopies):
             -(t + 1) * t * (t - 2) / 2,
             (t + 1) * t * (t - 1) / 6,
         )
-        found: Vector = np.array(weights) @ self._directions[row : row + 4]
-        return found / math.sqrt(found @ found)
+        found: Vector = matmul(np.array(weights), self._directions[row : row + 4])
+        return found / math.sqrt(matmul(found, found))
 
     def _computed_directions(self, times: Vector) -> Vector:
         site = self.site

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.endpoints import acts, listens, offers, publishes
@@ -323,7 +324,7 @@ class TurtleSim(WorldPlugin):
         image = self._canvas.copy()
         for turtle in self._turtles.values():
             cos, sin = math.cos(turtle.theta), math.sin(turtle.theta)
-            corners = _SHAPE @ np.array([[cos, -sin], [-sin, -cos]]) + _pixel(turtle.x, turtle.y)
+            corners = matmul(_SHAPE, np.array([[cos, -sin], [-sin, -cos]])) + _pixel(turtle.x, turtle.y)
             cv2.fillPoly(image, [np.round(corners).astype(np.int32)], _TURTLE_COLOUR)
         size = {"height": _PIXELS, "width": _PIXELS, "step": 3 * _PIXELS}
         header = msgs.header(self.sim.time_ns, "window")

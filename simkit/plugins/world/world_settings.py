@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from simkit.linear_algebra import matmul
 from simkit.plugins.world.service_entities import RequestRefused, require_finite, vector_fields, vector_of
 from simkit.pose import Pose, quat_from_rpy
 from simkit.scene import SphericalCoordinates
@@ -124,7 +125,7 @@ def set_entity_location(sim: Simulation, handle: Model | Light, request: SetSphe
         raise RequestRefused("the world has no <spherical_coordinates>, which are needed to place an entity")
     latitude, longitude, elevation, heading = _numbers(request)
     planet = WorldOnPlanet(sim.control.origin.place)
-    position = planet.axes.T @ (planet.ellipsoid.cartesian(latitude, longitude, elevation) - planet.origin)
+    position = matmul(planet.axes.T, planet.ellipsoid.cartesian(latitude, longitude, elevation) - planet.origin)
     handle.set_pose(Pose(position, quat_from_rpy(0.0, 0.0, heading)))
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.errors import SimkitError
+from simkit.linear_algebra import norm
 from simkit.msgs.message_types import Message
 from simkit.pose import IDENTITY, Pose
 
@@ -112,7 +113,7 @@ class BagMotion:
             return
         model, link = found
         if frame not in self._origins:
-            is_world = np.linalg.norm(link.pose.position[:2] - pose.position[:2]) < _NEAR
+            is_world = norm(link.pose.position[:2] - pose.position[:2]) < _NEAR
             self._origins[frame] = IDENTITY if is_world else link.pose
             self.links_by_frame[frame.strip("/")] = link.scoped
         self._move(model, self._origins[frame] @ pose @ link.pose.inverse() @ model.pose)

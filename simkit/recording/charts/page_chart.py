@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from simkit.elementary_functions import log10
 from simkit.recording.charts.axis import Axis, axis_over, split_line, thin_line
 from simkit.recording.charts.canvas import path_data, printable
 from simkit.recording.charts.series import Series
@@ -105,7 +106,7 @@ def _dots(series: Series, x: Axis, y: Axis) -> str:
 
 def _logarithm(series: Series) -> Series:
     with np.errstate(divide="ignore", invalid="ignore"):
-        return replace(series, times=np.log10(series.times), values=np.log10(series.values))
+        return replace(series, times=log10(series.times), values=log10(series.values))
 
 
 def _text(text: str) -> str:

@@ -9,6 +9,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from simkit.linear_algebra import matmul, norm
+
 Points = NDArray[np.float64]
 
 VERTICAL_FOV: Final = 0.6
@@ -35,7 +37,7 @@ class Camera:
     @property
     def distance(self) -> float:
         """Distance between eye and target [m]."""
-        return float(np.linalg.norm(self.target - self.eye))
+        return norm(self.target - self.eye)
 
     @property
     def pixels_per_metre(self) -> float:
@@ -45,7 +47,7 @@ class Camera:
     def project(self, points: Points) -> tuple[Points, Points]:
         """Return the pixels (x right, y down), shape (n, 2), and the distances along the view [m] of points (n, 3)."""
         axes = view_axes(self.target - self.eye)
-        across, up, depth = axes @ (np.atleast_2d(points) - self.eye).T
+        across, up, depth = matmul(axes, (np.atleast_2d(points) - self.eye).T)
         ahead = np.maximum(depth, 1e-9)
         scale = self.height / (2.0 * math.tan(VERTICAL_FOV / 2)) / ahead
         pixels = np.stack((self.width / 2 + across * scale, self.height / 2 - up * scale), axis=1)
@@ -62,11 +64,11 @@ class Camera:
 
 def view_axes(view: Points) -> Points:
     """Return the axes of an upright image for a line of sight: right, up and forward, shape (3, 3)."""
-    forward = view / max(float(np.linalg.norm(view)), 1e-12)
+    forward = view / max(norm(view), 1e-12)
     right = np.cross(forward, (0.0, 0.0, 1.0))
-    if float(np.linalg.norm(right)) < 1e-3:
+    if norm(right) < 1e-3:
         right = np.array((0.0, -1.0, 0.0))
-    right = right / np.linalg.norm(right)
+    right = right / norm(right)
     return np.array((right, np.cross(right, forward), forward))
 
 
@@ -96,7 +98,7 @@ def frame_points(points: Points, view: Points, width: int, height: int) -> Camer
     distance = 0.0
     for axis, size in ((0, max(width - margin, 0.5 * width)), (1, height - margin)):
         half = tangent * size
-        position, depth = (points - target) @ axes[axis], (points - target) @ axes[2]
+        position, depth = matmul(points - target, axes[axis]), matmul(points - target, axes[2])
         high, low = float((position / half - depth).max()), float((-position / half - depth).max())
         target = target + axes[axis] * half * (high - low) / 2
         distance = max(distance, (high + low) / 2)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from simkit.linear_algebra import norm
 from simkit.recording.pictures.camera import VERTICAL_FOV, Camera, frame_points, line_of_sight
 from simkit.recording.pictures.overlay import Colours, Distances, Marks, Points, draw_overlay
 from simkit.recording.pictures.subject import Subject
@@ -120,7 +121,7 @@ def _visible_share(sim: Simulation, render: Render, camera: Camera, subject: Sub
         sim, width, height, eye=camera.eye, target=camera.target, vertical_fov=VERTICAL_FOV, quality="fast",
         distances=distances,
     )  # fmt: skip
-    radius = float(np.linalg.norm(np.ptp(subject.robots, axis=0))) / 2 if len(subject.robots) else 0.0
+    radius = norm(np.ptp(subject.robots, axis=0)) / 2 if len(subject.robots) else 0.0
     shares, weights = [], []
     for points, slack, weight in (
         (subject.centres, min(radius, 1.0), _ROBOTS),
@@ -139,7 +140,7 @@ def _lit_sphere(subject: Subject, camera: Camera) -> tuple[Points, float]:
     """Return the sphere that shadow maps cover: the subject and the ground beside it, or the part near the camera."""
     points = subject.points
     low, high = points.min(axis=0), points.max(axis=0)
-    whole, near = max(0.9 * float(np.linalg.norm(high - low)), 0.05), 1.2 * camera.distance
+    whole, near = max(0.9 * norm(high - low), 0.05), 1.2 * camera.distance
     return ((low + high) / 2, whole) if whole <= near else (camera.target, near)
 
 

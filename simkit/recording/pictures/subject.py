@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def scan_points(message: LaserScan, pose: Pose) -> Points:
     flat = np.stack(
         (ranges[hit] * np.cos(angles[hit]), ranges[hit] * np.sin(angles[hit]), np.zeros(int(hit.sum()))), axis=1
     )
-    points: Points = flat @ pose.matrix.T + pose.position
+    points: Points = matmul(flat, pose.matrix.T) + pose.position
     return points
 
 
@@ -133,7 +134,7 @@ def _without_floors(boxes: Points) -> Points:
 
 
 def _size(points: Points) -> float:
-    return max(float(np.linalg.norm(np.ptp(points, axis=0))), _LEAST)
+    return max(norm(np.ptp(points, axis=0)), _LEAST)
 
 
 def _heading(sim: Simulation) -> float:

@@ -22,6 +22,7 @@ import numpy as np
 
 from simkit.compiler.contact_friction import directional_friction, directional_slip, has_directional_friction
 from simkit.diagnostics import NOWHERE, Where
+from simkit.linear_algebra import matmul
 from simkit.runtime.contact.contact_slip import ContactSlip
 from simkit.runtime.contact.friction_contacts import AnyFrictionContacts, find_friction_contacts
 from simkit.runtime.contact.friction_tangents import FrictionRow, FrictionTangents, RowContacts
@@ -214,7 +215,7 @@ class _ModelFriction:
         surface = collision.surface
         frame = _direction_link(surface.fdir1_frame, link.scoped, self._names)
         body, offset = (link.body, link.offset @ collision.pose_link) if frame is None else (frame.body, frame.offset)
-        axis = (offset.matrix @ np.array(surface.fdir1)).tolist()
+        axis = matmul(offset.matrix, np.array(surface.fdir1)).tolist()
         tree = int(self.model.body_treeid[link.body])
         return FrictionRow(
             self._geoms(link, collision), body, axis, directional_friction(surface), directional_slip(surface), tree

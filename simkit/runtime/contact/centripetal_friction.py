@@ -18,6 +18,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
 from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD
 
 _MIN_ANGULAR_VELOCITY: Final = 0.03
@@ -119,5 +120,5 @@ class CentripetalFriction:
     def _bias(self, data: mujoco.MjData, point: npt.NDArray[np.float64], body: int) -> npt.NDArray[np.float64]:
         """Return the velocity-dependent acceleration of a point of a body [m/s²], world frame."""
         mujoco.mj_jacDot(self._model, data, self._jacobian, None, point, body)
-        bias: npt.NDArray[np.float64] = self._jacobian @ data.qvel
+        bias: npt.NDArray[np.float64] = matmul(self._jacobian, data.qvel)
         return bias

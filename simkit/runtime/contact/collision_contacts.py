@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -147,7 +148,7 @@ def list_contacts(compiled: Compiled, data: mujoco.MjData, model: str | None) ->
     if found is None:
         return []
     return [
-        Contact(table.names[first], table.names[second], position, axes[0], wrench[:3] @ axes)
+        Contact(table.names[first], table.names[second], position, axes[0], matmul(wrench[:3], axes))
         for (first, second), position, axes, wrench in zip(
             table.of_geom[found.geoms].tolist(), found.positions, found.frames, found.wrenches, strict=True
         )

@@ -15,6 +15,8 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
+from simkit.linear_algebra import matmul
+
 Numbers = list[float]
 Pair = tuple[float, float]
 SlippingContact = tuple[int, int, Pair]
@@ -78,7 +80,7 @@ class ContactSlip:
             unit[place] = 0.0
         solved = np.empty_like(along)
         mujoco.mj_solveM(model, data, solved, along)
-        responses = [float(one @ other) for one, other in zip(along, solved, strict=True)]
+        responses = [float(matmul(one, other)) for one, other in zip(along, solved, strict=True)]
         for index, (_, tree, _) in enumerate(soft):
             both = found.setdefault(tree, [1e-12, 1e-12])
             both[0] += responses[2 * index]

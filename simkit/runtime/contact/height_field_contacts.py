@@ -14,6 +14,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
+
 _STEEPEST: Final = 0.866
 """Cosine of 30°: the normal of an inner wall differs by more than 30° from all normals of the surrounding ground."""
 
@@ -46,8 +48,8 @@ class HeightFieldContacts:
             if first in fields or second in fields:
                 field, sign = (first, 1.0) if first in fields else (second, -1.0)
                 turn = data.geom_xmat[field].reshape(3, 3)
-                point = (contact.pos[number] - data.geom_xpos[field]) @ turn
-                normal = sign * contact.frame[number, :3] @ turn
+                point = matmul(contact.pos[number] - data.geom_xpos[field], turn)
+                normal = matmul(sign * contact.frame[number, :3], turn)
                 if self._is_inner(fields[field], point, normal):
                     found.append(number)
         return frozenset(found)
@@ -85,5 +87,5 @@ class HeightFieldContacts:
         normals = np.stack((-x, -y, np.ones_like(x)), axis=-1).reshape(-1, 3)
         normals /= np.sqrt((normals * normals).sum(axis=1))[:, None]
         mean = normals.mean(axis=0)
-        is_even = (normals @ mean).min() > _STEEPEST * float(np.sqrt(mean @ mean))
-        return bool(is_even and (normals @ normal).max() < _STEEPEST)
+        is_even = matmul(normals, mean).min() > _STEEPEST * float(np.sqrt(matmul(mean, mean)))
+        return bool(is_even and matmul(normals, normal).max() < _STEEPEST)

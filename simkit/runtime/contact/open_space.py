@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul, norm
 from simkit.runtime.contact import travel_bounds
 
 _GROWTH: Final = 2.0
@@ -90,7 +91,7 @@ class OpenSpace:
         self._planes: list[tuple[float, float, float, float]] = []
         for geom in geoms[is_plane]:
             normal = data.geom_xmat[geom].reshape(3, 3)[:, 2]
-            self._planes.append((*normal.tolist(), float(normal @ data.geom_xpos[geom])))
+            self._planes.append((*normal.tolist(), float(matmul(normal, data.geom_xpos[geom]))))
         others = geoms[~is_plane]
         radii, places = model.geom_rbound[others, None], data.geom_xpos[others]
         self._low = (places - radii).min(axis=0, initial=np.inf).tolist()
@@ -105,7 +106,7 @@ class OpenSpace:
             assert ball is not None
             place, motion, radius, levers = ball
             # the centre of mass keeps its velocity; the origin of a spinning model may stop for a moment
-            spin = float(levers @ np.abs(velocities[motion + 3 : motion + 3 + len(levers)]))
+            spin = float(matmul(levers, np.abs(velocities[motion + 3 : motion + 3 + len(levers)])))
             speed = math.hypot(*velocities[motion : motion + 3].tolist()) + 2.0 * spin
             reach = radius + _GROWTH * (speed + _LEAST_SPEED) * self._duration
             x, y, z = positions[place : place + 3].tolist()
@@ -150,8 +151,8 @@ def _ball_of(model: mujoco.MjModel, tree: int, geoms: npt.NDArray[np.intp]) -> _
         joints = range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body]))
         if any(model.jnt_type[k] != _HINGE for k in joints):
             return None
-        anchors = 2.0 * sum(float(np.linalg.norm(model.jnt_pos[k])) for k in joints)
-        reach[body] = reach[int(model.body_parentid[body])] + float(np.linalg.norm(model.body_pos[body])) + anchors
+        anchors = 2.0 * sum(norm(model.jnt_pos[k]) for k in joints)
+        reach[body] = reach[int(model.body_parentid[body])] + norm(model.body_pos[body]) + anchors
     offsets = np.linalg.norm(model.geom_pos[geoms], axis=1) + model.geom_rbound[geoms]
     radius = max(
         reach[body] + size for body, size in zip(model.geom_bodyid[geoms].tolist(), offsets.tolist(), strict=True)
@@ -177,10 +178,10 @@ def _levers_of_centre(model: mujoco.MjModel, root: int, reach: dict[int, float])
         while above != root:
             first, count = int(model.body_jntadr[above]), int(model.body_jntnum[above])
             for joint in range(first, first + count):
-                lever = distance - reach[above] + offsets[body] + float(np.linalg.norm(model.jnt_pos[joint]))
+                lever = distance - reach[above] + offsets[body] + norm(model.jnt_pos[joint])
                 if above == body and count == 1:
                     arm = model.body_ipos[body] - model.jnt_pos[joint]
-                    lever = float(np.linalg.norm(np.cross(arm, model.jnt_axis[joint])))
+                    lever = norm(np.cross(arm, model.jnt_axis[joint]))
                 levers[int(model.jnt_dofadr[joint]) - dof - 3] += share * lever
             above = int(model.body_parentid[above])
         levers[:3] += share * (distance + offsets[body])

@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
 from simkit.diagnostics import NOWHERE
+from simkit.linear_algebra import matmul, squared_length
 from simkit.runtime.contact import travel_bounds
 from simkit.runtime.contact.contact_law import window_length
 from simkit.runtime.contact.travel_bounds import Floats, Ints
@@ -141,7 +142,7 @@ class FastBodyDetector:
         if data is not self._data:  # the same object at every check; its arrays keep their addresses
             self._data, self._velocities_now = data, data.qvel
         terms = _multiply(self._velocities_now, self._rooted, self._terms)
-        if np.vdot(terms, terms) <= 1.0 or self._is_slow(self._velocities_now):
+        if squared_length(terms, 1.0) <= 1.0 or self._is_slow(self._velocities_now):
             return False
         return self._has_fast_pair(data)
 
@@ -149,7 +150,7 @@ class FastBodyDetector:
         """Check that no geom can be fast, by the sum over its chain of joints."""
         speeds = np.abs(velocities)
         if self._share.size:
-            return bool((self._share @ speeds).max() <= 1.0)
+            return bool(matmul(self._share, speeds).max() <= 1.0)
         return bool(np.add.reduceat(speeds * self._weights, self._starts).max() <= 1.0)
 
     def _has_fast_pair(self, data: mujoco.MjData) -> bool:

@@ -17,6 +17,8 @@ from typing import Any, Final
 import mujoco
 import numpy as np
 
+from simkit.linear_algebra import matmul, norm
+
 _ALIGNED: Final = 0.999
 """Least cosine between the axis of a wheel's shape and that of its joint."""
 
@@ -76,13 +78,13 @@ class WheelContacts:
             return None
         matrix = np.empty(9)
         mujoco.mju_quat2Mat(matrix, model.geom_quat[geom])
-        along = np.abs(matrix.reshape(3, 3).T @ model.jnt_axis[joint])
+        along = np.abs(matmul(matrix.reshape(3, 3).T, model.jnt_axis[joint]))
         column = int(along.argmax())
         centre, size = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
         across = [i for i in range(3) if i != column]
         radius = float(size[across].max())
-        offset = model.geom_pos[geom] + matrix.reshape(3, 3) @ centre - model.jnt_pos[joint]
-        off_axis = np.linalg.norm(np.cross(offset, model.jnt_axis[joint]))
+        offset = model.geom_pos[geom] + matmul(matrix.reshape(3, 3), centre) - model.jnt_pos[joint]
+        off_axis = norm(np.cross(offset, model.jnt_axis[joint]))
         is_round = size[across].min() > (1.0 - _CENTRED) * radius
         is_wheel = along[column] > _ALIGNED and is_round and off_axis < _CENTRED * radius and size[column] <= radius
         return column if is_wheel else None

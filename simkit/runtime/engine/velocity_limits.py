@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul, solve, squared_length
 from simkit.runtime.engine.physics_state import VELOCITY
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def velocity_limiter(physics: ForwardPass, limited: Sequence[tuple[int, float]])
 
     def hold(_tick: int = 0) -> None:
         found = physics.data.qvel * shares
-        if np.vdot(found, found) >= _LIMIT_SHARE:  # otherwise no velocity exceeds its limit
+        if squared_length(found, _LIMIT_SHARE) >= _LIMIT_SHARE:  # otherwise no velocity exceeds its limit
             limit_velocities(physics, dofs, limits)
 
     return hold
@@ -87,7 +88,7 @@ def limit_velocities(physics: ForwardPass, dofs: npt.NDArray[np.intp], limits: V
     pulses[np.arange(len(dofs)), dofs] = 1.0
     mujoco.mj_solveM(model, data, responses, pulses)
     chosen, bounds, impulses = _impulses(data.qvel[dofs], limits, responses[:, dofs])
-    data.qvel[:] += impulses @ responses[chosen]
+    data.qvel[:] += matmul(impulses, responses[chosen])
     data.qvel[dofs[chosen]] = bounds  # free of rounding errors
     for body in np.unique(model.dof_bodyid[dofs[chosen]]).tolist():
         physics.changed_body(VELOCITY, body)
@@ -111,12 +112,12 @@ def _impulses(velocities: Vector, limits: Vector, response: Vector) -> tuple[npt
     for _ in range(2 * len(limits) + 1):
         chosen = np.flatnonzero(active)
         wanted = (signs * limits - velocities)[chosen]
-        impulses = np.asarray(np.linalg.solve(response[np.ix_(chosen, chosen)], wanted), dtype=np.float64)
+        impulses = np.asarray(solve(response[np.ix_(chosen, chosen)], wanted), dtype=np.float64)
         outward = impulses * signs[chosen]
         if outward.max() > 0.0:  # another joint's impulse already slows this joint
             active[chosen[outward.argmax()]] = False
             continue
-        after = velocities + impulses @ response[chosen]
+        after = velocities + matmul(impulses, response[chosen])
         is_over = ~active & (np.abs(after) > limits * (1.0 + 1e-9))
         if not is_over.any():
             break

@@ -11,6 +11,7 @@ import numpy as np
 
 from simkit.argument_checks import checked_number, checked_vector, wrong_value
 from simkit.errors import InputError
+from simkit.linear_algebra import matmul
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
 from simkit.runtime.handles import joined_models
@@ -322,10 +323,10 @@ class Joint(TunableJoint):
 
     def _to_joint(self, stored: Vector) -> Vector:
         """Convert the engine's velocities or efforts to the joint's frame; only those of a ball joint change."""
-        return mechanics.ball_rotation(self._binding, self._ball_quat()) @ stored if self._is_ball else stored
+        return matmul(mechanics.ball_rotation(self._binding, self._ball_quat()), stored) if self._is_ball else stored
 
     def _from_joint(self, values: Vector) -> Vector:
-        return mechanics.ball_rotation(self._binding, self._ball_quat()).T @ values if self._is_ball else values
+        return matmul(mechanics.ball_rotation(self._binding, self._ball_quat()).T, values) if self._is_ball else values
 
     def _ball_quat(self) -> Vector:
         start = int(self._qpos[0])

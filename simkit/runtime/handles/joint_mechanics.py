@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler import JointBinding
+from simkit.linear_algebra import lstsq, matmul
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_multiply, quat_rotate
 from simkit.runtime.engine.physics_state import STALE
 
@@ -67,7 +68,7 @@ def joint_velocity(binding: JointBinding, data: mujoco.MjData) -> Vector:
     velocity = np.array(data.qvel[list(binding.dofs)])
     if binding.type == "ball" and binding.qpos:
         start = binding.qpos[0]
-        velocity = ball_rotation(binding, np.array(data.qpos[start : start + 4])) @ velocity
+        velocity = matmul(ball_rotation(binding, np.array(data.qpos[start : start + 4])), velocity)
     return velocity
 
 
@@ -167,7 +168,7 @@ def update_loop_joints(engine: EngineState) -> None:
         change[:] = 0.0
         for binding in loops:
             dofs, columns, spread = _loop_jacobian(engine, binding)
-            change[dofs] += spread @ np.linalg.lstsq(columns, _loop_error(engine, binding), rcond=None)[0]
+            change[dofs] += matmul(spread, lstsq(columns, _loop_error(engine, binding)))
         mujoco.mj_integratePos(model, data.qpos, change, 1.0)
         if float(np.abs(change).max()) < _LOOP_TOLERANCE:
             break
@@ -176,7 +177,7 @@ def update_loop_joints(engine: EngineState) -> None:
         data.qvel[dofs] = 0.0
         link = engine.names.link(binding.carried).body
         velocity = body_velocity(engine, link) - body_velocity(engine, binding.moved_body)
-        data.qvel[dofs] = spread @ np.linalg.lstsq(columns, velocity, rcond=None)[0]
+        data.qvel[dofs] = matmul(spread, lstsq(columns, velocity))
         engine.physics.changed_body(STALE, binding.moved_body)
 
 
@@ -194,7 +195,7 @@ def _loop_jacobian(engine: EngineState, binding: JointBinding) -> tuple[list[int
         spread[row, follower.axis] = follower.ratio
     jacobian = np.zeros((6, model.nv))
     mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
-    return dofs, jacobian[:, dofs] @ spread, spread
+    return dofs, matmul(jacobian[:, dofs], spread), spread
 
 
 def _loop_error(engine: EngineState, binding: JointBinding) -> Vector:
@@ -211,7 +212,7 @@ def body_velocity(engine: EngineState, body: int) -> Vector:
     model, data = engine.mj_model, engine.mj_data
     jacobian = np.zeros((6, model.nv))
     mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
-    velocity: Vector = jacobian @ data.qvel
+    velocity: Vector = matmul(jacobian, data.qvel)
     return velocity
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.linear_algebra import matmul
 from simkit.msgs.message_types import Message
 from simkit.pose import rpy_from_quat
 from simkit.sensors.cameras.bounding_boxes import Box2D, Box3D, Projection
@@ -50,7 +51,9 @@ def detections_3d(header: msgs.Header, boxes: Sequence[Box3D], *, in_ogre_axes: 
     quaternion = np.empty(4)
     found = []
     for box in boxes:
-        centre, rotation = (_OGRE @ box.centre, _OGRE @ box.rotation) if in_ogre_axes else (box.centre, box.rotation)
+        centre, rotation = (
+            (matmul(_OGRE, box.centre), matmul(_OGRE, box.rotation)) if in_ogre_axes else (box.centre, box.rotation)
+        )
         mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(rotation).ravel())
         w, x, y, z = quaternion.tolist()
         frame = bounding_box(pose(point(*centre.tolist()), turn(x, y, z, w)), vector(*box.size.tolist()))

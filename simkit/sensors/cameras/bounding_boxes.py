@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler import Compiled, LinkBinding
+from simkit.linear_algebra import eigh, matmul
 from simkit.pose import Pose, Vector
 from simkit.runtime.engine.entity_structure import WorldStructure
 from simkit.scene import SceneVisual
@@ -54,7 +55,7 @@ class Box3D:
 
     def corners(self) -> Vector:
         """Return the corners [m], shape (8, 3), in the order of `CUBE`."""
-        corners: Vector = self.centre + (CUBE * (self.size / 2)) @ self.rotation.T
+        corners: Vector = self.centre + matmul(CUBE * (self.size / 2), self.rotation.T)
         return corners
 
 
@@ -92,9 +93,9 @@ class LabelledShapes:
     def pose_shapes(self, data: mujoco.MjData, position: Vector, rotation: Vector) -> PosedShapes:
         """Return the shapes at their current poses relative to a sensor, given its world position and rotation."""
         geoms = self._geoms
-        positions = (data.geom_xpos[geoms] - position) @ rotation
-        rotations = rotation.T @ data.geom_xmat[geoms].reshape(-1, 3, 3)
-        axes = [rotation.T @ data.xmat[body].reshape(3, 3) @ own for body, own in self._frames]
+        positions = matmul(data.geom_xpos[geoms] - position, rotation)
+        rotations = matmul(rotation.T, data.geom_xmat[geoms].reshape(-1, 3, 3))
+        axes = [matmul(rotation.T, data.xmat[body].reshape(3, 3), own) for body, own in self._frames]
         return PosedShapes(self, positions, rotations, np.array(axes).reshape(-1, 3, 3))
 
     def _own_box(
@@ -105,7 +106,7 @@ class LabelledShapes:
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         for geom in visual.geoms:
             own = in_body.inverse() @ Pose(model.geom_pos[geom], model.geom_quat[geom])
-            points = self.corners[self.number_by_geom[geom]].points @ own.matrix.T + own.position
+            points = matmul(self.corners[self.number_by_geom[geom]].points, own.matrix.T) + own.position
             low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
         first = visual.geoms[0]
         pose = Pose(model.geom_pos[first], model.geom_quat[first]).inverse() @ in_body
@@ -131,7 +132,7 @@ class PosedShapes:
         """Return the corners (n, 3) in the sensor's frame and the edges (m, 2) of some visuals of an item."""
         shapes = self.shapes
         numbers = [shapes.number_by_geom[g] for visual in visuals for g in visual.geoms]
-        points = [shapes.corners[i].points @ self.rotations[i].T + self.positions[i] for i in numbers]
+        points = [matmul(shapes.corners[i].points, self.rotations[i].T) + self.positions[i] for i in numbers]
         starts = np.cumsum([0, *(len(p) for p in points)])
         edges = [shapes.corners[i].edges + start for i, start in zip(numbers, starts, strict=False)]
         return np.concatenate(points), np.concatenate(edges)
@@ -150,7 +151,8 @@ class PosedShapes:
         if len(visuals) == 1 and position in self.shapes.single_boxes:
             return self._single_box(item, position)
         points, _ = self.points(visuals)
-        _, axes = np.linalg.eigh(np.cov(points.T, bias=True))
+        away = points - points.mean(axis=0)
+        _, axes = eigh(matmul(away.T, away) / len(points))
         axes = axes * np.where(axes[np.abs(axes).argmax(axis=0), range(3)] < 0, -1.0, 1.0)
         axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
         return _box_around(item, points, axes)
@@ -158,8 +160,8 @@ class PosedShapes:
     def _single_box(self, item: LabelledObject, position: int) -> Box3D:
         number, pose, low, high = self.shapes.single_boxes[position]
         turn = self.rotations[number]
-        rotation = turn @ pose.matrix
-        centre = self.positions[number] + turn @ pose.position + rotation @ ((low + high) / 2)
+        rotation = matmul(turn, pose.matrix)
+        centre = self.positions[number] + matmul(turn, pose.position) + matmul(rotation, (low + high) / 2)
         return Box3D(item, centre, rotation, high - low)
 
 
@@ -257,9 +259,9 @@ def full_box(item: LabelledObject, pixels: Vector | None, model: CameraModel) ->
 
 
 def _box_around(item: LabelledObject, points: Vector, axes: Vector) -> Box3D:
-    along = points @ axes
+    along = matmul(points, axes)
     low, high = along.min(axis=0), along.max(axis=0)
-    return Box3D(item, axes @ ((low + high) / 2), axes, high - low)
+    return Box3D(item, matmul(axes, (low + high) / 2), axes, high - low)
 
 
 def _cached(cache: dict[int, Corners], model: mujoco.MjModel, geom: int) -> Corners:

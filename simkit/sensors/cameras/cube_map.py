@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.sensors.cameras.rendering.view import Colours, DrawnView, Shot, View
 from simkit.sensors.cameras.wide_angle_lens import WideAngleModel
@@ -112,7 +113,7 @@ def _faces(directions: Vector, known: npt.NDArray[np.bool_], model: WideAngleMod
     if (in_front == known).all() and steepest.all():
         owner = np.where(known, 0, -1)
     else:
-        along = np.stack([directions @ rotation[:, 0] for rotation in _FACES])
+        along = np.stack([matmul(directions, rotation[:, 0]) for rotation in _FACES])
         owner = np.where(known, along.argmax(axis=0), -1)
     found = [_face(rotation, owner == i, directions, model) for i, rotation in enumerate(_FACES) if (owner == i).any()]
     if not found:  # a lens that shows nothing in the middle of any pixel
@@ -123,7 +124,7 @@ def _faces(directions: Vector, known: npt.NDArray[np.bool_], model: WideAngleMod
 
 
 def _face(rotation: Vector, pixels: npt.NDArray[np.bool_], directions: Vector, model: WideAngleModel) -> _Face:
-    ahead, left, up = (directions[pixels] @ rotation).T
+    ahead, left, up = matmul(directions[pixels], rotation).T
     right, down = -left / ahead, -up / ahead
     extent = max(np.abs(right).max(), np.abs(down).max(), 1e-6)
     scale = model.face_size / 2 if model.face_size else _pixel_density(right, down, pixels)

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from simkit.elementary_functions import sinh
 from simkit.pose import Vector
 
 _WIDEST = 30.0  # tangent of the largest angle off the axis (88 degrees) that is drawn
@@ -70,7 +71,7 @@ def undistort(bent_x: Vector, bent_y: Vector, lens: Distortion) -> tuple[Vector,
 
 def _radial_table(lens: Distortion) -> tuple[Vector, Vector]:
     """Return distorted radii in ascending order, and the undistorted radius of each."""
-    radii = np.sinh(np.linspace(0, math.asinh(_WIDEST * 100), 8192)) / 100  # dense at the radii of common images
+    radii = sinh(np.linspace(0, math.asinh(_WIDEST * 100), 8192)) / 100  # dense at the radii of common images
     r2 = radii * radii
     slope = 1 + r2 * (3 * lens.k1 + r2 * (5 * lens.k2 + r2 * 7 * lens.k3))
     folds = np.flatnonzero(slope <= 0)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from simkit.elementary_functions import power
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.sensors.cameras.array_pool import AnyArray, ArrayPool
 from simkit.sensors.noise import NoiseModel
@@ -149,7 +150,7 @@ class ImageNoise:
         """
         noise = self._draw_noise()
         if self._as_ogre:
-            noise = np.sign(noise) * np.abs(noise) ** _OGRE_EXPONENT
+            noise = np.sign(noise) * power(np.abs(noise), _OGRE_EXPONENT)
         # rounding before the addition is exact, because the pixels are integers
         levels = np.clip(np.rint(noise * 255.0), -255, 255)
         if levels[0] >= -_MIDDLE and levels[-1] < _MIDDLE:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.compiler.name_map import NameMap
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Pose, Vector, quat_multiply
 from simkit.scene import SceneModel
@@ -156,7 +157,7 @@ class LogicalCamera(Sensor):
         bodies = self._bodies
         axes = data.xmat[bodies].reshape(-1, 3, 3)
         origins = data.xpos[bodies] + np.einsum("nij,nj->ni", axes, self._origins)
-        inside = np.flatnonzero(self._frustum.contains((origins - position) @ rotation))
+        inside = np.flatnonzero(self._frustum.contains(matmul(origins - position, rotation)))
         to_sensor = pose.inverse()
         seen = []
         for i in inside.tolist():

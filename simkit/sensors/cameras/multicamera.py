@@ -12,6 +12,7 @@ import numpy as np
 from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import norm
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
@@ -239,7 +240,7 @@ class MultiCamera(RenderedCamera):
 
 def _is_parallel(relative: Pose) -> bool:
     """Check whether a pose relative to the reference camera has parallel axes and lies in its image plane."""
-    angle = 2 * math.atan2(float(np.linalg.norm(relative.quaternion[1:])), abs(relative.quaternion[0]))
+    angle = 2 * math.atan2(norm(relative.quaternion[1:]), abs(relative.quaternion[0]))
     return angle < _PARALLEL and abs(relative.position[0]) < _PARALLEL
 
 

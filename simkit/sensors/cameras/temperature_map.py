@@ -16,6 +16,7 @@ from simkit.compiler.meshes.companion_files import read_pixels
 from simkit.compiler.meshes.mesh_reader import load_mesh
 from simkit.compiler.shape_geometry import textured_triangles, turn_z_to
 from simkit.diagnostics import NOWHERE, Diagnostics
+from simkit.linear_algebra import matmul
 from simkit.pose import Pose, Vector
 from simkit.runtime import Simulation
 from simkit.runtime.handles.visual import HeatSignature
@@ -71,7 +72,7 @@ class TexturedMesh:
         a, first = corners[faces[:, 0]], uv[faces[:, 0]]
         edges = np.stack([corners[faces[:, k]] - a for k in (1, 2)], axis=1)
         rises = np.stack([uv[faces[:, k]] - first for k in (1, 2)], axis=1)
-        slopes = np.einsum("mki,mjk->mij", rises, np.linalg.pinv(edges))
+        slopes = np.einsum("mki,mjk->mij", rises, _edge_inverses(edges))
         starts = first - np.einsum("mij,mj->mi", slopes, a)
         self._maps = np.concatenate((slopes, starts[:, :, None]), axis=2)
 
@@ -127,7 +128,7 @@ class HeatSurface:
         """
         found = np.full(len(directions), self.mean, np.float32)
         if self.skin is not None and len(directions):
-            hits, uv = self.skin.texture_hits(eye, directions @ rotation.T)
+            hits, uv = self.skin.texture_hits(eye, matmul(directions, rotation.T))
             found[hits] = self._temperature_at(self.picture.at(uv))
         return found
 
@@ -206,7 +207,7 @@ def _brightness(model: mujoco.MjModel) -> Vector:
             texture = int(textures[material[i]])
             if texture >= 0:
                 shown[i] *= _mean_colour(model, texture)
-    brightness: Vector = np.clip(shown @ _LUMA, 0.0, 1.0)
+    brightness: Vector = np.clip(matmul(shown, _LUMA), 0.0, 1.0)
     return brightness
 
 
@@ -216,6 +217,19 @@ def _mean_colour(model: mujoco.MjModel, texture: int) -> Vector:
     pixels = model.tex_data[start : start + size * channels].reshape(size, channels)
     mean: Vector = pixels[:, :3].mean(axis=0) / 255.0
     return mean if channels >= 3 else np.full(3, mean[0])
+
+
+def _edge_inverses(edges: Vector) -> Vector:
+    """Return the pseudo-inverses (m, 3, 2) of the two edges of each triangle, shape (m, 2, 3) [m]."""
+    a, b = (edges * edges).sum(axis=2).T
+    c = (edges[:, 0] * edges[:, 1]).sum(axis=1)
+    determinant = a * b - c * c
+    is_flat = determinant <= 1e-12 * a * b  # both edges lie on one line
+    scale = np.where(is_flat, np.maximum(a + b, 1e-300), determinant)[:, None, None]
+    first, second = edges[:, 0], edges[:, 1]
+    both = np.stack((b[:, None] * first - c[:, None] * second, a[:, None] * second - c[:, None] * first), axis=2)
+    found: Vector = np.where(is_flat[:, None, None], edges.transpose(0, 2, 1), both) / scale
+    return found
 
 
 @lru_cache(maxsize=32)
@@ -248,6 +262,6 @@ def _triangles(shape: Geometry) -> Iterator[tuple[Vector, npt.NDArray[np.int32],
         uv = np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)))
         flat = np.column_stack(((uv - 0.5) * shape.size, np.zeros(4)))
         turn = Pose(quaternion=turn_z_to(shape.normal)).matrix
-        yield flat @ turn.T, np.array(((0, 1, 2), (0, 2, 3)), np.int32), uv
+        yield matmul(flat, turn.T), np.array(((0, 1, 2), (0, 2, 3)), np.int32), uv
     elif (textured := textured_triangles(shape)) is not None and textured.uv is not None:
         yield textured.vertices, textured.faces, textured.uv

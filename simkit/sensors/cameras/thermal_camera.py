@@ -14,6 +14,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.scene import Atmosphere, SceneSensor
 from simkit.sensors.base import Product
@@ -145,9 +146,9 @@ class ThermalCamera(RenderedCamera):
         if heat.surfaces:
             position, rotation = self._frame_in_world(data)
             for surface in heat.surfaces:
-                turn = data.xmat[surface.body].reshape(3, 3) @ surface.pose.matrix
-                origin = data.xpos[surface.body] + data.xmat[surface.body].reshape(3, 3) @ surface.pose.position
-                views.append((turn.T @ (position - origin), turn.T @ rotation))
+                turn = matmul(data.xmat[surface.body].reshape(3, 3), surface.pose.matrix)
+                origin = data.xpos[surface.body] + matmul(data.xmat[surface.body].reshape(3, 3), surface.pose.position)
+                views.append((matmul(turn.T, position - origin), matmul(turn.T, rotation)))
         return ThermalState(heat, tuple(views))
 
     def make_reading(self, drawn_views: Iterator[DrawnView], context: ThermalState) -> Kelvins:

@@ -9,6 +9,8 @@ from typing import Final
 
 import numpy as np
 
+from simkit.elementary_functions import arcsin, arctan, power, tan
+from simkit.linear_algebra import lstsq, matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.cameras.camera_model import MAX_PIXELS, CameraModel, read_clip
@@ -52,16 +54,16 @@ class Lens:
         argument = angle / self.c2 + self.c3
         if self.function == "id":
             return self.c1 * self.f * argument
-        return self.c1 * self.f * (np.sin(argument) if self.function == "sin" else np.tan(argument))
+        return self.c1 * self.f * (np.sin(argument) if self.function == "sin" else tan(argument))
 
     def angle(self, radius: Vector) -> Vector:
         """Return the angle off the axis [rad] of a radius [half widths]; NaN if no angle has this radius."""
         value = radius / (self.c1 * self.f)
         with np.errstate(invalid="ignore"):
             if self.function == "sin":
-                value = np.arcsin(value)
+                value = arcsin(value)
             elif self.function == "tan":
-                value = np.arctan(value)
+                value = arctan(value)
             angle = self.c2 * (value - self.c3)
             return np.where((angle >= -1e-9) & (angle <= self.widest), np.maximum(angle, 0.0), np.nan)
 
@@ -226,8 +228,8 @@ def _fit_equidistant(lens: Lens, width: int, height: int) -> tuple[float, tuple[
         return float(radii[0] / angles[0]), (0.0,) * _TERMS, 0.0
     tiny = end * 1e-4
     focal = float(lens.radius(np.array(tiny)) - lens.radius(np.array(0.0))) / tiny * width / 2
-    powers = angles[:, None] ** np.arange(3, 3 + 2 * _TERMS, 2)
+    powers = power(angles[:, None], np.arange(3, 3 + 2 * _TERMS, 2))
     scale = powers[-1]
-    factors = np.linalg.lstsq(powers / scale, radii / focal - angles, rcond=None)[0]
-    error = np.abs(powers / scale @ factors + angles - radii / focal).max() * focal
+    factors = lstsq(powers / scale, radii / focal - angles)
+    error = np.abs(matmul(powers / scale, factors) + angles - radii / focal).max() * focal
     return focal, tuple(float(f) for f in factors / scale), float(error)

@@ -12,6 +12,7 @@ from simkit import msgs
 from simkit.compiler import Compiled, SpecBuilder
 from simkit.compiler.name_map import NameMap
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.linear_algebra import matmul
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import Vector
@@ -178,7 +179,7 @@ class Contact(Sensor):
         if self._states_frame is None:
             return RawContacts(found, self._numbers, self._order)
         centres = {
-            number: data.xpos[body] + data.xmat[body].reshape(3, 3) @ centre
+            number: data.xpos[body] + matmul(data.xmat[body].reshape(3, 3), centre)
             for number, (body, centre) in (self._centres.items() if found is not None else ())
         }
         if self._frame is None:
@@ -187,8 +188,10 @@ class Contact(Sensor):
             return RawContacts(found, self._numbers, self._order, centres, frame)
         body, position, rotation = self._frame
         axes = data.xmat[body].reshape(3, 3)
-        origin = data.xpos[body] + axes @ position
-        return RawContacts(found, self._numbers, self._order, centres, self._states_frame, origin, axes @ rotation)
+        origin = data.xpos[body] + matmul(axes, position)
+        return RawContacts(
+            found, self._numbers, self._order, centres, self._states_frame, origin, matmul(axes, rotation)
+        )
 
     def finish(self, raw: RawContacts) -> ContactReading:
         return raw.reading()

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.runtime.contact.collision_contacts import CollisionContacts, CollisionTable
 
@@ -100,7 +101,7 @@ def _group_by_pair(raw: RawContacts, found: CollisionContacts) -> tuple[ContactP
     positions, depths, frames = found.positions[rows], found.depths[rows], found.frames[rows]
     normals = frames[:, 0] * sign
     # the rows of each frame are its axes, so this product rotates into the world
-    wrenches = (found.wrenches[rows] * sign).reshape(-1, 2, 3) @ frames
+    wrenches = matmul((found.wrenches[rows] * sign).reshape(-1, 2, 3), frames)
     pairs, start = [], 0
     while start < len(sides):
         _, other, own, *_ = sides[start]
@@ -197,8 +198,8 @@ def _state(
     def vectors(rows: Vector) -> list[msgs.Vector3]:
         return [vector(*row) for row in rows.tolist()]
 
-    forces = pair.forces @ axes
-    torques = (pair.torques + np.cross(pair.positions - pair.centre, pair.forces)) @ axes
+    forces = matmul(pair.forces, axes)
+    torques = matmul(pair.torques + np.cross(pair.positions - pair.centre, pair.forces), axes)
     total_force, total_torque = vectors(np.stack([forces.sum(axis=0), torques.sum(axis=0)]))
     own, other, stamp = pair.collision1, pair.collision2, header.stamp
     info = f"Debug:  i: ({which})     my geom: [{own}]  other geom: [{other}]"
@@ -208,7 +209,7 @@ def _state(
         other,
         [wrench(f, t) for f, t in zip(vectors(forces), vectors(torques), strict=True)],
         wrench(total_force, total_torque),
-        vectors((pair.positions - reading.origin) @ axes),
-        vectors(pair.normals @ axes),
+        vectors(matmul(pair.positions - reading.origin, axes)),
+        vectors(matmul(pair.normals, axes)),
         pair.depths,
     )

@@ -9,6 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.compiler import Compiled
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import torque_about, transmitted_wrench
@@ -101,11 +102,14 @@ class ForceTorque(VectorSensor):
             force, torque = self._forces(model, data)
         else:  # same as `transmitted_wrench`, on the cached views
             wrench = -self._wrench if self._joint.is_reversed else self._wrench
-            force, torque = wrench[3:], torque_about(wrench, self._centre, self._position + self._attitude @ self._arm)
-        axes = self._axes @ self._axes_turn if self._is_turned else self._axes
+            force, torque = (
+                wrench[3:],
+                torque_about(wrench, self._centre, self._position + matmul(self._attitude, self._arm)),
+            )
+        axes = matmul(self._axes, self._axes_turn) if self._is_turned else self._axes
         if not self.options.from_parent:
             axes = -axes
-        return np.concatenate((force @ axes, torque @ axes))
+        return np.concatenate((matmul(force, axes), matmul(torque, axes)))
 
     def _bind_views(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Store views of the data that a measurement reads; creating views at every sample would be slower."""
@@ -118,7 +122,7 @@ class ForceTorque(VectorSensor):
         """Return the force and torque through the joint, about the sensor's origin, in world axes."""
         if self.sim.world.gazebo_quirks:
             return self._as_gazebo(model, data)
-        return transmitted_wrench(model, data, self._joint, self._position + self._attitude @ self._arm)
+        return transmitted_wrench(model, data, self._joint, self._position + matmul(self._attitude, self._arm))
 
     def _as_gazebo(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """Return the force and torque as Gazebo computes them.
@@ -126,11 +130,11 @@ class ForceTorque(VectorSensor):
         Gazebo multiplies a lever arm in the joint's axes by a force in the sensor's axes.
         """
         body = data.xmat[self._body].reshape(3, 3)
-        origin = data.xpos[self._body] + body @ self._joint_frame.position
+        origin = data.xpos[self._body] + matmul(body, self._joint_frame.position)
         force, torque = transmitted_wrench(model, data, self._joint, origin)
-        turn = body @ self._offset_rotation
-        arm = (self._offset_position - self._joint_frame.position) @ self._joint_frame.matrix
-        return force, torque - turn @ np.cross(arm, force @ turn)
+        turn = matmul(body, self._offset_rotation)
+        arm = matmul(self._offset_position - self._joint_frame.position, self._joint_frame.matrix)
+        return force, torque - matmul(turn, np.cross(arm, matmul(force, turn)))
 
     def _message_of(self, reading: Vector, time_ns: int) -> msgs.WrenchStamped:
         stamped, wrench, vector = msgs.types_of(*_TYPES)

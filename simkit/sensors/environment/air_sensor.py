@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import mujoco
 
+from simkit.linear_algebra import matmul
 from simkit.scene import Atmosphere
 from simkit.sensors.base import report_once
 from simkit.sensors.environment.atmosphere import MAX_ALTITUDE, MIN_ALTITUDE, AirColumn, air_column
@@ -42,4 +43,4 @@ class AirSensor(VectorSensor):
     def _height(self, data: mujoco.MjData) -> float:
         """Return the height of the sensor above sea level [m]."""
         body = self._body
-        return self._origin_height + float(data.xpos[body][2] + data.xmat[body][6:] @ self._offset_position)
+        return self._origin_height + float(data.xpos[body][2] + matmul(data.xmat[body][6:], self._offset_position))

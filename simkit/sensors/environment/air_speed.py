@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.environment.air_sensor import AirSensor
@@ -52,8 +53,8 @@ class AirSpeed(AirSensor):
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         """Return the dynamic pressure [Pa], negative for air from behind, and the temperature [K]."""
         rotation = data.xmat[self._body].reshape(3, 3)
-        velocity = self._velocity_in_world(model, data, rotation @ self._offset_position)
-        speed = float((velocity - self._wind(data)) @ (rotation @ self._offset_rotation[:, 0]))
+        velocity = self._velocity_in_world(model, data, matmul(rotation, self._offset_position))
+        speed = float(matmul(velocity - self._wind(data), matmul(rotation, self._offset_rotation[:, 0])))
         air = self._column.at(self._height(data))
         return np.array((0.5 * air.density * speed * abs(speed), air.temperature))
 

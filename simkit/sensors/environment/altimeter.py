@@ -9,6 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.compiler import Compiled
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.noise import NoiseModel, read_noise
@@ -65,7 +66,7 @@ class Altimeter(VectorSensor):
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         """Return the height above the reference [m] and its rate [m/s]."""
         body = self._body
-        lever = data.xmat[body].reshape(3, 3) @ self._offset_position
+        lever = matmul(data.xmat[body].reshape(3, 3), self._offset_position)
         velocity = self._velocity_in_world(model, data, lever)
         return np.array((data.xpos[body][2] + lever[2] - self.reference, velocity[2]))
 

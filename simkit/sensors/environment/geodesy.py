@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.scene import SphericalCoordinates
 
@@ -89,11 +90,11 @@ class WorldOnPlanet:
         self.origin = self.ellipsoid.cartesian(latitude, longitude, coordinates.elevation)
         sine, cosine = math.sin(coordinates.heading), math.cos(coordinates.heading)
         heading = np.array(((cosine, -sine, 0.0), (sine, cosine, 0.0), (0.0, 0.0, 1.0)))
-        self.axes = east_north_up(latitude, longitude) @ heading
+        self.axes = matmul(east_north_up(latitude, longitude), heading)
 
     def on_planet(self, position: Vector) -> Vector:
         """Return a world position [m] in the planet's axes [m]; both of shape (3,)."""
-        found: Vector = self.origin + self.axes @ position
+        found: Vector = self.origin + matmul(self.axes, position)
         return found
 
     def geodetic(self, position: Vector) -> Geodetic:

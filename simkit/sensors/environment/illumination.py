@@ -14,6 +14,7 @@ from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.compiler.lights import spot_share
 from simkit.compiler.name_map import NameMap
+from simkit.linear_algebra import matmul
 from simkit.pose import Pose, Vector
 from simkit.runtime.handles.light import Light, LightState
 from simkit.scene import SceneLight
@@ -80,12 +81,12 @@ class Lamp:
         if self.is_parallel:
             return Beam(-pose.rotate(self.scene.direction), math.inf, fraction)
         towards = pose.position - point
-        distance = math.sqrt(towards @ towards)
+        distance = math.sqrt(matmul(towards, towards))
         if distance <= 0.0:
             return Beam(np.zeros(3), 0.0, 0.0)
         direction = towards / distance
         if self.scene.type == "spot":
-            cosine = float(-direction @ pose.rotate(self.scene.direction))
+            cosine = float(matmul(-direction, pose.rotate(self.scene.direction)))
             fraction *= spot_share(self.scene, math.acos(max(-1.0, min(1.0, cosine))))
         return Beam(direction, distance, fraction)
 

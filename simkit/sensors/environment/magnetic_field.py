@@ -16,6 +16,7 @@ from typing import Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 
@@ -75,7 +76,7 @@ class MagneticModel:
         if distance < _CORE:
             x, y, z = (x * _CORE / distance, y * _CORE / distance, z * _CORE / distance) if distance else (_CORE, 0, 0)
         harmonics = np.array(_harmonics(x / _RADIUS, y / _RADIUS, z / _RADIUS))
-        field: Vector = self._weights @ harmonics.view(np.float64)
+        field: Vector = matmul(self._weights, harmonics.view(np.float64))
         return field
 
 
@@ -95,12 +96,12 @@ class EarthField:
         """Return the field [T] at a position [m], both in the world's axes, shape (3,)."""
         cell = tuple(round(v / _CELL) for v in position.tolist())
         centre, field, gradient = self._cell(cell)
-        found: Vector = field + gradient @ (position - centre)
+        found: Vector = field + matmul(gradient, position - centre)
         return found
 
     def exactly_at(self, position: Vector) -> Vector:
         """Return the same field without linearisation."""
-        field: Vector = self._model.at(*self._planet.on_planet(position).tolist()) @ self._planet.axes
+        field: Vector = matmul(self._model.at(*self._planet.on_planet(position).tolist()), self._planet.axes)
         return field
 
     def _linear(self, cell: tuple[int, int, int]) -> tuple[Vector, Vector, Vector]:

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.scene import SceneWorld
@@ -123,8 +124,8 @@ class Magnetometer(VectorSensor):
         position, rotation = self._frame_in_world(data)
         field = self._uniform
         if self._earth is not None:
-            field = self._to_world @ self._earth.at(position) * self._scale
-        measured: Vector = field @ rotation
+            field = matmul(self._to_world, self._earth.at(position)) * self._scale
+        measured: Vector = matmul(field, rotation)
         return measured
 
     def _message_of(self, reading: Vector, time_ns: int) -> msgs.MagneticField:

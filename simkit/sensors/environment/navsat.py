@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.scene import SphericalCoordinates
@@ -134,13 +135,13 @@ class NavSat(Sensor):
         planet = self._planet
         assert planet is not None
         body = self._body
-        lever = data.xmat[body].reshape(3, 3) @ self._offset_position
+        lever = matmul(data.xmat[body].reshape(3, 3), self._offset_position)
         position = data.xpos[body] + lever
         velocity = self._velocity_in_world(model, data, lever)
         latitude, longitude, altitude = planet.geodetic(position)
         if not self._quirks:
-            velocity = (planet.axes @ velocity) @ east_north_up(latitude, longitude)
-        east, north = (self._heading @ position[:2]).tolist()
+            velocity = matmul(planet.axes, velocity, east_north_up(latitude, longitude))
+        east, north = matmul(self._heading, position[:2]).tolist()
         return NavSatReading(east, north, latitude, longitude, altitude, velocity)
 
     def perturb(self, reading: NavSatReading, index: int) -> NavSatReading:

@@ -11,6 +11,7 @@ import numpy as np
 
 from simkit.compiler import Compiled
 from simkit.in_process import InProcess
+from simkit.linear_algebra import matmul
 from simkit.number_text import number_or_nan
 from simkit.params import LARGEST, Params
 from simkit.pose import Vector, quat_from_rpy, quat_multiply
@@ -187,7 +188,7 @@ class SolarView(InProcess):
         beam = self.lamp.at(state, data, origin)
         if beam.distance <= 0.0:
             return NO_LIGHT
-        direction = beam.direction @ rotation
+        direction = matmul(beam.direction, rotation)
         incidence = angle_between(direction, options.normal)
         shadow = self._ray.find(model, data, origin, beam) if self._ray is not None and beam.fraction > 0 else ""
         orientation = orientation_towards(direction)
@@ -198,7 +199,7 @@ class SolarView(InProcess):
             facing *= falloff_factor(self.light.scene, beam.distance, options.falloff)
         panel, power = options.panel, 0.0
         if panel is not None:
-            power = facing * max(0.0, float(direction @ panel.normal)) * panel.area * panel.efficiency
+            power = facing * max(0.0, float(matmul(direction, panel.normal))) * panel.area * panel.efficiency
         irradiance = facing * max(0.0, math.cos(incidence)) if incidence < math.pi / 2 else 0.0
         return SolarReading(orientation, incidence <= self._half, "", incidence, irradiance, power)
 

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
+from simkit.linear_algebra import matmul, norm
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose, Vector, quat_from_rpy, quat_multiply
 from simkit.runtime import Simulation
@@ -117,14 +118,14 @@ def _level_rotation(up: Vector, direction: Vector) -> Vector | None:
 
     The result is None if `up` is zero or parallel to `direction`.
     """
-    size = float(np.linalg.norm(up))
+    size = norm(up)
     if not size:
         return None
     z = up / size
-    x = direction - z * (z @ direction)
-    if np.linalg.norm(x) <= _PARALLEL * np.linalg.norm(direction):
+    x = direction - z * matmul(z, direction)
+    if norm(x) <= _PARALLEL * norm(direction):
         return None
-    x /= np.linalg.norm(x)
+    x /= norm(x)
     rotation = np.empty(4)
     mujoco.mju_mat2Quat(rotation, np.column_stack((x, np.cross(z, x), z)).reshape(9))
     return rotation

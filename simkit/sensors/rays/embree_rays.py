@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.sensors.rays.geom_types import BOX, HFIELD, MESH, Ids
 from simkit.sensors.rays.numpy_rays import rotate_vectors
@@ -175,7 +176,7 @@ class TriangleBody:
         """
         if self.body > 0:
             turn = data.xmat[self.body].reshape(3, 3)
-            origin, directions = (origin - data.xpos[self.body]) @ turn, rotate_vectors(directions, turn)
+            origin, directions = matmul(origin - data.xpos[self.body], turn), rotate_vectors(directions, turn)
         hits, distances, triangles = self._scene.nearest(origin, directions, start, limit)
         return hits, distances, self._geom_of.take(triangles)
 
@@ -196,7 +197,7 @@ class MovingBodies:
         turns = data.xmat.take(self._ids, 0).reshape(-1, 3, 3)
         centres = data.xpos.take(self._ids, 0) + np.einsum("bij,bj->bi", turns, self._centres) - rays.origin
         squares = np.einsum("ij,ij->i", centres, centres)
-        height = centres @ rays.axis
+        height = matmul(centres, rays.axis)
         side = np.sqrt(np.maximum(squares - height * height, 0.0))
         is_reached = reaches_between_cones(height, side, self._radii, rays.lowest, rays.highest)
         distance = np.sqrt(squares)
@@ -232,7 +233,7 @@ def triangles_of(model: mujoco.MjModel, geom: int) -> tuple[Vector, Faces]:
         vertices, faces = _heightmap_triangles(model, int(model.geom_dataid[geom]))
     turn = np.empty(9)
     mujoco.mju_quat2Mat(turn, model.geom_quat[geom])
-    return vertices @ turn.reshape(3, 3).T + model.geom_pos[geom], np.asarray(faces, dtype=np.int32)
+    return matmul(vertices, turn.reshape(3, 3).T) + model.geom_pos[geom], np.asarray(faces, dtype=np.int32)
 
 
 def mesh_triangles(model: mujoco.MjModel, mesh: int) -> tuple[Vector, Faces]:

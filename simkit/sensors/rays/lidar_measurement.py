@@ -12,6 +12,7 @@ import numpy.typing as npt
 from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.scene import SceneSensor
@@ -253,8 +254,8 @@ class LidarMeasurement(Sensor):
         """Return position and rotation matrix in the world, like `_frame_in_world` but faster for an offset of zero."""
         position, rotation = data.xpos[self._body], data.xmat[self._body].reshape(3, 3)
         if self._is_moved:
-            position = position + rotation @ self._offset_position
-        return position, rotation @ self._offset_rotation if self._is_turned else rotation
+            position = position + matmul(rotation, self._offset_position)
+        return position, matmul(rotation, self._offset_rotation) if self._is_turned else rotation
 
     def _intensities(self, infinite: npt.NDArray[np.bool_]) -> Vector:
         if self._retro is None:

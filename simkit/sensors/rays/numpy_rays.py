@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.sensors.rays.geom_types import BOX, CAPSULE, CYLINDER, ELLIPSOID, SPHERE, Ids
 
@@ -138,7 +139,7 @@ class FanDirections:
         """
         distance = np.sqrt(np.einsum("ij,ij->i", centres, centres))
         within = distance <= radii * (1 + 1e-9) + 1e-9
-        # wider by a margin, so that rounding loses no ray
+        # wider by a margin, so that rounding loses no ray, not even that of NumPy's arcsin on some processors
         width = np.where(within, np.pi, np.arcsin(np.minimum(1.0, radii / np.maximum(distance, _TINY))) + 1e-6)
         if self._grid is None:
             for i, angle in enumerate(width.tolist()):
@@ -275,7 +276,7 @@ def cast_on_shapes(
             directions = fan.columns.take(rays, 1)
             rays = rays + begin.take(owners)
             if len(owners) == 1:
-                directions = selected.turns[owners[0]].T @ directions
+                directions = matmul(selected.turns[owners[0]].T, directions)
             else:
                 directions = np.einsum("in,nij->jn", directions, selected.turns.take(owners, 0))
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -300,7 +301,7 @@ def cast_on_plane(
     The result is None if the origin is behind the plane.
     """
     normal = turn[:, 2]
-    height = float((origin - position) @ normal)
+    height = float(matmul(origin - position, normal))
     if height <= 0:
         return None
     descent = rotate_vectors(directions, normal)
@@ -314,7 +315,7 @@ def cast_on_plane(
             offset = rotate_vectors(directions, side)
             with np.errstate(invalid="ignore"):
                 offset *= out
-                offset += float((origin - position) @ side)
+                offset += float(matmul(origin - position, side))
                 np.abs(offset, out=offset)
                 # `offset` is NaN or infinite for a ray that misses the plane
                 out[~(offset <= size[axis])] = np.inf

@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose, Vector
 
 
@@ -135,12 +136,12 @@ class NearbyGeoms:
         near = np.flatnonzero(square <= reach * reach)
         if not near.size:
             return near
-        height, radii = centres.take(near, 0) @ rays.axis, self._radii.take(near)
+        height, radii = matmul(centres.take(near, 0), rays.axis), self._radii.take(near)
         if rays.lowest == rays.highest == 0.0:
             close = np.abs(height) <= radii + _MARGIN
             near, height = near[close], height[close]
             turns = data.geom_xmat.take(self._geoms.take(near), 0).reshape(-1, 3, 3)
-            extent = np.abs(rays.axis @ turns)
+            extent = np.abs(matmul(rays.axis, turns))
             extent *= self._halves.take(near, 0)
             near = near[np.abs(height) <= extent.sum(axis=1) + _MARGIN]
         else:
@@ -171,14 +172,14 @@ def can_reach(
         if tie is None:
             continue
         box = Pose(model.geom_pos[geom], model.geom_quat[geom]) @ Pose(model.geom_aabb[geom, :3])
-        size = float(np.linalg.norm(halves[i]))
+        size = norm(halves[i])
         if tie.pose is None:
             centres[i] = tie.centre
-            extents[i] = tie.slack + float(np.linalg.norm(box.position - tie.point)) + size
+            extents[i] = tie.slack + norm(box.position - tie.point) + size
         else:
             pose = tie.pose @ box
             centres[i] = pose.position
-            extents[i] = np.abs(pose.matrix[2]) @ halves[i] if lowest == highest == 0.0 else size
+            extents[i] = matmul(np.abs(pose.matrix[2]), halves[i]) if lowest == highest == 0.0 else size
     side = np.hypot(centres[:, 0], centres[:, 1])
     return reaches_between_cones(centres[:, 2], side, extents, lowest, highest)
 
@@ -225,4 +226,4 @@ def _tie_of_neighbour(model: mujoco.MjModel, tie: BodyTie, current: int, neighbo
     in_current, in_neighbour = (in_parent, in_child) if child == neighbour else (in_child, in_parent)
     if tie.pose is not None:
         return BodyTie(None, tie.pose.transform(in_current), in_neighbour, 0.0)
-    return BodyTie(None, tie.centre, in_neighbour, tie.slack + float(np.linalg.norm(in_current - tie.point)))
+    return BodyTie(None, tie.centre, in_neighbour, tie.slack + norm(in_current - tie.point))

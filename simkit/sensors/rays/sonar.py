@@ -12,6 +12,7 @@ from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import SEEN_AS_COLLISIONS
 from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import matmul, norm
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.scene import SceneSensor
@@ -184,7 +185,7 @@ def cone_directions(half_angle: float, axis: tuple[float, float, float]) -> Vect
         # every second ring is rotated by half a gap, so that the gaps do not form straight lines
         around = 2 * np.pi * (index + 0.5 * (number % 2)) / np.maximum(6 * number, 1)
         upright = np.stack((np.sin(away) * np.cos(around), np.sin(away) * np.sin(around), np.cos(away)), axis=-1)
-    return np.asarray(upright @ _frame_along(axis), dtype=np.float64)
+    return np.asarray(matmul(upright, _frame_along(axis)), dtype=np.float64)
 
 
 def _spiral_directions(count: int) -> Vector:
@@ -200,6 +201,6 @@ def _frame_along(axis: tuple[float, float, float]) -> Vector:
     along = np.array(axis)
     other = np.eye(3)[int(np.argmin(np.abs(along)))]
     first = np.cross(other, along)
-    first /= np.linalg.norm(first)
+    first /= norm(first)
     frame: Vector = np.stack((first, np.cross(along, first), along))
     return frame

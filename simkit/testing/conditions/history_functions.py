@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.linear_algebra import dot
 from simkit.pose import Vector
 from simkit.testing.conditions import value_types as kinds
 from simkit.testing.conditions.bound_expression import BoundNode, ExpressionBinder, Function
@@ -197,7 +198,7 @@ class _PathLength(HistoryValue):
         here = np.array(self._entity.pose().position)
         if self._last is not None:
             gap = here - self._last
-            self._sum += math.sqrt(float(np.vdot(gap, gap)))
+            self._sum += math.sqrt(dot(gap, gap))
         self._last = here
 
     def result(self) -> float:

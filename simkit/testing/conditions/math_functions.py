@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit.linear_algebra import dot
 from simkit.testing.conditions.bound_expression import (
     UNLIMITED_ARGUMENTS,
     BoundNode,
@@ -212,7 +213,7 @@ def _bind_reduction(usage: str, function: Reduction, *, empty_value: float | Non
 
 
 def _norm(values: Any) -> float:
-    return math.sqrt(float(np.vdot(values, values)))  # without a warning for an overflow
+    return math.sqrt(dot(values, values))  # without a warning for an overflow
 
 
 def _len(binder: ExpressionBinder, call: Call) -> BoundNode:

@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
+from simkit.linear_algebra import dot
 from simkit.pose import Vector, quat_conjugate, quat_rotate
 from simkit.testing.conditions import value_types as kinds
 from simkit.testing.conditions.bound_expression import (
@@ -97,7 +96,7 @@ def _distance(binder: ExpressionBinder, call: Call) -> BoundNode:
             raise UndecidedValue(f"{source} compares lists of {len(a)} and {len(b)} numbers")
         gap = a - b
         # `vdot` gives no warning for an overflow: the distance of points that are 1e308 m apart is infinite
-        return math.sqrt(float(np.vdot(gap, gap)))
+        return math.sqrt(dot(gap, gap))
 
     return BoundNode(call, kinds.NUMBER, value, tuple(parts))
 

@@ -15,6 +15,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from simkit.elementary_functions import log2
 from simkit.run_spec import JsonObject
 from simkit.testing.run_record.record import Array
 
@@ -242,7 +243,7 @@ def _entropy_bits(data: bytes, count: int) -> float:
     for plane in planes:
         shares = np.bincount(plane, minlength=256) / count
         shares = shares[shares > 0]
-        bits -= count * float((shares * np.log2(shares)).sum())
+        bits -= count * float((shares * log2(shares)).sum())
     return bits
 
 

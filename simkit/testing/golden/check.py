@@ -71,7 +71,7 @@ def check_golden(
     with _recorded_environment(golden.environment), _run_today(golden, current_scenario) as (run, elapsed):
         comparison = compare(golden, run)
         verdict = Verdict(place.resolve().name, golden, run, comparison, None, run.checks, elapsed)
-        if not comparison.passed and bless is not None:
+        if comparison.can_be_blessed and bless is not None:
             make_golden(place, verdict, bless.strip(), other_renderer=other_renderer)
         elif not comparison.passed and causes:
             verdict.explanation = explain(golden, run, comparison, budget_s=budget_s)

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import math
+import os
 import platform
+import struct
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
@@ -26,8 +29,14 @@ if TYPE_CHECKING:
 
 RENDERER: Final = "renderer"
 """Key of the renderer, which has an effect only on runs with pictures."""
-_INFORMATION_ONLY: Final = ("simkit code", "python")
+RAY_TRACER: Final = "ray tracer"
+"""Key of Embree and its instructions. Where a ray meets the edge of two triangles, either may be the nearest."""
+PROCESSOR_FEATURES: Final = "processor features"
+"""Key of the instructions by which NumPy and BLAS choose their code; simkit uses no function that depends on them."""
+_INFORMATION_ONLY: Final = ("simkit code", "python", "libc", PROCESSOR_FEATURES)
 """Keys that help to find a cause, but should not change any bit of a run."""
+_LEVEL_3: Final = ("AVX2", "FMA3")  # what MuJoCo's and the C library's code for x86-64-v3 needs
+_EMBREE_INSTRUCTIONS: Final = {"AVX512_SKX": "avx512", "AVX2": "avx2", "AVX": "avx", "SSE42": "sse4.2"}
 
 
 def fingerprint(*, pictures: bool = False) -> dict[str, str]:
@@ -46,10 +55,18 @@ def fingerprint(*, pictures: bool = False) -> dict[str, str]:
 
 
 def fingerprint_differences(
-    a: Mapping[str, str], b: Mapping[str, str], pictures: bool = False
+    a: Mapping[str, str], b: Mapping[str, str], pictures: bool = False, rays: bool = False
 ) -> dict[str, tuple[str, str]]:
-    """Return the entries of two fingerprints that differ and may change bits: name -> both values."""
-    names = [n for n in dict.fromkeys((*a, *b)) if n not in _INFORMATION_ONLY and (pictures or n != RENDERER)]
+    """Return the entries of two fingerprints that differ and may change bits: name -> both values.
+
+    Args:
+        a: One fingerprint.
+        b: The other one.
+        pictures: Compare the renderer too.
+        rays: Compare the ray tracer too.
+    """
+    left_out = {*_INFORMATION_ONLY, *(() if pictures else (RENDERER,)), *(() if rays else (RAY_TRACER,))}
+    names = [n for n in dict.fromkeys((*a, *b)) if n not in left_out]
     return {n: (a.get(n, ""), b.get(n, "")) for n in names if a.get(n, "") != b.get(n, "")}
 
 
@@ -67,9 +84,12 @@ def _machine_fingerprint() -> dict[str, str]:
         "trimesh": _version("trimesh"),
         "python": platform.python_version(),
         "processor": platform.machine(),
-        "processor features": _cpu_features(),
+        "processor level": _processor_level(),
+        PROCESSOR_FEATURES: _processor_features(),
         "system": platform.system(),
+        "math library": _math_library(),
         "libc": " ".join(platform.libc_ver()).strip(),
+        RAY_TRACER: _ray_tracer(),
     }
 
 
@@ -80,14 +100,60 @@ def _version(package: str) -> str:
         return ""
 
 
-def _cpu_features() -> str:
-    """Return the processor features by which NumPy and libm select their code; of each family, only the widest one."""
+def _features() -> Mapping[str, bool]:
+    """Return the processor features that NumPy found: name -> whether the processor has it."""
     try:
-        features = import_module("numpy._core._multiarray_umath").__cpu_features__
+        found: Mapping[str, bool] = import_module("numpy._core._multiarray_umath").__cpu_features__
     except (ImportError, AttributeError):  # some NumPy versions do not have this table
+        return {}
+    return found
+
+
+def _processor_level() -> str:
+    """Return "x86-64-v3" for all processors whose runs have equal bits, "x86-64" for older ones, "" for other kinds."""
+    features = _features()
+    if platform.machine().lower() not in ("x86_64", "amd64") or not features:
         return ""
+    return "x86-64-v3" if all(map(features.get, _LEVEL_3)) else "x86-64"
+
+
+def _processor_features() -> str:
+    """Return the features by which NumPy and BLAS select their code; of each family, only the widest ones."""
     relevant = ("AVX512F", "AVX512_SKX", "AVX512_ICL", "AVX512_SPR", "AVX2", "FMA3", "ASIMD", "SVE", "VSX4", "VX")
-    return " ".join(name for name in relevant if features.get(name))
+    features = _features()
+    kernel = os.environ.get("OPENBLAS_CORETYPE", "")
+    return " ".join(
+        [name for name in relevant if features.get(name)] + ([f"OPENBLAS_CORETYPE={kernel}"] if kernel else [])
+    )
+
+
+def _math_library() -> str:
+    """Return a hash of results of the C library's functions, which decide bits of MuJoCo and of Python's `math`."""
+    digest = hashlib.sha256()
+    functions = (math.sin, math.cos, math.tan, math.atan, math.exp, math.sinh, math.tanh, math.expm1)
+    for k in range(1, 400):
+        x = k * 0.0437 - 8.7
+        values = [function(x) for function in functions]
+        values += [
+            math.log(k * 0.37),
+            math.log1p(k * 1e-3),
+            math.log10(k * 0.37),
+            math.pow(k * 0.37, x),
+            math.atan2(x, k),
+        ]
+        values += [math.asin(x / 9.0), math.acos(x / 9.0), math.fmod(x, 0.7)]
+        digest.update(struct.pack(f"<{len(values)}d", *values))
+    return digest.hexdigest()[:12]
+
+
+def _ray_tracer() -> str:
+    """Return the version of Embree's binding and the instructions that Embree chooses on this processor."""
+    found = _version("embreex")
+    if not found:
+        return ""
+    features = _features()
+    chosen = next((name for feature, name in _EMBREE_INSTRUCTIONS.items() if features.get(feature)), "")
+    return f"embree {found} {chosen}".strip()
 
 
 @cache

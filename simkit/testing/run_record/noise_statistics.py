@@ -9,6 +9,8 @@ from typing import Any, Final, Literal
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
+
 Floats = npt.NDArray[np.float64]
 
 FALSE_ALARM: Final = 1e-11
@@ -287,7 +289,7 @@ def _independent_samples(centred: Floats) -> float:
     from scipy.fft import irfft, next_fast_len, rfft
 
     count = len(centred)
-    total = float(centred @ centred)
+    total = float(matmul(centred, centred))
     if count < _MIN_SAMPLES or total <= 0.0:
         return float(count)
     length: Any = next_fast_len(2 * count)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.bridges.view.displays.frame_poses import Placement
+from simkit.linear_algebra import matmul
 from simkit.pose import Pose
 
 Floats = npt.NDArray[np.float64]
@@ -144,7 +145,7 @@ class Drawing:
         kept = np.flatnonzero(is_usable)[:count]
         if len(kept) == 0:
             return
-        placed = points[kept] @ at.pose.matrix.T + at.pose.position
+        placed = matmul(points[kept], at.pose.matrix.T) + at.pose.position
         found, group = (placed, np.clip(np.nan_to_num(colours[kept]), 0, 1)), self._group(at)
         if kind == "triangles":
             group.triangles.append(found)
@@ -202,9 +203,9 @@ def _pack(group: Group, prefix: str, meshes: list[str], arrays: Arrays) -> Head:
 def _moved_rows(rows: Floats, pose: Pose) -> Floats:
     """Return rows of shapes with their poses in the parent frame of `pose`."""
     moved = rows.copy()
-    moved[:, :3] = rows[:, :3] @ pose.matrix.T + pose.position
+    moved[:, :3] = matmul(rows[:, :3], pose.matrix.T) + pose.position
     w, x, y, z = (float(v) for v in pose.quaternion)
     product = np.array([[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]])  # left multiplication
-    turned = rows[:, 3:7] @ product.T
+    turned = matmul(rows[:, 3:7], product.T)
     moved[:, 3:7] = turned / np.linalg.norm(turned, axis=1, keepdims=True)
     return moved

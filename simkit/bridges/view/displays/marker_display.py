@@ -13,6 +13,7 @@ from simkit.bridges.view.displays.display import Display, DisplayTools, draw_arr
 from simkit.bridges.view.displays.drawing import Colour, Drawing, Floats
 from simkit.bridges.view.displays.frame_poses import Placement
 from simkit.errors import SimkitError
+from simkit.linear_algebra import norm
 from simkit.msgs.message_types import Message
 from simkit.pose import IDENTITY, Pose
 
@@ -151,7 +152,7 @@ def _draw_arrow(drawing: Drawing, message: Any, at: Placement, scale: Floats, co
         draw_arrow(drawing, at, IDENTITY, (length - head, thin / _HEAD_RATIO, head, thin), colour)
         return
     vector = points[1] - points[0]
-    length = float(np.linalg.norm(vector))
+    length = norm(vector)
     if not math.isfinite(length) or length == 0:
         drawing.tell("an arrow without a length is not drawn")
         return

@@ -20,6 +20,7 @@ from simkit.bridges.view.displays.display import (
 )
 from simkit.bridges.view.displays.drawing import Colour, Drawing, Floats
 from simkit.bridges.view.displays.frame_poses import Placement
+from simkit.linear_algebra import det, dot, eigh, norm
 from simkit.msgs.message_types import Message
 from simkit.pose import IDENTITY, Pose
 
@@ -108,8 +109,8 @@ class OdometryDisplay(Display):
             return
         last = self._trail[-1][1] if self._trail else None
         if last is not None:
-            angle = 2 * math.acos(min(1.0, abs(float(np.dot(pose.quaternion, last.quaternion)))))
-            if np.linalg.norm(pose.position - last.position) < _TRAIL_DISTANCE and angle < _TRAIL_ANGLE:
+            angle = 2 * math.acos(min(1.0, abs(dot(pose.quaternion, last.quaternion))))
+            if norm(pose.position - last.position) < _TRAIL_DISTANCE and angle < _TRAIL_ANGLE:
                 return
         self._trail.append((self._at, pose))
 
@@ -151,12 +152,12 @@ def draw_covariance(drawing: Drawing, at: Placement, pose: Pose, covariance: Any
         drawing.tell("a covariance with NaN or infinite values is not drawn")
         return
     matrix = values.reshape(6, 6)
-    variances, axes = np.linalg.eigh((matrix[:3, :3] + matrix[:3, :3].T) / 2)
+    variances, axes = eigh((matrix[:3, :3] + matrix[:3, :3].T) / 2)
     if variances.min() < -1e-9:
         drawing.tell("a covariance with negative variances is not drawn")
         return
     sizes = np.maximum(2 * np.sqrt(np.maximum(variances, 0.0)), 0.004)
-    if np.linalg.det(axes) < 0:
+    if det(axes) < 0:
         axes[:, 0] = -axes[:, 0]
     if variances.max() > 0:
         row = [*pose.position, *_quaternion(axes), *sizes, *_SPREAD]

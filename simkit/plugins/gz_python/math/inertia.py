@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from simkit.linear_algebra import det, eigh, eigvalsh, matmul
 from simkit.plugins.gz_python.math.matrices import Matrix3d
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
@@ -128,7 +129,7 @@ class MassMatrix3d(Value):
     def _set_rotated(self, mass: float, moments: tuple[float, float, float], rotation: list[CppArgument]) -> bool:
         self._mass = mass
         turn = Matrix3d(rotation[0]).array() if rotation else np.eye(3)
-        return self.set_moi(Matrix3d.of(turn @ np.diag(moments) @ turn.T))
+        return self.set_moi(Matrix3d.of(matmul(turn, np.diag(moments), turn.T)))
 
     # ------------------------------------------------------------------ principal axes
 
@@ -136,14 +137,14 @@ class MassMatrix3d(Value):
         """Return the principal moments in increasing order; for a diagonal matrix, the diagonal in its own order."""
         if max(abs(v) for v in self._off_diagonal) <= abs(tolerance):
             return Vector3d(self._diagonal)
-        return Vector3d(*np.linalg.eigvalsh(self.moi().array()).tolist())
+        return Vector3d(*eigvalsh(self.moi().array()).tolist())
 
     def principal_axes_offset(self, tolerance: float = DEFAULT_TOLERANCE) -> Quaterniond:
         """Return the rotation R of the principal axes: R · diag(principal moments) · Rᵀ is the moment matrix."""
         if max(abs(v) for v in self._off_diagonal) <= abs(tolerance):
             return Quaterniond()
-        _, axes = np.linalg.eigh(self.moi().array())
-        if np.linalg.det(axes) < 0.0:
+        _, axes = eigh(self.moi().array())
+        if det(axes) < 0.0:
             axes[:, 2] *= -1.0
         return Quaterniond(Matrix3d.of(axes))
 
@@ -242,21 +243,21 @@ class Inertiald(Value):
     def moi(self) -> Matrix3d:
         """Return the moments about the centre of mass, in the axes of the frame that contains the pose."""
         turn = Matrix3d(self._pose.rot()).array()
-        return Matrix3d.of(turn @ self._matrix.moi().array() @ turn.T)
+        return Matrix3d.of(matmul(turn, self._matrix.moi().array(), turn.T))
 
     def set_inertial_rotation(self, rotation: Quaterniond) -> bool:
         """Set the rotation of the pose and adapt the mass matrix, so that `moi` stays the same."""
         moi = self.moi().array()
         self._pose = Pose3d(self._pose.pos(), rotation)
         turn = Matrix3d(rotation).array()
-        return self._matrix.set_moi(Matrix3d.of(turn.T @ moi @ turn))
+        return self._matrix.set_moi(Matrix3d.of(matmul(turn.T, moi, turn)))
 
     def set_mass_matrix_rotation(self, rotation: Quaterniond, tolerance: float = DEFAULT_TOLERANCE) -> bool:
         """Set the rotation of the principal axes in the pose's axes and adapt the pose; `moi` stays the same."""
         moments, offset = self._matrix.principal_moments(tolerance), self._matrix.principal_axes_offset(tolerance)
         self._pose = Pose3d(self._pose.pos(), self._pose.rot() * offset * rotation.inverse())
         turn = Matrix3d(rotation).array()
-        return self._matrix.set_moi(Matrix3d.of(turn @ np.diag(list(moments)) @ turn.T))
+        return self._matrix.set_moi(Matrix3d.of(matmul(turn, np.diag(list(moments)), turn.T)))
 
     def __add__(self, other: Inertiald) -> Inertiald:
         """Return the inertia of both bodies together; the axes of the result are those of the common frame."""
@@ -269,7 +270,7 @@ class Inertiald(Value):
         moi = np.zeros((3, 3))
         for body, body_mass, position in zip((self, other), masses, centres, strict=True):
             arm = position - centre
-            moi += body.moi().array() + body_mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+            moi += body.moi().array() + body_mass * (matmul(arm, arm) * np.eye(3) - np.outer(arm, arm))
         matrix = MassMatrix3d(mass, Vector3d(), Vector3d())
         matrix.set_moi(Matrix3d.of(moi))
         return Inertiald(matrix, Pose3d(Vector3d(*centre.tolist()), Quaterniond()))

@@ -7,6 +7,7 @@ from typing import Any, ClassVar, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from simkit import linear_algebra
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number
@@ -39,10 +40,10 @@ class _SquareMatrix(Value):
         return float(self._m[self._index(row, column)])
 
     def determinant(self) -> float:
-        return float(np.linalg.det(self._m))
+        return float(linear_algebra.det(self._m))
 
     def inverse(self: M) -> M:
-        return self.of(np.linalg.inv(self._m))
+        return self.of(linear_algebra.inverse(self._m))
 
     def transposed(self: M) -> M:
         return self.of(self._m.T)
@@ -118,10 +119,10 @@ class Matrix3d(_SquareMatrix):
 
     def __mul__(self, other: CppArgument) -> Any:
         if isinstance(other, Matrix3d):
-            return Matrix3d.of(self._m @ other._m)
+            return Matrix3d.of(linear_algebra.matmul(self._m, other._m))
         if isinstance(other, (int, float)):
             return Matrix3d.of(self._m * other)
-        return Vector3d(*(self._m @ np.array(components_of(other, 3))).tolist())
+        return Vector3d(*linear_algebra.matmul(self._m, np.array(components_of(other, 3))).tolist())
 
     def __rmul__(self, other: float) -> Matrix3d:
         return Matrix3d.of(self._m * other)
@@ -165,5 +166,5 @@ class Matrix4d(_SquareMatrix):
 
     def __mul__(self, other: CppArgument) -> Any:
         if isinstance(other, Matrix4d):
-            return Matrix4d.of(self._m @ other._m)
-        return Vector3d(*(self._m @ np.array([*components_of(other, 3), 1.0]))[:3].tolist())
+            return Matrix4d.of(linear_algebra.matmul(self._m, other._m))
+        return Vector3d(*linear_algebra.matmul(self._m, np.array([*components_of(other, 3), 1.0]))[:3].tolist())

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
+from simkit.linear_algebra import matmul
 from simkit.plugins.gz_python.math.angle import Angle
 from simkit.plugins.gz_python.math.value_base import CppArgument, Value
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
@@ -178,12 +179,12 @@ class SphericalCoordinates(Value):
             point = place.ellipsoid.cartesian(*point.tolist())
         elif start is not Coordinates.ECEF:
             axes = level if start is Coordinates.GLOBAL else place.axes
-            point = place.origin + axes @ point
+            point = place.origin + matmul(axes, point)
         if end is Coordinates.SPHERICAL:
             return Vector3d(*place.ellipsoid.geodetic(*point.tolist()))
         if end is not Coordinates.ECEF:
             axes = level if end is Coordinates.GLOBAL else place.axes
-            point = axes.T @ (point - place.origin)
+            point = matmul(axes.T, point - place.origin)
         return Vector3d(*point.tolist())
 
     def velocity_transform(self, velocity: VectorLike, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
@@ -196,13 +197,13 @@ class SphericalCoordinates(Value):
             raise ValueError("a velocity is not defined in spherical coordinates; use ECEF, GLOBAL or LOCAL")
         place = self._place()
         axes = {Coordinates.ECEF: np.eye(3), Coordinates.GLOBAL: self._level(place), Coordinates.LOCAL: place.axes}
-        turned = axes[Coordinates(to_type)].T @ axes[Coordinates(from_type)]
-        return Vector3d(*(turned @ np.array(components_of(velocity, 3))).tolist())
+        turned = matmul(axes[Coordinates(to_type)].T, axes[Coordinates(from_type)])
+        return Vector3d(*matmul(turned, np.array(components_of(velocity, 3))).tolist())
 
     def _level(self, place: Any) -> Any:
         """Return east, north and up at the origin as columns in the planet's axes, shape (3, 3)."""
         sine, cosine = math.sin(float(self._heading)), math.cos(float(self._heading))
-        return place.axes @ np.array(((cosine, sine, 0.0), (-sine, cosine, 0.0), (0.0, 0.0, 1.0)))
+        return matmul(place.axes, np.array(((cosine, sine, 0.0), (-sine, cosine, 0.0), (0.0, 0.0, 1.0))))
 
     @staticmethod
     def distance_WGS84(lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:  # noqa: N802 - gz-math's name

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from simkit.linear_algebra import inverse, matmul
 from simkit.plugins.gz_python.math.simkit_conversion import cross_product
 from simkit.plugins.gz_python.sim.entity_table import Handle
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
@@ -193,10 +194,10 @@ def _apply_joint_velocities(sim: Simulation, commands: list[tuple[Joint, Numbers
     units, solved = np.zeros((len(dofs), model.nv)), np.zeros((len(dofs), model.nv))
     units[range(len(dofs)), dofs] = 1.0
     mujoco.mj_solveM(model, data, solved, units)
-    inertia = np.linalg.inv(solved[:, dofs])
+    inertia = inverse(solved[:, dofs])
     acceleration = (np.array([targets[d] for d in dofs]) - data.qvel[dofs]) / sim.timestep
     damping = sim.timestep * model.dof_damping[dofs] * acceleration
-    efforts = dict(zip(dofs, (inertia @ (acceleration - data.qacc[dofs]) + damping).tolist(), strict=True))
+    efforts = dict(zip(dofs, (matmul(inertia, acceleration - data.qacc[dofs]) + damping).tolist(), strict=True))
     for joint, _ in commands:
         values = [efforts.get(dof, 0.0) for dof in joint.mj_dofs]
         if values:

@@ -8,9 +8,8 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from simkit import msgs
+from simkit.linear_algebra import norm
 from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, DeadReckoning, command_of
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
 from simkit.plugins.one_time_warnings import OneTimeWarnings
@@ -287,7 +286,7 @@ class DiffDriveController(Controller):
         offset = scenes[0].pose_world.position - scenes[1].pose_world.position
         shapes = [c.geometry for c in self.sim.link(scenes[0].child_link).scene.collisions]
         radii = [shape.radius for shape in shapes if isinstance(shape, (Cylinder, Sphere))]
-        return float(np.linalg.norm(offset)), float(max(radii)) if radii else None
+        return norm(offset), float(max(radii)) if radii else None
 
 
 def _twist_stamped(time_ns: int, frame: str, ahead: float, turn: float) -> TwistStamped:

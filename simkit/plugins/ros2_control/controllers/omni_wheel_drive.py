@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from simkit.linear_algebra import matmul, pinv
 from simkit.params import Params
 from simkit.plugins.drives.odometry import Motion
 from simkit.plugins.ros2_control.reference_drive import ReferenceDrive, read_size
@@ -40,7 +41,7 @@ class OmniWheelDrive(ReferenceDrive):
         angles = params.number("wheel_offset", 0.0) + np.arange(count) * 2 * math.pi / max(count, 1)
         forward, left = np.sin(angles), -np.cos(angles)
         self._wheels_of_twist = np.stack([forward, left, np.full(count, -arm)], axis=1) / radius
-        self._twist_of_wheels = np.linalg.pinv(self._wheels_of_twist)
+        self._twist_of_wheels = pinv(self._wheels_of_twist)
         self._positions: np.ndarray | None = None
 
     def command_interfaces(self) -> Sequence[str]:
@@ -58,9 +59,9 @@ class OmniWheelDrive(ReferenceDrive):
         if self._feedback == "position":
             before, self._positions = self._positions, speeds
             speeds = (speeds - before) / period if before is not None and period > 0 else np.zeros(len(speeds))
-        x, y, turn = (float(value) for value in self._twist_of_wheels @ speeds)
+        x, y, turn = (float(value) for value in matmul(self._twist_of_wheels, speeds))
         return x, y, turn
 
     def wheel_commands(self, reference: Motion | None) -> list[float]:
-        speeds: list[float] = (self._wheels_of_twist @ np.array(reference or (0.0, 0.0, 0.0))).tolist()
+        speeds: list[float] = matmul(self._wheels_of_twist, np.array(reference or (0.0, 0.0, 0.0))).tolist()
         return speeds

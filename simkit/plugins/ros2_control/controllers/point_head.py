@@ -9,6 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.errors import InputError
+from simkit.linear_algebra import norm
 from simkit.msgs.goal_status import GoalStatus
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.head_pointing import HeadJoints, frame_link, frame_pose, is_moved_by_joint
@@ -95,7 +96,7 @@ class PointHeadAction(Controller):
         except InputError as error:
             goal.reject(str(error))
             return
-        if float(np.linalg.norm(target - neck.frame.position)) < 1e-6:
+        if norm(target - neck.frame.position) < 1e-6:
             goal.reject("the target is at the origin of the pointing frame")
             return
         speed = request.max_velocity
@@ -119,7 +120,7 @@ class PointHeadAction(Controller):
         axis = np.array([request.pointing_axis.x, request.pointing_axis.y, request.pointing_axis.z])
         if not axis.any():
             axis = self._own_axis
-        if not (np.abs(axis) <= _FARTHEST).all() or not (length := float(np.linalg.norm(axis))):
+        if not (np.abs(axis) <= _FARTHEST).all() or not (length := norm(axis)):
             raise InputError("the pointing axis is zero, or has a component that is NaN, infinite or too large")
         tilt = self.hardware.joints[self._joints[1]].handle
         frame = request.pointing_frame or self._own_frame or tilt.scene.child_link

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler.lights import MOST_LIGHTS
+from simkit.linear_algebra import matmul, norm
 from simkit.pose import Vector
 from simkit.sensors.values_with_expiry import temporary_values
 
@@ -152,10 +153,10 @@ def fit_shadow_maps(context: mujoco.MjrContext) -> None:
 def _snap_to_pixel_grid(position: Vector, direction: Vector, pixel: float) -> Vector:
     """Return a position rounded to a grid [m] that is fixed in the world and perpendicular to a direction."""
     side = np.cross(direction, (0.0, 0.0, 1.0) if abs(direction[2]) < 0.9 else (1.0, 0.0, 0.0))
-    side /= np.linalg.norm(side)
+    side /= norm(side)
     up = np.cross(direction, side)
     moved: Vector = position.copy()
     for axis in (side, up):
-        offset = float(axis @ position)
+        offset = float(matmul(axis, position))
         moved += (round(offset / pixel) * pixel - offset) * axis
     return moved

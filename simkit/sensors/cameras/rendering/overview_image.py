@@ -14,6 +14,8 @@ import numpy.typing as npt
 
 from simkit.compiler.geom_groups import VISUAL
 from simkit.compiler.name_map import LinkBinding
+from simkit.elementary_functions import tan
+from simkit.linear_algebra import norm
 from simkit.pose import Vector
 from simkit.runtime import Simulation
 from simkit.sensors.cameras.rendering import render_thread
@@ -76,9 +78,9 @@ def render_view(
     extent = float(model.stat.extent)
     middle = np.array(model.stat.center if target is None else target, dtype=np.float64)
     position = middle + extent * np.array((-1.1, -1.4, 1.1)) if eye is None else np.asarray(eye, dtype=np.float64)
-    half = np.tan(vertical_fov / 2)
+    half = tan(vertical_fov / 2)
     wide = half * width / height
-    distance = max(float(np.linalg.norm(middle - position)), 1e-6)
+    distance = max(norm(middle - position), 1e-6)
     view = View(width, height, -wide, wide, -half, half, min(0.01 * extent, 0.1 * distance), distance + 50.0 * extent)
     is_dark = model.nlight == 0
 

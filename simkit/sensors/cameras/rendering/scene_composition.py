@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler.geom_groups import DRAWN_COLLISION, VISUAL
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere, convert_point_lights, keep_strongest_lights
 from simkit.sensors.cameras.rendering.transparency import DRAWN_HERE
@@ -57,8 +58,8 @@ class Composition:
 
     def pose_of(self, shot: Shot) -> tuple[Vector, Vector]:
         """Return the position (3,) [m] and rotation (3, 3) of a shot in the world."""
-        position = self.position if shot.position is None else self.position + self.rotation @ shot.position
-        return position, self.rotation if shot.rotation is None else self.rotation @ shot.rotation
+        position = self.position if shot.position is None else self.position + matmul(self.rotation, shot.position)
+        return position, self.rotation if shot.rotation is None else matmul(self.rotation, shot.rotation)
 
 
 class Composer:
@@ -186,7 +187,7 @@ def _from_behind(composition: Composition, eye: Vector) -> list[int]:
     geoms, found = composition.scene.geoms, []
     for index in composition.planes:
         plane = geoms[index]
-        if (eye - plane.pos) @ np.asarray(plane.mat).reshape(3, 3)[:, 2] < 0.0:
+        if matmul(eye - plane.pos, np.asarray(plane.mat).reshape(3, 3)[:, 2]) < 0.0:
             found.append(index)
     return found
 

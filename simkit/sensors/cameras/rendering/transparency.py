@@ -14,6 +14,7 @@ from typing import Final
 import mujoco
 import numpy as np
 
+from simkit.linear_algebra import norm
 from simkit.pose import Vector
 
 _SPHERE, _TOP, _BOTTOM, _CYLINDER, _TUBE, _BOX = 0, 1, 2, 3, 4, 6
@@ -45,7 +46,7 @@ def draw_transparent(scene: mujoco.MjvScene, context: mujoco.MjrContext, indices
 
     geoms = [scene.geoms[i] for i in indices]
     plane = _KINDS.mjGEOM_PLANE
-    geoms.sort(key=lambda g: -1e9 if g.type == plane else -float(np.linalg.norm(np.asarray(g.pos) - eye)))
+    geoms.sort(key=lambda g: -1e9 if g.type == plane else -norm(np.asarray(g.pos) - eye))
     if scene.flags[mujoco.mjtRndFlag.mjRND_FOG]:
         GL.glEnable(GL.GL_FOG)
     for light in range(scene.nlight):

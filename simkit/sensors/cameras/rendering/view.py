@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import norm
 from simkit.pose import Vector
 
 Colours = npt.NDArray[np.uint8]
@@ -78,10 +79,10 @@ class DrawnView:
 def look_at(eye: Vector, target: Vector) -> Vector:
     """Return the rotation (3, 3) of an upright camera frame (x forward, y left, z up) at `eye` that faces `target`."""
     forward = np.asarray(target, dtype=np.float64) - eye
-    forward /= max(float(np.linalg.norm(forward)), 1e-12)
+    forward /= max(norm(forward), 1e-12)
     up = np.array((0.0, 0.0, 1.0)) if abs(forward[2]) < 0.999 else np.array((1.0, 0.0, 0.0))
     left = np.cross(up, forward)
-    left /= np.linalg.norm(left)
+    left /= norm(left)
     return np.stack((forward, left, np.cross(forward, left)), axis=1)
 
 

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.sensors.cameras.rendering.view import View
 
@@ -42,8 +43,8 @@ class Bounds:
         """
         normals, distances = _planes(view)
         # few NumPy calls, because each is slow after drawing: the processor's cache no longer contains Python's code
-        rotated = normals @ rotation.T
-        beyond = self.centres @ rotated.T - (distances + rotated @ position)
+        rotated = matmul(normals, rotation.T)
+        beyond = matmul(self.centres, rotated.T) - (distances + matmul(rotated, position))
         found: list[int] = np.flatnonzero((beyond > self.radii[:, None]).any(axis=1)).tolist()
         return found
 

@@ -14,6 +14,7 @@ from simkit.testing.golden.cause.first_tick import FirstDifferentTick, first_dif
 from simkit.testing.golden.cause.rerun import ChangeWorld, RunChangedWorld, ScenarioRerun, can_be_undone, rerun_scenario
 from simkit.testing.golden.compare.difference import Cause, Comparison, Explanation
 from simkit.testing.golden.compare.world_edits import model_edits
+from simkit.testing.run_record.fingerprint import PROCESSOR_FEATURES
 from simkit.testing.run_record.record import RunRecord
 
 IsSameRun = Callable[[frozenset[int]], bool | None]
@@ -245,11 +246,23 @@ def _end(reason: str) -> str:
 
 
 def _no_cause(golden: RunRecord, run: RunRecord) -> str:
-    same = golden.fingerprint == run.fingerprint
-    where = "the versions and the machine are the same" if same else "the versions or the machine differ"
-    return f"no input of the run changed; {where}" + (
-        "; the run is not deterministic: `simkit certify` finds the reason" if same else ""
-    )
+    if golden.fingerprint == run.fingerprint:
+        return (
+            "no input of the run changed; the versions and the machine are the same; "
+            "the run is not deterministic: `simkit certify` finds the reason"
+        )
+    changed = {name for name in {*golden.fingerprint, *run.fingerprint} if _entry_differs(golden, run, name)}
+    if changed == {PROCESSOR_FEATURES}:
+        before, after = (record.fingerprint.get(PROCESSOR_FEATURES, "") for record in (golden, run))
+        return (
+            f"no input of the run changed; the processors differ ({before} → {after}): code of plugins that uses "
+            "NumPy's `@`, `np.linalg` or functions such as `np.exp` gives other bits there (docs/determinism.md)"
+        )
+    return "no input of the run changed; the versions or the machine differ"
+
+
+def _entry_differs(golden: RunRecord, run: RunRecord, name: str) -> bool:
+    return golden.fingerprint.get(name, "") != run.fingerprint.get(name, "")
 
 
 def _sentence(cause: Cause) -> str:

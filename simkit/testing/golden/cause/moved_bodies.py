@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from simkit.linear_algebra import norm
 from simkit.pose import Pose, Vector
 from simkit.testing.golden.cause.first_tick import distinct_digits
 from simkit.testing.golden.compare.world_edits import Edit, entity_kind, parent_path, scoped_name, split_entity_path
@@ -177,7 +178,7 @@ def _motion_text(golden: Pose, run: Pose) -> tuple[str, str]:
     moved = run.position - golden.position
     turn = (run @ golden.inverse()).quaternion
     words, numbers = [], []
-    distance = float(np.linalg.norm(moved))
+    distance = norm(moved)
     if distance > _CLOSE * (1 + float(np.abs(golden.position).max())):
         words.append(f"moved {_length(distance)} along {_axis(moved / distance)}")
         numbers += [
@@ -185,7 +186,7 @@ def _motion_text(golden: Pose, run: Pose) -> tuple[str, str]:
             for name, a, b in zip("xyz", golden.position, run.position, strict=True)
             if abs(b - a) > 1e-3 * distance
         ]
-    sine = float(np.linalg.norm(turn[1:]))
+    sine = norm(turn[1:])
     angle = 2 * math.atan2(sine, abs(float(turn[0])))
     if angle > _CLOSE:
         axis = turn[1:] / sine * (1.0 if turn[0] >= 0 else -1.0)

@@ -55,6 +55,7 @@ class Comparison:
         machine: Entries of the fingerprint that differ: name -> (golden, run).
         topics: Number of compared topics.
         messages: Number of compared messages.
+        is_identical: True if all compared outputs have the same bits, although the machine may differ.
     """
 
     tier: Literal["exact", "tolerant"]
@@ -63,11 +64,17 @@ class Comparison:
     machine: dict[str, tuple[str, str]] = field(default_factory=dict)
     topics: int = 0
     messages: int = 0
+    is_identical: bool = True
 
     @property
     def passed(self) -> bool:
         """True if no difference exceeds its tolerance."""
         return not self.differences
+
+    @property
+    def can_be_blessed(self) -> bool:
+        """True if outputs differ, or have other bits within the tolerances because machine or versions differ."""
+        return not self.passed or (bool(self.machine) and not self.is_identical)
 
 
 @dataclass(frozen=True)

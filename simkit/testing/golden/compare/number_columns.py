@@ -10,6 +10,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.elementary_functions import arctan2
+from simkit.linear_algebra import norm
 from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, FlatValues
@@ -277,7 +279,7 @@ def compare_orientation(terms: FieldTerms, golden: list[Column], run: list[Colum
             return None
     step = max(c.step for c in (*golden, *run))
     vector, scalar = _rotation_between(a, b)
-    angle = 2.0 * np.arctan2(np.linalg.norm(vector, axis=-1), np.abs(scalar))
+    angle = 2.0 * arctan2(np.linalg.norm(vector, axis=-1), np.abs(scalar))
     moved = (np.abs(a - b) > HALF_STEP * step).any(axis=-1)
     if terms.is_exact:
         limit = np.where(moved, -1.0, np.inf)
@@ -299,7 +301,7 @@ def _with_axis(
     start = int(values.widths[: difference.index].sum())
     here = slice(start, start + max(1, int(values.widths[difference.index])))
     most = start + int(np.argmax(np.linalg.norm(vector[here], axis=-1)))
-    length = float(np.linalg.norm(vector[most]))
+    length = norm(vector[most])
     words = difference.words
     if difference.size <= rounding:
         words = f"{terms.name}: the same rotation with opposite quaternion sign from {time_text(difference.time)}"

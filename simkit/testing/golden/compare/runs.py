@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 
 import numpy as np
 
@@ -12,10 +13,11 @@ from simkit.testing.golden.compare.physics_states import compare_physics
 from simkit.testing.golden.compare.streams import StreamPair, begin_time, compare_stream
 from simkit.testing.golden.compare.tolerances import tolerance_of
 from simkit.testing.golden.compare.world_edits import field_edits
-from simkit.testing.run_record.fingerprint import fingerprint_differences
+from simkit.testing.run_record.fingerprint import RAY_TRACER, fingerprint_differences
 from simkit.testing.run_record.record import RunRecord, Stream
 
 _PICTURES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+_RAYS = ("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/Range")
 _NOTES = 12  # maximum number of notes about topics
 
 
@@ -32,18 +34,27 @@ def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> 
         exact = False
     same = not fingerprint_differences(golden.fingerprint, run.fingerprint) if exact is None else exact
     same_pictures = not fingerprint_differences(golden.fingerprint, run.fingerprint, True) if exact is None else exact
+    same_rays = golden.fingerprint.get(RAY_TRACER) == run.fingerprint.get(RAY_TRACER) if exact is None else exact
     is_reordered = exact is None and same and _is_reordered(golden, run)
     if is_reordered:  # the engine sums values in file order, so the rounding differs
-        same = same_pictures = False
+        same = same_pictures = same_rays = False
     found = Comparison("exact" if same else "tolerant")
     if is_reordered:
         found.notes.append("the entities of the world have another order, so bits need not be equal")
+
+    def must_be_equal(stream: Stream) -> bool:
+        return same and (same_pictures or not _is_rendered(stream)) and (same_rays or not _is_traced(stream))
+
     found.machine = fingerprint_differences(
-        golden.fingerprint, run.fingerprint, any(map(_is_rendered, run.streams.values()))
+        golden.fingerprint,
+        run.fingerprint,
+        pictures=any(map(_is_rendered, run.streams.values())),
+        rays=any(map(_is_traced, run.streams.values())),
     )
     with np.errstate(all="ignore"):  # compared values may be NaN or infinite
-        _compare_topics(golden, run, same, same_pictures, found)
+        _compare_topics(golden, run, must_be_equal, found)
     if run.scenario.state:
+        found.is_identical &= golden.states.named_digest == run.states.named_digest
         physics = compare_physics(golden.states, run.states, same, joint_units(run))
         if physics is not None:
             found.differences.append(physics)
@@ -78,7 +89,9 @@ def joint_units(record: RunRecord) -> dict[str, str]:
 # ---------------------------------------------------------------------- topics
 
 
-def _compare_topics(golden: RunRecord, run: RunRecord, same: bool, same_pictures: bool, found: Comparison) -> None:
+def _compare_topics(
+    golden: RunRecord, run: RunRecord, must_be_equal: Callable[[Stream], bool], found: Comparison
+) -> None:
     notes: list[str] = []
     joints = joint_units(run)
     for topic in sorted(golden.streams.keys() | run.streams.keys()):
@@ -91,8 +104,9 @@ def _compare_topics(golden: RunRecord, run: RunRecord, same: bool, same_pictures
         elif mine is None or other is None:
             found.differences.append(_missing_topic(known, mine is None, golden, run))
         else:
-            is_exact = same_pictures if _is_rendered(other) else same
+            is_exact = must_be_equal(other)
             result = compare_stream(StreamPair(mine, other, run.scenario, is_exact, run.states.timestep, joints))
+            found.is_identical &= bool(mine.digest) and mine.digest == other.digest
             found.differences += result.differences
             notes += result.notes
             found.topics += 1
@@ -116,6 +130,11 @@ def _missing_topic(stream: Stream, is_new: bool, golden: RunRecord, run: RunReco
 def _is_rendered(stream: Stream) -> bool:
     """Check whether a renderer produced the topic."""
     return stream.pictures is not None or stream.type_name in _PICTURES
+
+
+def _is_traced(stream: Stream) -> bool:
+    """Check whether rays of a sensor produced the topic."""
+    return stream.type_name in _RAYS
 
 
 # ---------------------------------------------------------------------- end, world, diagnostics

@@ -46,7 +46,12 @@ def text_report(verdict: Verdict, width: int = 100, *, most: int = MAX_DIFFERENC
 def passed_text(verdict: Verdict) -> str:
     """Describe the comparison of a run that passed: `5 topics, 1200 messages, bit for bit; 2 checks (1.3 s)`."""
     comparison = verdict.comparison
-    tier = "bit for bit" if comparison.tier == "exact" else "within the tolerances"
+    if comparison.tier == "exact" or comparison.is_identical:
+        tier = "bit for bit"
+    else:
+        tier = "within the tolerances" + (
+            f" of another machine ({machine_text(comparison)})" if comparison.machine else ""
+        )
     parts = [f"{_count(comparison.topics, 'topic')}, {_count(comparison.messages, 'message')}, {tier}"]
     if verdict.checks:
         parts.append(f"{_count(len(verdict.checks), 'check')} passed")
