@@ -108,7 +108,8 @@ def _check_kind(handle: int, path: Path, *, allow_pipe: bool) -> bool:
 def _read_pieces(handle: int, left: int, *, is_pipe: bool) -> bytes:
     pieces = []
     while left > 0:
-        if is_pipe and not select.select([handle], [], [], PIPE_TIMEOUT)[0]:
+        # on Windows, `select` accepts sockets only, and the read waits for the writer
+        if is_pipe and os.name != "nt" and not select.select([handle], [], [], PIPE_TIMEOUT)[0]:
             raise OSError(errno.ETIMEDOUT, f"nothing came through the pipe for {PIPE_TIMEOUT:g} s")
         piece = os.read(handle, min(left, 1 << 24))
         if not piece:

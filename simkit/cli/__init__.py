@@ -26,10 +26,15 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character must not end the run
-    with permanent_imports():
-        from simkit.cli.commands import app
-        from simkit.cli.terminal.output import output_failure_exit_code, print_error
-        from simkit.errors import SimkitError
+    try:
+        with permanent_imports():
+            from simkit.cli.commands import app
+            from simkit.cli.terminal.output import output_failure_exit_code, print_error
+            from simkit.errors import SimkitError
+    except ImportError as error:
+        if hasattr(sys.modules["simkit"], "_DISTRIBUTION"):
+            raise
+        sys.exit(f"error: {error}")  # another project with the same import name has replaced simkit's first file
 
     try:
         try:

@@ -13,7 +13,9 @@ from typing import Any
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.output import stdout_console
+from simkit.install_command import install_command
 from simkit.mujoco_import import REINSTALL
+from simkit.name_conflict import find_conflict
 from simkit.version import __version__
 
 _PACKAGES = (
@@ -22,7 +24,6 @@ _PACKAGES = (
     "trimesh",
     "opencv-python-headless",
     "rosbags",
-    "mcap",
     "typer",
     "rich",
     "PyYAML",
@@ -73,6 +74,7 @@ def doctor(json_: options.Json = False) -> int:  # noqa: ARG001 (`report_errors_
     missing, engine = _versions(found), _engine(found)
     broken = missing + engine
     unusable = [] if engine else _renderer(found)
+    unusable += list(filter(None, [find_conflict()]))
     for name, value in found.items():
         _line(name, value)
     folders = _folders()
@@ -101,7 +103,7 @@ def _versions(found: dict[str, str]) -> list[str]:
             found[name] = version(name)
         except PackageNotFoundError:
             found[name] = "missing"
-            problems.append(f"{name} is missing: pip install --force-reinstall simkit-robotics")
+            problems.append(f"{name} is missing: {install_command(option='--force-reinstall')}")
     return problems
 
 

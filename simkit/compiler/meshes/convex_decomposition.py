@@ -39,6 +39,7 @@ from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.meshes.surface_patches import LEAST_TOLERANCE, TRIANGLES_FROM, is_large, large_surface_pieces
 from simkit.float_sum import float_sum
+from simkit.install_command import install_command
 from simkit.linear_algebra import matmul, norm
 
 THRESHOLD: Final = 0.05
@@ -73,7 +74,7 @@ def decompose(vertices: Floats, faces: Ints, most: int) -> list[Floats]:
     """
     if not is_available():
         raise DecompositionError(
-            "convex decomposition needs CoACD, which is not installed", "pip install 'simkit-robotics[decompose]'"
+            "convex decomposition needs CoACD, which is not installed", install_command("decompose")
         )
     with tempfile.TemporaryDirectory(prefix="simkit-") as folder:
         source, target = Path(folder) / "in.npz", Path(folder) / "out.npz"

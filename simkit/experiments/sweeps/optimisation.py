@@ -32,6 +32,7 @@ from simkit.experiments.sweeps.sweep import (
 )
 from simkit.experiments.sweeps.sweep_spec import INVALID, SweepSpec, name_problems, raise_problems
 from simkit.float_sum import float_sum
+from simkit.install_command import install_command
 
 _TOGETHER: Final = 8
 """Number of points that are asked for together; more would use fewer results for each point."""
@@ -106,7 +107,7 @@ def _optuna() -> Any:
         optuna = import_module("optuna")
     except ImportError:
         text = "SK-INPUT-004 a search needs optuna, which is missing"
-        raise InputError(f"{text}\n    help: pip install 'simkit-robotics[search]'", "SK-INPUT-004") from None
+        raise InputError(f"{text}\n    help: {install_command('search')}", "SK-INPUT-004") from None
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     return optuna
 
