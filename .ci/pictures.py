@@ -22,7 +22,7 @@ from simkit.recording.pictures.camera import Camera, frame_points, line_of_sight
 from simkit.recording.pictures.frames import Look, draw_frame
 from simkit.recording.pictures.overlay import Marks
 from simkit.recording.pictures.subject import find_subject
-from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.overview_image import render_view
 
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images"

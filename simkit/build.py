@@ -38,6 +38,7 @@ from simkit.run_spec import (
     NamedValues,
     PackagePaths,
     PluginErrorPolicy,
+    RendererName,
     RunSpec,
     named_values,
 )
@@ -45,6 +46,7 @@ from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
 from simkit.scene.overrides import Overrides, apply_overrides, check_used, override_texts, xacro_overrides
 from simkit.sensors import sensor_kinds
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
+from simkit.sensors.cameras.rendering.requested_renderer import with_renderer
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
 from simkit.writers.inspect_description import describe_scene
 
@@ -78,6 +80,7 @@ def load(
     params_files: ParameterFileArgument | Sequence[ParameterFileArgument] = (),
     change_world: Callable[[SceneWorld], SceneWorld] | None = None,
     interfaces: Sequence[Source] = (),
+    renderer: RendererName | None = None,
 ) -> Simulation:
     """Load a world or a single model and return a simulation that is ready to step.
 
@@ -88,30 +91,28 @@ def load(
         plugin_paths: folders whose Python plugins a file may name.
         plugins: plugins made in Python. Each item is an instance, `MyPlugin(gain=2)`, or a pair of the scoped name of
             its parent and the instance, `("robot::arm", MyPlugin())`. Without a parent, a plugin is attached to the
-            world, or to the only model, sensor or visual. A class or module with Gazebo's hooks (`pre_update`, …) is
-            also accepted.
+            world, or to the only model, sensor or visual. A class or module with Gazebo's hooks is also accepted.
         base: base of a single model: "fixed", "floating", or "auto" (floating unless a joint connects it to the world).
         xacro_args: arguments for xacro files.
         strict: treat warnings as errors, and cameras without a renderer.
         overrides: `PATH=VALUE` texts as for `--set`, or values by path.
         sleep: leave bodies at rest out of the physics until something reaches them; see `docs/sleeping.md`.
         package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`; or a list of workspaces.
-        render_thread: draw camera images on a second thread in parallel to the physics; the images have the same bits.
-            The default is True if the process may use two processor cores or more.
+        render_thread: draw camera images on a second thread, with the same bits. Default: with two cores or more.
         on_error: policy for a plugin that raises: "stop" ends the run with a PluginError, "disable" continues without
-            the plugin. The argument has priority over the file (`<simkit:on_error>`) and the plugin's class. With None,
-            the file or the class sets the policy; the default is "stop".
+            the plugin. With None, the file (`<simkit:on_error>`) or the plugin's class decides; the default is "stop".
         spawn: models to add while the world is loaded: `"MODEL:x,y,yaw[:name]"` texts or `SpawnedModel` objects. MODEL
             is a file or a bare name. Each stands on what is below it, unless a height is given: `"MODEL:x,y,z,yaw"`.
             Unlike models of `Simulation.spawn`, these models are still present after a reset.
         model_world: world of a bare model, in which the model stands on what is below it: "ground" for level ground and
             a sun, a file, or the bare name of a world. "none" is empty space.
         params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2.
-            `"MODEL=FILE"` limits a file to one model. Models that are spawned later read these files too. Values in
-            these files have priority over the files that the plugins name.
-        change_world: function that receives the resolved world, with all options above applied, and returns the world
-            to build.
+            `"MODEL=FILE"` limits a file to one model. Models that are spawned later read these files too. Their values
+            have priority over the files that the plugins name.
+        change_world: function that receives the resolved world, with all options applied, and returns the one to build.
         interfaces: folders with definitions of messages, services and actions; see `docs/own_messages.md`.
+        renderer: renderer of images: "gl", "software", or "auto", which is OpenGL if it can be opened, else software.
+            With None, the file (`<simkit:renderer>`) decides; the default is "auto".
 
     Returns:
         Simulation at t = 0.
@@ -119,7 +120,7 @@ def load(
     Raises:
         LoadError: the input has errors; the exception lists all of them.
         PluginError: a plugin raised while it was loaded.
-        RenderError: a plugin subscribes to images, but there is no renderer.
+        RenderError: the renderer "gl" is requested, but OpenGL cannot be opened.
     """
     check_source_arguments(
         source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base
@@ -128,7 +129,7 @@ def load(
     seed = check_load_arguments(
         seed=seed, plugin_paths=plugin_paths, plugins=plugins, strict=strict, overrides=overrides, sleep=sleep,
         on_error=on_error, spawn=spawn, params_files=params_files, change_world=change_world, model_world=model_world,
-        interfaces=interfaces,
+        interfaces=interfaces, renderer=renderer,
     )  # fmt: skip
     import_mujoco()
     from simkit.compiler import SpecBuilder
@@ -150,6 +151,7 @@ def load(
         world = scene.world if diagnostics.has_errors else stand_models(scene.world, scene.standing, diagnostics)
         if not sleep:
             world = replace(world, physics=replace(world.physics, sleep=False))
+        world = with_renderer(world, renderer)
         world = add_actor_models(world, find_file, diagnostics)
         return world if change_world is None or diagnostics.has_errors else change_world(world)
 
@@ -196,7 +198,7 @@ def load(
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
         "xacro_args": named_values(xacro_args, "xacro_args"), "package_paths": package_paths or {},
         "params_files": params_files, "strict": strict, "sleep": sleep, "render_thread": render_thread,
-        "on_error": on_error, "interfaces": tuple(interfaces),
+        "on_error": on_error, "interfaces": tuple(interfaces), "renderer": renderer,
     }  # fmt: skip
     simulation.run_spec = RunSpec(
         os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
@@ -305,7 +307,8 @@ def _scene(
         found = read(source, diagnostics, base)
         scene = replace(add_model_world(found, model_world, read, diagnostics), arguments=found.arguments)
         if spawn:
-            scene = add_spawned_models(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
+            read_model = partial(_spawned_model, resolver=resolver)
+            scene = add_spawned_models(scene, spawn, resolver, diagnostics, read_model, xacro_args)
     return scene
 
 
@@ -318,15 +321,11 @@ def _overridden(scene: Scene, overrides: Sequence[str], diagnostics: Diagnostics
     return apply_overrides(with_sensors_colours(scene), of_scene)
 
 
-def _spawned_reader(resolver: Resolver) -> Any:
-    """Return a function that reads a model for `spawn`; for a model with errors, it records them and returns None."""
-
-    def read(source: Source, diagnostics: Diagnostics, **options: Any) -> SceneModel | None:
-        with suppress(LoadError):
-            return _model_to_spawn(source, diagnostics, resolver=resolver, **options)
-        return None
-
-    return read
+def _spawned_model(source: Source, diagnostics: Diagnostics, **options: Any) -> SceneModel | None:
+    """Return a model for `spawn`; for a model with errors, record them and return None."""
+    with suppress(LoadError):
+        return _model_to_spawn(source, diagnostics, **options)
+    return None
 
 
 def _read_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[Any]:

@@ -12,7 +12,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final, Literal, Protocol, TypedDict, cast
+from typing import Any, Final, Literal, Protocol, TypedDict, cast, get_args
 
 from simkit.errors import InputError
 
@@ -22,6 +22,9 @@ JsonMapping = Mapping[str, Any]
 """Object of JSON or YAML: texts, numbers, truth values, lists and objects by name."""
 PluginErrorPolicy = Literal["stop", "disable"]
 """Policy for a plugin that raises: end the run, or continue without the plugin."""
+RendererName = Literal["auto", "gl", "software"]
+"""Renderer of images: OpenGL, simkit's software renderer, or OpenGL if this machine has it and else software."""
+RENDERERS: Final[tuple[str, ...]] = get_args(RendererName)
 
 GROUND: Final = "ground"
 """World of a bare model: level ground and a sun."""
@@ -211,6 +214,7 @@ class LoadOptions(SourceOptions, total=False):
     sleep: bool
     render_thread: bool | None
     on_error: PluginErrorPolicy | None
+    renderer: RendererName | None
 
 
 class LoadArguments(LoadOptions, total=False):

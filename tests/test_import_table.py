@@ -130,6 +130,7 @@ SLOW_MODULES = {
     "simkit.compiler.meshes.surface_patches": "comes with convex_decomposition",
     "simkit.loaders.xacro.expansion": "5 ms; only xacro files need it",
     "simkit.plugins.gz.gz_system_plugin": "12 ms; only systems of gz in Python need it",
+    "simkit.sensors.cameras.rendering.software.software_renderer": "20 ms; only images without OpenGL need it",
     "simkit.runtime.engine.stream_key": "6 ms, of NumPy's generators; only random numbers need it",
 }
 """Modules of simkit that may be imported inside a function, with the time that a run without them saves."""

@@ -29,6 +29,7 @@ def video(
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
+    renderer: options.Renderer = None,
     json_: options.Json = False,
 ) -> int:
     """Film a bag: its poses or odometry, joint states and scans, drawn in its world."""
@@ -37,15 +38,15 @@ def video(
     from simkit.recording.bags.reader import open_bag_to_read
     from simkit.recording.films.film import film_bag
     from simkit.recording.films.film import film_options as read_options
-    from simkit.sensors.cameras.rendering.overview_image import render_view
+    from simkit.sensors.cameras.overview_image import render_view
 
     is_gif = output.suffix.lower() == ".gif"
     found = read_options(output if is_gif else None, None if is_gif else output, resolution, fps, camera)
     assert found is not None
-    check_renderer()
-    loading = load_options(resource_path, package_path, [], "auto", plugin_path)
+    loading = load_options(resource_path, package_path, [], "auto", plugin_path, renderer=renderer)
     with open_bag_to_read(recording) as bag, Interrupts() as interrupts:
         with load(world, overrides=tuple(set_), spawn=tuple(spawn), **loading) as sim:
+            check_renderer(sim)
             print_diagnostics(sim.diagnostics, verbose=False)
             count, moved = film_bag(sim, bag, found, render_view, (start, end), lambda: interrupts.exit_code != 0)
         if not moved:

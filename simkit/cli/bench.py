@@ -27,6 +27,7 @@ def bench(
     package_path: options.PackagePaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    renderer: options.Renderer = None,
     model_world: options.ModelWorld = None,
 ) -> None:
     """Compare the speed of a world with bare MuJoCo."""
@@ -40,7 +41,7 @@ def bench(
     spec = RunSpec(
         world,
         model_world=model_world or GROUND,
-        options=load_options(resource_path, package_path, xacro_arg, base, plugin_path),
+        options=load_options(resource_path, package_path, xacro_arg, base, plugin_path, renderer=renderer),
     )
     figures = []
     for figure in compare_with_bare_mujoco(spec, rounds=rounds):

@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.renderer_choice import renderer_of
 from simkit.sensors.cameras.rendering import gl_context, render_thread
-from simkit.sensors.cameras.rendering.renderer import renderer_of
+from simkit.sensors.cameras.rendering.appearance import Appearance, Quality
 from simkit.sensors.cameras.rendering.scene_composition import visuals_only_options
 from simkit.sensors.cameras.rendering.view import aim
 from simkit.sensors.rays.lidar import Lidar
@@ -21,7 +22,6 @@ from simkit.sensors.rays.lidar import Lidar
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.sensors.base import Sensor
-    from simkit.sensors.cameras.rendering.renderer import Renderer
 
 _ALL_GEOMS = int(mujoco.mjtCatBit.mjCAT_ALL)
 Numbers = npt.NDArray[np.float64]
@@ -62,7 +62,7 @@ class BareCamera:
         composition = renderer_of(sim).composer.compose(self.model, self.data, *sensor._frame_in_world(self.data))
         self._scene.flags[:] = composition.scene.flags
         with self.current():
-            self._context = _upload(self.model, renderer_of(sim))
+            self._context = _upload(self.model, Appearance.of(sim.world).quality)
             mujoco.mjr_resizeOffscreen(self.view.width, self.view.height, self._context)
 
     @contextlib.contextmanager
@@ -120,11 +120,11 @@ class BareCamera:
             self._context.free()
 
 
-def _upload(model: mujoco.MjModel, renderer: Renderer) -> mujoco.MjrContext:
+def _upload(model: mujoco.MjModel, quality: Quality) -> mujoco.MjrContext:
     """Create MuJoCo's context with the multisampling and the shadow map size of the simulation's cameras."""
-    own, target = model.vis.quality, renderer._appearance.quality
+    own = model.vis.quality
     original = own.offsamples, own.shadowsize
-    own.offsamples, own.shadowsize = target.samples, target.shadow_map
+    own.offsamples, own.shadowsize = quality.samples, quality.shadow_map
     try:
         context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
     finally:

@@ -18,6 +18,7 @@ from simkit.plugins import WorldPlugin
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.scheduler import Phase
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.renderer_choice import GL, chosen_renderer
 from simkit.sensors.rays.lidar import Lidar
 
 if TYPE_CHECKING:
@@ -231,8 +232,8 @@ def _compare_hand_written(
 def compare_sensor(sim: Simulation, sensor: Sensor, rounds: int) -> Figure:
     """Compare one sample of a sensor, including its message, with bare MuJoCo on up-to-date data.
 
-    A scan is compared with its bare rays, an image with one bare rendering pass. Images have no noise here, and point
-    clouds are not built.
+    A scan is compared with its bare rays, an image of OpenGL with one bare rendering pass. Images have no noise here,
+    and point clouds are not built.
     """
     clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
     taps = [sim.communication.bus.tap(t, _ignore_message) for p, t in sensor._topics.items() if p not in clouds]
@@ -244,7 +245,8 @@ def compare_sensor(sim: Simulation, sensor: Sensor, rounds: int) -> Figure:
     if isinstance(sensor, RenderedCamera):
         count = 5
         vars(sensor)["perturb"] = lambda reading, _index: reading  # for this sensor only
-        if len(sensor.shots()) == 1 and not sensor.shots()[0].ids:
+        is_colour = len(sensor.shots()) == 1 and not sensor.shots()[0].ids
+        if is_colour and chosen_renderer(sim) == GL:
             one_pass, aim = BareCamera(sim, sensor), 1.15
         name += ", no noise"
     elif isinstance(sensor, Lidar):

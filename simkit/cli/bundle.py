@@ -38,6 +38,7 @@ def bundle(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    renderer: options.Renderer = None,
 ) -> None:
     """Run a world or scenario and pack it into a repeatable bundle.
 
@@ -50,7 +51,7 @@ def bundle(
 
     check_file(output, overwrite=force)
     scenario = scenario_spec(
-        world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file),
+        world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer),
         duration=duration, seed=seed, overrides=set_, spawn=spawn, cmd_vel=cmd_vel, script=script,
         model_world=model_world,
     )  # fmt: skip

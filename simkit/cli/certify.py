@@ -41,6 +41,7 @@ def certify(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    renderer: options.Renderer = None,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     output: Annotated[Path | None, option("Certificate to write, as JSON.", "FILE.json", "--out", "-o")] = None,
 ) -> int:
@@ -51,7 +52,7 @@ def certify(
 
     check_writable(output)
     scenario = scenario_spec(
-        world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file),
+        world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer),
         duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn, cmd_vel=cmd_vel,
         model_world=model_world, script=script, usual_duration=_DEFAULT_DURATION,
     )  # fmt: skip

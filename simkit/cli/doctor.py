@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import platform
 import subprocess
@@ -54,38 +55,58 @@ except InstallationError as error:
 
 # Graphics drivers can crash the process; in a separate process, the crash is one more result of the check.
 _DRAW = """
+import json, logging, sys, time
 import simkit
 from simkit.mujoco_import import import_mujoco
 import_mujoco()
-from simkit.sensors.cameras.rendering.gl_context import describe_renderer
-from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.overview_image import render_view
+from simkit.sensors.cameras.renderer_choice import FALLBACK, describe_renderer
+logging.disable()  # the note about the fallback is part of the result
 world = ("<sdf version='1.12'><world name='w'><model name='m'><static>true</static><link name='l'><visual name='v'>"
          "<geometry><sphere><radius>1</radius></sphere></geometry></visual></link></model></world></sdf>")
-with simkit.load(world) as sim:
-    picture = render_view(sim, 64, 48)
-print("OK", describe_renderer() or "renderer", "black" if picture.max() == picture.min() else "")
+try:
+    with simkit.load(world, renderer=sys.argv[1]) as sim:
+        times = []
+        for _ in range(5):
+            began = time.perf_counter()
+            picture = render_view(sim, 320, 240)
+            times.append(time.perf_counter() - began)
+        notes = [f"{d.code} {d.message}" for d in sim.diagnostics if d.code == FALLBACK]
+        print("OK", json.dumps([describe_renderer(sim), min(times), bool(picture.max() == picture.min()), notes]))
+except simkit.RenderError as error:
+    print("NO", error)
 """
+_USE_SOFTWARE = "    help: draw with --renderer software, or switch OpenGL off: export MUJOCO_GL=disable"
 
 
 @report_errors_and_json
-def doctor(json_: options.Json = False) -> int:  # noqa: ARG001 (`report_errors_and_json` reads it)
-    """Check the installation and print a remedy for each problem."""
+def doctor(
+    renderer: options.Renderer = None,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
+) -> int:
+    """Check the installation and print a remedy for each problem.
+
+    The exit code is 1 if a required part or the renderer fails. A machine without OpenGL is a note, because the
+    software renderer draws there.
+    """
+    requested = options.renderer_argument(renderer).get("renderer") or "auto"
     found: dict[str, str] = {}
-    missing, engine = _versions(found), _engine(found)
-    broken = missing + engine
-    unusable = [] if engine else _renderer(found)
-    unusable += list(filter(None, [find_conflict()]))
+    notes = list(filter(None, [find_conflict()]))
+    problems, engine = _versions(found), _engine(found)
+    problems += engine or _renderer(found, requested, notes)
     for name, value in found.items():
         _line(name, value)
     folders = _folders()
     for folder in folders:
         _line(folder["variable"], folder["folder"] + ("" if folder["exists"] else " (missing)"))
     _line("installed in", _location())
-    add_to_report(found=found, folders=folders, installed_in=_location(), problems=[*broken, *unusable])
-    for problem in (*broken, *unusable):
+    add_to_report(found=found, folders=folders, installed_in=_location(), problems=problems, notes=notes)
+    for note in notes:
+        stdout_console().print(f"note: {note}")
+    for problem in problems:
         stdout_console().print(problem, style="yellow")
-    stdout_console().print("no problems found" if not (broken or unusable) else "problems found; see the lines above")
-    return 1 if broken else 0
+    stdout_console().print("problems found; see the lines above" if problems else "no problems found")
+    return 1 if problems else 0
 
 
 def _line(name: str, value: str) -> None:
@@ -131,25 +152,31 @@ def _engine(found: dict[str, str]) -> list[str]:
     return [f"SK-CORE-005 MuJoCo cannot be imported ({reason})\n    help: {REINSTALL}"]
 
 
-def _renderer(found: dict[str, str]) -> list[str]:
+def _renderer(found: dict[str, str], requested: str, notes: list[str]) -> list[str]:
+    """Draw a small picture with the requested renderer; add the result to `found` and `notes`, return the problems."""
     try:
         probe = subprocess.run(
-            [sys.executable, "-P", "-c", _DRAW], capture_output=True, text=True, check=False, timeout=_RENDERER_TIMEOUT
+            [sys.executable, "-P", "-c", _DRAW, requested],
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=_RENDERER_TIMEOUT,
         )
     except subprocess.TimeoutExpired:
         found["renderer"] = "hangs"
-        return [
-            f"rendering a small image took more than {_RENDERER_TIMEOUT:g} s; cameras and --picture do not work here"
-        ]
-    answer = next((line for line in probe.stdout.splitlines() if line.startswith("OK ")), None)
-    if answer is None:
-        reason = (
-            _last_line(probe.stderr) if probe.returncode >= 0 else f"the driver crashed with signal {-probe.returncode}"
-        )
-        found["renderer"] = "none (only cameras and --picture need one)"
-        return [f"no renderer: {reason}"]
-    found["renderer"] = answer.removeprefix("OK ").removesuffix(" black").strip()
-    return ["the renderer draws only black images"] if answer.endswith(" black") else []
+        return [f"drawing a small picture took more than {_RENDERER_TIMEOUT:g} s\n{_USE_SOFTWARE}"]
+    answer = next((line for line in probe.stdout.splitlines() if line[:3] in ("OK ", "NO ")), "")
+    if answer.startswith("OK "):
+        found["renderer"], seconds, is_black, fallback = json.loads(answer[3:])
+        found["picture"] = f"320 × 240 px in {seconds * 1e3:.2g} ms"
+        notes += fallback
+        return [f"the renderer draws only black images: {found['renderer']}\n{_USE_SOFTWARE}"] if is_black else []
+    found["renderer"] = "none"
+    if answer:
+        return [answer[3:]]
+    if probe.returncode < 0:
+        return [f"drawing ended the process with signal {-probe.returncode}\n{_USE_SOFTWARE}"]
+    return [f"the renderer fails: {_last_line(probe.stderr)}"]
 
 
 def _folders() -> list[dict[str, Any]]:

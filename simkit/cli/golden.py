@@ -216,11 +216,12 @@ def record(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    renderer: options.Renderer = None,
     force: options.Force = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
     """Run a scenario and store the result as a golden run."""
-    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file)
+    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer)
     spec = scenario_spec(
         world, loading, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
         model_world=model_world, cmd_vel=cmd_vel, script=script,

@@ -99,6 +99,7 @@ def play(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     params_file: options.ParamsFiles = [],
+    renderer: options.Renderer = None,
 ) -> None:
     """Play motions: at a safe speed to the first point, then with the timing of the motion file."""
     from simkit.plugins.play_motion.motion_session import choose_player, motion_players, play_motions
@@ -107,13 +108,15 @@ def play(
 
     if picture is not None:
         pictures.check_target(picture)
-        check_renderer()
     if record is not None:
         writer.check_target(record, overwrite=force)
     source: Any = {**options.source_arguments(resource_path, package_path, xacro_arg), "params_files": params_file}
+    source |= options.renderer_argument(renderer)
     shown = []
     with ExitStack() as stack:
         sim = stack.enter_context(_open_world(world, robot, motions, seed, plugin_path, source, verbose=verbose))
+        if picture is not None:
+            check_renderer(sim)
         if record is not None:
             stack.enter_context(recorder.Recorder(sim, record, overwrite=force))
         for played in play_motions(sim, choose_player(motion_players(sim), model), names, skip_planning=skip_planning):
@@ -226,7 +229,7 @@ def _joint_ranges(names: Sequence[str]) -> str:
 
 def _draw(sim: Simulation, path: Path) -> None:
     from simkit.recording.run_picture import save_picture
-    from simkit.sensors.cameras.rendering.overview_image import render_view
+    from simkit.sensors.cameras.overview_image import render_view
 
     save_picture(sim, path, render_view)
     stdout_console().print(f"picture {path}")

@@ -39,11 +39,12 @@ def plot(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    renderer: options.Renderer = None,
     json_: options.Json = False,
 ) -> None:
     """Plot fields of bags, worlds and scenarios over time."""
     sources, fields = split_sources_and_fields(arguments)
-    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
+    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, renderer=renderer)
     run = partial(
         scenario_spec,
         options=loading,

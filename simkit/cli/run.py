@@ -149,6 +149,7 @@ def run(
     watch: Annotated[bool, Option("--watch", help="Reload a plugin when its file changes.")] = False,
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    renderer: options.Renderer = None,
     on_plugin_error: OnPluginError = None,
     bundle_on_failure: BundleFolder = None,
     verbose: options.Verbose = False,
@@ -174,8 +175,9 @@ def run(
     """Run a world without a window, as fast as possible."""
     policy, checks = _on_error(on_plugin_error), tuple(Check("final", expression=e, where="--assert") for e in assert_)
     loading = load_options(
-        resource_path, package_path, xacro_arg, base, plugin_path, params_file, on_error=policy, strict=strict
-    )
+        resource_path, package_path, xacro_arg, base, plugin_path, params_file, on_error=policy, strict=strict,
+        renderer=renderer,
+    )  # fmt: skip
     spec = RunSpec(
         world,
         duration=duration if duration is not None and math.isfinite(duration) else math.inf,
@@ -271,7 +273,6 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
         from simkit.bridges import viewer
         from simkit.build import load
         from simkit.cli.run_bridges import open_bridges
-        from simkit.cli.run_pictures import check_renderer
         from simkit.cli.run_session import Session, check_keyboard
         from simkit.cli.run_verdict import RunVerdict
 
@@ -283,8 +284,6 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
         from simkit.recording import run_picture
 
         run_picture.check_target(display.picture)
-    if display.picture is not None or display.film is not None:
-        check_renderer()
     if display.view:
         viewer.check_possible()
     check_keyboard(display)

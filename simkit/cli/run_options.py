@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.cli.terminal.given_interfaces import interface_folders
-from simkit.cli.terminal.options import source_arguments
+from simkit.cli.terminal.options import renderer_argument, source_arguments
 from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 
 if TYPE_CHECKING:
@@ -64,6 +64,7 @@ def load_options(
     *,
     on_error: PluginErrorPolicy | None = None,
     strict: bool = False,
+    renderer: str | None = None,
 ) -> LoadOptions:
     """Return the load options of a command, without the options that have their default value."""
     values = {
@@ -74,7 +75,8 @@ def load_options(
         "on_error": on_error,
         "strict": strict,
     }
-    return cast(LoadOptions, {name: value for name, value in values.items() if value and value != "auto"})
+    given = {name: value for name, value in values.items() if value and value != "auto"}
+    return cast(LoadOptions, {**given, **renderer_argument(renderer)})
 
 
 def scenario_spec(

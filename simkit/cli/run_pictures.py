@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from simkit.cli.run_loop import CommandSender
 from simkit.cli.terminal.json_report import add_to_report
-from simkit.cli.terminal.output import stdout_console
+from simkit.cli.terminal.output import print_status, stdout_console
+from simkit.errors import RenderError
 
 if TYPE_CHECKING:
     from simkit.recording.films.film import FilmOptions
@@ -20,22 +21,40 @@ if TYPE_CHECKING:
 def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
     """Draw the scene at the end, with the driven path."""
     from simkit.recording.run_picture import save_picture
-    from simkit.sensors.cameras.rendering.overview_image import render_view
+    from simkit.sensors.cameras.overview_image import render_view
 
     save_picture(sim, path, render_view, driven)
     stdout_console().print(f"picture {path}")
     add_to_report(picture=str(path))
 
 
-def check_renderer() -> None:
+def check_renderer(sim: Simulation) -> None:
     """Check before a run whether its picture can be drawn.
 
     Raises:
-        RenderError: SK-RENDER-001 there is no renderer.
+        RenderError: SK-RENDER-001 the run requests OpenGL, which is missing.
     """
-    from simkit.sensors.cameras.rendering.gl_context import ensure_open
+    from simkit.sensors.cameras.renderer_choice import check_available
 
-    ensure_open()
+    check_available(sim)
+
+
+def note_missing_gl(sim: Simulation) -> None:
+    """Print a note if the simulation has cameras and this machine has no OpenGL.
+
+    With the renderer `auto`, the note names the software renderer. Only the first image opens OpenGL, so that a run
+    whose cameras nobody reads starts without it.
+    """
+    if not any(sensor.needs_renderer for sensor in sim.contents.sensors.values()) or sim.world.renderer == "software":
+        return
+    from simkit.sensors.cameras.renderer_choice import chosen_renderer
+    from simkit.sensors.cameras.rendering.gl_context import find_library
+
+    try:
+        find_library()
+    except RenderError as error:
+        if chosen_renderer(sim) == "gl":
+            print_status(f"note: {error.code} cameras have no images: {error.message}")
 
 
 @contextmanager
@@ -57,7 +76,7 @@ def film_run(
         yield lambda: None
         return
     from simkit.recording.films.film import Film
-    from simkit.sensors.cameras.rendering.overview_image import render_view
+    from simkit.sensors.cameras.overview_image import render_view
 
     film = Film(sim, options, render_view, driven)
     senders.append(film)

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 from simkit.cli.run_bridges import start_bridges
 from simkit.cli.run_loop import Interrupts, RunLoop
 from simkit.cli.run_options import RunDisplay
-from simkit.cli.run_pictures import draw_picture, film_run
+from simkit.cli.run_pictures import check_renderer, draw_picture, film_run, note_missing_gl
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stderr_console, stdout_console
 from simkit.cli.terminal.page_options import open_later, open_page
 from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
-from simkit.errors import InputError, RenderError
+from simkit.errors import InputError
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
@@ -85,17 +85,6 @@ def _topic_dict(row: TopicCount) -> JsonObject:
         "messages": row.count if row.counted else None,
         "rate": row.rate() if row.counted else None,
     }
-
-
-def note_missing_renderer(sim: Simulation) -> None:
-    """Print a note if the simulation has cameras but this machine has no renderer."""
-    if any(sensor.needs_renderer for sensor in sim.contents.sensors.values()):
-        from simkit.sensors.cameras.rendering.gl_context import find_library
-
-        try:
-            find_library()
-        except RenderError as error:
-            print_status(f"note: {error.code} cameras have no images: {error.message}")
 
 
 def check_keyboard(display: RunDisplay) -> None:
@@ -170,6 +159,8 @@ class Session:
         from simkit.recording.topic_counts import RENDERED, TopicCounter
 
         spec, display, sim = self.spec, self.display, self.sim
+        if display.picture is not None or display.film is not None:
+            check_renderer(sim)
         commands, self._teleop = Commands(sim, self._commands()), self._driver()
         played = self._played()
         duration = run_length(spec, played.duration if played is not None else None)
@@ -180,7 +171,7 @@ class Session:
                 stack.enter_context(played)
             interrupts = stack.enter_context(Interrupts(self.blocked.hasten))
             recording = self._start_recording(stack)
-            note_missing_renderer(sim)
+            note_missing_gl(sim)
             counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
             keyboard = self._keyboard()
             view = None if display.page is None else open_page(sim, display.page, stack)
@@ -273,7 +264,7 @@ class Session:
         """Check that the topics of --topic have messages, and note that only a recording uses the option.
 
         Raises:
-            RenderError: SK-RENDER-001 images are selected, but there is no renderer.
+            RenderError: SK-RENDER-001 images are selected, and the run requests OpenGL, which is missing.
         """
         spec, bus = self.spec, self.sim.communication.bus
         if not spec.topics:

@@ -40,6 +40,7 @@ def view(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
+    renderer: options.Renderer = None,
     html: Annotated[Path | None, option("HTML file to write instead: a bag that plays without simkit.", "OUT")] = None,
     verbose: Annotated[bool, Option("--verbose", "-v", help="Show every note instead of their number.")] = False,
 ) -> int:
@@ -56,19 +57,20 @@ def view(
         "--package-path": package_path,
     }
     loads |= {"--plugin-path": plugin_path, "--xacro-arg": xacro_arg, "--base": base if base != "auto" else None}
+    loads["--renderer"] = renderer
     if html is not None:
         _refuse({**server, "--no-open": no_open}, "no page is served with --html; open the file")
     if is_bag(Path(target)) or html is not None:
         _refuse(scene, "a bag plays as it was recorded; --world WORLD names its world")
         from simkit.cli.bag_view import show_bag
 
-        loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
+        loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, renderer=renderer)
         return show_bag(Path(target), model_world, loading, page, html)
     if not Path(target).exists() and target in _running():
         text = f"{target} runs already; start it with these options, such as `simkit run WORLD --web PORT`"
         _refuse(server | scene | loads, text)
         return _show_running(target, page)
-    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
+    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, renderer=renderer)
     spec = RunSpec(
         target,
         duration=math.inf,

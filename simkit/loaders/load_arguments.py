@@ -17,6 +17,7 @@ from simkit.argument_checks import (
     wrong_value,
 )
 from simkit.loaders.spawned_models import SpawnedModel
+from simkit.run_spec import RENDERERS
 
 _BASES: Final = ("auto", "fixed", "floating")
 _PATH: Final = (str, os.PathLike)
@@ -66,12 +67,13 @@ def check_load_arguments(
     change_world: object,
     model_world: object,
     interfaces: object,
+    renderer: object,
 ) -> int:
     """Check the other arguments of `simkit.load`, and return the seed.
 
     Raises:
         ArgumentTypeError: an argument has another kind than expected.
-        ArgumentValueError: the seed is not a whole number, or `on_error` is unknown.
+        ArgumentValueError: the seed is not a whole number, or `on_error` or `renderer` is unknown.
     """
     check_folders(plugin_paths, "plugin_paths")
     check_paths(interfaces, "interfaces")
@@ -81,6 +83,8 @@ def check_load_arguments(
     check_kind(sleep, _FLAG, "sleep", "True or False")
     if on_error not in (None, "stop", "disable"):
         raise wrong_value("on_error", "'stop' or 'disable'", on_error)
+    if renderer not in (None, *RENDERERS):
+        raise wrong_value("renderer", "'auto', 'gl' or 'software'", renderer)
     check_list(spawn, (str, SpawnedModel), "spawn", "texts MODEL:x,y,yaw[:name]")
     if not isinstance(params_files, _PATH) and not _is_model_and_file(params_files):
         check_list(params_files, (*_PATH, tuple), "params_files", "paths")

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
+from simkit.run_spec import RENDERERS
 from simkit.scene.geometry import (
     Box,
     Capsule,
@@ -114,6 +115,7 @@ WORLD: Final = (
 
 SCENE: Final = (
     _field("quality", choice(QUALITIES)),
+    _field("renderer", choice(RENDERERS)),
     _field("shadows", FLAG, "surroundings.shadows"),
     _field("sky", FLAG, "surroundings.sky"),
     _field("grid", FLAG, "surroundings.grid"),

@@ -14,9 +14,9 @@ PREFIX: Final = "simkit:"
 
 OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
     {
-        "world": frozenset({"entity_services", "gazebo_quirks"}),
+        "world": frozenset({"entity_services", "gazebo_quirks", "renderer"}),
         "actor": frozenset({"person"}),
-        "scene": frozenset({"quality"}),
+        "scene": frozenset({"quality", "renderer"}),
         "light": frozenset({"irradiance"}),
         "sensor": frozenset(
             {"encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}

@@ -188,6 +188,7 @@ class SceneWorld:
         gravity: gravity [m/s²] in the world frame.
         magnetic_field: magnetic field [T] in the world frame.
         quality: requested rendering quality: fast, gazebo or high.
+        renderer: requested renderer: auto, gl or software.
         gazebo_quirks: true if sensors reproduce Gazebo's known errors (`<simkit:gazebo_quirks>`).
         entity_services: owner of service names that Gazebo Classic and `simulation_interfaces` share (`/spawn_entity`):
             classic or standard; None for Classic in worlds with plugins of gazebo_ros, else the standard.
@@ -214,6 +215,7 @@ class SceneWorld:
     atmosphere: Atmosphere = Atmosphere()
     actors: tuple[SceneActor, ...] = ()
     mjcf: Callable[[], Any] | None = None
+    renderer: str = "auto"
 
     def model(self, name: str) -> SceneModel | None:
         """Return the model of that name, or None."""

@@ -27,7 +27,7 @@ def scene_element(world: SceneWorld) -> Params:
         *field_elements(around, "ambient", "background", "shadows", "grid"),
         element("sky") if around.sky else None,
         None if around.fog is None else _fog(around.fog),
-        *changed_elements(world, "quality"),
+        *changed_elements(world, "quality", "renderer"),
     ]
     return element("scene", children)
 

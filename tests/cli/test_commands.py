@@ -202,9 +202,10 @@ def test_a_viewer_without_a_display_is_reported(world: Path, monkeypatch: pytest
     assert "SK-CLI-015" in result.stderr
 
 
-def test_without_a_renderer_a_run_with_a_picture_is_refused(world: Path) -> None:
+def test_a_run_with_a_picture_by_opengl_is_refused_without_it(world: Path) -> None:
     environment = {**os.environ, "MUJOCO_GL": "disable", "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, "-m", "simkit", "run", str(world), "--duration", "0.1", "--picture", "out.png"]
+    command += ["--renderer", "gl"]
     done = subprocess.run(command, cwd=world.parent, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and "simulated" not in done.stdout
     assert "SK-RENDER-001" in done.stderr
@@ -265,12 +266,27 @@ def test_bag_recover_completes_a_bag(world: Path) -> None:
     assert simkit("bag", "recover", "missing.mcap").exit_code == 2
 
 
-def test_doctor_names_versions_and_the_renderer() -> None:
+def test_doctor_names_versions_and_the_renderer_with_its_speed() -> None:
     result = simkit("doctor")
     assert result.exit_code == 0
-    for name in ("simkit", "python", "mujoco", "renderer"):
+    for name in ("simkit", "python", "mujoco", "renderer", "picture"):
         assert re.search(rf"^{name} +\S", result.stdout, re.MULTILINE)
+    assert re.search(r"^picture +320 × 240 px in \S+ ms$", result.stdout, re.MULTILINE)
+    assert "no problems found" in result.stdout
     assert "ImportError: cannot import name" not in result.stdout, "the drawing process uses the modules of today"
+
+
+def test_a_missing_opengl_is_a_note_of_doctor_and_a_problem_only_if_it_is_requested(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("MUJOCO_GL", "disable")
+    result = simkit("doctor")
+    assert result.exit_code == 0
+    assert re.search(r"^renderer +software \(simkit, OpenCV ", result.stdout, re.MULTILINE)
+    assert "note: SK-RENDER-015" in result.stdout and "no problems found" in result.stdout
+    result = simkit("doctor", "--renderer", "gl")
+    assert result.exit_code == 1
+    assert "SK-RENDER-001" in result.stdout and "problems found; see the lines above" in result.stdout
 
 
 def test_doctor_names_the_folders_of_its_variables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -159,8 +159,8 @@ def test_bench_and_doctor_report_what_they_print(world: Path) -> None:
     assert isinstance(found["import_time"], float)  # a difference of two measurements
     assert "step, nothing due" in words
     found, code, _ = report("doctor")
-    assert {"simkit", "python", "mujoco", "renderer"} <= set(found["found"])
-    assert found["problems"] == [] or code == 1 or "renderer" in found["problems"][0]
+    assert {"simkit", "python", "mujoco", "renderer", "picture"} <= set(found["found"])
+    assert (found["problems"] == []) == (code == 0) and isinstance(found["notes"], list)
 
 
 def test_an_error_becomes_a_diagnostic_with_its_place_and_remedy() -> None:

@@ -96,7 +96,7 @@ def seen(tmp_path, shape=BOX, material="", light=SUN, light_of_link="", eye=(0.0
     file.write_text(WORLD.format(shape=shape, material=material, light=light, light_of_link=light_of_link, pose=pose))
     with simkit.load(file) as sim:
         try:
-            from simkit.sensors.cameras.rendering.overview_image import render_view
+            from simkit.sensors.cameras.overview_image import render_view
 
             return render_view(sim, 100, 100, eye=eye, target=(0, 0, 0), vertical_fov=0.8).astype(int)
         except SimkitError as problem:
@@ -228,7 +228,7 @@ def test_a_bare_model_is_lit_from_the_eye(tmp_path):
     )
     with simkit.load(file) as sim:
         try:
-            from simkit.sensors.cameras.rendering.overview_image import render_view
+            from simkit.sensors.cameras.overview_image import render_view
 
             image = render_view(sim, 100, 100, eye=(0.0, -3.0, 0.0), target=(0, 0, 0), vertical_fov=0.8).astype(int)
         except SimkitError as problem:

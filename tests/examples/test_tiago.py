@@ -9,9 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simkit.errors import RenderError
-from simkit.sensors.cameras.rendering import gl_context
-
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "tiago"
 
 
@@ -25,15 +22,6 @@ def beside() -> Any:
 
 def script(name: str) -> dict[str, Any]:
     return runpy.run_path(str(FOLDER / f"{name}.py"))
-
-
-@pytest.fixture(scope="module")
-def renderer() -> None:
-    try:
-        with gl_context.current():
-            pass
-    except RenderError as error:
-        pytest.skip(str(error))
 
 
 # ---------------------------------------------------------------------- as scripts
@@ -153,7 +141,7 @@ def test_the_others_stay_where_they_are(moves: Any) -> None:
 
 
 @pytest.fixture(scope="module")
-def sights(renderer: None) -> Any:
+def sights() -> Any:
     return script("look")["run"]()
 
 

@@ -16,7 +16,7 @@ import numpy.typing as npt
 import pytest
 
 import simkit
-from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.overview_image import render_view
 from tests.cli.course_page import Desk, blocks
 
 LAB = Path(__file__).parents[2] / "labs" / "03_gazebo"

@@ -9,13 +9,12 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 
 from simkit import Simulation, msgs
 from simkit.testing.scenarios.exercise import read_exercise
 from simkit.testing.scenarios.scenario_run import open_scenario
 
-pytestmark = [pytest.mark.labs, NEEDS_RENDERER]
+pytestmark = pytest.mark.labs
 LAB = Path(__file__).parents[2] / "labs" / "04_visual_servoing"
 ROBOTS = {
     "exercise.yaml": ("TurtleBot3", "/camera/image_raw", 141.4, ("$x$",)),

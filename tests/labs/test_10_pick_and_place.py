@@ -13,7 +13,7 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.overview_image import render_view
 
 pytestmark = pytest.mark.labs
 

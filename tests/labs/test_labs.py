@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 import yaml
-from renderer import NEEDS_RENDERER, RENDERS
 from typer.testing import CliRunner
 
 from simkit.cli import app
@@ -42,12 +41,6 @@ def failed_checks(report: str) -> set[str]:
     }
 
 
-def skip_without_renderer(grade: Any) -> None:
-    """Skip a test if an exercise needs images and there is no renderer."""
-    if grade.exit_code == 2 and not RENDERS:
-        pytest.skip(NEEDS_RENDERER.kwargs["reason"])
-
-
 def test_the_list_has_a_name_a_line() -> None:
     found = lab("list")
     assert (found.exit_code, found.stdout.splitlines()) == (0, LABS)
@@ -58,7 +51,6 @@ def test_the_list_has_a_name_a_line() -> None:
 def test_a_solution_gets_full_points_and_the_stub_does_not(name: str, tmp_path: Path) -> None:
     assert lab("start", name, tmp_path / "solved", "--solution").exit_code == 0
     solved = lab("grade", tmp_path / "solved", "--json")
-    skip_without_renderer(solved)
     assert (solved.exit_code, failed_checks(solved.stdout)) == (0, set())
     assert lab("start", name, tmp_path / "stub").exit_code == 0
     assert {"README.md", "exercise.yaml"} < {path.name for path in (tmp_path / "stub").iterdir()}
@@ -84,7 +76,6 @@ def test_a_typical_mistake_fails_the_check_that_names_it(mistake: tuple[str, str
         document["exercise"]["runs"] = document["exercise"]["runs"][-1:]
         first.write_text(yaml.safe_dump(document), "utf-8")
     found = CliRunner().invoke(app, ["grade", str(first), "--json"])
-    skip_without_renderer(found)
     assert found.exit_code == 5
     assert check in failed_checks(found.stdout)
 

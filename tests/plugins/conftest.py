@@ -1,9 +1,8 @@
-"""Fixtures of the plugin tests: shared small worlds, and whether a renderer is available."""
+"""Fixtures of the plugin tests: shared small worlds."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-for folder in ("plugins/worlds", "sensors"):
-    sys.path.insert(0, str(Path(__file__).parents[1] / folder))
+sys.path.insert(0, str(Path(__file__).parent / "worlds"))

@@ -13,7 +13,7 @@ from simkit import msgs
 from simkit.errors import InputError, RenderError
 from simkit.pose import Pose
 from simkit.recording.run_picture import DrivenPath, check_target, save_picture, scan_points
-from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.overview_image import render_view
 
 WORLD = """
 <sdf version="1.9"><world name="w"><gravity>0 0 0</gravity>

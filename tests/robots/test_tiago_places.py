@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 
 import simkit
 
@@ -133,7 +132,6 @@ def test_things_on_the_table_stay_where_they_are() -> None:
 # ------------------------------------------------------------------ the marker
 
 
-@NEEDS_RENDERER
 def test_opencv_finds_the_marker_where_it_is() -> None:
     import cv2
 

@@ -6,12 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 
 import simkit
 from simkit.sensors.cameras.image_messages import pixels_of
-
-pytestmark = NEEDS_RENDERER
 
 WORLD = """<sdf version="1.12"><world name="w"><include><uri>model://ground_plane</uri></include>
 <include><uri>model://sun</uri></include>{}</world></sdf>"""

@@ -8,11 +8,9 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 
 import simkit
 
-pytestmark = NEEDS_RENDERER
 CAMERA = "turtlebot2::camera_rgb_frame::camera"
 WIDTH, HEIGHT = 320, 240
 SMALLER = [

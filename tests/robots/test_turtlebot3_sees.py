@@ -7,13 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 
 import simkit
 from simkit.pose import Pose
 from simkit.sensors.cameras.image_messages import pixels_of
-
-pytestmark = NEEDS_RENDERER
 
 
 def seen(robot: str, monkeypatch: pytest.MonkeyPatch) -> tuple[Any, dict[str, Any], Pose]:

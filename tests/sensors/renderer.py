@@ -1,4 +1,4 @@
-"""Availability of a renderer, for tests that need images."""
+"""Availability of OpenGL, for tests of OpenGL itself. All other tests draw in software where it is missing."""
 
 from __future__ import annotations
 
@@ -12,14 +12,12 @@ from simkit.sensors.cameras.rendering import gl_context
 
 def _why_not() -> str:
     try:
-        with gl_context.current():
-            return ""
+        gl_context.ensure_open()
     except RenderError as error:
         return str(error)
+    return ""
 
 
 _REASON: Final = _why_not()
 
-RENDERS: Final = not _REASON
-
-NEEDS_RENDERER: Final = pytest.mark.skipif(not RENDERS, reason=_REASON)
+NEEDS_GL: Final = pytest.mark.skipif(bool(_REASON), reason=_REASON)

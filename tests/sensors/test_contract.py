@@ -18,7 +18,6 @@ from typing import Any, get_type_hints
 import contract_worlds as worlds
 import pytest
 from contract_worlds import digest, load, plain, published_digests, sensor_of
-from renderer import RENDERS
 
 import simkit
 from simkit import msgs
@@ -38,7 +37,7 @@ PAGES = {
 """Page under `docs/sensors` of each kind whose page has another name."""
 
 
-KINDS = [k for k in sensor_kinds() if not worlds.is_rendered(k) or RENDERS]
+KINDS = list(sensor_kinds())
 kinds = pytest.mark.parametrize("kind", KINDS)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 from typer import Argument, Option, Typer
 from typer.core import TyperCommand
@@ -14,7 +14,7 @@ from simkit.cli.terminal import completion
 from simkit.cli.terminal.output import P, report_errors_quietly
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.run_spec import SourceOptions, named_values
+from simkit.run_spec import RENDERERS, LoadOptions, RendererName, SourceOptions, named_values
 
 
 def option(
@@ -117,6 +117,14 @@ ModelWorld = Annotated[
 CmdVel = Annotated[str | None, option("Send a constant velocity: m/s forward, rad/s left.", "V,W", "--cmd-vel")]
 Script = Annotated[Path | None, option("Script of timed commands.", "FILE.yaml", "--script")]
 Seed = Annotated[int | None, option("Seed of all random streams.", "N", "--seed", min=0)]
+Renderer = Annotated[
+    str | None,
+    option(
+        "Renderer of images: gl, software, or auto (OpenGL if this machine has it); default: the world's, else auto.",
+        "auto|gl|software",
+        "--renderer",
+    ),
+]
 Strict = Annotated[bool, Option("--strict", help="Treat warnings as errors.")]
 Json = Annotated[bool, Option("--json", help="Print JSON.")]
 Verbose = Annotated[bool, Option("--verbose", "-v", help="Show every note instead of their number.")]
@@ -183,6 +191,17 @@ def source_arguments(
         "xacro_args": parse_pairs(xacro_args, "--xacro-arg"),
         "base": validate_word("--base", base, _BASES),
     }
+
+
+def renderer_argument(name: str | None) -> LoadOptions:
+    """Return the option --renderer as a keyword argument of `simkit.load`; empty without the option.
+
+    Raises:
+        InputError: SK-CLI-018 the renderer is unknown.
+    """
+    if name is None:
+        return {}
+    return {"renderer": cast(RendererName, validate_word("--renderer", name, RENDERERS))}
 
 
 _FLAGS = frozenset({"--no-daemon", "--use-sim-time"})

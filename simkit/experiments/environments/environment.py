@@ -22,7 +22,7 @@ from simkit.experiments.sweeps.sweep_spec import fill_template, split_values
 from simkit.runtime import Simulation
 from simkit.runtime.world_variation import apply_overrides
 from simkit.scene.overrides import override_texts
-from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.overview_image import render_view
 from simkit.testing.conditions.binder import bind
 from simkit.testing.conditions.bound_expression import is_scalar
 from simkit.testing.conditions.parser import parse

@@ -36,6 +36,7 @@ from simkit.loaders.sdf.world_settings import (
     read_atmosphere,
     read_physics,
     read_quality,
+    read_renderer,
     read_spherical_coordinates,
     read_surroundings,
 )
@@ -97,6 +98,7 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         surroundings=read_surroundings(element),
         spherical_coordinates=read_spherical_coordinates(element),
         quality=read_quality(element),
+        renderer=read_renderer(element),
         gazebo_quirks=element.boolean("gazebo_quirks", False),
         entity_services=None if owner == "auto" else owner,
         where=element.where,

@@ -7,6 +7,7 @@ import math
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.material import read_colour
 from simkit.params import Params
+from simkit.run_spec import RENDERERS
 from simkit.scene import Atmosphere, Physics, SphericalCoordinates, Surroundings
 from simkit.scene.geometry import Vec3
 from simkit.scene.world import CONTACT_LAWS, QUALITIES, Fog
@@ -117,6 +118,12 @@ def _fog(scene: Params) -> Fog | None:
 def read_quality(world: Params) -> str:
     """Return `<quality>` of the scene, simkit's own element: fast, gazebo or high."""
     return world.block("scene").choice("quality", QUALITIES, "fast")
+
+
+def read_renderer(world: Params) -> str:
+    """Return `<renderer>` of the scene or of the world, simkit's own element: auto, gl or software."""
+    of_world = world.choice("renderer", RENDERERS, "auto")
+    return world.block("scene").choice("renderer", RENDERERS, of_world)
 
 
 def read_atmosphere(world: Params) -> Atmosphere:

@@ -38,7 +38,7 @@ class Recorder:
 
     Raises:
         InputError: SK-BAG-001 the bag exists; SK-BAG-002 the path is not writable.
-        RenderError: images are to be recorded, but there is no renderer.
+        RenderError: images are to be recorded, and the simulation requests OpenGL, which is missing.
     """
 
     def __init__(
@@ -167,7 +167,9 @@ class Recorder:
             for topic, tick, type_name, content in zip(topics, ticks, types, data, strict=True):
                 channel = bag.channels.get((topic, type_name))
                 if channel is None:
-                    channel = bag.channel(topic, type_name, topic in self._sim.communication.bus.latched())
+                    bus = self._sim.communication.bus
+                    drawn_by = self._sim.engine.renderer if bus.check_available(topic) else ""
+                    channel = bag.channel(topic, type_name, topic in bus.latched(), drawn_by)
                 bag.write_raw(channel, content, time_of(tick))
         except OSError as error:
             self._stop(error)

@@ -98,13 +98,21 @@ class McapBag:
         self._writer = McapWriter(self._file, "ros2", "simkit", _CHUNK_BYTES)
         self._file.flush()
 
-    def channel(self, topic: str, type_name: str, latched: bool) -> Channel:
-        """Return the channel of a topic and a type; register it on first use."""
+    def channel(self, topic: str, type_name: str, latched: bool, renderer: str = "") -> Channel:
+        """Return the channel of a topic and a type; register it on first use.
+
+        Args:
+            topic: name of the topic.
+            type_name: name of the type.
+            latched: True if the publisher keeps the last message for late subscribers.
+            renderer: renderer that draws the messages, for the metadata of the channel; empty for none.
+        """
         found = self.channels.get((topic, type_name))
         if found is None:
             metadata = {
                 "offered_qos_profiles": qos_profiles_yaml([qos_profile(latched)]),
                 "topic_type_hash": msgs.rihs(type_name),
+                **({"renderer": renderer} if renderer else {}),
             }
             found = self.add_channel(topic, type_name, latched, msgs.definition(type_name).encode(), metadata)
         return found

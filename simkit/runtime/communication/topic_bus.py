@@ -242,11 +242,12 @@ class TopicBus:
         """Return the topics whose last message is kept for later subscribers."""
         return frozenset(t for t, publishers in self._publishers.items() for p in publishers if p.latched and p.active)
 
-    def check_available(self, topic: str) -> None:
-        """Raise the error of a publisher that cannot make its messages, such as a camera without a renderer."""
-        for publisher in self._publishers.get(topic, ()):
-            if publisher.active and publisher.check is not None:
-                publisher.check()
+    def check_available(self, topic: str) -> bool:
+        """Raise the error of a publisher that cannot draw its messages; return True if a publisher draws messages."""
+        checks = [p.check for p in self._publishers.get(topic, ()) if p.active and p.check is not None]
+        for check in checks:
+            check()
+        return bool(checks)
 
     def wanted(self, topic: str) -> bool:
         """Check whether a topic has subscribers."""

@@ -55,10 +55,12 @@ class Engine(EngineState):
         loop: step loop.
         render_thread: True to draw camera images on another thread during the physics, unless a subscriber waits for
             them. The value may change at any time, because it has no effect on the messages.
+        renderer: description of the renderer that draws the images; empty before an image is drawn or requested.
         velocity_limit: function that returns the limit of a joint's axis [rad/s or m/s] by scoped name and axis number.
     """
 
     render_thread = False
+    renderer = ""
     velocity_limit: Callable[[str, int], float]
 
     def __init__(

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from simkit.sensors.cameras.camera_model import CameraModel
-from simkit.sensors.cameras.rendering.view import Depths, View
+from simkit.sensors.cameras.rendering.view import Depths, View, depth_line
 
 _ROWS = 32  # number of rows processed at once; so few stay in the processor's cache for all operations
 # ratio of the drawn near plane to `near`; Gazebo uses 0.9, but then the housing of the lens may hide the image
@@ -67,7 +67,7 @@ class DepthRange:
             view: view that the raw depths were drawn through.
             out: contiguous output array.
         """
-        slope, offset = _depth_line(view.near, view.far)
+        slope, offset = depth_line(view.near, view.far)
         with np.errstate(divide="ignore"):
             for first in range(0, len(raw), _ROWS):
                 rows = slice(first, first + _ROWS)
@@ -94,17 +94,6 @@ class DepthRange:
         if self._lowest > 0 and np.minimum.reduce(part, axis=None) < nearest:
             too_near = cv2.compare(part, float(nearest), cv2.CMP_LT)
             cv2.copyTo(_constant_row(part.shape[1], -np.inf)[: len(part)], too_near, part)
-
-
-def _depth_line(near: float, far: float) -> tuple[np.float32, np.float32]:
-    """Return slope and offset of z = slope/(raw + offset), as the graphics library computes it.
-
-    The library's matrix is that of `glFrustum`, shifted and scaled by ½ (mjr_render): raw = slope/z - offset with slope
-    = near·far/(far - near) and offset = ½·((far + near)/(far - near) - 1), where the quotient is a 32-bit float.
-    """
-    near, far = float(np.float32(near)), float(np.float32(far))
-    quotient = float(np.float32((far + near) / (far - near)))
-    return np.float32(near * far / (far - near)), np.float32(0.5 * (quotient - 1.0))
 
 
 @functools.lru_cache(maxsize=8)

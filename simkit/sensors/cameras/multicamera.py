@@ -25,7 +25,7 @@ from simkit.sensors.cameras.camera_options import CameraOptions, read_camera
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
 from simkit.sensors.cameras.image_noise import CameraReading
 from simkit.sensors.cameras.rendered_camera import PictureMaker, RenderedCamera
-from simkit.sensors.cameras.rendering.renderer import renderer_of
+from simkit.sensors.cameras.renderer_choice import reserve_image
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
@@ -184,8 +184,7 @@ class MultiCamera(RenderedCamera):
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         for eye in self.eyes:
-            view = eye.options.model
-            renderer_of(self.sim).uploads.reserve(view.width, view.height)
+            reserve_image(self.sim, eye.options.model.width, eye.options.model.height)
 
     # ------------------------------------------------------------------ images
 

@@ -29,8 +29,8 @@ from simkit.sensors.cameras.image_distortion import ImageDistorter
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
 from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
 from simkit.sensors.cameras.rendered_sampler import RenderedSampler
+from simkit.sensors.cameras.renderer_choice import reserve_image
 from simkit.sensors.cameras.rendering import render_thread
-from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot, View
 from simkit.sensors.cameras.saved_images import ImageSaver
 from simkit.sensors.sample import Memory, Reading
@@ -213,7 +213,7 @@ class RenderedCamera(RenderedSampler):
         self.finish_samples()
         super().bind(compiled)
         self._hidden_geoms = hidden_geoms(self.options.visibility_mask, compiled.names)
-        renderer_of(self.sim).uploads.reserve(self.options.model.width, self.options.model.height)
+        reserve_image(self.sim, self.options.model.width, self.options.model.height)
 
     def make_reading(self, drawn_views: Iterator[DrawnView], context: Memory) -> object:
         colours = next(drawn_views).colours

@@ -15,10 +15,12 @@ from simkit.runtime import Publisher
 from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Sample, Sensor
+from simkit.sensors.cameras import renderer_choice
 from simkit.sensors.cameras.camera_options import CameraOptions
-from simkit.sensors.cameras.rendering import gl_context, render_thread
+from simkit.sensors.cameras.renderer_choice import ImageRenderer
+from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
-from simkit.sensors.cameras.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
+from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
 from simkit.sensors.sample import Memory, Reading
 
@@ -70,7 +72,7 @@ class RenderedSampler(Sensor):
         """Compose the scene, and draw it on the render thread, or at once if a callback waits for it."""
         expose = self._make_exposure(model, data)
         # the first image is drawn here, so that a missing renderer is detected at once
-        if self._has_callback or not (self.sim.engine.render_thread and gl_context.is_open()):
+        if self._has_callback or not (self.sim.engine.render_thread and renderer_choice.is_ready(self.sim)):
             return render_thread.run_now(expose)
         return render_thread.submit(expose)
 
@@ -86,14 +88,16 @@ class RenderedSampler(Sensor):
 
     def _make_exposure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Reading]:
         """Return a function that draws and processes the images of a state without reading the state again."""
-        renderer = renderer_of(self.sim)
+        renderer = renderer_choice.renderer_of(self.sim)
         smooth = self.options.anti_aliasing > 0
         composition = renderer.composer.compose(
             model, data, *self._frame_in_world(data), unseen=self._hidden_geoms, smooth=smooth
         )
         return functools.partial(self._expose, renderer, composition, self.shots(), self.capture_context(model, data))
 
-    def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], context: Memory) -> Reading:
+    def _expose(
+        self, renderer: ImageRenderer, composition: Composition, shots: Sequence[Shot], context: Memory
+    ) -> Reading:
         drawn_views = renderer.draw_all(composition, shots)
         try:
             return self.make_reading(drawn_views, context)
@@ -128,7 +132,7 @@ class RenderedSampler(Sensor):
 
     def close(self) -> None:
         render_thread.drain()
-        free_renderer(self.sim)
+        renderer_choice.free_renderer(self.sim)
 
     # ------------------------------------------------------------------ without a renderer
 
@@ -136,10 +140,10 @@ class RenderedSampler(Sensor):
         """Open the renderer, so that a reader of the images gets an error at once instead of no image.
 
         Raises:
-            RenderError: there is no renderer.
+            RenderError: the simulation requests OpenGL, which is missing.
         """
         try:
-            gl_context.ensure_open()
+            renderer_choice.check_available(self.sim)
         except RenderError as error:
             message = f"camera {self.scoped!r} has no images: {error.message}"
             raise RenderError(message, error.code, self.scene.where) from None

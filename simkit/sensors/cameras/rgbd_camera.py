@@ -24,7 +24,7 @@ from simkit.sensors.cameras.depth_range import DepthRange, clip_planes
 from simkit.sensors.cameras.disparity_noise import DisparityNoise, read_disparity_noise
 from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
-from simkit.sensors.cameras.rendering.renderer import Appearance
+from simkit.sensors.cameras.rendering.appearance import Appearance
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot, View
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE

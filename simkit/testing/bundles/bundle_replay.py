@@ -21,7 +21,7 @@ from simkit.testing.bundles.bundle_recorder import MessageWindow, StateHashes, W
 from simkit.testing.bundles.bundle_staging import load_packed_world, packed_run_spec
 from simkit.testing.bundles.journal_player import JournalPlayer
 from simkit.testing.bundles.manifest import BAG, Failure, Manifest, failure_from_error
-from simkit.testing.run_record.fingerprint import fingerprint, fingerprint_differences
+from simkit.testing.run_record.fingerprint import RENDERER, fingerprint, fingerprint_differences
 
 CODE: Final = "SK-BUNDLE-005"
 _CODE_POSITION: Final = re.compile(r"\([^()\s]*:\d+\)")
@@ -123,6 +123,8 @@ class _Replay:
             finally:
                 if recorder is not None:
                     recorder.close()
+            if RENDERER in manifest.fingerprint:
+                machine = fingerprint_differences(manifest.fingerprint, fingerprint(sim), True)
             failure = None if raised is None else failure_from_error(raised)
             found = [*self._failures(failure), *self._states(sim, marks)]
             streams, count = self._streams(window)

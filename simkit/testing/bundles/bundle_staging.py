@@ -61,6 +61,7 @@ def packed_run_spec(
         "base": original.options.get("base", "auto"),
         "sleep": original.options.get("sleep", True),
         "on_error": original.options.get("on_error"),
+        "renderer": original.options.get("renderer"),
         "plugin_paths": tuple(code),
         "params_files": tuple((model, folder / file) for model, file in params),
         "interfaces": tuple(place for place in (folder / _INTERFACES,) if place.is_dir()),

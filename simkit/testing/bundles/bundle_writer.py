@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.errors import InputError
 from simkit.run_spec import JsonObject, RunSpec
+from simkit.sensors.cameras.renderer_choice import SOFTWARE, fell_back
 from simkit.testing.bundles.archive import MAX_BYTES, name_fault
 from simkit.testing.bundles.bundle_recorder import (
     WINDOW_SECONDS,
@@ -172,7 +173,7 @@ def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, n
         _write_error(stage, failure)
     given = sim.world.name if sim.world.name not in ("", "default") else Path(world.file).stem
     return Manifest(
-        name=name or given or "run", **_world_fields(spec, world), missing=(*world.missing, *journal.gaps),
+        name=name or given or "run", **_world_fields(spec, world, sim), missing=(*world.missing, *journal.gaps),
         seconds=keeper.seconds, topics=keeper.topics, first=first, end=end, streams=topic_digests(iter(messages)),
         marks=tuple(keeper.marks.found), commands=journal.count, files=_file_table(stage),
     )  # fmt: skip
@@ -204,21 +205,28 @@ def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
     return _write_with_generated_name(folder, staged)
 
 
-def _world_fields(spec: RunSpec, world: StagedWorld) -> JsonObject:
-    """Return the manifest fields that describe the run and the machine."""
+def _world_fields(spec: RunSpec, world: StagedWorld, sim: Simulation | None = None) -> JsonObject:
+    """Return the manifest fields that describe the run and the machine.
+
+    Args:
+        spec: Specification of the run.
+        world: Files of the world.
+        sim: Simulation of the run; None if loading failed.
+    """
     return {
         "world": world.file,
         "base": spec.options.get("base", "auto"),
         "seed": spec.seed,
         "sleep": spec.options.get("sleep", True),
         "on_error": spec.options.get("on_error"),
+        "renderer": SOFTWARE if sim is not None and fell_back(sim) else spec.options.get("renderer"),
         "overrides": spec.overrides,
         "spawn": tuple(world.spawn),
         "model_world": world.model_world,
         "params": tuple(world.params),
         "models": world.models,
         "code": tuple(sorted(world.code)),
-        "fingerprint": fingerprint(),
+        "fingerprint": fingerprint(sim if sim is not None and sim.engine.renderer else None),
     }
 
 

@@ -10,7 +10,16 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from simkit.errors import InputError, SimkitError
-from simkit.run_spec import EMPTY_SPACE, JsonMapping, JsonObject, LoadOptions, PluginErrorPolicy, RunSpec
+from simkit.run_spec import (
+    EMPTY_SPACE,
+    RENDERERS,
+    JsonMapping,
+    JsonObject,
+    LoadOptions,
+    PluginErrorPolicy,
+    RendererName,
+    RunSpec,
+)
 
 if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
@@ -104,7 +113,7 @@ class Manifest:
         name: Name of the run.
         world: World file in the bundle.
         base: Mounting of a bare model, as in `simkit.load`.
-        seed, overrides, sleep, on_error: Arguments of `simkit.load`.
+        seed, overrides, sleep, on_error, renderer: Arguments of `simkit.load`.
         spawn: Models that were spawned into the world during loading.
         model_world: World of a bare model: "ground", "none", or a file in the bundle.
         params: Parameter files, as pairs of a model name (empty for all models) and a file.
@@ -137,6 +146,7 @@ class Manifest:
     fingerprint: Mapping[str, str]
     end: RunEnd
     model_world: str = EMPTY_SPACE
+    renderer: str | None = None
     seconds: float = 0.0
     topics: tuple[str, ...] = ()
     first: int = 0
@@ -151,6 +161,8 @@ class Manifest:
         options: LoadOptions = {"base": self.base, "sleep": self.sleep}
         if self.on_error in ("stop", "disable"):
             options["on_error"] = cast(PluginErrorPolicy, self.on_error)
+        if self.renderer in RENDERERS:
+            options["renderer"] = cast(RendererName, self.renderer)
         return RunSpec(self.world, seed=self.seed, name=self.name, overrides=self.overrides, options=options,
                        model_world=self.model_world)  # fmt: skip
 
@@ -269,6 +281,7 @@ def _parse_manifest(reader: _ManifestReader) -> Manifest:
         overrides=reader.texts("overrides"),
         sleep=reader.flag("sleep"),
         on_error=reader.optional("on_error", reader.text),
+        renderer=reader.optional("renderer", reader.text),
         spawn=tuple(_parse_spawned(model) for model in reader.readers("spawn")),
         params=tuple(_parse_pair(pair) for pair in reader.items("params")),
         models=reader.text_mapping("models"),

@@ -213,7 +213,8 @@ class _ChildRun:
         for plugin in sim.engine.structure.all_plugins():
             outcome.remembered[plugin_title(plugin)] = attribute_hashes(plugin_attributes(plugin))
             outcome.sources[plugin_title(plugin)] = _class_source(plugin)
-        outcome.fingerprint = fingerprint(pictures=any("Image" in h.type_name for h in outcome.heard.values()))
+        has_images = any("Image" in h.type_name for h in outcome.heard.values())
+        outcome.fingerprint = fingerprint(sim if has_images else None)
         outcome.events = self._call_recorder.events
 
 

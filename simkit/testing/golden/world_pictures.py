@@ -62,7 +62,7 @@ def _draw(sim: Simulation, camera: Camera | None) -> tuple[bytes, Camera]:
     """Return a picture as a JPEG file, and its camera."""
     import cv2
 
-    from simkit.sensors.cameras.rendering.overview_image import render_view
+    from simkit.sensors.cameras.overview_image import render_view
 
     look = Look(*_SIZE)
     subject = find_subject(sim, [], _ROOM)

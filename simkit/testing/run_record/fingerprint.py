@@ -17,7 +17,6 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from simkit.errors import RenderError
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.params import Params
 from simkit.testing.run_record.world_values import file_hash, plugin_value_files, values_of_files
@@ -39,18 +38,20 @@ _LEVEL_3: Final = ("AVX2", "FMA3")  # what MuJoCo's and the C library's code for
 _EMBREE_INSTRUCTIONS: Final = {"AVX512_SKX": "avx512", "AVX2": "avx2", "AVX": "avx", "SSE42": "sse4.2"}
 
 
-def fingerprint(*, pictures: bool = False) -> dict[str, str]:
+def fingerprint(drawn: Simulation | None = None) -> dict[str, str]:
     """Return versions, processor and system of this process.
 
     Args:
-        pictures: Include the renderer; simkit must start the renderer for this.
+        drawn: Simulation whose renderer is included; None for a run without images.
 
     Returns:
         Name -> value; `renderer` only on request.
     """
     found = dict(_machine_fingerprint())
-    if pictures:
-        found[RENDERER] = _renderer()
+    if drawn is not None:
+        from simkit.sensors.cameras.renderer_choice import describe_renderer
+
+        found[RENDERER] = describe_renderer(drawn)
     return found
 
 
@@ -165,17 +166,6 @@ def code_hash() -> str:
         digest.update(path.relative_to(root).as_posix().encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
-
-
-@cache
-def _renderer() -> str:
-    from simkit.sensors.cameras.rendering import gl_context
-
-    try:
-        gl_context.ensure_open()
-    except RenderError as error:
-        return f"none ({error.code})"
-    return gl_context.describe_renderer() or "unknown"
 
 
 _MAX_MODULES: Final = 100

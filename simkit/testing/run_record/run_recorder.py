@@ -195,10 +195,10 @@ class RunRecorder:
             stream = stream_recorder.stream()
             if len(stream.times_ns) or topic in published:
                 streams[topic] = stream
-        pictures = any(s.type_name in _RENDERED and len(s.times_ns) for s in streams.values())
+        has_images = any(s.type_name in _RENDERED and len(s.times_ns) for s in streams.values())
         return RunRecord(
             self._scenario,
-            fingerprint(pictures=pictures),
+            fingerprint(self._sim if has_images else None),
             streams,
             self._marks.states(),
             self._leaves,

@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 
 
 _IGNORED_FIELDS: Final = frozenset(
-    ("where", "name", "scoped", "uri", "script", "skin", "missing", "mjcf", "moved_by", "urdf")
+    ("where", "name", "scoped", "uri", "script", "skin", "missing", "mjcf", "moved_by", "urdf", "renderer")
 )
-"""Fields with source positions or file names, fields that are part of the path, and fields without plain values."""
+"""Fields with source positions or file names, fields that are part of the path, fields without plain values, and the
+requested renderer: the fingerprint contains the renderer that was used."""
 _SENSOR_FIELDS: Final = frozenset(("pose", "update_rate", "topic", "plugin"))
 """Elements that are left out because the sensor object has a field with the same value."""
 WorldValues = JsonObject

@@ -56,7 +56,7 @@ def _run_exercise(exercise: Exercise, variation: ExerciseRun, hand_in: Path | No
             on_slice = None if driven is None else driven.sample
             ended = run_scenario(variation.scenario, sim, on_slice, absent="wait")
             if driven is not None:
-                from simkit.sensors.cameras.rendering.overview_image import render_view
+                from simkit.sensors.cameras.overview_image import render_view
 
                 save_picture(sim, Path(picture), render_view, driven)
             results = [(result.passed, result.message, result.time) for result in ended.results]

@@ -16,6 +16,7 @@ from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.command_script import script_items, validate_items
 from simkit.run_spec import (
     GROUND,
+    RENDERERS,
     Check,
     CheckKind,
     JsonObject,
@@ -37,7 +38,7 @@ _CHECKS: Final[dict[str, CheckKind]] = {
     "rates": "rate",
 }
 _READING_KEYS: Final = ("resource_paths", "package_paths", "xacro_args", "base")
-_LOADING_KEYS: Final = ("plugin_paths", "interfaces", "params_files", *_READING_KEYS)
+_LOADING_KEYS: Final = ("renderer", "plugin_paths", "interfaces", "params_files", *_READING_KEYS)
 KEYS: Final = (
     *("world", "name", "duration", "seed", "set", "spawn", "model_world", "commands", "play", "play_topics", "topics"),
     *("skip", "tolerances", "statistics", "state", "model", "picture", "until", "timeout", "wall_timeout"),
@@ -236,6 +237,10 @@ class ScenarioReader(ValueReader):
             found["base"] = self._text("base", "auto")
             if found["base"] not in ("auto", "fixed", "floating"):
                 self._wrong(found.pop("base"), "auto, fixed or floating", "base")
+        if "renderer" in self._fields:
+            found["renderer"] = self._text("renderer", "auto")
+            if found["renderer"] not in RENDERERS:
+                self._wrong(found.pop("renderer"), "auto, gl or software", "renderer")
         return found
 
     # ------------------------------------------------------------------ comparison

@@ -20,12 +20,9 @@ from camera_worlds import (
     wall,
     world,
 )
-from renderer import NEEDS_RENDERER
 
 import simkit
 from simkit.sensors.cameras import image_messages
-
-pytestmark = NEEDS_RENDERER
 
 # ---------------------------------------------------------------------- ROS 2
 

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from camera_worlds import CAMERA, IMAGE, WALLS, heard, plugin, points_of, topics_of
-from renderer import NEEDS_RENDERER
 
 import simkit
 from simkit.sensors.cameras import image_messages
-
-pytestmark = NEEDS_RENDERER
 
 
 def realsense(more: str = "", left_out: str = "") -> str:

@@ -13,26 +13,17 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.errors import InputError, RenderError
+from simkit.errors import InputError
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.bags.recorder import Recorder
 from simkit.recording.films.film import Film, FilmOptions, film_bag, film_options
 from simkit.recording.run_picture import DrivenPath
 from simkit.runtime.engine.snapshot import state_hash
-from simkit.sensors.cameras.rendering.gl_context import ensure_open
-from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.overview_image import render_view
 
 WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="rover"><link name="body">
   <visual name="v"><geometry><box><size>0.4 0.2 0.1</size></box></geometry></visual></link></model></world></sdf>"""
 SIZE = (64, 48)
-
-
-@pytest.fixture
-def renderer() -> None:
-    try:
-        ensure_open()
-    except RenderError as error:
-        pytest.skip(f"{error}; apt install libegl1 libgl1-mesa-dri")
 
 
 def plain(seen: list[np.ndarray]) -> object:
@@ -91,7 +82,7 @@ def test_a_video_has_all_frames_at_the_asked_rate(tmp_path: Path, name: str, cod
     assert frames[0].shape == (48, 64, 3)
 
 
-def test_a_film_changes_no_bit_of_the_run(tmp_path: Path, renderer: None) -> None:
+def test_a_film_changes_no_bit_of_the_run(tmp_path: Path) -> None:
     lidar = """<sensor name="eye" type="gpu_lidar"><update_rate>10</update_rate><topic>scan</topic><lidar><scan>
       <horizontal><samples>9</samples><min_angle>-3</min_angle><max_angle>3</max_angle></horizontal></scan><range><min>0.05</min>
       <max>10</max></range><noise><type>gaussian</type><stddev>0.1</stddev></noise></lidar></sensor></link>"""
@@ -112,7 +103,7 @@ def test_a_film_changes_no_bit_of_the_run(tmp_path: Path, renderer: None) -> Non
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
-def test_an_interrupted_run_leaves_a_whole_video(tmp_path: Path, renderer: None) -> None:
+def test_an_interrupted_run_leaves_a_whole_video(tmp_path: Path) -> None:
     av = pytest.importorskip("av", reason="pip install 'simkit-robotics[video]'")
     video = tmp_path / "out.mp4"
     (tmp_path / "w.sdf").write_text(WORLD, encoding="utf-8")

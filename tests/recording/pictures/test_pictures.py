@@ -15,7 +15,7 @@ from simkit.recording.pictures.overlay import Marks, draw_overlay, length_text, 
 from simkit.recording.pictures.subject import find_subject
 from simkit.recording.run_picture import DrivenPath, save_picture
 from simkit.runtime.engine.snapshot import state_hash
-from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.overview_image import render_view
 
 MODEL = """<model name="{name}">{static}<pose>{pose}</pose><link name="l"><visual name="v"><geometry><box>
   <size>{size}</size></box></geometry></visual><collision name="c"><geometry><box><size>{size}</size></box></geometry>

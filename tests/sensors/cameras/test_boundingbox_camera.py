@@ -9,13 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 from label_worlds import FOCAL, HEIGHT, WIDTH, cube, edges, eye, label, labelled_model, load, visual
-from renderer import NEEDS_RENDERER
 from sensor_worlds import colours
 
 from simkit import Pose
 from simkit.errors import LoadError
 
-pytestmark = NEEDS_RENDERER
 PLATE = "<box><size>0.01 1 0.5</size></box>"
 QUIRKS = "<gazebo_quirks>true</gazebo_quirks>"
 VISIBLE, FULL, SPACE = ("2d", "full_2d", "3d")

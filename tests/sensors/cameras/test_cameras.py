@@ -8,15 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, colours, depths, noise, sensor, world
 
 import simkit
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.depth_range import DepthRange
-from simkit.sensors.cameras.rendering.overview_image import render_view
-
-pytestmark = NEEDS_RENDERER
+from simkit.sensors.cameras.overview_image import render_view
 
 SCENE = "<scene><ambient>1 1 1 1</ambient><background>0.2 0.4 0.6 1</background></scene>"
 BACKGROUND = (51, 102, 153)

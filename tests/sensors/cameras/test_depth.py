@@ -25,13 +25,10 @@ from depth_worlds import (
     scene,
     seen_at,
 )
-from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, colours, depths, noise, world
 
 import simkit
 from simkit.sensors.cameras.depth_range import clip_planes
-
-pytestmark = NEEDS_RENDERER
 
 # ---------------------------------------------------------------------- exactness
 

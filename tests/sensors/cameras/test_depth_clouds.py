@@ -8,12 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from depth_worlds import CLASSIC, OPTICAL, WALL, camera, first_messages, loaded, points_of, scene
-from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, depths, noise
 
 import simkit
-
-pytestmark = NEEDS_RENDERER
 
 # ---------------------------------------------------------------------- clouds
 
@@ -193,7 +190,7 @@ def test_a_cloud_may_have_a_frame_of_its_own_and_axes_of_ros(kind: str, more: st
     assert {topic: frame for topic, frame in frames.items() if frame != "eye"} == {"/c/points": "cloud"}
     assert parent == "m::l::s"
     np.testing.assert_allclose(pose.matrix.T @ (1, 0, 0), np.eye(3)[ahead], atol=1e-12)  # ahead, in the cloud's axes
-    assert not sim.diagnostics
+    assert {d.code for d in sim.diagnostics} <= {"SK-RENDER-015"}  # without OpenGL
 
 
 def test_axes_of_ros_are_for_a_frame_that_the_file_turns_itself() -> None:

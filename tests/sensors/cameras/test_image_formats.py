@@ -8,14 +8,11 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 from sensor_worlds import box, sensor, world
 
 import simkit
 from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.saved_images import SAVE_PATH_VARIABLE, encode_png
-
-pytestmark = NEEDS_RENDERER
 
 SCENE = "<scene><ambient>1 1 1 1</ambient><background>0.2 0.4 0.6 1</background></scene>"
 RED = box("red", "3.5 1.4 1 0 0 0", "1 2 9", colour="1 0 0")

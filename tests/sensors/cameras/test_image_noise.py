@@ -8,15 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from renderer import NEEDS_RENDERER
 from sensor_worlds import colours, depths, noise, sensor, world
 
 import simkit
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.sensors.cameras.image_noise import ImageNoise
 from simkit.sensors.noise import NoiseModel
-
-drawn = NEEDS_RENDERER
 
 SIZE = (120, 160)
 FRAMES = 12
@@ -183,7 +180,6 @@ def eyes(more: str = "") -> str:
     return world(both, others=wall, top=scene)
 
 
-@drawn
 def test_messages_carry_it_and_their_truth_does_not() -> None:
     with simkit.load(eyes()) as sim:
         one, other, far = (sim.subscribe(topic) for topic in ("/a/image", "/b", "/a/depth_image"))
@@ -202,7 +198,6 @@ def test_messages_carry_it_and_their_truth_does_not() -> None:
         assert (lengths - 2.95).std() == pytest.approx(0.05, rel=0.02)
 
 
-@drawn
 def test_with_gazebos_quirks_small_noise_is_not_seen_on_colours() -> None:
     with simkit.load(eyes("<gazebo_quirks>true</gazebo_quirks>")) as sim:
         image, far = sim.subscribe("/b"), sim.subscribe("/a/depth_image")

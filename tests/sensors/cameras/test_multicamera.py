@@ -7,13 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 from sensor_worlds import box, colours, noise, sensor, world
 
 import simkit
 from simkit.sensors.cameras import image_messages
-
-pytestmark = NEEDS_RENDERER
 
 SCENE = "<scene><ambient>1 1 1 1</ambient><background>0 0 0 1</background></scene>"
 BASELINE, DISTANCE = 0.12, 3.0

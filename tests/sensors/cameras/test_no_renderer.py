@@ -1,4 +1,4 @@
-"""Without a renderer, all sensors except cameras work, and a report gives the reason and the remedy."""
+"""A world requests OpenGL on a machine without it: all sensors except cameras work, and a report gives the remedy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from sensor_worlds import sensor, world
 
 ROOT = Path(__file__).resolve().parents[3]
 CAMERA = "<camera><image><width>32</width><height>24</height></image></camera>"
-WORLD = world(sensor("camera", CAMERA, name="c") + sensor("imu", "<imu/>", name="i"))
+GL = "<scene><simkit:renderer>gl</simkit:renderer></scene>"
+WORLD = world(sensor("camera", CAMERA, name="c") + sensor("imu", "<imu/>", name="i"), top=GL)
 # a vendor list that names no file leaves the EGL library without drivers
 BROKEN = {
     "MUJOCO_GL": "egl",
@@ -67,7 +68,7 @@ def test_other_sensors_continue_and_the_camera_reports_the_missing_renderer() ->
     assert "Traceback" not in done.stderr
 
 
-def test_rendering_can_be_switched_off() -> None:
+def test_opengl_can_be_switched_off() -> None:
     done = run(
         """
         import os
@@ -161,9 +162,9 @@ def test_a_subscription_to_images_is_refused_at_once_with_the_place_of_the_camer
             def load(self, parent, params):
                 self.images = self.subscribe({topic!r})
         assert is_refused(lambda: simkit.load("w.sdf", plugins=[Viewer()]))
-        empty = simkit.load('<sdf version="1.9"><world name="w"/></sdf>')
+        empty = simkit.load('<sdf version="1.9"><world name="w">{GL}</world></sdf>')
         images = empty.subscribe({topic!r})
-        model = os.environ["SIMKIT_TEST_WORLD"].replace('<world name="w">', "").replace("</world>", "")
+        model = os.environ["SIMKIT_TEST_WORLD"].replace('<world name="w">{GL}', "").replace("</world>", "")
         pathlib.Path("w.sdf").write_text(model)
         assert is_refused(lambda: empty.spawn("w.sdf"))
         assert not empty.models
@@ -217,7 +218,7 @@ def test_every_command_that_asks_for_images_ends_before_the_run(tmp_path: Path) 
 
 @pytest.mark.parametrize("command", ["run", "convert"])
 def test_no_command_fails_for_a_renderer_that_it_does_not_need(command: str, tmp_path: Path) -> None:
-    (tmp_path / "world.sdf").write_text(WORLD)
+    (tmp_path / "world.sdf").write_text(WORLD.replace(GL, ""))
     record = ["--duration", "0.02", "--record", "bag.mcap", "--skip", "*/c/image"]
     more = {"run": record, "convert": ["-o", "other.sdf"]}
     done = subprocess.run(
@@ -235,7 +236,7 @@ def test_an_error_of_all_cameras_is_logged_once_and_reported_for_each() -> None:
     done = run(
         f"""
         import simkit
-        with simkit.load({world(cameras)!r}) as sim:
+        with simkit.load({world(cameras, top=GL)!r}) as sim:
             sim.run(0.02)
             for sensor in sim.contents.sensors.values():
                 try:

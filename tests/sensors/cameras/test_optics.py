@@ -9,15 +9,12 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, colours, depths, sensor, world
 
 import simkit
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.distortion_model import Distortion, distort, undistort
 from simkit.sensors.cameras.image_distortion import ImageDistorter
-
-draws = NEEDS_RENDERER
 
 DARK = "<scene><ambient>1 1 1 1</ambient><background>0 0 0 1</background></scene>"
 BRIGHT = "<scene><ambient>1 1 1 1</ambient><background>0.5 0.5 0.5 1</background></scene>"
@@ -115,7 +112,6 @@ def test_an_opening_angle_of_a_fisheye_names_the_sensor_for_it() -> None:
         load(camera(hfov=4))
 
 
-@draws
 @pytest.mark.parametrize("hfov", [0.02, 3.0])
 def test_very_narrow_and_very_wide_images_are_in_place(hfov: float) -> None:
     f = 80 / math.tan(hfov / 2)
@@ -128,7 +124,6 @@ INTRINSICS = "<intrinsics><fx>120</fx><fy>90</fy><cx>70</cx><cy>66</cy><s>{}</s>
 PLACES = [(-0.4, -0.3), (-0.2, 0.35), (0.3, -0.45), (0.55, 0.4)]
 
 
-@draws
 @pytest.mark.parametrize("skew", [0, 25, -40])
 def test_given_intrinsics_are_drawn_with_their_skew(skew: float) -> None:
     with load(camera(f"<lens>{INTRINSICS.format(skew)}</lens>"), spots(PLACES)) as sim:
@@ -148,7 +143,6 @@ def test_a_skewed_view_is_wide_enough() -> None:
     assert -view.top < y.min() < y.max() < -view.bottom
 
 
-@draws
 def test_p_contains_the_projection_and_the_image_follows_k() -> None:
     projection = "<projection><p_fx>100</p_fx><p_cy>55</p_cy><tx>-8</tx><ty>2</ty></projection>"
     with load(camera(f"<lens>{INTRINSICS.format(0)}{projection}</lens>"), spots(PLACES)) as sim:
@@ -158,7 +152,6 @@ def test_p_contains_the_projection_and_the_image_follows_k() -> None:
     np.testing.assert_allclose(middles(image), sorted((120 * x + 70, 90 * y + 66) for x, y in PLACES), atol=0.25)
 
 
-@draws
 def test_with_gazebos_quirks_projection_draws_the_image() -> None:
     projection = "<projection><p_fx>100</p_fx><p_fy>90</p_fy><p_cx>70</p_cx><p_cy>55</p_cy></projection>"
     block = camera(f"<lens>{INTRINSICS.format(20)}{projection}</lens>")
@@ -169,7 +162,6 @@ def test_with_gazebos_quirks_projection_draws_the_image() -> None:
     assert info.p[6] == 55
 
 
-@draws
 def test_with_gazebos_quirks_skew_is_opposite_and_there_is_no_distortion() -> None:
     block = camera(f"<lens>{INTRINSICS.format(25)}</lens>{distortion(LENSES[0])}")
     with load(block, spots(PLACES), top=DARK + QUIRKS) as sim:
@@ -208,7 +200,6 @@ def test_beyond_the_fold_directions_are_nan() -> None:
     assert np.isnan(found).tolist() == [[False, False, True, True]]
 
 
-@draws
 @ALL_LENSES
 def test_a_distorted_image_agrees_with_opencvs_projection(lens: Distortion) -> None:
     places = [(-0.6, -0.4), (-0.3, 0.1), (0.02, -0.25), (0.25, 0.42), (0.6, -0.1)]
@@ -219,7 +210,6 @@ def test_a_distorted_image_agrees_with_opencvs_projection(lens: Distortion) -> N
     np.testing.assert_allclose(middles(image), seen_by_opencv(places, info), atol=0.3)
 
 
-@draws
 @ALL_LENSES
 def test_a_distorted_image_has_no_black_corners(lens: Distortion) -> None:
     with load(camera(distortion(lens), hfov=1.0), top=BRIGHT) as sim:
@@ -227,7 +217,6 @@ def test_a_distorted_image_has_no_black_corners(lens: Distortion) -> None:
     assert colours(image).min() > 100
 
 
-@draws
 def test_distortion_is_about_the_principal_point_and_with_skew_too() -> None:
     block = camera(f"<lens>{INTRINSICS.format(25)}</lens>{distortion(LENSES[0])}")
     with load(block, spots(PLACES)) as sim:
@@ -237,7 +226,6 @@ def test_distortion_is_about_the_principal_point_and_with_skew_too() -> None:
     np.testing.assert_allclose(middles(image), expected, atol=0.3)
 
 
-@draws
 def test_a_centre_off_the_principal_point_is_drawn_and_reported() -> None:
     with load(camera(distortion(LENSES[0], "<center>0.4 0.6</center>")), spots(PLACES)) as sim:
         image, info = shown(sim, "image", "camera_info")
@@ -255,7 +243,6 @@ def test_a_centre_on_the_principal_point_is_not_reported() -> None:
         assert "SK-SENSOR-100" not in {d.code for d in sim.diagnostics}
 
 
-@draws
 def test_a_lens_that_folds_back_is_reported_and_black_beyond_the_fold() -> None:
     with load(camera(distortion(Distortion(-0.5)), hfov=1.5), top=BRIGHT) as sim:
         (found,) = (d for d in sim.diagnostics if d.code == "SK-SENSOR-101")
@@ -281,7 +268,6 @@ def test_pixels_that_a_strong_lens_compresses_are_averaged() -> None:
     assert lens.distort(stripes)[55:65, 75:85, 0].std() > 100
 
 
-@draws
 @pytest.mark.parametrize("size", [(1, 1), (1, 7), (7, 1)])
 def test_the_smallest_images_are_distorted_too(size: tuple[int, int]) -> None:
     block = camera(distortion(LENSES[0]), width=size[0], height=size[1])
@@ -290,7 +276,6 @@ def test_the_smallest_images_are_distorted_too(size: tuple[int, int]) -> None:
     assert colours(image).min() > 100
 
 
-@draws
 def test_pixels_that_are_not_square_are_drawn_so() -> None:
     lens = "<lens><intrinsics><fx>200</fx><fy>50</fy><cx>80</cx><cy>60</cy></intrinsics></lens>"
     with load(camera(lens), spots([(0.2, 0.4)], size=0.1)) as sim:
@@ -318,7 +303,6 @@ def projected(points: np.ndarray, info: Any) -> np.ndarray:
     return np.stack((k[0, 0] * x + k[0, 1] * y + k[0, 2], k[1, 1] * y + k[1, 2]), axis=-1)
 
 
-@draws
 @pytest.mark.parametrize("lens", BENT, ids=BENT_IDS)
 def test_a_tilted_plane_stays_a_plane(lens: str) -> None:
     wall = box("wall", "3 0 1 0 0 0.5235987755982988", "0.02 20 20")
@@ -334,7 +318,6 @@ def test_a_tilted_plane_stays_a_plane(lens: str) -> None:
     np.testing.assert_allclose(projected(points, info), np.stack((u, v), axis=-1), atol=0.01)
 
 
-@draws
 @pytest.mark.parametrize("lens", BENT, ids=BENT_IDS)
 def test_a_colours_corner_lies_at_its_own_point(lens: str) -> None:
     """A white square is in front of a red wall: white pixels have near depths, and corners project to their pixels."""
@@ -351,7 +334,6 @@ def test_a_colours_corner_lies_at_its_own_point(lens: str) -> None:
         assert np.abs(projected(points[is_near], info) - pixel).max(axis=1).min() < 1.0  # the next pixel's middle
 
 
-@draws
 @pytest.mark.parametrize("lens", BENT, ids=BENT_IDS)
 def test_no_point_is_between_two_surfaces(lens: str) -> None:
     others = box("near", "1.5 0 1 0.4 0 0", "0.02 0.6 0.5") + box("wall", "4 0 1 0 0 0", "0.1 20 20")
@@ -362,7 +344,6 @@ def test_no_point_is_between_two_surfaces(lens: str) -> None:
     assert distance.max() < 1e-3
 
 
-@draws
 def test_nothing_is_at_infinity_where_the_lens_shows_nothing() -> None:
     block, wall = camera(distortion(Distortion(-0.5)), hfov=1.5), box("wall", "4 0 1 0 0 0", "0.1 90 90")
     with load(block, wall, kind="rgbd_camera") as sim:

@@ -7,13 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from label_worlds import FOCAL, HEIGHT, WIDTH, bare, counts, cube, eye, label, labelled_model, labels, load, visual
-from renderer import NEEDS_RENDERER
 from sensor_worlds import colours
 
 from simkit.errors import LoadError
 from simkit.sensors.cameras.segmentation_camera import label_colours
 
-pytestmark = NEEDS_RENDERER
 PLATE = "<box><size>0.01 1 0.5</size></box>"
 PANOPTIC = "<segmentation_type>panoptic</segmentation_type>"
 

@@ -9,12 +9,9 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 
 import simkit
 from simkit.runtime.handles.visual import HeatSignature
-
-pytestmark = NEEDS_RENDERER
 
 WIDTH, HEIGHT, HFOV, FAR = 64, 48, 1.047, 100.0
 SPAN = 0.0065 * 2 * FAR * math.tan(HFOV / 2) * HEIGHT / WIDTH

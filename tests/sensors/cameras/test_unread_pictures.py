@@ -7,14 +7,11 @@ from typing import Any
 
 import pytest
 from label_worlds import cube, labelled_model, visual
-from renderer import RENDERS
 from sensor_worlds import sensor, world
 
 import simkit
 from simkit import msgs
 from simkit.pose import Pose
-
-pytestmark = pytest.mark.skipif(not RENDERS, reason="no renderer")
 
 WARM = """<plugin filename="gz-sim-thermal-system" name="gz::sim::systems::Thermal">
   <temperature>350</temperature></plugin>"""

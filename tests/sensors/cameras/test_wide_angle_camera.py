@@ -9,14 +9,11 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
 from sensor_worlds import box, colours, sensor, world
 
 import simkit
 from simkit.sensors.cameras.cube_map import CubeMap
 from simkit.sensors.cameras.wide_angle_lens import LENSES, WideAngleModel
-
-draws = NEEDS_RENDERER
 
 DARK = "<scene><ambient>1 1 1 1</ambient><background>0 0 0 1</background></scene>"
 ALL_ROUND = "<cutoff_angle>3.1416</cutoff_angle>"
@@ -77,7 +74,6 @@ CASES = [(f"<type>{name}</type>{ALL_ROUND}", formula, hfov) for name, (formula, 
 ]
 
 
-@draws
 @pytest.mark.parametrize(("lens", "formula", "hfov"), CASES, ids=[*FORMULAS, "custom-tan", "custom-id", "custom-sin"])
 def test_a_target_is_where_the_lens_formula_puts_it(lens: str, formula: Any, hfov: float) -> None:
     places = [(0.62 * hfov / 2, 0.3), (0.88 * hfov / 2, 3.3), (0.7 * hfov / 2, 5.6)]
@@ -91,7 +87,6 @@ def test_a_target_is_where_the_lens_formula_puts_it(lens: str, formula: Any, hfo
         np.testing.assert_allclose(middle(colours(image), channel), expected, atol=0.5)
 
 
-@draws
 def test_without_scale_to_hfov_the_focal_length_decides() -> None:
     lens = CUSTOM.format(c3=0, f=1.5, fun="tan") + "<scale_to_hfov>false</scale_to_hfov>"
     with load(camera(lens, 1.0), target(0, 1.1, 0.4, "1 0 0")) as sim:
@@ -101,7 +96,6 @@ def test_without_scale_to_hfov_the_focal_length_decides() -> None:
     np.testing.assert_allclose(middle(colours(image), 0), expected, atol=0.5)
 
 
-@draws
 @pytest.mark.parametrize("size", [(1, 1), (1, 7), (7, 1)])
 def test_the_smallest_images_are_drawn(size: tuple[int, int]) -> None:
     block = camera("<type>equidistant</type>", 0.5, width=size[0], height=size[1])
@@ -111,7 +105,6 @@ def test_the_smallest_images_are_drawn(size: tuple[int, int]) -> None:
     assert np.asarray(image.data).min() > 50
 
 
-@draws
 def test_behind_is_seen_too() -> None:
     with load(camera(f"<type>equidistant</type>{ALL_ROUND}", 6.2832), target(0, 2.9, 0.0, "1 0 0")) as sim:
         (image,) = shown(sim, "image")
@@ -137,7 +130,6 @@ def around(lens: str, hfov: float) -> Any:
     return load(camera(lens, hfov), f'<model name="r"><static>true</static><link name="l">{parts}</link></model>')
 
 
-@draws
 @pytest.mark.parametrize("size", ["", "<env_texture_size>64</env_texture_size>"])
 def test_no_border_of_two_faces_shows(size: str) -> None:
     with around(f"<type>equidistant</type>{ALL_ROUND}{size}", 5.5) as sim:
@@ -149,7 +141,6 @@ def test_no_border_of_two_faces_shows(size: str) -> None:
     assert picture[75, 100].min() > 100
 
 
-@draws
 def test_a_bar_is_continuous_across_the_border_of_two_faces() -> None:
     """The bar is 1 m above the axis, from the front to the far left; at y = 2 it crosses the border of two faces."""
     bar = box("bar", "2 2 1 0 0 0", "0.01 5 0.12")
@@ -192,7 +183,6 @@ def test_a_face_has_the_size_of_the_file() -> None:
 # ---------------------------------------------------------------------- what is black
 
 
-@draws
 def test_beyond_the_cutoff_angle_it_is_black() -> None:
     with around("<type>equidistant</type><cutoff_angle>1.0</cutoff_angle>", 4.0) as sim:
         (image,) = shown(sim, "image")
@@ -208,7 +198,6 @@ def test_beyond_the_cutoff_angle_it_is_black() -> None:
     )  # the image fades within the last fiftieth of the radius, as in Gazebo
 
 
-@draws
 def test_an_orthographic_lens_shows_a_disc() -> None:
     with around("<type>orthographic</type>", math.pi) as sim:
         (image,) = shown(sim, "image")
@@ -220,7 +209,6 @@ def test_an_orthographic_lens_shows_a_disc() -> None:
 # ---------------------------------------------------------------------- CameraInfo
 
 
-@draws
 @pytest.mark.parametrize("name", ["stereographic", "equidistant", "equisolid_angle", "orthographic"])
 def test_camera_info_is_opencvs_fisheye(name: str) -> None:
     formula, _ = FORMULAS[name]
@@ -305,7 +293,6 @@ def test_elements_without_effect_on_a_wide_lens_are_reported() -> None:
     assert [any(f"<{n}>" in m for m in found) for n in ("custom_function", "intrinsics", "distortion")] == [True] * 3
 
 
-@draws
 def test_noise_and_grey_formats_work_as_for_any_camera() -> None:
     block = camera("<type>equidistant</type>", 3.0, more='<noise type="gaussian"><stddev>0.05</stddev></noise>')
     block = block.replace("<image>", "<image><format>L8</format>")

@@ -9,8 +9,7 @@ import contract_worlds
 import proof
 import proof_worlds
 import pytest
-from renderer import RENDERS
-from test_proof_of_plugins import CLASSES, DRAWN
+from test_proof_of_plugins import CLASSES
 from test_proof_of_sensors import KINDS, thrown
 
 import simkit
@@ -35,16 +34,12 @@ def check_transfer(one: simkit.Simulation, other: simkit.Simulation, steps: int)
 
 @pytest.mark.parametrize("cls", CLASSES, ids=[cls.__name__ for cls in CLASSES])
 def test_a_plugin_continues_in_another_simulation(cls: type, tmp_path: Path) -> None:
-    if not RENDERS and any(word in cls.__name__ for word in DRAWN):
-        pytest.skip("draws pictures, and there is no renderer")
     with proof_worlds.open_world(cls.__name__, tmp_path) as one, proof_worlds.open_world(cls.__name__, tmp_path) as two:
         check_transfer(one, two, 60)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_sensor_continues_in_another_simulation(kind: str) -> None:
-    if contract_worlds.is_rendered(kind) and not RENDERS:
-        pytest.skip("draws pictures, and there is no renderer")
     world = contract_worlds.source(kind, noisy=True)
     with simkit.load(world, seed=5) as one, simkit.load(world, seed=5) as other:
         thrown(one)

@@ -8,7 +8,6 @@ from pathlib import Path
 import proof
 import proof_worlds
 import pytest
-from renderer import RENDERS
 
 from simkit.plugins import Plugin
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
@@ -19,7 +18,6 @@ pytestmark = pytest.mark.slow  # slow: processes and complete runs
 CLASSES = sorted(
     {cls for cls in plugin_kinds().values() if cls.__module__.startswith("simkit.")}, key=lambda c: c.__name__
 )
-DRAWN = ("Camera", "RealSense", "Kinect", "Prosilica", "Thermal", "Label")
 
 
 @functools.cache
@@ -34,8 +32,6 @@ def test_every_plugin_has_a_test_world() -> None:
 
 @pytest.mark.parametrize("cls", CLASSES, ids=_names())
 def test_a_run_with_the_plugin_repeats_after_restore_and_reset(cls: type[Plugin], tmp_path: Path) -> None:
-    if not RENDERS and any(word in cls.__name__ for word in DRAWN):
-        pytest.skip("draws pictures, and there is no renderer")
     with proof_worlds.open_world(cls.__name__, tmp_path) as sim:
         plugins = [p for p in sim.engine.structure.all_plugins() if type(p) is cls]
         assert plugins, f"no {cls.__name__} in its world: {[str(d) for d in sim.diagnostics if d.severity != 'note']}"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contract_worlds
 import proof
 import pytest
-from renderer import RENDERS
 
 import simkit
 from simkit.sensors import sensor_kinds
@@ -21,8 +20,6 @@ def thrown(sim: simkit.Simulation) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_run_with_the_sensor_repeats_after_restore_and_reset(kind: str) -> None:
-    if contract_worlds.is_rendered(kind) and not RENDERS:
-        pytest.skip("draws pictures, and there is no renderer")
     with simkit.load(contract_worlds.source(kind, noisy=True), seed=5) as sim:
         found, (before, first) = proof.proven(sim, 90, thrown)
         assert not found

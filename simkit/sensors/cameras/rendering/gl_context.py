@@ -23,7 +23,8 @@ from simkit.interrupts import defer_interrupts
 from simkit.runtime.engine.step_loop import stop_other_loops
 from simkit.sensors.cameras.rendering import render_thread
 
-_HINT = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6); run `simkit doctor` for details"
+WAYS_TO_GET_GL = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6)"
+HINT = f"{WAYS_TO_GET_GL}, or draw with --renderer software; run `simkit doctor` for details"
 _OFF = {"disable", "disabled", "off", "false", "0"}
 _ON = {"", "enable", "enabled", "on", "true", "1"}
 _LIBRARIES = {"egl": "egl", "osmesa": "osmesa", "glfw": "glfw", "glx": "glfw", "cgl": "cgl", "wgl": "glfw"}
@@ -69,12 +70,12 @@ class _ProcessContext:
     def current(self) -> Iterator[None]:
         with defer_interrupts(), self.lock:
             if self.failure is not None:
-                raise self.failure
+                raise _copy(self.failure)  # a raised error would keep the simulations of its traceback alive
             if self.context is None:
                 try:
                     self.context, self.description = _open()
                 except RenderError as error:
-                    self.failure = error
+                    self.failure = _copy(error)
                     raise
                 atexit.register(self.close)
             with self.context.as_current():
@@ -106,6 +107,10 @@ class _ProcessContext:
             atexit.unregister(terminate)
         self.context = None
         self.failure = RenderError(_FORKED, "SK-RENDER-011")
+
+
+def _copy(error: RenderError) -> RenderError:
+    return RenderError(error.message, error.code)
 
 
 _process = _ProcessContext()
@@ -165,14 +170,14 @@ def find_library() -> str:
         if not problem:
             return name
         tried.append(f"{name}: {problem}")
-    raise RenderError(f"no renderer for cameras ({'; '.join(tried)}); {_HINT}")
+    raise RenderError(f"OpenGL cannot be opened ({'; '.join(tried)}); {HINT}")
 
 
 def _candidates() -> tuple[str, ...]:
     requested = os.environ.get("MUJOCO_GL", "").strip().lower()
     platform = os.environ.get("PYOPENGL_PLATFORM", "").strip().lower()
     if requested in _OFF:
-        raise RenderError(f"rendering is switched off by MUJOCO_GL={requested}; run `unset MUJOCO_GL`")
+        raise RenderError(f"OpenGL is switched off by MUJOCO_GL={requested}; run `unset MUJOCO_GL`")
     if requested not in (*_LIBRARIES, *_ON):
         raise RenderError(f"MUJOCO_GL={requested}: unknown renderer; expected one of {', '.join(_LIBRARIES)}")
     if requested in _LIBRARIES:
@@ -246,7 +251,7 @@ def _open() -> tuple[Any, str]:
                 name = _renderer_name()
     except Exception as error:
         # drivers raise various errors: ImportError, AttributeError, ctypes errors, GLError
-        raise RenderError(f"no renderer for cameras ({library}: {type(error).__name__}: {error}); {_HINT}") from error
+        raise RenderError(f"OpenGL cannot be opened ({library}: {type(error).__name__}: {error}); {HINT}") from error
     return context, f"{name} through {'EGL' if library == 'egl' else library}"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Final
+from typing import Final, Protocol
 
 import mujoco
 import numpy as np
@@ -23,6 +23,18 @@ Lights = Sequence[Vector]
 """Poses and states of the lights of a model at one time."""
 Sphere = tuple[Vector, float]
 """Centre [m], shape (3,), and radius [m]."""
+
+
+class ShadowSettings(Protocol):
+    """Size of the shadow maps of a renderer.
+
+    Attributes:
+        shadowSize: width of a map [px].
+        shadowClip: half width of the map of a directional light [m].
+    """
+
+    shadowSize: int  # noqa: N815 - names of MuJoCo
+    shadowClip: float  # noqa: N815
 
 
 def read_lights(model: mujoco.MjModel) -> Lights:
@@ -90,9 +102,14 @@ def convert_point_lights(scene: mujoco.MjvScene) -> None:
             light.castshadow = 0
 
 
+def suns_of(scene: mujoco.MjvScene) -> list[mujoco.MjvLight]:
+    """Return the directional lights of a scene, without the headlight."""
+    return [light for light in scene.lights[: scene.nlight] if light.type == _DIRECTIONAL and not light.headlight]
+
+
 def place_directional_lights(
     scene: mujoco.MjvScene,
-    context: mujoco.MjrContext,
+    context: ShadowSettings,
     model: mujoco.MjModel,
     position: Vector,
     forward: Vector,
@@ -107,14 +124,14 @@ def place_directional_lights(
 
     Args:
         scene: scene whose lights are moved.
-        context: MuJoCo's rendering context.
+        context: size of the maps; their half width is written into it, as into MuJoCo's rendering context.
         model: compiled model.
         position: position of the camera in the world [m], shape (3,).
         forward: direction of the view, shape (3,).
         far: far clip plane [m].
         lit: sphere that the maps cover; None for the scene or the part ahead of the camera.
     """
-    suns = [li for li in scene.lights[: scene.nlight] if li.type == _DIRECTIONAL and not li.headlight and li.castshadow]
+    suns = [light for light in suns_of(scene) if light.castshadow]
     if not suns:
         return
     extent, middle = float(model.stat.extent), np.asarray(model.stat.center)

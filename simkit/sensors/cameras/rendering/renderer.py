@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import logging
-import weakref
-from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Generator, Sequence
 
 import mujoco
 import numpy as np
 
 from simkit.errors import RenderError
-from simkit.runtime import Simulation
-from simkit.scene import SceneWorld, Surroundings
 from simkit.sensors.cameras.rendering import frame_buffer, gl_context
+from simkit.sensors.cameras.rendering.appearance import Appearance, Quality
 from simkit.sensors.cameras.rendering.lights_and_shadows import fit_shadow_maps, place_directional_lights
 from simkit.sensors.cameras.rendering.scene_composition import (
     Composer,
@@ -30,47 +25,6 @@ from simkit.sensors.cameras.rendering.sky_and_fog import Background, enable_fog
 from simkit.sensors.cameras.rendering.transparency import draw_transparent
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Ids, Shot, aim
 from simkit.sensors.environment.illumination import LEAST_OPACITY
-
-
-@dataclass(frozen=True, slots=True)
-class Quality:
-    """Quality settings of images.
-
-    Attributes:
-        samples: samples per pixel, for smooth edges; 0 means one sample. A driver may use fewer samples.
-        shadow_map: width of a light's shadow map [px]; 0 draws no shadows.
-        slices: number of sides of round shapes.
-    """
-
-    name: str
-    samples: int
-    shadow_map: int
-    slices: int
-
-    def missing_features(self) -> str:
-        """Return the features that Gazebo draws and this quality does not, as a text."""
-        parts = [word for word, there in (("shadows", self.shadow_map), ("smooth edges", self.samples)) if not there]
-        return " and ".join(parts)
-
-
-QUALITIES: Final[Mapping[str, Quality]] = {
-    "fast": Quality("fast", 0, 0, 28),
-    "gazebo": Quality("gazebo", 4, 2048, 32),
-    "high": Quality("high", 8, 4096, 64),
-}
-
-
-@dataclass(frozen=True, slots=True)
-class Appearance:
-    """Visual appearance of one world."""
-
-    surroundings: Surroundings
-    quality: Quality
-
-    @classmethod
-    def of(cls, world: SceneWorld) -> Appearance:
-        """Return the appearance that the file of a world defines."""
-        return cls(world.surroundings, QUALITIES[world.quality])
 
 
 class GpuModel:
@@ -122,7 +76,8 @@ def _upload(model: mujoco.MjModel, quality: Quality, smooth: bool) -> mujoco.Mjr
     settings = model.vis.quality
     original = settings.offsamples, settings.shadowsize, settings.numslices, settings.numstacks
     settings.offsamples, settings.shadowsize = quality.samples if smooth else 0, quality.shadow_map
-    settings.numslices, settings.numstacks = max(original[2], quality.slices), max(original[3], quality.slices // 2)
+    # sides decide the shape; each row of them costs as much, and matters to highlights and spheres only
+    settings.numslices, settings.numstacks = max(original[2], quality.slices), max(original[3], quality.slices // 4)
     try:
         context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
     finally:
@@ -130,9 +85,6 @@ def _upload(model: mujoco.MjModel, quality: Quality, smooth: bool) -> mujoco.Mjr
     context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
     context.shadowScale = 1.0  # the map covers the whole cone of a spot light
     return context
-
-
-__all__ = ["Composition", "Renderer", "free_renderer", "renderer_of"]
 
 
 def draw_ids(
@@ -329,39 +281,3 @@ class Renderer:
         logging.getLogger("simkit").info(
             "renderer: %s; quality %s, %s", gl_context.describe_renderer(), quality.name, text
         )
-
-
-# ---------------------------------------------------------------------- one renderer per simulation
-
-
-_renderers: weakref.WeakKeyDictionary[Simulation, dict[str, Renderer]] = weakref.WeakKeyDictionary()
-_abandoned: list[Renderer] = []
-"""Renderers of simulations that were not closed. A finalizer does not free them: it would wait, and lose interrupts."""
-
-
-def renderer_of(sim: Simulation, quality: str = "") -> Renderer:
-    """Return the renderer of a simulation at a quality; all its cameras share the one of the world's quality.
-
-    Args:
-        sim: simulation to draw.
-        quality: fast, gazebo or high; empty for the quality of the world.
-    """
-    by_quality = _renderers.setdefault(sim, {})
-    name = quality or sim.world.quality
-    if name not in by_quality:
-        while _abandoned:
-            _free_quietly(_abandoned.pop())
-        found = by_quality[name] = Renderer(Appearance(sim.world.surroundings, QUALITIES[name]))
-        weakref.finalize(sim, _abandoned.append, found).atexit = False
-    return by_quality[name]
-
-
-def free_renderer(sim: Simulation) -> None:
-    """Free the graphics memory of a simulation that closes."""
-    for renderer in _renderers.pop(sim, {}).values():
-        _free_quietly(renderer)
-
-
-def _free_quietly(renderer: Renderer) -> None:
-    with contextlib.suppress(RenderError, RuntimeError):
-        renderer.free()

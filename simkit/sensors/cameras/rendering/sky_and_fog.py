@@ -14,8 +14,9 @@ from simkit.scene.world import Fog
 _ZENITH: Final = (0.26, 0.47, 0.80)
 _HORIZON: Final = (0.78, 0.87, 0.95)
 _BELOW: Final = (0.55, 0.58, 0.60)
-_AROUND: Final = 24  # number of sides of the sky
-_RISES: Final = (-90.0, -12.0, -2.0, 0.0, 4.0, 10.0, 20.0, 35.0, 60.0, 90.0)  # [degrees] elevations of its rings
+SKY_SIDES: Final = 24  # number of sides of the sky
+SKY_ELEVATIONS: Final = (-90.0, -12.0, -2.0, 0.0, 4.0, 10.0, 20.0, 35.0, 60.0, 90.0)
+"""Elevations [degrees] of the rings of the sky."""
 
 
 class Background:
@@ -115,21 +116,21 @@ def _sky() -> int:
 
     number = _begin()
     GL.glEnable(GL.GL_DEPTH_CLAMP)
-    for low, high in itertools.pairwise(_RISES):
+    for low, high in itertools.pairwise(SKY_ELEVATIONS):
         GL.glBegin(GL.GL_TRIANGLE_STRIP)
-        for side in range(_AROUND + 1):
-            turn = 2.0 * math.pi * (side % _AROUND) / _AROUND
+        for side in range(SKY_SIDES + 1):
+            turn = 2.0 * math.pi * (side % SKY_SIDES) / SKY_SIDES
             for rise in (low, high):
                 angle = math.radians(rise)
                 flat = math.cos(angle)
-                GL.glColor3f(*_colour(rise))
+                GL.glColor3f(*sky_colour(rise))
                 GL.glVertex4f(flat * math.cos(turn), flat * math.sin(turn), math.sin(angle), 0.0)
         GL.glEnd()
     _end()
     return number
 
 
-def _colour(rise: float) -> tuple[float, float, float]:
+def sky_colour(rise: float) -> tuple[float, float, float]:
     """Return the sky's colour at an elevation [degrees]: paler towards the horizon, haze below."""
     if rise < 0.0:
         share, ends = min(1.0, -rise / 12.0), (_HORIZON, _BELOW)

@@ -76,6 +76,17 @@ class DrawnView:
     ids: Ids | None = None
 
 
+def depth_line(near: float, far: float) -> tuple[np.float32, np.float32]:
+    """Return slope and offset of z = slope/(raw + offset), as the graphics library computes it.
+
+    The library's matrix is that of `glFrustum`, shifted and scaled by ½ (mjr_render): raw = slope/z - offset with slope
+    = near·far/(far - near) and offset = ½·((far + near)/(far - near) - 1), where the quotient is a 32-bit float.
+    """
+    near, far = float(np.float32(near)), float(np.float32(far))
+    quotient = float(np.float32((far + near) / (far - near)))
+    return np.float32(near * far / (far - near)), np.float32(0.5 * (quotient - 1.0))
+
+
 def look_at(eye: Vector, target: Vector) -> Vector:
     """Return the rotation (3, 3) of an upright camera frame (x forward, y left, z up) at `eye` that faces `target`."""
     forward = np.asarray(target, dtype=np.float64) - eye

@@ -10,11 +10,14 @@ import textwrap
 from pathlib import Path
 
 import pytest
+from renderer import NEEDS_GL
 from sensor_worlds import sensor, world
 
 ROOT = Path(__file__).resolve().parents[4]
 CAMERA = "<camera><image><width>32</width><height>24</height></image></camera>"
-WORLD = world(sensor("camera", CAMERA, name="c") + sensor("imu", "<imu/>", name="i"))
+SENSORS = sensor("camera", CAMERA, name="c") + sensor("imu", "<imu/>", name="i")
+WORLD = world(SENSORS)
+GL_WORLD = world(SENSORS, top="<scene><simkit:renderer>gl</simkit:renderer></scene>")
 START = """
 import os, sys, threading
 import simkit
@@ -41,11 +44,6 @@ def run(script: str, **environment: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def needs_a_renderer(done: subprocess.CompletedProcess[str]) -> None:
-    if "SK-RENDER-001" in done.stdout:
-        pytest.skip("no renderer")
-
-
 def test_an_interrupt_after_images_from_several_threads_is_the_only_message() -> None:
     done = run(
         """
@@ -59,13 +57,13 @@ def test_an_interrupt_after_images_from_several_threads_is_the_only_message() ->
         raise KeyboardInterrupt
         """
     )
-    needs_a_renderer(done)
     assert done.stderr.splitlines()[-1] == "KeyboardInterrupt"
     assert "Error" not in done.stderr and done.stderr.count("Traceback") == 1
 
 
+@NEEDS_GL
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
-def test_a_forked_child_reports_that_it_cannot_draw_and_continues() -> None:
+def test_a_forked_child_reports_that_opengl_cannot_draw_and_continues() -> None:
     done = run(
         """
         sim, found = draw()
@@ -79,13 +77,39 @@ def test_a_forked_child_reports_that_it_cannot_draw_and_continues() -> None:
         print(os.waitpid(child, 0)[1])
         sim.run(0.02)
         assert sim.sensor("m::l::c").latest is not None
-        """
+        """,
+        SIMKIT_TEST_WORLD=GL_WORLD,
     )
-    needs_a_renderer(done)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[1:] == ["SK-RENDER-011 True", "0"]
 
 
+@NEEDS_GL
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_in_a_forked_child_a_new_simulation_draws_in_software_and_the_parents_one_not_at_all() -> None:
+    done = run(
+        """
+        parent, found = draw()
+        print(parent.engine.renderer.partition(" ")[0] != "software", flush=True)
+        child = os.fork()
+        if child == 0:
+            forked, colour = draw()
+            codes = [d.code for d in forked.diagnostics]
+            print(forked.engine.renderer.partition(" ")[0], colour > 0, codes, flush=True)
+            parent.run(0.02)
+            try:
+                parent.sensor("m::l::c").latest
+            except simkit.RenderError as error:
+                print(error.code, flush=True)
+            sys.exit(0)
+        print(os.waitpid(child, 0)[1])
+        """
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == ["True", "software True ['SK-RENDER-015']", "SK-RENDER-011", "0"]
+
+
+@NEEDS_GL
 def test_a_child_forked_before_the_first_image_draws_with_any_pyopengl_platform() -> None:
     done = run(
         """
@@ -97,7 +121,6 @@ def test_a_child_forked_before_the_first_image_draws_with_any_pyopengl_platform(
         """,
         PYOPENGL_PLATFORM="glx",
     )
-    needs_a_renderer(done)
     assert done.returncode == 0, done.stderr
     assert "child 0 glx" in done.stdout and "SK-RENDER" not in done.stdout
 
@@ -127,6 +150,7 @@ def test_a_renderer_that_cannot_work_is_one_error_with_its_reason(environment: d
         except simkit.RenderError as error:
             print(error)
         """,
+        SIMKIT_TEST_WORLD=GL_WORLD,
         **environment,
     )
     assert done.returncode == 0, done.stderr

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from renderer import NEEDS_RENDERER
+from renderer import NEEDS_GL
 from sensor_worlds import box, noise, sensor, world
 
 import simkit
@@ -24,8 +24,6 @@ from simkit.recording.bags.recorder import Recorder
 from simkit.sensors.cameras.camera import Camera
 from simkit.sensors.cameras.rendering import gl_context, render_thread
 from simkit.sensors.cameras.rgbd_camera import RgbdCamera
-
-pytestmark = NEEDS_RENDERER
 
 ROOT = Path(__file__).resolve().parents[4]
 SCENE = "<scene><ambient>1 1 1 1</ambient><background>0.2 0.4 0.6 1</background></scene>"
@@ -310,6 +308,7 @@ def test_an_interrupt_is_raised_and_the_run_can_continue() -> None:
         signal.signal(signal.SIGALRM, before)
 
 
+@NEEDS_GL
 def test_an_interrupt_while_drawing_waits_for_the_image_and_is_no_render_error() -> None:
     reached = []
 

@@ -9,17 +9,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from renderer import NEEDS_RENDERER
 from sensor_worlds import box, colours, sensor, world
 
 import simkit
 from simkit.errors import InputError
-from simkit.sensors.cameras.rendering.overview_image import render_view
-from simkit.sensors.cameras.rendering.renderer import renderer_of
+from simkit.sensors.cameras.overview_image import render_view
+from simkit.sensors.cameras.renderer_choice import renderer_of
 from simkit.sensors.cameras.rendering.view import Shot, View
 from simkit.sensors.cameras.rendering.view_culling import Bounds
-
-pytestmark = NEEDS_RENDERER
 
 BLUE = (51, 102, 153)
 WALL = box("wall", "3.5 0 1 0 0 0", "1 9 9", colour="1 0 0")

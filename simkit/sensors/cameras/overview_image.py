@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from typing import Final
+from typing import Final, Protocol, runtime_checkable
 
 import mujoco
 import numpy as np
@@ -18,14 +18,14 @@ from simkit.elementary_functions import tan
 from simkit.linear_algebra import norm
 from simkit.pose import Vector
 from simkit.runtime import Simulation
+from simkit.sensors.cameras.renderer_choice import ImageRenderer, renderer_of
 from simkit.sensors.cameras.rendering import render_thread
-from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere
-from simkit.sensors.cameras.rendering.renderer import Composition, renderer_of
-from simkit.sensors.cameras.rendering.view import Colours, Shot, View, look_at
+from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere, suns_of
+from simkit.sensors.cameras.rendering.scene_composition import Composition
+from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot, View, look_at
 from simkit.sensors.values_with_expiry import temporary_values
 
 Distances = npt.NDArray[np.float32]
-_DIRECTIONAL: Final = int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
 _R2: Final = np.array((0.7548776662466927, 0.5698402909980532))  # steps of a sequence that fills a square evenly
 _GOLDEN_ANGLE: Final = 2.399963229728653  # [rad] steps of a spiral that fills a disc evenly
 _SUN_RADIUS: Final = 0.035  # [rad] of the disc of lights: half a shade of 7 cm behind an edge 1 m away
@@ -33,6 +33,14 @@ _DARKEST: Final = 0.12
 """Least brightest channel of a drawn colour. Images are not encoded in sRGB, like those of Gazebo Classic. Images of gz
 Sim are encoded: Create 3 has the colour 3/255 and is dark grey there. Without this limit, a black model would be a
 silhouette without edges. Cameras show the colours as they are."""
+
+
+@runtime_checkable
+class SoftPictureRenderer(Protocol):
+    """Renderer that draws soft shadows and smooth edges in one image, which is faster than several passes."""
+
+    def draw_soft(self, composition: Composition, shot: Shot, directions: Sequence[Sequence[Vector]]) -> DrawnView:
+        """Draw an image with the directional lights in several directions."""
 
 
 def render_view(
@@ -98,34 +106,58 @@ def render_view(
         )
     composition.lit = lit
     render_thread.drain()  # the render thread uses the same buffers
-    total = np.zeros((height, width, 3), np.float32)
-    nearest = np.zeros((height, width), np.float32)  # raw: 0 is nothing, 1 the near plane
-    for shifted in _passes(composition, view, passes):
-        drawn = renderer.draw(composition, Shot(shifted, depth=distances is not None))
+    depth = distances is not None
+    if passes > 1 and isinstance(renderer, SoftPictureRenderer):
+        drawn = renderer.draw_soft(composition, Shot(view, depth=depth), list(_sun_directions(composition, passes)))
         assert drawn.colours is not None
-        total += drawn.colours
-        if drawn.depths is not None:
-            np.maximum(nearest, drawn.depths, out=nearest)
+        mean, nearest = drawn.colours, drawn.depths
+    else:
+        mean, nearest = _mean_of_passes(renderer, composition, view, passes, depth)
     renderer.composer.give_back(composition)
-    if distances is not None:
+    if distances is not None and nearest is not None:
         near, far = view.near, view.far
         distances[:] = np.where(nearest > 0.0, near * far / (near + nearest * (far - near)), np.inf)
-    return np.rint(total / passes).astype(np.uint8)
+    return mean
+
+
+def _mean_of_passes(
+    renderer: ImageRenderer, composition: Composition, view: View, passes: int, depth: bool
+) -> tuple[Colours, Depths | None]:
+    """Return the mean colours of passes, and the nearest raw depths if `depth` is True."""
+    total = np.zeros((view.height, view.width, 3), np.float32)
+    nearest = np.zeros((view.height, view.width), np.float32) if depth else None
+    for shifted in _passes(composition, view, passes):
+        drawn = renderer.draw(composition, Shot(shifted, depth=depth))
+        assert drawn.colours is not None
+        total += drawn.colours
+        if nearest is not None and drawn.depths is not None:
+            np.maximum(nearest, drawn.depths, out=nearest)
+    return np.rint(total / passes).astype(np.uint8), nearest
 
 
 def _passes(composition: Composition, view: View, count: int) -> Iterator[View]:
     """Yield the view of each pass, with the directional lights moved within a disc; restore them at the end."""
-    scene = composition.scene
-    suns = [light for light in scene.lights[: scene.nlight] if light.type == _DIRECTIONAL and not light.headlight]
+    for number, _ in enumerate(_sun_directions(composition, count)):
+        across, up = (_R2 * number + 0.5) % 1.0 - 0.5 if count > 1 else (0.0, 0.0)
+        x, y = across * (view.right - view.left) / view.width, up * (view.top - view.bottom) / view.height
+        yield replace(view, left=view.left + x, right=view.right + x, bottom=view.bottom + y, top=view.top + y)
+
+
+def _sun_directions(composition: Composition, count: int) -> Iterator[list[Vector]]:
+    """Move the directional lights within a disc for each pass, and yield their directions; restore them at the end.
+
+    The directions begin in the middle of the disc and end at its edge.
+    """
+    suns = suns_of(composition.scene)
     directions = [np.array(light.dir, dtype=np.float64) for light in suns]
     for number in range(count):
-        across, up = (_R2 * number + 0.5) % 1.0 - 0.5 if count > 1 else (0.0, 0.0)
         turn, radius = _GOLDEN_ANGLE * number, _SUN_RADIUS * math.sqrt(number / count)
+        moved = []
         for light, direction in zip(suns, directions, strict=True):
             axes = look_at(np.zeros(3), direction)
             light.dir = direction + radius * (math.cos(turn) * axes[:, 1] + math.sin(turn) * axes[:, 2])
-        x, y = across * (view.right - view.left) / view.width, up * (view.top - view.bottom) / view.height
-        yield replace(view, left=view.left + x, right=view.right + x, bottom=view.bottom + y, top=view.top + y)
+            moved.append(np.array(light.dir, dtype=np.float64))
+        yield moved
     for light, direction in zip(suns, directions, strict=True):
         light.dir = direction
 
