@@ -28,6 +28,7 @@ SMALL_MODULES = frozenset(
         "garbage_collection",
         "float_sum",
         "file_lock",
+        "home_folder",
         "in_process",
         "input_file",
         "install_command",

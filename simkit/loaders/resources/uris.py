@@ -9,6 +9,8 @@ from itertools import islice
 from pathlib import Path
 from urllib.parse import unquote
 
+from simkit.home_folder import home_folder
+
 _MOST_LISTED = 1000  # searched paths, and names of a folder, that are compared for a hint
 _MANIFESTS = ("model.config", "model.sdf", "package.xml", "manifest.xml")
 _ASSETS = ("assets", "materials", "media", "mesh", "meshes", "stl", "stls", "textures")
@@ -58,7 +60,7 @@ def leaves_folder(rest: str) -> bool:
 
 def is_top_folder(folder: Path) -> bool:
     """Check for the home folder and the two highest levels of the file system, which are never searched."""
-    home = Path.home()
+    home = home_folder()
     return len(folder.parts) < 3 or folder in (home, home.resolve())
 
 
