@@ -16,10 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 
-_LONG = 64  # rows from which the product by a small matrix is faster column by column than with einsum
-_SMALL = 4  # columns up to which this holds
+_LONG = 500  # rows from which the product by a small matrix is faster column by column than with einsum
+_SMALL = 4  # rows and columns of the small matrix up to which this holds
 _SMALL_SYSTEM = 8  # unknowns up to which elimination with Python's floats is faster than with arrays
 _SHORT = 16  # numbers up to which a loop over Python's floats is faster than einsum
+_WELL_CONDITIONED = 1e-3  # ratio of pivots above which normal equations lose less than six of 16 digits
+_NEXT_TO_LIMIT = 1e-9  # BLAS rounds sums of millions of squares to better than this
 _SWEEPS = 60  # Jacobi's method converges quadratically: 6 to 10 sweeps are usual
 
 
@@ -36,7 +38,9 @@ def matmul(first: Any, second: Any, *more: Any) -> Any:
     """
     a, b = np.asarray(first), np.asarray(second)
     if a.ndim == 2 and b.ndim == 2:
-        found = _columns(a, b) if len(a) >= _LONG and a.shape[1] <= _SMALL else np.einsum("ij,jk->ik", a, b)
+        is_long = len(a) >= _LONG and max(b.shape) <= _SMALL
+        # einsum takes ten times as long where rows are not contiguous, and its result would not be contiguous
+        found = _columns(a, b) if is_long else np.einsum("ij,jk->ik", np.ascontiguousarray(a), np.ascontiguousarray(b))
     elif a.ndim == 2 and b.ndim == 1:
         found = np.einsum("ij,j->i", a, b)
     elif b.ndim == 1:
@@ -51,7 +55,7 @@ def matmul(first: Any, second: Any, *more: Any) -> Any:
 
 
 def _columns(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
-    """Return the product of many short rows and a small matrix; five times as fast as einsum for 5000 rows of three."""
+    """Return the product of many short rows and a small matrix; a third of einsum's time for 5000 points."""
     if len(b) != a.shape[1]:
         raise ValueError(f"arrays of shapes {a.shape} and {b.shape} cannot be multiplied")
     rows = np.ascontiguousarray(a.T)
@@ -68,19 +72,33 @@ def dot(first: Any, second: Any) -> float:
     Raises:
         ValueError: The lengths differ.
     """
-    a, b = np.asarray(first, np.float64).ravel(), np.asarray(second, np.float64).ravel()
-    if len(a) > _SHORT:
-        return float(np.einsum("i,i->", a, b))
+    if isinstance(first, np.ndarray):
+        if first.size > _SHORT:
+            flat = (first, second) if first.ndim == 1 else (first.ravel(), np.ravel(second))
+            return float(np.einsum("i,i->", *flat))
+        first = first.tolist() if first.ndim == 1 else first.ravel().tolist()
+    if isinstance(second, np.ndarray):
+        second = second.tolist() if second.ndim == 1 else second.ravel().tolist()
     total = 0.0
-    for x, y in zip(a.tolist(), b.tolist(), strict=True):
+    for x, y in zip(first, second, strict=True):
         total += x * y
-    return total
+    return float(total)
 
 
 def norm(vector: Any) -> float:
     """Return the Euclidean length of a vector, or the Frobenius norm of a matrix."""
     numbers = np.asarray(vector, np.float64).ravel()
     return math.sqrt(dot(numbers, numbers))
+
+
+def squared_length(vector: NDArray[Any], limit: float) -> float:
+    """Return the squared length of a vector, for a comparison with a limit that has one result on every processor.
+
+    The step loop makes such comparisons at each step. BLAS takes a quarter of the time of a fixed order. Its rounding
+    can decide only next to the limit, so there the fixed order is used.
+    """
+    square = float(np.vdot(vector, vector))  # no warning for an overflow: the engine reports the divergence
+    return dot(vector, vector) if abs(square - limit) <= _NEXT_TO_LIMIT * limit else square
 
 
 def det(matrix: ArrayLike) -> Any:
@@ -108,6 +126,10 @@ def solve(matrix: ArrayLike, right: ArrayLike) -> Floats:
         numpy.linalg.LinAlgError: A matrix is singular.
     """
     m, r = np.asarray(matrix, np.float64), np.asarray(right, np.float64)
+    if m.shape[-2:] == (1, 1) and r.ndim == m.ndim:
+        if not m.all():
+            raise np.linalg.LinAlgError("Singular matrix")
+        return r / m
     if m.ndim > 2:
         shape = np.broadcast_shapes(m.shape[:-2], r.shape[:-2])
         m, r = np.broadcast_to(m, (*shape, *m.shape[-2:])), np.broadcast_to(r, (*shape, *r.shape[-2:]))
@@ -195,18 +217,39 @@ def cholesky(matrix: ArrayLike) -> Floats:
     Raises:
         numpy.linalg.LinAlgError: The matrix is not positive definite.
     """
-    rows = _square(np.asarray(matrix, np.float64))
+    return np.asarray(_cholesky(_square(np.asarray(matrix, np.float64))), np.float64)
+
+
+def _cholesky(rows: list[list[float]]) -> list[list[float]]:
     found = [[0.0] * len(rows) for _ in rows]
-    for i in range(len(rows)):
+    for i, (row, own) in enumerate(zip(rows, found, strict=True)):
         for j in range(i + 1):
-            rest = rows[i][j] - dot(found[i][:j], found[j][:j])
+            rest, other = row[j], found[j]
+            for k in range(j):
+                rest -= own[k] * other[k]
             if i != j:
-                found[i][j] = rest / found[j][j]
+                own[j] = rest / other[j]
             elif rest > 0.0:
-                found[i][i] = math.sqrt(rest)
+                own[i] = math.sqrt(rest)
             else:
                 raise np.linalg.LinAlgError("Matrix is not positive definite")
-    return np.asarray(found, np.float64)
+    return found
+
+
+def _substitute(lower: list[list[float]], right: list[float]) -> list[float]:
+    """Solve a system from the Cholesky factor of its matrix."""
+    found = list(right)
+    for i, row in enumerate(lower):
+        rest = found[i]
+        for k in range(i):
+            rest -= row[k] * found[k]
+        found[i] = rest / row[i]
+    for i in reversed(range(len(lower))):
+        rest = found[i]
+        for k in range(i + 1, len(lower)):
+            rest -= lower[k][i] * found[k]
+        found[i] = rest / lower[i][i]
+    return found
 
 
 def eigh(matrix: ArrayLike) -> tuple[Floats, Floats]:
@@ -360,7 +403,22 @@ def lstsq(matrix: ArrayLike, right: ArrayLike, rcond: float | None = None) -> Fl
         rcond: Singular values up to this share of the largest one count as zero; by default machine precision times
             the larger side of the matrix.
     """
-    m = np.asarray(matrix, np.float64)
+    m, r = np.asarray(matrix, np.float64), np.asarray(right, np.float64)
     share = float(np.finfo(np.float64).eps) * max(m.shape) if rcond is None else rcond
-    found: Floats = matmul(pinv(m, share), np.asarray(right, np.float64))
+    if m.shape[0] >= m.shape[1]:  # 30 µs for six unknowns; the singular values take 600
+        lower = _well_conditioned_factor(matmul(m.T, m))
+        if lower is not None:
+            sides = matmul(m.T, r).reshape(m.shape[1], -1).T.tolist()
+            return np.array([_substitute(lower, side) for side in sides]).T.reshape(m.shape[1:] + r.shape[1:])
+    found: Floats = matmul(pinv(m, share), r)
     return found
+
+
+def _well_conditioned_factor(gram: Floats) -> list[list[float]] | None:
+    """Return the Cholesky factor of a symmetric matrix that is far from singular, else None."""
+    try:
+        lower = _cholesky(_square(gram))
+    except np.linalg.LinAlgError:
+        return None
+    pivots = [lower[k][k] * lower[k][k] for k in range(len(lower))] or [0.0]
+    return lower if min(pivots) > _WELL_CONDITIONED * max(pivots) else None

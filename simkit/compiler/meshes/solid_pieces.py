@@ -17,7 +17,7 @@ from simkit.compiler.meshes.convex_pieces import hull_volume
 from simkit.compiler.meshes.flat_areas import connected_areas
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.patch_division import Patch, area_vectors, divide
-from simkit.linear_algebra import eigh, matmul, norm
+from simkit.linear_algebra import dot, eigh, matmul, norm
 
 TRIANGLES_PER_PIECE: Final = 12
 """Least number of triangles for one piece; height fields and patches do not need fewer pieces than that."""
@@ -45,6 +45,9 @@ _GAIN: Final = 0.8
 
 _LEAST_GAIN: Final = 1e-4
 """Decrease of the volume, relative to the volume, up to which all planes are equal: the first cuts of a ring."""
+
+_EQUAL_MOMENTS: Final = 1e-4
+"""Difference of two moments, relative to the largest one, below which they are equal but for rounding."""
 
 _SNAP: Final = 1e-7
 """Distance to a plane, relative to the size of the part, below which a corner lies in the plane."""
@@ -312,7 +315,7 @@ def _best_plane(cell: _Cell) -> tuple[Floats, float]:
     moments = matmul((offsets * np.repeat(weights, 3)[:, None]).T, offsets) + matmul(
         (middles * weights[:, None]).T, middles
     )
-    axes = eigh(moments)[1].T
+    axes = _principal_axes(moments)
     lows, highs = matmul(points, axes.T).min(axis=0), matmul(points, axes.T).max(axis=0)
     order = np.argsort(lows - highs, kind="stable")
     # across the shortest axis, the parts would be layers, and the surface of a layer does not have all of its corners
@@ -328,6 +331,26 @@ def _best_plane(cell: _Cell) -> tuple[Floats, float]:
     if gains.max() <= _LEAST_GAIN * whole:
         return planes[0]
     return planes[int(np.argmax(gains >= _GAIN * gains.max()))]
+
+
+def _principal_axes(moments: Floats) -> Floats:
+    """Return the principal axes of a tensor as rows.
+
+    Of equal moments, as of a ring, any axes are principal, and the rounding of the corners would choose. There the axes
+    are those next to the coordinate axes, so that copies of a part are divided alike.
+    """
+    values, axes = eigh(moments)
+    near = np.diff(values) <= _EQUAL_MOMENTS * values[2]
+    if near.all():
+        return np.eye(3)
+    if near.any():
+        normal = axes[:, 2 if near[0] else 0]
+        first = np.eye(3)[int(np.abs(normal).argmin())]
+        first = first - dot(first, normal) * normal
+        first = first / norm(first)
+        return np.array((first, np.cross(normal, first), normal))
+    turned: Floats = axes.T
+    return turned
 
 
 def _side_points(triangles: Floats, normal: Floats, offset: float) -> list[Floats]:
