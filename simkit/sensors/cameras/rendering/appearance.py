@@ -16,7 +16,8 @@ class Quality:
     Attributes:
         samples: samples per pixel, for smooth edges; 0 means one sample. A driver may use fewer samples.
         shadow_map: width of a light's shadow map [px]; 0 draws no shadows.
-        slices: number of sides of round shapes.
+        slices: number of sides of round shapes in OpenGL. With 64, the middle of a side is 0.12 % of the radius inside
+            the circle. The software renderer has exact surfaces.
     """
 
     name: str
@@ -31,9 +32,9 @@ class Quality:
 
 
 QUALITIES: Final[Mapping[str, Quality]] = {
-    "fast": Quality("fast", 0, 0, 28),
-    "gazebo": Quality("gazebo", 4, 2048, 32),
-    "high": Quality("high", 8, 4096, 64),
+    "fast": Quality("fast", 0, 0, 64),
+    "gazebo": Quality("gazebo", 4, 2048, 64),
+    "high": Quality("high", 8, 4096, 128),
 }
 
 

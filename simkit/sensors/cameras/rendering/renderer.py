@@ -76,7 +76,8 @@ def _upload(model: mujoco.MjModel, quality: Quality, smooth: bool) -> mujoco.Mjr
     settings = model.vis.quality
     original = settings.offsamples, settings.shadowsize, settings.numslices, settings.numstacks
     settings.offsamples, settings.shadowsize = quality.samples if smooth else 0, quality.shadow_map
-    settings.numslices, settings.numstacks = max(original[2], quality.slices), max(original[3], quality.slices // 2)
+    # sides decide the shape; each row of them costs as much, and matters to highlights and spheres only
+    settings.numslices, settings.numstacks = max(original[2], quality.slices), max(original[3], quality.slices // 4)
     try:
         context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
     finally:

@@ -17,7 +17,7 @@ from simkit.sensors.cameras.rendering.software.triangles import Triangles
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, rotate
 
 _PARTS = 4
-_NEAREST = 0.02
+_NEAREST = 0.15
 """Largest relative difference between the surface and its triangles; a larger one is at the edge of the surface."""
 _EXACT = (shape_meshes.SPHERE, shape_meshes.ELLIPSOID, shape_meshes.CYLINDER, shape_meshes.CAPSULE)
 

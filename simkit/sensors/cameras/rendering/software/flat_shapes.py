@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Final
+
 import numpy as np
 
 from simkit.sensors.cameras.rendering.software.frame import Frame
@@ -9,8 +12,12 @@ from simkit.sensors.cameras.rendering.software.shape_meshes import LINE
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Integers, cross, dot, rotate, unit
 
+_LAMP_SQUARES: Final = 32  # divisions of an edge of a plane below a lamp
 
-def plane_points(table: ShapeTable, row: int, frame: Frame, squares: int) -> tuple[Floats, Floats, Integers]:
+
+def plane_points(
+    table: ShapeTable, row: int, frame: Frame, squares: int, lamps: Sequence[Array] = ()
+) -> tuple[Floats, Floats, Integers]:
     """Return the corners, normals and faces of a plane, divided into squares that are smallest below the camera.
 
     Args:
@@ -18,37 +25,37 @@ def plane_points(table: ShapeTable, row: int, frame: Frame, squares: int) -> tup
         row: row of the plane in the table.
         frame: frame of the image.
         squares: number of divisions of each edge.
+        lamps: positions of lamps relative to the frame's origin [m], below which the squares are small, too.
     """
     rotation = table.rotations[row].astype(np.float64)
     position = table.positions[row].astype(np.float64) - frame.origin
-    foot = rotate((frame.eye - position)[None], rotation.T)[0]
-    steps = np.linspace(-1.0, 1.0, squares + 1)
-    steps = steps * steps * steps
+    feet = [rotate((place - position)[None], rotation.T)[0] for place in (frame.eye, *lamps)]
+    steps = [np.linspace(-1.0, 1.0, count + 1) for count in (squares, *(_LAMP_SQUARES for _ in lamps))]
     edges = []
     for axis in (0, 1):
         half = float(table.sizes[row, axis])
-        centre = float(foot[axis])
-        if half > 0.0:
-            centre = min(max(centre, -half), half)
-            reach = max(half - centre, half + centre)
-            edges.append(np.clip(centre + steps * reach, -half, half))
-        else:
-            edges.append(centre + steps * 1.5 * frame.view.far)
+        lines = []
+        for foot, step in zip(feet, steps, strict=True):
+            centre, reach = float(foot[axis]), 1.5 * frame.view.far
+            if half > 0.0:
+                centre = min(max(centre, -half), half)
+                reach = max(half - centre, half + centre)
+            lines.append(centre + step * step * step * reach)
+        found = np.unique(np.concatenate(lines))
+        edges.append(np.unique(np.clip(found, -half, half)) if half > 0.0 else found)
     along, across = (values.ravel() for values in np.meshgrid(*edges, indexing="ij"))
     local = np.stack((along, across, np.zeros_like(along)), axis=-1)
     points = (rotate(local, rotation) + position).astype(np.float32)
     normals = np.tile(table.rotations[row][:, 2], (len(points), 1))
-    first = (np.arange(squares)[:, None] * (squares + 1) + np.arange(squares)).ravel().astype(np.int32)
-    step = squares + 1
+    rows, columns = len(edges[0]), len(edges[1])
+    first = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel().astype(np.int32)
     faces = np.concatenate(
         (
-            np.column_stack((first, first + step, first + step + 1)),
-            np.column_stack((first, first + step + 1, first + 1)),
+            np.column_stack((first, first + columns, first + columns + 1)),
+            np.column_stack((first, first + columns + 1, first + 1)),
         )
     )
-    # squares outside a finite plane have no width
-    is_flat = (along[faces] == along[faces[:, :1]]).all(axis=1) | (across[faces] == across[faces[:, :1]]).all(axis=1)
-    return points, normals, np.ascontiguousarray(faces[~is_flat], np.int32)
+    return points, normals, np.ascontiguousarray(faces, np.int32)
 
 
 def line_points(table: ShapeTable, row: int, frame: Frame) -> tuple[Floats, Floats, Integers]:

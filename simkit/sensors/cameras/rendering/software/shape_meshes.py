@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import mujoco
@@ -86,6 +86,7 @@ def merge(meshes: list[ShapeMesh]) -> ShapeMesh:
         np.concatenate([mesh.normals for mesh in meshes]),
         np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)]),
         np.concatenate([mesh.parts for mesh in meshes]),
+        np.concatenate([np.zeros((len(m.corners), 2)) if m.coordinates is None else m.coordinates for m in meshes]),
     )
 
 
@@ -95,11 +96,10 @@ def face_normals(corners: Array, faces: Array) -> Array:
     return unit(cross(b - a, c - a))
 
 
-def _grid_faces(rows: int, columns: int, closed: bool = False) -> Array:
+def _grid_faces(rows: int, columns: int) -> Array:
     """Return the faces of a grid of corners, counter-clockwise for columns to the right and rows upwards."""
-    last = columns if closed else columns - 1
-    first = (np.arange(rows - 1)[:, None] * columns + np.arange(last)).ravel()
-    right = (np.arange(rows - 1)[:, None] * columns + (np.arange(last) + 1) % columns).ravel()
+    first = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    right = first + 1
     return np.concatenate(
         (np.column_stack((first, right, right + columns)), np.column_stack((first, right + columns, first + columns)))
     )
@@ -117,33 +117,43 @@ def box(squares: int) -> ShapeMesh:
             corners[:, axis], corners[:, (axis + 1) % 3], corners[:, (axis + 2) % 3] = sign, columns, rows
             normal[axis] = sign
             faces = _grid_faces(squares + 1, squares + 1)
-            sides.append(ShapeMesh.of(corners, np.tile(normal, (len(rows), 1)), faces if sign > 0 else faces[:, ::-1]))
+            right, up = corners[:, 1 if axis == 0 else 0], corners[:, 1 if axis == 2 else 2]
+            sides.append(
+                ShapeMesh.of(
+                    corners,
+                    np.tile(normal, (len(rows), 1)),
+                    faces if sign > 0 else faces[:, ::-1],
+                    coordinates=0.5 + 0.5 * np.stack((right, -up), axis=-1),
+                )
+            )
     return merge(sides)
 
 
-def _revolve(profile: list[tuple[float, float, float, float]], sides: int, parts: list[int]) -> ShapeMesh:
-    """Return a surface of revolution.
+def _revolve(profile: list[tuple[float, float, float, float]], sides: int, part: int) -> ShapeMesh:
+    """Return a surface of revolution. Its texture goes once around, from the last row down to the first one.
 
     Args:
         profile: rows from bottom to top: radius, height, and the radial and the upward part of the normal.
         sides: number of sides.
-        parts: part of each row of the profile; a triangle belongs to the part of its first corner.
+        part: part of the shape to which the surface belongs.
     """
     rows = np.array(profile, np.float64)
     # the engine's own sine, because NumPy's has other bits on other processors
-    angles = [2.0 * math.pi * side / sides for side in range(sides)]
+    angles = [2.0 * math.pi * (side % sides) / sides for side in range(sides + 1)]
     around = np.array([(math.cos(angle), math.sin(angle)) for angle in angles])
-    corners = np.empty((len(rows), sides, 3))
+    corners = np.empty((len(rows), sides + 1, 3))
     normals = np.empty_like(corners)
     for target, radial, upward in ((corners, 0, 1), (normals, 2, 3)):
         target[:, :, :2] = rows[:, radial, None, None] * around
         target[:, :, 2] = rows[:, upward, None]
-    faces = _grid_faces(len(rows), sides, closed=True)
+    faces = _grid_faces(len(rows), sides + 1)
+    down = 1.0 - np.arange(len(rows)) / (len(rows) - 1)
+    coordinates = np.stack(np.broadcast_arrays(np.arange(sides + 1) / sides, down[:, None]), axis=-1)
     points = corners.reshape(-1, 3)
     a, b, c = (points[faces[:, k]] for k in range(3))
     area = cross(b - a, c - a)
     faces = faces[dot(area, area) > 1e-24]
-    return ShapeMesh.of(points, normals.reshape(-1, 3), faces, np.repeat(np.array(parts, np.int32), sides))
+    return ShapeMesh.of(points, normals.reshape(-1, 3), faces, part, coordinates.reshape(-1, 2))
 
 
 def _arc(first: float, last: float, steps: int) -> list[tuple[float, float]]:
@@ -157,20 +167,20 @@ def sphere(sides: int) -> ShapeMesh:
     """Return the unit sphere."""
     arc = [(max(across, 0.0), up) for across, up in _arc(-math.pi / 2, math.pi / 2, max(4, sides // 2))]
     arc[0], arc[-1] = (0.0, -1.0), (0.0, 1.0)
-    return _revolve([(across, up, across, up) for across, up in arc], sides, [SIDE] * len(arc))
+    return _revolve([(across, up, across, up) for across, up in arc], sides, SIDE)
 
 
 @functools.lru_cache(maxsize=64)
 def cylinder(sides: int, stacks: int, is_open: bool = False) -> ShapeMesh:
     """Return the unit cylinder from -1 to +1 in z; an open one has no lids."""
     heights = [2.0 * stack / stacks - 1.0 for stack in range(stacks + 1)]
-    side = _revolve([(1.0, height, 1.0, 0.0) for height in heights], sides, [SIDE] * len(heights))
+    side = _revolve([(1.0, height, 1.0, 0.0) for height in heights], sides, SIDE)
     if is_open:
         return side
     rings = [step / stacks for step in range(stacks + 1)]
-    low = _revolve([(ring, -1.0, 0.0, -1.0) for ring in rings], sides, [FLAT] * len(rings))
-    high = _revolve([(ring, 1.0, 0.0, 1.0) for ring in rings[::-1]], sides, [FLAT] * len(rings))
-    return merge([side, low, high])
+    low = _revolve([(ring, -1.0, 0.0, -1.0) for ring in rings], sides, FLAT)
+    high = _revolve([(ring, 1.0, 0.0, 1.0) for ring in rings[::-1]], sides, FLAT)
+    return merge([side, *(replace(lid, coordinates=0.5 + 0.5 * lid.corners[:, :2]) for lid in (low, high))])
 
 
 @functools.lru_cache(maxsize=256)
@@ -180,10 +190,10 @@ def capsule(radius: float, half_length: float, sides: int) -> ShapeMesh:
     low = [(max(c, 0.0), s) for c, s in _arc(-math.pi / 2, 0.0, steps)]
     high = [(max(c, 0.0), s) for c, s in _arc(0.0, math.pi / 2, steps)]
     low[0], high[-1] = (0.0, -1.0), (0.0, 1.0)
-    bottom = _revolve([(radius * c, radius * s - half_length, c, s) for c, s in low], sides, [BOTTOM] * len(low))
-    top = _revolve([(radius * c, radius * s + half_length, c, s) for c, s in high], sides, [TOP] * len(high))
+    bottom = _revolve([(radius * c, radius * s - half_length, c, s) for c, s in low], sides, BOTTOM)
+    top = _revolve([(radius * c, radius * s + half_length, c, s) for c, s in high], sides, TOP)
     middle = [(radius, height, 1.0, 0.0) for height in (-half_length, half_length)]
-    return merge([bottom, _revolve(middle, sides, [SIDE, SIDE]), top])
+    return merge([bottom, _revolve(middle, sides, SIDE), top])
 
 
 @functools.lru_cache(maxsize=256)
@@ -210,7 +220,7 @@ def _cone(
 ) -> ShapeMesh:
     """Return the head of an arrow: an open cone from `height` upwards (sign 1) or downwards (sign -1)."""
     slope = math.sqrt(0.5)
-    cone = _revolve([(1.0, 0.0, slope, slope), (0.0, 1.0, slope, slope)], sides, [FLAT, FLAT])
+    cone = _revolve([(1.0, 0.0, slope, slope), (0.0, 1.0, slope, slope)], sides, FLAT)
     scale = np.array((wide * size[0], wide * size[1], length))
     flip = np.array((1.0, sign, sign))  # a half turn about x
     normals = unit(cone.normals / np.maximum(scale, 1e-12)) * flip

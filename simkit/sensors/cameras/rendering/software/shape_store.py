@@ -50,7 +50,15 @@ class ShapeStore:
     def __init__(self) -> None:
         self._model: mujoco.MjModel | None = None
         self._meshes: dict[tuple[int, int], ShapeMesh] = {}
-        self._placed: dict[tuple[int, int], tuple[bytes, Placed]] = {}
+        self._placed: dict[tuple[int, int, int], tuple[bytes, Placed]] = {}
+        self._origin = b""
+
+    def use_origin(self, origin: Array) -> None:
+        """Forget the places of shapes relative to another origin."""
+        key = origin.tobytes()
+        if key != self._origin:
+            self._origin = key
+            self._placed.clear()
 
     def use_model(self, model: mujoco.MjModel) -> bool:
         """Forget the triangles of another model; return True if the model differs from the last one."""
@@ -75,7 +83,8 @@ class ShapeStore:
         radii[kinds == shape_meshes.CAPSULE] += x[kinds == shape_meshes.CAPSULE]
         radii[np.isin(kinds, (shape_meshes.ARROW, shape_meshes.ARROW1, shape_meshes.ARROW2))] *= 2.0
         radii[np.isin(kinds, (shape_meshes.PLANE, shape_meshes.FLEX, shape_meshes.SKIN))] = _SURROUNDING
-        for row in np.flatnonzero(np.isin(kinds, (shape_meshes.MESH, shape_meshes.SDF, shape_meshes.HEIGHTS))):
+        is_stored = np.isin(kinds, (shape_meshes.MESH, shape_meshes.SDF, shape_meshes.HEIGHTS))
+        for row in np.flatnonzero(is_stored & (table.numbers >= 0)):
             mesh = self._model_mesh(int(kinds[row]), int(table.numbers[row]))
             centres[row] += rotate(mesh.centre[None], table.rotations[row].astype(np.float64))[0]
             radii[row] = mesh.radius
@@ -112,14 +121,13 @@ class ShapeStore:
             return None
         if kind in (shape_meshes.FLEX, shape_meshes.SKIN):
             return self._deformed(scene, kind, int(table.objects[row]), frame)
-        if kind in (shape_meshes.HEIGHTS, shape_meshes.MESH, shape_meshes.SDF) and table.numbers[row] < 0:
-            return None
-        pose = b"".join((table.positions[row].tobytes(), table.rotations[row].tobytes(), frame.origin.tobytes()))
-        key = b"".join((pose, table.sizes[row].tobytes(), bytes((kind, sides, squares))))
-        place = row, sides * 1000 + squares
+        key = table.poses[row].tobytes()
+        place = row, int(table.numbers[row]), (kind * 1000 + sides) * 1000 + squares
         known = self._placed.get(place)
         if known is not None and known[0] == key:
             return known[1]
+        if kind in (shape_meshes.HEIGHTS, shape_meshes.MESH, shape_meshes.SDF) and table.numbers[row] < 0:
+            return None
         mesh = self._mesh(kind, int(table.numbers[row]), table.sizes[row], sides, squares)
         rotation = table.rotations[row].astype(np.float64)
         corners, normals = mesh.corners, mesh.normals

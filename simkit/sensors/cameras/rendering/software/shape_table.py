@@ -26,6 +26,7 @@ class ShapeTable:
         is_uniform: True if a shape's own texture repeats per metre.
         sizes, positions: size and position [m], shape (n, 3).
         rotations: rotation matrices, shape (n, 3, 3).
+        poses: positions, rotations and sizes together, to compare them, shape (n, 15).
         colours: red, green, blue and opacity, shape (n, 4).
         emission, specular, shininess: properties of the surfaces, shape (n,).
         segments: numbers of the shapes in images of ids, -1 for a shape that these do not show.
@@ -52,6 +53,8 @@ class ShapeTable:
         self.segments: Integers = np.array([shape.segid for shape in shapes], np.int32)
         decoration = int(mujoco.mjtCatBit.mjCAT_DECOR)
         self.casts_shadow = np.array([shape.category != decoration and shape.castshadow for shape in shapes], bool)
+        pose = (self.positions, self.rotations.reshape(count, 9), self.sizes)
+        self.poses: Floats = np.concatenate(pose, axis=1)
         self.textures: Integers = np.array([shape.texid for shape in shapes], np.int32)
         self.repeats: Floats = np.array([shape.texrepeat for shape in shapes], np.float32).reshape(count, 2)
         self.is_uniform = np.array([bool(shape.texuniform) for shape in shapes], bool)

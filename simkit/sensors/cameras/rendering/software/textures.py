@@ -18,8 +18,8 @@ _ROLES: Final = int(mujoco.mjtTextureRole.mjNTEXROLE)
 _RGB: Final = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
 _PLANAR: Final = int(mujoco.mjtTexture.mjTEXTURE_2D)
 _SRGB: Final = int(mujoco.mjtColorSpace.mjCOLORSPACE_SRGB)
-_SCALED: Final = (*shape_meshes.UNIT, shape_meshes.CAPSULE, shape_meshes.PLANE)
-"""Types of shapes whose texture covers the unit shape, if they have no triangles of their own in the model."""
+_MAPPED: Final = (*shape_meshes.UNIT, shape_meshes.CAPSULE)
+"""Types of shapes with texture coordinates of their own."""
 
 
 class Texture:
@@ -189,33 +189,34 @@ class TexturedShapes:
         found = np.zeros((len(corners.points), 3), np.float32)
         for row in np.unique(corners.owners[self.numbers[corners.owners] >= 0]).tolist():
             rows = np.flatnonzero(corners.owners == row)
-            if self._table.has_coordinates[row]:
-                found[rows, :2] = corners.coordinates[rows]
-                continue
-            found[rows] = self._generated(row, corners.points[rows], frame)
+            found[rows] = self._of_shape(row, corners.points[rows], corners.coordinates[rows], frame)
         return found
 
-    def _generated(self, row: int, points: Floats, frame: Frame) -> Floats:
-        """Return coordinates from positions in the frame of a shape (`settexture` in render_gl3.c)."""
+    def _of_shape(self, row: int, points: Floats, coordinates: Floats, frame: Frame) -> Floats:
+        """Return coordinates as MuJoCo 4 maps them: repeated over the unit shape, or over the metres of its size."""
         table, model = self._table, self._model
+        kind, material, is_own = int(table.kinds[row]), int(table.materials[row]), bool(table.textures[row] >= 0)
+        size = np.where(table.sizes[row] > 0.0, table.sizes[row], np.float32(1.0))
+        is_uniform = bool(table.is_uniform[row] if is_own else model.mat_texuniform[material])
+        repeat = table.repeats[row] if is_own else np.asarray(model.mat_texrepeat[material], np.float32)
+        if is_uniform:
+            repeat = repeat * size[:2]
+        if (kind in _MAPPED or table.has_coordinates[row]) and not self.texture(row).is_cube:
+            return np.append(coordinates * repeat, np.zeros((len(points), 1), np.float32), axis=1)
         position = (table.positions[row].astype(np.float64) - frame.origin).astype(np.float32)
         local = rotate(points - position, table.rotations[row].T)
-        size = np.where(table.sizes[row] > 0.0, table.sizes[row], np.float32(1.0))
-        if int(table.kinds[row]) in _SCALED:
+        if kind in _MAPPED or kind == shape_meshes.PLANE:
             local = local / size
-        material = int(table.materials[row])
-        is_own = table.textures[row] >= 0
-        is_uniform = bool(table.is_uniform[row] if is_own else model.mat_texuniform[material])
         if self.texture(row).is_cube:
             return np.asarray(local * size if is_uniform else local, np.float32)
-        repeat = table.repeats[row] if is_own else np.asarray(model.mat_texrepeat[material], np.float32)
-        scale = repeat.astype(np.float32)
-        if int(table.kinds[row]) not in _SCALED:
-            scale = scale / size[:2]
-        if is_uniform:
-            scale = scale * size[:2]
         half = np.float32(0.5)
-        s, t = half * scale[0] * local[:, 0] - half, -half * scale[1] * local[:, 1] - half
+        if kind == shape_meshes.PLANE:
+            # an endless plane begins in its middle, another one at its edge
+            start = np.where(table.sizes[row, :2] > 0.0, half, np.float32(0.0))
+            s, t = (half * local[:, 0] + start[0]) * repeat[0], (start[1] - half * local[:, 1]) * repeat[1]
+        else:
+            s = half * repeat[0] / size[0] * local[:, 0] - half
+            t = -half * repeat[1] / size[1] * local[:, 1] - half
         return np.stack((s, t, np.zeros_like(s)), axis=-1)
 
     def texture(self, row: int) -> Texture:

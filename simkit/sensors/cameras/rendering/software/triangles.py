@@ -22,6 +22,8 @@ _LARGEST: Final = 1500.0
 """Radius of a shape in the image [px] above which its triangles are clipped."""
 _MATT_SQUARES: Final = 24  # divisions of a plane without gloss
 _GLOSSY_SQUARES: Final = 48
+_LARGE, _GLOSSY_SIDES = 32, 96  # number of sides from which a glossy round shape has more sides
+_MOST_LAMPS: Final = 3  # number of lamps below which planes are divided finely
 _CASTER_SIDES: Final = 48  # number of sides of round shapes that cast shadows
 
 
@@ -93,6 +95,7 @@ class View3D:
     ) -> None:
         self._scene, self._table, self._store, self.frame = scene, table, store, frame
         self._hidden = hidden
+        store.use_origin(frame.origin)
         centres, radii = store.spheres(table)
         right, up, ahead = frame.in_camera(centres - frame.origin)
         view = frame.view
@@ -131,11 +134,15 @@ class View3D:
             quads: divisions of an edge of a box with uneven light.
         """
         table = self._table
-        near_lamp = any(not lamp.is_parallel and not lamp.is_ambient for lamp in lamps)
-        shines = near_lamp | ((table.specular > 0.0) & any(lamp.specular.any() for lamp in lamps))
-        return self._collect(rows, self._sides, shines, quads, _MATT_SQUARES)
+        places = [lamp.place for lamp in lamps if not lamp.is_parallel and not lamp.is_ambient]
+        shines = bool(places) | ((table.specular > 0.0) & any(lamp.specular.any() for lamp in lamps))
+        # a highlight between corners is interpolated, so round shapes need more of them
+        sides = np.where(shines & (self._sides >= _LARGE), _GLOSSY_SIDES, self._sides)
+        return self._collect(rows, sides, shines, quads, _MATT_SQUARES, places[:_MOST_LAMPS])
 
-    def _collect(self, rows: Array, sides: Array, shines: Array, quads: int, squares: int) -> Corners:
+    def _collect(
+        self, rows: Array, sides: Array, shines: Array, quads: int, squares: int, places: Sequence[Array] = ()
+    ) -> Corners:
         """Return the corners of shapes.
 
         Args:
@@ -144,6 +151,7 @@ class View3D:
             shines: True for each shape with uneven light on flat sides, for all rows of the table.
             quads: divisions of an edge of a box with uneven light.
             squares: divisions of an edge of a plane with even light.
+            places: positions of lamps, below which planes are divided finely.
         """
         table, frame = self._table, self.frame
         found, points, normals, faces, parts, coordinates, counts = [], [], [], [], [], [], []
@@ -152,7 +160,7 @@ class View3D:
             kind = int(table.kinds[row])
             texture: Array | None = None
             if kind == shape_meshes.PLANE:
-                at, up, of = plane_points(table, row, frame, _GLOSSY_SQUARES if shines[row] else squares)
+                at, up, of = plane_points(table, row, frame, _GLOSSY_SQUARES if shines[row] else squares, places)
                 part = np.zeros(len(at), np.int32)
             elif kind in (shape_meshes.LINE, shape_meshes.LINEBOX):
                 at, up, of = line_points(table, row, frame)
