@@ -22,6 +22,7 @@ from simkit.float_sum import float_sum
 PACKAGE = Path(__file__).resolve().parents[1] / "simkit"
 
 INTEGERS = {
+    ("bridges/live/loopback_socket.py", "flags"): "flags of a file",
     ("cli/bag.py", "e.count for e in exports"): "messages",
     ("cli/bag_record.py", "lost.values()"): "messages",
     ("cli/fetch.py", "found.size or 0 for found in new"): "bytes",
