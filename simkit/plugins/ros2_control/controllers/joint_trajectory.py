@@ -379,7 +379,7 @@ class JointTrajectoryController(Controller):
         return True
 
     def _publish(self, now: int, desired: Vector, state: Vector, errors: Vector) -> None:
-        message = self._messages.state(now, desired, state, errors, self.commands.values)
+        message = self._messages.state(now, desired, state, errors, self.commands.values, self._scaling)
         for publisher in self._publishers:
             if publisher.wanted:
                 publisher.publish(message)
