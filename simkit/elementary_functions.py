@@ -53,20 +53,20 @@ def log(values: ArrayLike) -> Any:
     return _each(_log, values)
 
 
-def _log(value: float) -> float:
+def _log(value: float, function: Callable[[float], float] = math.log) -> float:
     if value > 0.0 or value != value:
-        return math.log(value)
+        return function(value)
     return -math.inf if value == 0.0 else math.nan
 
 
 def log10(values: ArrayLike) -> Any:
-    """Return the decimal logarithm of each positive number."""
-    return _each(math.log10, values)
+    """Return the decimal logarithm of each number; minus infinity for zero, NaN for negative numbers."""
+    return _each(lambda value: _log(value, math.log10), values)
 
 
 def log2(values: ArrayLike) -> Any:
-    """Return the logarithm to base 2 of each positive number."""
-    return _each(math.log2, values)
+    """Return the logarithm to base 2 of each number; minus infinity for zero, NaN for negative numbers."""
+    return _each(lambda value: _log(value, math.log2), values)
 
 
 def tan(angles: ArrayLike) -> Any:

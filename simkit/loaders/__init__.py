@@ -13,9 +13,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.bundled_models import (
+    builtin_model,
     bundled_names,
     find_bundled_model,
     find_bundled_world,
@@ -57,7 +59,7 @@ def load_scene(
     """Read a file or XML text into a scene.
 
     Args:
-        source: a path, the name of a bundled model or world, or XML text (any text that contains `<`).
+        source: a path or URI, the name of a bundled model or world, or XML text (any text that contains `<`).
         resolver: finds the files that the source refers to.
         diagnostics: receives every problem; a user's mistake never raises.
         xacro_args: arguments of a xacro file.
@@ -110,12 +112,23 @@ def find_document(
         The document, and true if it was expanded from xacro. The document is None, with an error recorded, if the
         source cannot be read.
     """
-    document = _document(source, diagnostics)
+    is_uri = isinstance(source, str) and "://" in source and "<" not in source
+    document = _document_of_uri(str(source), resolver, diagnostics) if is_uri else _document(source, diagnostics)
     if document is None or not needs_expansion(document):
         return document, False
     from simkit.loaders.xacro.expansion import expand  # 5 ms, and most files are not xacro
 
     return expand(document, resolver.around(document.folder), named_values(xacro_args, "xacro_args"), diagnostics), True
+
+
+def _document_of_uri(uri: str, resolver: Resolver, diagnostics: Diagnostics) -> Document | None:
+    if uri.startswith("file://"):
+        return _document(Path(unquote(uri.removeprefix("file://"))), diagnostics)  # in any folder, as a path
+    text = builtin_model(uri) if resolver.search(uri, None)[0] is None else None
+    if text is not None:
+        return _document(text, diagnostics)
+    path = resolver.resolve(uri, Where(uri), diagnostics, None)
+    return None if path is None else _document(path, diagnostics)
 
 
 def _document(source: str | os.PathLike[str], diagnostics: Diagnostics) -> Document | None:

@@ -13,7 +13,7 @@ from simkit.msgs.definition_parser import BASIC_TYPES, PARTS
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_text import message_to_dict
 from simkit.msgs.message_types import FieldValue, full_name, interface_parts, own_package_hint, type_store
-from simkit.msgs.shipped_interfaces import definition_files, rosbags_types
+from simkit.msgs.shipped_interfaces import definition_files, rosbags_defaults, rosbags_types
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -77,8 +77,12 @@ def _text(name: str, store: Typestore | None) -> str:
     own = interface_parts(name) if store is None else None
     if own is not None:
         return "---\n".join(part.text for part in own)
-    found = (store or type_store()).generate_msgdef(name if store else full_name(name), ros_version=2)[0]
-    return str(found).split("=" * 80)[0].rstrip()
+    full = name if store else full_name(name)
+    found = (store or type_store()).generate_msgdef(full, ros_version=2)[0]
+    text = str(found).split("=" * 80)[0].rstrip()
+    for field, value in ({} if store else rosbags_defaults(full)).items():
+        text = re.sub(rf"^\S+ {field}$", rf"\g<0> {str(value).lower()}", text, flags=re.MULTILINE)
+    return text
 
 
 def prototype(type_name: str) -> dict[str, FieldValue]:

@@ -1,4 +1,4 @@
-"""Builder of messages from plain values: missing fields are zero, dicts become messages, numbers become arrays."""
+"""Builder of messages from plain values: dicts become messages, numbers arrays; missing fields have their defaults."""
 
 from __future__ import annotations
 
@@ -13,12 +13,9 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs.definition_parser import ARRAY, BASE, INTEGER_RANGES, NAME, SEQUENCE, TEXTS, FieldNode
 from simkit.msgs.message_types import FieldValue, Message, definition_of, full_name, type_store
-from simkit.msgs.shipped_interfaces import NO_FIELD
+from simkit.msgs.shipped_interfaces import NO_FIELD, rosbags_defaults
 
 _DTYPES = {"byte": "uint8", "char": "uint8", "bool": "bool"}
-
-# ROS defaults that are not zero.
-_DEFAULTS: dict[tuple[str, str], float] = {("geometry_msgs/msg/Quaternion", "w"): 1.0}
 
 _Default = Callable[[], FieldValue]
 _Conversion = Callable[[FieldValue], FieldValue]
@@ -41,9 +38,10 @@ class MessageBuilder:
         self.cls: type[Message] = store.types[name]
         self.fields: list[tuple[str, _Default, _Conversion]] = []
         own = definition_of(name)
+        published = own.defaults if own else rosbags_defaults(name)
         for field, node in store.fielddefs[name][1]:
             default, convert = _default_and_conversion(node)
-            value = own.defaults.get(field) if own else _DEFAULTS.get((name, field))
+            value = published.get(field)
             default = default if value is None else partial(convert, value)
             self.fields.append((normalize_fieldname(field), default, convert))
         self._defaults = [default for _, default, _ in self.fields]

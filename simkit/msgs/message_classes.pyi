@@ -494,15 +494,12 @@ class JointTrajectoryControllerState:
     feedback: JointTrajectoryPoint
     error: JointTrajectoryPoint
     output: JointTrajectoryPoint
-    desired: JointTrajectoryPoint
-    actual: JointTrajectoryPoint
     multi_dof_joint_names: list[str]
     multi_dof_reference: MultiDOFJointTrajectoryPoint
     multi_dof_feedback: MultiDOFJointTrajectoryPoint
     multi_dof_error: MultiDOFJointTrajectoryPoint
     multi_dof_output: MultiDOFJointTrajectoryPoint
-    multi_dof_desired: MultiDOFJointTrajectoryPoint
-    multi_dof_actual: MultiDOFJointTrajectoryPoint
+    speed_scaling_factor: float
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2034,8 +2031,8 @@ class kobuki_msgs__msg__DockInfraRed:
     NEAR_LEFT: ClassVar[int] = 1
     NEAR_CENTER: ClassVar[int] = 2
     NEAR_RIGHT: ClassVar[int] = 4
-    FAR_CENTER: ClassVar[int] = 8
     FAR_LEFT: ClassVar[int] = 16
+    FAR_CENTER: ClassVar[int] = 8
     FAR_RIGHT: ClassVar[int] = 32
     __msgtype__: ClassVar[str]
 
@@ -2139,8 +2136,8 @@ class DockInfraRed:
     NEAR_LEFT: ClassVar[int] = 1
     NEAR_CENTER: ClassVar[int] = 2
     NEAR_RIGHT: ClassVar[int] = 4
-    FAR_CENTER: ClassVar[int] = 8
     FAR_LEFT: ClassVar[int] = 16
+    FAR_CENTER: ClassVar[int] = 8
     FAR_RIGHT: ClassVar[int] = 32
     __msgtype__: ClassVar[str]
 
@@ -2690,8 +2687,8 @@ class MoveItErrorCodes:
     val: int
     message: str
     source: str
-    UNDEFINED: ClassVar[int] = 0
     SUCCESS: ClassVar[int] = 1
+    UNDEFINED: ClassVar[int] = 0
     FAILURE: ClassVar[int] = 99999
     PLANNING_FAILED: ClassVar[int] = -1
     INVALID_MOTION_PLAN: ClassVar[int] = -2
@@ -2702,9 +2699,12 @@ class MoveItErrorCodes:
     PREEMPTED: ClassVar[int] = -7
     START_STATE_IN_COLLISION: ClassVar[int] = -10
     START_STATE_VIOLATES_PATH_CONSTRAINTS: ClassVar[int] = -11
+    START_STATE_INVALID: ClassVar[int] = -26
     GOAL_IN_COLLISION: ClassVar[int] = -12
     GOAL_VIOLATES_PATH_CONSTRAINTS: ClassVar[int] = -13
     GOAL_CONSTRAINTS_VIOLATED: ClassVar[int] = -14
+    GOAL_STATE_INVALID: ClassVar[int] = -27
+    UNRECOGNIZED_GOAL_TYPE: ClassVar[int] = -28
     INVALID_GROUP_NAME: ClassVar[int] = -15
     INVALID_GOAL_CONSTRAINTS: ClassVar[int] = -16
     INVALID_ROBOT_STATE: ClassVar[int] = -17
@@ -2715,9 +2715,6 @@ class MoveItErrorCodes:
     ROBOT_STATE_STALE: ClassVar[int] = -23
     SENSOR_INFO_STALE: ClassVar[int] = -24
     COMMUNICATION_FAILURE: ClassVar[int] = -25
-    START_STATE_INVALID: ClassVar[int] = -26
-    GOAL_STATE_INVALID: ClassVar[int] = -27
-    UNRECOGNIZED_GOAL_TYPE: ClassVar[int] = -28
     CRASH: ClassVar[int] = -29
     ABORT: ClassVar[int] = -30
     NO_IK_SOLUTION: ClassVar[int] = -31
@@ -2979,6 +2976,7 @@ class AssistedTeleop_Result:
     """`nav2_msgs/action/AssistedTeleop_Result`"""
     total_elapsed_time: Duration
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 730
     TIMEOUT: ClassVar[int] = 731
@@ -3004,6 +3002,7 @@ class BackUp_Result:
     """`nav2_msgs/action/BackUp_Result`"""
     total_elapsed_time: Duration
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 710
     TIMEOUT: ClassVar[int] = 711
@@ -3033,6 +3032,7 @@ class ComputePathThroughPoses_Result:
     path: Path
     planning_time: Duration
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 300
     INVALID_PLANNER: ClassVar[int] = 301
@@ -3067,6 +3067,7 @@ class ComputePathToPose_Result:
     path: Path
     planning_time: Duration
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 200
     INVALID_PLANNER: ClassVar[int] = 201
@@ -3110,6 +3111,7 @@ class DockRobot_Result:
     success: bool
     error_code: int
     num_retries: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     DOCK_NOT_IN_DB: ClassVar[int] = 901
     DOCK_NOT_VALID: ClassVar[int] = 902
@@ -3139,6 +3141,7 @@ class DriveOnHeading_Result:
     """`nav2_msgs/action/DriveOnHeading_Result`"""
     total_elapsed_time: Duration
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 720
     TIMEOUT: ClassVar[int] = 721
@@ -3164,6 +3167,7 @@ class DummyBehavior_Result:
     """`nav2_msgs/action/DummyBehavior_Result`"""
     total_elapsed_time: Duration
     error_code: int
+    error_msg: str
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -3184,6 +3188,8 @@ class FollowGPSWaypoints_Goal:
 class FollowGPSWaypoints_Result:
     """`nav2_msgs/action/FollowGPSWaypoints_Result`"""
     missed_waypoints: list[MissedWaypoint]
+    error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 600
     TASK_EXECUTOR_FAILED: ClassVar[int] = 601
@@ -3210,6 +3216,7 @@ class FollowPath_Result:
     """`nav2_msgs/action/FollowPath_Result`"""
     result: Empty
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 100
     INVALID_CONTROLLER: ClassVar[int] = 101
@@ -3239,6 +3246,8 @@ class FollowWaypoints_Goal:
 class FollowWaypoints_Result:
     """`nav2_msgs/action/FollowWaypoints_Result`"""
     missed_waypoints: list[MissedWaypoint]
+    error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 600
     TASK_EXECUTOR_FAILED: ClassVar[int] = 601
@@ -3266,6 +3275,7 @@ class NavigateThroughPoses_Goal:
 class NavigateThroughPoses_Result:
     """`nav2_msgs/action/NavigateThroughPoses_Result`"""
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     __msgtype__: ClassVar[str]
 
@@ -3290,6 +3300,7 @@ class NavigateToPose_Goal:
 class NavigateToPose_Result:
     """`nav2_msgs/action/NavigateToPose_Result`"""
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     __msgtype__: ClassVar[str]
 
@@ -3315,6 +3326,7 @@ class SmoothPath_Result:
     smoothing_duration: Duration
     was_completed: bool
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 500
     INVALID_SMOOTHER: ClassVar[int] = 501
@@ -3342,6 +3354,7 @@ class Spin_Result:
     """`nav2_msgs/action/Spin_Result`"""
     total_elapsed_time: Duration
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     UNKNOWN: ClassVar[int] = 700
     TIMEOUT: ClassVar[int] = 701
@@ -3367,6 +3380,7 @@ class UndockRobot_Result:
     """`nav2_msgs/action/UndockRobot_Result`"""
     success: bool
     error_code: int
+    error_msg: str
     NONE: ClassVar[int] = 0
     DOCK_NOT_VALID: ClassVar[int] = 902
     FAILED_TO_CONTROL: ClassVar[int] = 905
@@ -3390,8 +3404,7 @@ class Wait_Result:
     """`nav2_msgs/action/Wait_Result`"""
     total_elapsed_time: Duration
     error_code: int
-    NONE: ClassVar[int] = 0
-    UNKNOWN: ClassVar[int] = 740
+    error_msg: str
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -5374,10 +5387,9 @@ class Bounds:
 class EntityCategory:
     """`simulation_interfaces/msg/EntityCategory`"""
     category: int
-    CATEGORY_UNKNOWN: ClassVar[int] = 0
-    CATEGORY_OBJECT: ClassVar[int] = 1
-    CATEGORY_ROBOT: ClassVar[int] = 2
-    CATEGORY_HUMAN: ClassVar[int] = 3
+    CATEGORY_OBJECT: ClassVar[int] = 0
+    CATEGORY_ROBOT: ClassVar[int] = 1
+    CATEGORY_HUMAN: ClassVar[int] = 2
     CATEGORY_DYNAMIC_OBJECT: ClassVar[int] = 4
     CATEGORY_STATIC_OBJECT: ClassVar[int] = 5
     __msgtype__: ClassVar[str]
@@ -5485,6 +5497,33 @@ class SimulatorFeatures:
     WORLD_UNLOADING: ClassVar[int] = 43
     WORLD_INFO_GETTING: ClassVar[int] = 44
     AVAILABLE_WORLDS: ClassVar[int] = 45
+    SPAWNING_ENTITIES: ClassVar[int] = 50
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpawnEntity:
+    """`simulation_interfaces/msg/SpawnEntity`"""
+    name: str
+    allow_renaming: bool
+    entity_resource: Resource
+    entity_namespace: str
+    initial_pose: PoseStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpawnResult:
+    """`simulation_interfaces/msg/SpawnResult`"""
+    result: Result
+    entity_name: str
+    NAME_NOT_UNIQUE: ClassVar[int] = 101
+    NAME_INVALID: ClassVar[int] = 102
+    UNSUPPORTED_FORMAT: ClassVar[int] = 103
+    NO_RESOURCE: ClassVar[int] = 104
+    NAMESPACE_INVALID: ClassVar[int] = 105
+    RESOURCE_PARSE_ERROR: ClassVar[int] = 106
+    MISSING_ASSETS: ClassVar[int] = 107
+    UNSUPPORTED_ASSETS: ClassVar[int] = 108
+    INVALID_POSE: ClassVar[int] = 109
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -5540,7 +5579,6 @@ class GetAvailableWorlds_Response:
     result: Result
     worlds: list[WorldResource]
     DEFAULT_SOURCES_FAILED: ClassVar[int] = 101
-    ADDITIONAL_SOURCES_FAILED: ClassVar[int] = 102
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -5752,6 +5790,7 @@ class simulation_interfaces__srv__SetEntityState_Request:
 class simulation_interfaces__srv__SetEntityState_Response:
     """`simulation_interfaces/srv/SetEntityState_Response`"""
     result: Result
+    INVALID_POSE: ClassVar[int] = 101
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -5767,6 +5806,20 @@ class SetSimulationState_Response:
     ALREADY_IN_TARGET_STATE: ClassVar[int] = 101
     STATE_TRANSITION_ERROR: ClassVar[int] = 102
     INCORRECT_TRANSITION: ClassVar[int] = 103
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__SpawnEntities_Request:
+    """`simulation_interfaces/srv/SpawnEntities_Request`"""
+    spawn_requests: list[SpawnEntity]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class simulation_interfaces__srv__SpawnEntities_Response:
+    """`simulation_interfaces/srv/SpawnEntities_Response`"""
+    result: Result
+    results: list[SpawnResult]
+    ENTITIES_SPAWN_FAILED: ClassVar[int] = 150
     __msgtype__: ClassVar[str]
 
 @dataclass

@@ -2,9 +2,9 @@
 
 A type is read at its first use.
 The definition of a simkit type is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
-with the published fields in the published order. The hash of a definition depends on field names, types and order, and
-not on constants. A service or action is several message types, which `---` separates in the file:
-`<package>/srv/<Name>_Request` and `…_Response`, `<package>/action/<Name>_Goal`, `…_Result` and `…_Feedback`.
+with the published fields, constants and default values in the published order. A service or action is several message
+types, which `---` separates in the file: `<package>/srv/<Name>_Request` and `…_Response`,
+`<package>/action/<Name>_Goal`, `…_Result` and `…_Feedback`.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Definitions of messages, services and actions that are shipped with simkit, and with rosbags for ROS 2 Jazzy.
 
 The definition of a simkit type is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
-with the published fields in the published order. The hash of a definition depends on field names, types and order, and
-not on constants.
+with the published fields, constants and default values in the published order. The hash of a type depends on field
+names, types and order, and not on constants and defaults; `tests/msgs/published_interfaces.py` compares these as well.
 """
 
 from __future__ import annotations
@@ -29,6 +29,13 @@ PACKAGES_WITH_LONG_NAMES: Final = frozenset(
 """Packages that repeat names of other packages, such as `Trigger`; a class of another package has the short name."""
 NO_FIELD: Final = "structure_needs_at_least_one_member"
 """Name of the only field of a type that has no fields."""
+_ROSBAGS_DEFAULTS: Final[dict[str, dict[str, Any]]] = {
+    "geometry_msgs/msg/Quaternion": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
+    "rcl_interfaces/msg/ParameterDescriptor": {"read_only": False, "dynamic_typing": False},
+    "sensor_msgs/msg/NavSatStatus": {"status": -2},  # STATUS_UNKNOWN
+    "type_description_interfaces/msg/FieldType": {"type_id": 0},
+}
+"""Published default values of the types in rosbags, by type and field: rosbags has the fields without them."""
 
 
 @cache
@@ -64,7 +71,12 @@ def shipped_parts(interface_name: str) -> tuple[MessageDefinition, ...] | None:
         return None
     constants, fields = rosbags_types()[interface_name]
     plain = [(name, (int(node[0]), node[1])) for name, node in fields if name != NO_FIELD]
-    return (MessageDefinition("", list(constants), plain),)
+    return (MessageDefinition("", list(constants), plain, rosbags_defaults(interface_name)),)
+
+
+def rosbags_defaults(type_name: str) -> dict[str, Any]:
+    """Return the published default values of a type in rosbags, by the name of the field."""
+    return _ROSBAGS_DEFAULTS.get(type_name, {})
 
 
 @cache

@@ -290,7 +290,7 @@ class Simulation(ScriptGraph, InProcess):
         """Add a model during the run; everything else keeps its state and its handles.
 
         Args:
-            source: file, XML text, or bare name of a model.
+            source: file, URI such as `model://tiago`, XML text, or bare name of a model.
             name: name of the model; None for the name in the file.
             pose: pose of the model frame in the world; None for the pose in the file.
 

@@ -17,7 +17,9 @@ from simkit.compiler.meshes.convex_pieces import hull_volume
 from simkit.compiler.meshes.flat_areas import connected_areas
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.patch_division import Patch, area_vectors, divide
-from simkit.linear_algebra import eigh, matmul, norm
+from simkit.float_sum import float_sum
+from simkit.linear_algebra import dot, matmul, norm
+from simkit.matrix_decompositions import eigh
 
 TRIANGLES_PER_PIECE: Final = 12
 """Least number of triangles for one piece; height fields and patches do not need fewer pieces than that."""
@@ -45,6 +47,9 @@ _GAIN: Final = 0.8
 
 _LEAST_GAIN: Final = 1e-4
 """Decrease of the volume, relative to the volume, up to which all planes are equal: the first cuts of a ring."""
+
+_EQUAL_MOMENTS: Final = 1e-4
+"""Difference of two moments, relative to the largest one, below which they are equal but for rounding."""
 
 _SNAP: Final = 1e-7
 """Distance to a plane, relative to the size of the part, below which a corner lies in the plane."""
@@ -312,7 +317,7 @@ def _best_plane(cell: _Cell) -> tuple[Floats, float]:
     moments = matmul((offsets * np.repeat(weights, 3)[:, None]).T, offsets) + matmul(
         (middles * weights[:, None]).T, middles
     )
-    axes = eigh(moments)[1].T
+    axes = _principal_axes(moments)
     lows, highs = matmul(points, axes.T).min(axis=0), matmul(points, axes.T).max(axis=0)
     order = np.argsort(lows - highs, kind="stable")
     # across the shortest axis, the parts would be layers, and the surface of a layer does not have all of its corners
@@ -322,12 +327,32 @@ def _best_plane(cell: _Cell) -> tuple[Floats, float]:
     margin = _MARGIN * float(highs[first] - lows[first])
     if lows[first] + margin < deepest < highs[first] - margin:
         planes.append((axes[first], deepest))
-    volumes = np.array([sum(map(hull_volume, _side_points(triangles, *plane))) for plane in planes])
+    volumes = np.array([float_sum(map(hull_volume, _side_points(triangles, *plane))) for plane in planes])
     whole = hull_volume(points)
     gains = whole - volumes
     if gains.max() <= _LEAST_GAIN * whole:
         return planes[0]
     return planes[int(np.argmax(gains >= _GAIN * gains.max()))]
+
+
+def _principal_axes(moments: Floats) -> Floats:
+    """Return the principal axes of a tensor as rows.
+
+    Of equal moments, as of a ring, any axes are principal, and the rounding of the corners would choose. There the axes
+    are those next to the coordinate axes, so that copies of a part are divided alike.
+    """
+    values, axes = eigh(moments)
+    near = np.diff(values) <= _EQUAL_MOMENTS * values[2]
+    if near.all():
+        return np.eye(3)
+    if near.any():
+        normal = axes[:, 2 if near[0] else 0]
+        first = np.eye(3)[int(np.abs(normal).argmin())]
+        first = first - dot(first, normal) * normal
+        first = first / norm(first)
+        return np.array((first, np.cross(normal, first), normal))
+    turned: Floats = axes.T
+    return turned
 
 
 def _side_points(triangles: Floats, normal: Floats, offset: float) -> list[Floats]:

@@ -46,12 +46,15 @@ class VelocityServo:
         efforts: Efforts of these joints in the last step (n,).
         learnt: Estimated effort per acceleration of the joints of each kinematic tree (trees, slots, slots).
         is_learnt: True for trees that have such an estimate (trees,).
+        is_done: True if the last search left a small error that it could not reduce; the next one waits until the
+            error has grown. Wheels that push against each other would otherwise be searched in vain at every step.
     """
 
     keys: Keys = ()
     efforts: Vector = field(default_factory=lambda: np.zeros(0))
     learnt: Vector = field(default_factory=lambda: np.zeros((0, 0, 0)))
     is_learnt: Flags = field(default_factory=lambda: np.zeros(0, bool))
+    is_done: bool = False
 
     def drive(
         self,
@@ -81,12 +84,14 @@ class VelocityServo:
         best = _between(self.efforts, trial.lowest, trial.highest)
         missing = trial.missing(best)
         least = trial.relevant_error(missing, best)
-        self.efforts = self._search(trial, best, missing) if least.any() else best
+        is_far = (least > (_CLOSE * trial.scale if self.is_done else 0.0)).any()
+        self.efforts = self._search(trial, best, missing) if is_far else best
 
     def _begin(self, layout: KinematicTrees) -> None:
         """Switch to the joints of another layout; joints that were already driven keep their efforts."""
         efforts = dict(zip(self.keys, self.efforts.tolist(), strict=True))
         self.keys, self.efforts = layout.keys, np.array([efforts.get(key, 0.0) for key in layout.keys])
+        self.is_done = False
         trees, slots = layout.is_used.shape
         self.learnt, self.is_learnt = np.zeros((trees, slots, slots)), np.zeros(trees, bool)
 
@@ -114,6 +119,7 @@ class VelocityServo:
             self._learn(layout, free, last - best, (missing - result[1]) / trial.step)
             best, missing, least, is_better = _better_efforts(layout, (best, missing, least), result)
             failures = 0 if is_better else failures + 1
+        self.is_done = failures > 0 and not (least > close).any()
         if not np.array_equal(best, last):
             trial.apply(best)
         return best

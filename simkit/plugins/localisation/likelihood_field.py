@@ -149,7 +149,7 @@ class LikelihoodMap(SharedByCopies):
         step = max(1, _BLOCK // len(points))
         for first in range(0, len(poses), step):
             part = slice(first, first + step)
-            x, y = matmul(to_x[part], ends), matmul(to_y[part], ends)  # ten times as fast as sums of products
+            x, y = matmul(to_x[part], ends), matmul(to_y[part], ends)
             np.clip(x, 0, columns - 1, out=x)
             np.clip(y, 0, rows - 1, out=y)
             cells = y.astype(np.int32)  # 64 bits take three times as long; a map has fewer than 2³¹ cells

@@ -99,10 +99,10 @@ class BehaviorServer(CostmapReader):
             goal.reject("the goal contains NaN or infinite numbers")
             return
         if name in ("backup", "drive_on_heading") and not request.speed:
-            goal.abort({"error_code": _CODES[name] + _INVALID}, "the speed is 0")
+            _abort(goal, _CODES[name] + _INVALID, "the speed is 0")
             return
         if pose is None and name != "wait":
-            goal.abort({"error_code": _CODES[name] + _TF_ERROR}, "the pose of the robot is not known")
+            _abort(goal, _CODES[name] + _TF_ERROR, "the pose of the robot is not known")
             return
         if self._motion is not None:
             self._motion.goal.abort(reason="another motion replaced this one")
@@ -179,9 +179,9 @@ class BehaviorServer(CostmapReader):
 
     def _end(self, motion: _Motion, elapsed: float, code: int, reason: str = "") -> None:
         self._stop()
-        result = {"total_elapsed_time": _duration(elapsed), "error_code": _CODES[motion.name] + code if code else 0}
+        result = {"total_elapsed_time": _duration(elapsed)}
         if code:
-            motion.goal.abort(result, reason)
+            _abort(motion.goal, _CODES[motion.name] + code, reason, **result)
         else:
             motion.goal.succeed(result)
 
@@ -193,6 +193,11 @@ class BehaviorServer(CostmapReader):
             self._publish((0.0, 0.0))
         self._motion = None
         self._set_before_step_rate(NEVER)
+
+
+def _abort(goal: GoalHandle, code: int, reason: str, **result: object) -> None:
+    """End a goal as aborted; its result has the code and the reason."""
+    goal.abort({**result, "error_code": code, "error_msg": reason}, reason)
 
 
 def _target(name: str, request: Any) -> float:

@@ -298,7 +298,7 @@ class BtNavigator(Plugin):
         if self._task is task:
             self._leave()
             self.log.error("Goal failed: %s", reason)
-            task.goal.abort({"error_code": code}, reason)
+            task.goal.abort({"error_code": code, "error_msg": reason}, reason)
 
     def _publish_feedback(self, task: _Task) -> None:
         pose = self._pose()

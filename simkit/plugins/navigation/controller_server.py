@@ -155,7 +155,7 @@ class ControllerServer(CostmapReader, ServerPlugin):
         elif pose is None:
             reason, code = f"the pose of {self.options.robot_base_frame!r} in {frame!r} is not known", _TF_ERROR
         if code or poses is None or pose is None:
-            goal.abort({"error_code": code}, reason)
+            goal.abort({"error_code": code, "error_msg": reason}, reason)
             return
         is_new = self._goal is None
         if self._goal is not None:
@@ -239,7 +239,7 @@ class ControllerServer(CostmapReader, ServerPlugin):
 
     def _fail(self, goal: GoalHandle, code: int, reason: str) -> None:
         self._stop()
-        goal.abort({"error_code": code}, reason)
+        goal.abort({"error_code": code, "error_msg": reason}, reason)
 
     def _stop(self) -> None:
         self._goal = None

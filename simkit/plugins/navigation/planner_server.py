@@ -109,7 +109,7 @@ class PlannerServer(CostmapReader, ServerPlugin):
             poses, frame = self._path_for(goal.request)
         except _NoPlanError as error:
             self.log.warning("no path: %s", error)
-            goal.abort({"error_code": error.code}, str(error))
+            goal.abort({"error_code": error.code, "error_msg": str(error)}, str(error))
             return
         path = path_message(poses, msgs.header(self.sim.time_ns, frame))
         self._plan.publish(path)

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.linear_algebra import dot
+from simkit.linear_algebra import squared_length
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
@@ -221,7 +221,7 @@ class JointActuators(SharedByCopies):
         if self._has_mimics:  # the command of a mimic joint is computed from its leader's command
             offset = np.where(now.is_position, self._mimic_law[1], 0.0)
             commands = np.where(self._is_leader, commands, self._mimic_law[0] * commands[self._leaders] + offset)
-        if dot(commands, now.zeros) != 0.0:  # fast check: 0 times NaN or infinity is not 0
+        if commands.dot(now.zeros) != 0.0:  # fast check: 0 times NaN or infinity is not 0, for every processor
             commands = np.where(np.isfinite(commands), commands, np.where(now.is_position, self.targets, 0.0))
         reference, rate = self._move_references(now, commands, period)
         weight = self._gravity.efforts()
@@ -236,7 +236,7 @@ class JointActuators(SharedByCopies):
             shift = self.gravity_shares * weight
             effort = state - now.kp * data.qpos.take(self._qpos) - now.kv * data.qvel.take(self._dofs)
             state += np.minimum(np.maximum(effort, now.lowest + shift), now.highest + shift) - effort
-        if not dot(state, state) < _LARGEST_CONTROL**2:
+        if not squared_length(state, _LARGEST_CONTROL**2) < _LARGEST_CONTROL**2:
             state = np.minimum(np.maximum(state, -_LARGEST_CONTROL), _LARGEST_CONTROL)
         data.act[self._state_index] = state
         data.ctrl[self._control_index] = now.servo_stiffness * rate

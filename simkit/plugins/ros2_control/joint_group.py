@@ -197,14 +197,14 @@ class TrajectoryMessages(SharedByCopies):
         return self._feedback_type(msgs.header(now, ""), list(self._names), *points, [], *none)
 
     def state(
-        self, now: int, desired: Vector, state: Vector, errors: Vector, commands: Vector
+        self, now: int, desired: Vector, state: Vector, errors: Vector, commands: Vector, scaling: float
     ) -> JointTrajectoryControllerState:
-        """Create the controller's state message from arrays (3, n) and the values of the command interfaces."""
+        """Create the controller's state message from arrays (3, n), the command interfaces' values and the scaling."""
         measured = len(self._group.states)
         reference, actual = self._point(desired, 3), self._point(state, measured)
-        points = reference, actual, self._point(errors, measured), self._command_point(commands), reference, actual
-        none = (self._empty_multi_dof_point() for _ in range(6))
-        return self._state_type(msgs.header(now, ""), list(self._names), *points, [], *none)
+        points = reference, actual, self._point(errors, measured), self._command_point(commands)
+        header, none = msgs.header(now, ""), self._empty_multi_dof_point
+        return self._state_type(header, list(self._names), *points, [], none(), none(), none(), none(), scaling)
 
     def _empty_multi_dof_point(self) -> MultiDOFJointTrajectoryPoint:
         return self._multi_dof_point_type([], [], [], msgs.duration(0))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 import itertools
+import math
 import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
@@ -31,12 +32,17 @@ if TYPE_CHECKING:
 
 PACKAGE: Final = "simulation_interfaces"
 _KINDS: Final = ("model", "link", "light")
-_UNKNOWN, _ROBOT, _HUMAN, _DYNAMIC, _STATIC = 0, 2, 3, 4, 5
+_ROBOT, _HUMAN, _DYNAMIC, _STATIC = 1, 2, 4, 5
 _QUANTIFIERS: Final = re.compile(r"\\.|\[\^?\]?(?:\\.|[^]\\])*\]|\(\?|(\)?[*+?{])")
 _MOST_QUANTIFIERS: Final = 3  # more of them, or one after a group, may take minutes in a name of 30 letters
 _MOST_ALTERNATIVES: Final = 8  # each may double the time of a search
 _LONGEST_FILTER: Final = 200
 _EMPTY, _BOX, _HULL, _SPHERE = range(4)
+_INVALID_POSE: Final = 101
+_FARTHEST: Final = 1e10
+"""Largest coordinate [m] of a position: beyond it, MuJoCo takes the state for diverged."""
+_QUATERNION_TOLERANCE: Final = 0.01
+"""Largest difference of a quaternion's squared length from 1, as in tf2."""
 
 
 class ResultCode(enum.IntEnum):
@@ -59,6 +65,12 @@ class Refusal(Exception):
     def __init__(self, code: int, reason: str) -> None:
         super().__init__(reason)
         self.code = code
+
+
+def result_fields(error: Exception) -> dict[str, object]:
+    """Return the fields of a `Result` for an error."""
+    code = error.code if isinstance(error, Refusal) else ResultCode.FAILED
+    return {"result": int(code), "error_message": str(error)}
 
 
 def find(sim: Simulation, name: str, kinds: tuple[str, ...] = _KINDS) -> tuple[str, str]:
@@ -89,16 +101,49 @@ def set_entity_state(sim: Simulation, request: Any) -> None:
     if request.set_acceleration:
         raise Refusal(ResultCode.UNSUPPORTED, "an acceleration cannot be set; apply a wrench instead")
     state, handle = request.state, handle_of(sim, kind, scoped)
-    frame = frame_of(sim, state.header.frame_id)
-    pose = frame @ pose_of(state.pose)
-    linear = frame.rotate(vector_of(state.twist.linear, "twist.linear"))
-    angular = frame.rotate(vector_of(state.twist.angular, "twist.angular"))
-    if request.set_twist and (kind == "light" or (kind == "model" and handle.static)):
-        raise Refusal(ResultCode.FAILED, f"{scoped!r} is static, so it has no velocity")
-    if request.set_pose:
+    pose = _state_pose(sim, state) if request.set_pose else None
+    velocity = _state_velocity(sim, state) if request.set_twist else None
+    if velocity is not None and (kind == "light" or (kind == "model" and handle.static)):
+        if np.any(velocity):
+            raise Refusal(ResultCode.FAILED, f"{scoped!r} is static, so it has no velocity")
+        velocity = None
+    if pose is not None:
         handle.set_pose(pose)
-    if request.set_twist:
-        handle.set_velocity(linear, angular)
+    if velocity is not None:
+        handle.set_velocity(*velocity)
+
+
+def _state_pose(sim: Simulation, state: Any) -> Pose:
+    try:
+        return requested_pose(sim, state.header, state.pose, "pose")
+    except RequestRefused as error:
+        raise Refusal(_INVALID_POSE, str(error)) from error
+
+
+def _state_velocity(sim: Simulation, state: Any) -> tuple[Vector, Vector]:
+    """Return linear [m/s] and angular velocity [rad/s] of a state, world frame."""
+    frame, twist = frame_of(sim, state.header.frame_id), state.twist
+    return frame.rotate(vector_of(twist.linear, "twist.linear")), frame.rotate(
+        vector_of(twist.angular, "twist.angular")
+    )
+
+
+def requested_pose(sim: Simulation, header: Any, pose: Any, what: str) -> Pose:
+    """Return a pose of a request in the world frame; the header names its frame.
+
+    Raises:
+        RequestRefused: there is no such frame, a number is NaN, infinite or outside of the world, or the quaternion is
+            not normalised.
+    """
+    frame, found = frame_of(sim, header.frame_id), pose_of(pose, what)
+    length = math.hypot(*(float(getattr(pose.orientation, axis)) for axis in "xyzw"))
+    if abs(length * length - 1.0) > _QUATERNION_TOLERANCE:
+        raise RequestRefused(f"found {what}.orientation of length {length:.4g}; expected a quaternion of length 1")
+    position = frame.transform(found.position)
+    if not np.abs(position).max() <= _FARTHEST:
+        farthest = max(map(abs, found.position.tolist()))
+        raise RequestRefused(f"found {what}.position at {farthest:.4g} m; a world ends at {_FARTHEST:g} m")
+    return frame @ found
 
 
 # ---------------------------------------------------------------------- lists

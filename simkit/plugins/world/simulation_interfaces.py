@@ -11,8 +11,8 @@ from simkit.errors import InputError
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.world import interface_entities as entities
-from simkit.plugins.world.interface_entities import PACKAGE, Refusal, ResultCode
-from simkit.plugins.world.interface_spawning import delete_entity, spawn_entity
+from simkit.plugins.world.interface_entities import PACKAGE, Refusal, ResultCode, result_fields
+from simkit.plugins.world.interface_spawning import delete_entity, spawn_entity, spawn_several
 from simkit.plugins.world.service_entities import RequestRefused
 
 if TYPE_CHECKING:
@@ -41,6 +41,7 @@ UNSUPPORTED: Final = {
 
 _FEATURES: Final = {
     "SpawnEntity": ("SPAWNING", "SPAWNING_RESOURCE_STRING"),
+    "SpawnEntities": ("SPAWNING_ENTITIES",),
     "DeleteEntity": ("DELETING",),
     "GetEntityBounds": ("ENTITY_BOUNDS", "ENTITY_BOUNDS_BOX"),
     "GetEntities": ("ENTITY_CATEGORIES",),
@@ -80,6 +81,7 @@ class SimulationInterfaces(WorldPlugin):
         handlers: dict[str, Handler] = {
             **{name: _refuse(reason) for name, reason in UNSUPPORTED.items()},
             "SpawnEntity": spawn_entity,
+            "SpawnEntities": spawn_several,
             "DeleteEntity": delete_entity,
             "GetEntityState": entities.entity_state,
             "SetEntityState": entities.set_entity_state,
@@ -170,7 +172,7 @@ class SimulationInterfaces(WorldPlugin):
     def _begin_steps(self, goal: GoalHandle) -> None:
         if self._goal is not None and not self._goal.is_done:
             busy = Refusal(ResultCode.INCORRECT_STATE, "another goal is being executed")
-            goal.abort({"result": _result(busy)}, str(busy))
+            goal.abort({"result": result_fields(busy)}, str(busy))
             return
         steps = int(goal.request.steps)
         self._goal, self._first, self._last = goal, self.sim.tick, self.sim.tick + steps
@@ -179,13 +181,13 @@ class SimulationInterfaces(WorldPlugin):
             self._start_steps(steps)
         except (Refusal, InputError) as error:
             self._end_goal()
-            goal.abort({"result": _result(error)}, str(error))
+            goal.abort({"result": result_fields(error)}, str(error))
 
     def _cancel_steps(self, goal: GoalHandle) -> None:
         if goal is self._goal:
             self._end_goal()
             self.sim.control.pausing.pause()
-        goal.canceled({"result": _result(Refusal(ResultCode.FAILED, "the goal was cancelled"))})
+        goal.canceled({"result": result_fields(Refusal(ResultCode.FAILED, "the goal was cancelled"))})
 
     def _follow_steps(self, tick: int) -> None:
         """Report the progress of the goal, and end it after its last step."""
@@ -207,7 +209,7 @@ class SimulationInterfaces(WorldPlugin):
         if goal is not None and self.sim.paused and self.sim.tick < self._last:
             self._end_goal()
             error = Refusal(ResultCode.FAILED, "the simulation was paused before the last step")
-            goal.abort({"result": _result(error)}, str(error))
+            goal.abort({"result": result_fields(error)}, str(error))
 
     def _end_goal(self) -> None:
         self._goal = None
@@ -222,12 +224,12 @@ def _current_world(sim: Simulation, _: object) -> dict[str, object]:
 
 
 def _spawnables(sim: Simulation, request: msgs.GetSpawnables_Request) -> dict[str, object]:
-    """Return simkit's models and those of the resource paths."""
-    if request.sources:
-        raise Refusal(ResultCode.UNSUPPORTED, "sources are not searched; name folders by --resource-path")
+    """Return simkit's models and those of the resource paths; the message of the result lists the sources."""
     models = sim.control.list_models() if sim.control.list_models is not None else {}
     found = [{"entity_resource": {"uri": source}, "description": name} for name, source in models.items()]
-    return {"spawnables": found}
+    listed = ", ".join(request.sources)
+    text = f"sources are not searched: {listed}; name folders by --resource-path" if listed else ""
+    return {"result": {"result": ResultCode.OK, "error_message": text}, "spawnables": found}
 
 
 def _refuse(reason: str) -> Handler:
@@ -248,12 +250,7 @@ def _answering(sim: Simulation, name: str, handler: Handler) -> Callable[[object
         except (Refusal, RequestRefused, InputError, UnknownName) as error:
             if not isinstance(error, Refusal) or error.code != ResultCode.UNSUPPORTED:
                 sim.engine.log.warning("%s: %s", name, error)
-            return {"result": _result(error)}
+            return {"result": result_fields(error)}
         return {"result": {"result": ResultCode.OK}, **(found or {})}
 
     return handle
-
-
-def _result(error: Exception) -> dict[str, object]:
-    code = error.code if isinstance(error, Refusal) else ResultCode.FAILED
-    return {"result": int(code), "error_message": str(error)}

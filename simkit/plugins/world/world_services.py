@@ -185,8 +185,8 @@ class WorldServices(WorldPlugin):
                 f"found {' and '.join(given) or 'none'} of sdf, sdf_filename and clone_name; expected one"
             )
         requested = pose_of(factory.pose)
-        # a ROS message always has a pose, so the identity without a frame means the pose in the file
-        if requested == IDENTITY and not factory.relative_to:
+        # a ROS message always has a pose and a frame, so the identity in the default frame means the pose in the file
+        if requested == IDENTITY and factory.relative_to in ("", "world"):
             return None
         return frame_of(self.sim, factory.relative_to) @ requested
 

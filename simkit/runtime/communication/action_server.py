@@ -314,7 +314,7 @@ class ActionTable(EndpointTable[Action]):
 
         Args:
             name: name of the action; a missing leading slash is added.
-            goal: message, dict of its fields, or None for a message whose fields are all zero.
+            goal: message, dict of its fields, or None for a message with default fields.
             on_feedback: function that receives each feedback message.
             on_done: function that receives the handle after the end of the goal.
 

@@ -139,7 +139,7 @@ class EndpointTable(Generic[E]):
         return found
 
     def checked(self, endpoint: E, value: Message) -> Message:
-        """Convert a value to a request or goal: a message, a dict of its fields, or None for fields that are all zero.
+        """Convert a value to a request or goal: a message, a dict of its fields, or None for default fields.
 
         Raises:
             MessageError: the value does not fit the type.

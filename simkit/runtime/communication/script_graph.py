@@ -111,7 +111,7 @@ class ScriptGraph:
 
         Args:
             service: name of the service; a missing leading slash is added.
-            request: message, dict of its fields, or None for a message whose fields are all zero.
+            request: message, dict of its fields, or None for a message with default fields.
             timeout: longest wait for a service of another process [s], wall time.
             on_done: function that receives the call before the step after the response has arrived; its `response` is
                 None if its `error` is not. With `on_done`, the method returns at once, with the `ServiceCall`.
@@ -173,7 +173,7 @@ class ScriptGraph:
 
         Args:
             action: name of the action.
-            goal: message, dict of its fields, or None for a message whose fields are all zero.
+            goal: message, dict of its fields, or None for a message with default fields.
             on_feedback: function that receives each feedback message.
             on_done: function that receives the handle after the end of the goal.
 

@@ -105,7 +105,7 @@ class ServiceTable(EndpointTable[Service]):
 
         Args:
             name: name of the service; a missing leading slash is added.
-            request: message, dict of its fields, or None for a message whose fields are all zero.
+            request: message, dict of its fields, or None for a message with default fields.
             timeout: longest wait for a service of another process [s], wall time.
             on_done: function that receives the call before the step after the response has arrived. With it, the method
                 returns at once, with the `ServiceCall`.

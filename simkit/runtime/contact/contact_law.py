@@ -25,7 +25,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
-from simkit.linear_algebra import dot
+from simkit.linear_algebra import squared_length
 from simkit.runtime.contact.centripetal_friction import CentripetalFriction
 from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD, DEEP_PENETRATION, ContactConditions
 from simkit.runtime.contact.contact_correction import AnyContactCorrection, find_array_correction, find_correction
@@ -203,17 +203,16 @@ class ContactLaw:
     def _has_fast(self, data: mujoco.MjData) -> bool:
         """Check whether a freely moving body is so fast that a hit within the window matters."""
         velocities = data.qvel.take(self._free)
-        if dot(velocities, velocities) <= FAST_SPEED * FAST_SPEED:  # no body can be fast
+        if squared_length(velocities, FAST_SPEED * FAST_SPEED) <= FAST_SPEED * FAST_SPEED:  # no body can be fast
             return False
         return bool((np.abs(velocities) > FAST_SPEED).any())
 
     def _is_quiet(self, data: mujoco.MjData) -> bool:
         """Check whether all constraints are nearly at rest and no reference separates bodies fast."""
         velocity, reference = data.efc_vel, data.efc_aref
-        # `vdot` gives the bits of `dot`, but no warning for an overflow: the engine reports the divergence
-        if dot(velocity, velocity) > QUIET_SPEED * QUIET_SPEED:
+        if squared_length(velocity, QUIET_SPEED * QUIET_SPEED) > QUIET_SPEED * QUIET_SPEED:
             return False
-        return bool(dot(reference, reference) < self._least_reference)
+        return bool(squared_length(reference, self._least_reference) < self._least_reference)
 
     def _find(
         self, data: mujoco.MjData, closing: list[float] | None, residual: Any = None

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
 from simkit.diagnostics import NOWHERE
-from simkit.linear_algebra import dot, matmul
+from simkit.linear_algebra import matmul, squared_length
 from simkit.runtime.contact import travel_bounds
 from simkit.runtime.contact.contact_law import window_length
 from simkit.runtime.contact.travel_bounds import Floats, Ints
@@ -142,7 +142,7 @@ class FastBodyDetector:
         if data is not self._data:  # the same object at every check; its arrays keep their addresses
             self._data, self._velocities_now = data, data.qvel
         terms = _multiply(self._velocities_now, self._rooted, self._terms)
-        if dot(terms, terms) <= 1.0 or self._is_slow(self._velocities_now):
+        if squared_length(terms, 1.0) <= 1.0 or self._is_slow(self._velocities_now):
             return False
         return self._has_fast_pair(data)
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from simkit.compiler.engine_options import has_engine_contacts
 from simkit.errors import SimulationDiverged
-from simkit.linear_algebra import dot
+from simkit.linear_algebra import squared_length
 from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, window_length
 from simkit.runtime.contact.open_space import OpenSpace
 from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, FastBodyDetector
@@ -347,7 +347,7 @@ class PhysicsState:
     def _is_pushed(self) -> bool:
         """Check whether controls changed so much since the last check that wheels may begin to slip."""
         change = (self.data.ctrl - self._probed) * self._push
-        if dot(change, change) <= _MIN_PUSH * _MIN_PUSH:
+        if squared_length(change, _MIN_PUSH * _MIN_PUSH) <= _MIN_PUSH * _MIN_PUSH:
             return False
         self._probed[:] = self.data.ctrl
         return True

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.linear_algebra import dot, matmul, solve
+from simkit.linear_algebra import matmul, solve, squared_length
 from simkit.runtime.engine.physics_state import VELOCITY
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def velocity_limiter(physics: ForwardPass, limited: Sequence[tuple[int, float]])
 
     def hold(_tick: int = 0) -> None:
         found = physics.data.qvel * shares
-        if dot(found, found) >= _LIMIT_SHARE:  # otherwise no velocity exceeds its limit
+        if squared_length(found, _LIMIT_SHARE) >= _LIMIT_SHARE:  # otherwise no velocity exceeds its limit
             limit_velocities(physics, dofs, limits)
 
     return hold

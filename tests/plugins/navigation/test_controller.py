@@ -97,6 +97,7 @@ def test_an_obstacle_and_a_lack_of_progress_abort(tmp_path: Path) -> None:
         goal = sim.send_goal("/follow_path", path(*((0.1 * i, 0.0, 0.0) for i in range(20))))
         run_until_done(sim, goal)
         assert (goal.status.name, goal.result.error_code) == ("ABORTED", 106)
+        assert goal.result.error_msg == goal.reason != ""
         sim.run(1.0)
         place = sim.model("turtlebot3").pose.position[0]
         assert 0.3 < place < 0.95 - 0.24  # it has stopped in front of the wall

@@ -201,6 +201,7 @@ def test_a_goal_outside_of_the_map_is_aborted_with_the_planners_error_code(tmp_p
         run_until_done(sim, goal)
         assert (goal.status.name, goal.result.error_code) == ("ABORTED", 204)  # GOAL_OUTSIDE_MAP
         assert goal.reason == "the goal (1e+30, 0) is outside of the costmap; 2 recoveries did not help"
+        assert goal.result.error_msg == goal.reason
 
 
 def test_a_motion_without_end_is_checked_within_the_costmap_only(tmp_path: Path) -> None:
@@ -213,6 +214,7 @@ def test_a_motion_without_end_is_checked_within_the_costmap_only(tmp_path: Path)
         goal = sim.send_goal("/drive_on_heading", request)
         run_until_done(sim, goal)
         assert (goal.status.name, goal.result.error_code) == ("ABORTED", 721)  # TIMEOUT
+        assert goal.result.error_msg == goal.reason == "the time allowance is over"
 
 
 def test_a_motion_ends_if_the_pose_is_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

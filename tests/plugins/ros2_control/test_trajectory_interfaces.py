@@ -63,7 +63,10 @@ def test_the_state_is_published_to_subscribers() -> None:
     assert last.reference.positions[0] == pytest.approx(0.49)
     assert last.feedback.positions[0] == pytest.approx(0.49)
     assert last.output.positions[0] == pytest.approx(0.5)
-    assert len(told) == 50
+    assert len(told) == 50 and last.speed_scaling_factor == 1.0
+    sim.publish("/arm_controller/speed_scaling_input", {"factor": 0.25})
+    sim.run(0.1)
+    assert told[-1].speed_scaling_factor == 0.25
 
 
 def test_the_desired_state_can_be_queried() -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
-from service_worlds import load, model
+from service_worlds import BOX_LINK, load, model
 
 import simkit
+from simkit import msgs
 
 OPTION = "<simkit:entity_services>{}</simkit:entity_services>"
 PLUGIN = '<plugin name="p" filename="libgazebo_ros_state.so"/>'
@@ -74,12 +76,19 @@ def test_a_model_is_spawned_at_the_pose_renamed_and_deleted() -> None:
     [
         ({"name": "a::b"}, 102),
         ({"entity_resource": {"uri": "box.usd"}}, 103),
+        ({"entity_resource": {"resource_string": "box.sdf"}}, 103),
         ({"entity_resource": {}}, 104),
         ({"entity_resource": {"uri": "missing.sdf"}}, 104),
+        ({"entity_resource": {"uri": "model://missing"}}, 104),
+        ({"entity_resource": {"uri": "file:///missing.sdf"}}, 104),
         ({"entity_namespace": "a b"}, 105),
         ({"entity_resource": {"resource_string": "<sdf"}}, 106),
         ({"initial_pose": {"header": {"frame_id": "nowhere"}}}, 109),
         ({"initial_pose": {"pose": {"position": {"x": float("nan")}}}}, 109),
+        ({"initial_pose": {"pose": {"position": {"x": -2e10}}}}, 109),
+        ({"initial_pose": {"pose": {"orientation": {"w": float("inf")}}}}, 109),
+        ({"initial_pose": {"pose": {"orientation": {"z": 0.2}}}}, 109),
+        ({"initial_pose": {"pose": {"orientation": {"w": 0.0}}}}, 109),
     ],
 )
 def test_a_model_that_cannot_be_spawned_has_the_published_code(fields: dict[str, Any], code: int) -> None:
@@ -101,7 +110,10 @@ def test_states_are_set_and_read_in_the_frame_of_the_header() -> None:
         assert result_of(sim, "/set_entity_state", pose_only) == OK
         assert sim.model("box").pose.position.tolist() == [0.0, 0.0, 0.0]
         assert result_of(sim, "/set_entity_state", {"entity": "box", "set_acceleration": True}) == UNSUPPORTED
-        assert result_of(sim, "/set_entity_state", {"entity": "ground", "set_twist": True}) == FAILED
+        still = {"entity": "ground", "set_twist": True}
+        assert result_of(sim, "/set_entity_state", still) == OK
+        moving = {"state": {"twist": {"linear": {"x": 1.0}}}}
+        assert result_of(sim, "/set_entity_state", {**still, **moving}) == FAILED
         assert result_of(sim, "/get_entity_state", {"entity": "bax"}) == NOT_FOUND
 
 
@@ -113,7 +125,7 @@ def test_entities_are_selected_by_name_category_and_bounds() -> None:
 
         assert names() == ["ground", "box", "arm"] and names(filter="^.o") == ["box"]
         assert names(categories=[{"category": 5}]) == ["ground"]
-        assert names(categories=[{"category": 4}, {"category": 2}]) == ["box", "arm"]
+        assert names(categories=[{"category": 4}, {"category": 2}]) == ["box", "arm"] and not names(categories=[{}])
         corners = [{"x": 0.4, "y": 0.0, "z": 0.9}, {"x": 3.0, "y": 1.0, "z": 2.0}]
         assert names(bounds={"type": 1, "points": corners}) == ["ground", "box"]
         sphere = [{"x": 2.0, "z": 0.5}, {"x": 1.4}]
@@ -124,6 +136,101 @@ def test_entities_are_selected_by_name_category_and_bounds() -> None:
         assert result_of(sim, "/get_entities", {"filters": {"tags": {"tags": ["a"]}}}) == UNSUPPORTED
         states = sim.call("/get_entities_states", {"filters": {"filter": "box"}})
         assert states.entities == ["box"] and states.states[0].pose.position.z == 0.5
+
+
+@pytest.mark.parametrize(
+    "state",
+    [
+        {"header": {"frame_id": "nowhere"}},
+        {"pose": {"position": {"y": float("nan")}}},
+        {"pose": {"position": {"y": 1e300}}},
+        {"pose": {"orientation": {"x": 1.0}}},
+        {"pose": {"orientation": {"w": 0.0}}},
+    ],
+)
+def test_an_invalid_pose_of_a_state_has_its_code_and_is_ignored_if_it_is_not_set(state: dict[str, Any]) -> None:
+    with load() as sim:
+        request = {"entity": "box", "state": state, "set_pose": True, "set_twist": True}
+        invalid = msgs.simulation_interfaces__srv__SetEntityState_Response.INVALID_POSE
+        assert result_of(sim, "/set_entity_state", request) == invalid == 101
+        assert sim.model("box").pose.position[2] == 0.5
+        if "pose" in state:
+            assert result_of(sim, "/set_entity_state", {**request, "set_pose": False}) == OK
+
+
+def test_a_robot_a_person_and_objects_have_their_published_categories() -> None:
+    person = """<actor name="person"><pose>0 3 0 0 0 0</pose><skin><filename>walk.dae</filename></skin></actor>"""
+    robot = f'<model name="robot"><pose>0 -5 1 0 0 0</pose>{BOX_LINK}{PLUGIN}</model>'
+    with load(person + robot) as sim:
+        found = {
+            name: sim.call("/get_entity_info", {"entity": name}).info.category.category
+            for name in ("robot", "person", "box", "ground")
+        }
+    category = msgs.EntityCategory
+    assert found == {
+        "robot": category.CATEGORY_ROBOT,
+        "person": category.CATEGORY_HUMAN,
+        "box": category.CATEGORY_DYNAMIC_OBJECT,
+        "ground": category.CATEGORY_STATIC_OBJECT,
+    }
+    assert found["robot"] == 1 and found["person"] == 2
+
+
+# ---------------------------------------------------------------------- several entities
+
+
+def placed(name: str, x: float = 0.0, frame: str = "", **fields: Any) -> dict[str, Any]:
+    pose = {"header": {"frame_id": frame}, "pose": {"position": {"x": x, "z": 7.0}}}
+    return spawning(name, initial_pose=pose, **fields)
+
+
+def test_several_models_are_spawned_with_one_compilation_of_the_world(monkeypatch: pytest.MonkeyPatch) -> None:
+    with load() as sim:
+        assert msgs.SimulatorFeatures.SPAWNING_ENTITIES == 50
+        assert 50 in sim.call("/get_simulator_features").features.features
+        groups: list[int] = []
+        spawn = sim.contents.spawner.spawn
+        monkeypatch.setattr(sim.contents.spawner, "spawn", lambda wanted: groups.append(len(wanted)) or spawn(wanted))
+        requests = [placed("a", 1.0), placed("b", 2.0, "arm"), placed("a", 3.0, allow_renaming=True), placed("", 4.0)]
+        answer = sim.call("/spawn_entities", {"spawn_requests": requests})
+        assert answer.result.result == OK and groups == [4]
+        assert [found.entity_name for found in answer.results] == ["a", "b", "a_1", "one"]
+        assert {found.result.result for found in answer.results} == {OK}
+        assert [sim.model(name).pose.position[0] for name in ("a", "b", "a_1", "one")] == [1.0, 2.0, 3.0, 4.0]
+        assert sim.call("/spawn_entities").result.result == OK
+
+
+def test_models_are_spawned_beside_requests_that_fail() -> None:
+    with load() as sim:
+        requests = [
+            placed("a"),
+            placed("a"),  # its name is taken by the request before
+            {**placed("b"), "entity_resource": {"resource_string": "<sdf"}},
+            placed("c", 1.0, "a"),  # relative to the first model
+            placed("d", 1.0, "b"),  # relative to a model that was not spawned
+            {**placed("e"), "entity_resource": {"resource_string": model("e").replace("<size>1", "<size>x", 1)}},
+            placed("f"),
+        ]
+        answer = sim.call("/spawn_entities", {"spawn_requests": requests})
+        assert (
+            answer.result.result == msgs.simulation_interfaces__srv__SpawnEntities_Response.ENTITIES_SPAWN_FAILED == 150
+        )
+        assert answer.result.error_message == "4 of 7 requests failed: 1, 2, 4, 5"
+        assert [found.result.result for found in answer.results] == [OK, 101, 106, OK, 109, 106, OK]
+        assert [found.entity_name for found in answer.results] == ["a", "", "", "c", "", "", "f"]
+        assert all(found.result.error_message for found in answer.results if found.result.result != OK)
+        assert sim.model("c").pose.position.tolist() == [1.0, 0.0, 14.0]
+        assert list(sim.models)[-3:] == ["a", "c", "f"]
+
+
+def test_a_plugin_that_fails_refuses_only_its_own_model_of_a_list() -> None:
+    broken = model("broken").replace("</model>", '<plugin name="p" filename="libgazebo_ros_diff_drive.so"/></model>')
+    with load() as sim:
+        requests = [placed("a"), {**placed("broken"), "entity_resource": {"resource_string": broken}}, placed("b")]
+        answer = sim.call("/spawn_entities", {"spawn_requests": requests})
+        assert answer.result.result == 150 and answer.results[1].result.error_message
+        assert [found.result.result == OK for found in answer.results] == [True, False, True]
+        assert {"a", "b"} <= set(sim.models) and "broken" not in sim.models
 
 
 def test_bounds_are_in_the_frame_of_the_entity() -> None:
@@ -153,7 +260,8 @@ def test_states_of_the_simulation_and_steps() -> None:
         assert change(2) == OK and state() == 2
         assert result_of(sim, "/step_simulation", {"steps": 4}) == OK and sim.tick == 4
         assert result_of(sim, "/step_simulation", {"steps": 0}) == FAILED
-        assert result_of(sim, "/step_simulation", {"steps": 2**63}) == FAILED and sim.tick == 4
+        assert result_of(sim, "/step_simulation") == OK and sim.tick == 5  # the published default is one step
+        assert result_of(sim, "/step_simulation", {"steps": 2**63}) == FAILED and sim.tick == 5
         assert change(0) == OK and state() == 0 and sim.tick == 0 and sim.paused
         assert change(3) == 103 and change(1) == OK and state() == 1
 
@@ -224,7 +332,19 @@ def test_a_listed_model_can_be_spawned() -> None:
         assert "tiago" in listed
         request = {"name": "robot", "entity_resource": {"uri": listed["tiago"]}}
         assert result_of(sim, "/spawn_entity", request) == OK and "robot" in sim.models
-        assert result_of(sim, "/get_spawnables", {"sources": ["https://example.org"]}) == UNSUPPORTED
+        other = sim.call("/get_spawnables", {"sources": ["https://example.org"]})
+        assert other.result.result == OK and "https://example.org" in other.result.error_message
+        assert len(other.spawnables) == len(listed)
+
+
+def test_a_model_is_spawned_from_a_uri(tmp_path: Path) -> None:
+    file = tmp_path / "a box.sdf"
+    file.write_text(model("one"), encoding="utf-8")
+    with load() as sim:
+        for uri in ("model://turtlebot3_world", "model://ground_plane", file.as_uri()):
+            request = {"name": "new", "entity_resource": {"uri": uri}}
+            assert result_of(sim, "/spawn_entity", request) == OK and "new" in sim.models
+            assert result_of(sim, "/delete_entity", {"entity": "new"}) == OK
 
 
 @pytest.mark.parametrize("service", ["get_named_poses", "load_world", "get_available_worlds"])

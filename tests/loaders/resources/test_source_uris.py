@@ -1,0 +1,33 @@
+"""A source can be a URI: of a bundled, built-in or user's model, or of a file in any folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import simkit
+
+BOX = '<sdf version="1.9"><model name="box"><link name="l"/></model></sdf>'
+
+
+def test_a_model_is_loaded_from_a_uri(tmp_path: Path) -> None:
+    folder = tmp_path / "my box"
+    folder.mkdir()
+    (folder / "model.sdf").write_text(BOX, encoding="utf-8")
+    with simkit.load("empty", resource_paths=[tmp_path]) as sim:
+        assert sim.spawn("model://my box", name="a").name == "a"
+        assert sim.spawn(folder.as_uri(), name="b").name == "b"
+        assert sim.spawn((folder / "model.sdf").as_uri(), name="c").name == "c"
+        assert sim.spawn("model://ground_plane", name="d").static
+        assert sim.spawn("model://turtlebot3_waffle").name == "turtlebot3_waffle"
+
+
+@pytest.mark.parametrize(
+    ("uri", "code"),
+    [("model://nothing", "SK-URI-001"), ("file:///nothing.sdf", "SK-LOAD-002"), ("modle://box", "SK-URI-004")],
+)
+def test_a_uri_that_is_not_found_is_an_error_with_the_uri(uri: str, code: str) -> None:
+    with simkit.load("empty") as sim, pytest.raises(simkit.LoadError, match="nothing|modle") as caught:
+        sim.spawn(uri)
+    assert [problem.code for problem in caught.value.diagnostics if problem.severity == "error"] == [code]
