@@ -1,4 +1,4 @@
-"""mypy plugin: `@` and `**` of NumPy arrays are errors, because their bits depend on the processor.
+"""Refuse with mypy: `@` and `**` of NumPy arrays are errors, because their bits depend on the processor.
 
 `simkit.linear_algebra.matmul` and `simkit.elementary_functions.power` replace them. Only the types can tell an array
 from a pose, so `tests/test_processor_independence.py`, which reads the syntax, cannot check these two operators.
@@ -16,7 +16,8 @@ _ARRAYS = ("numpy.ndarray", "numpy._core.multiarray.ndarray")
 
 
 def _refuse_product(context: MethodContext) -> Type:
-    context.api.fail("`@` of arrays uses BLAS, whose bits depend on the processor; use linear_algebra.matmul", context.context)
+    text = "`@` of arrays uses BLAS, whose bits depend on the processor; use linear_algebra.matmul"
+    context.api.fail(text, context.context)
     return context.default_return_type
 
 
@@ -41,6 +42,6 @@ class ArrayOperators(Plugin):
         return _refuse_power if method in ("__pow__", "__rpow__", "__ipow__") else None
 
 
-def plugin(version: str) -> type[Plugin]:
+def plugin(version: str) -> type[Plugin]:  # noqa: ARG001 (mypy passes its version)
     """Return the plugin class; mypy calls this."""
     return ArrayOperators

@@ -25,6 +25,7 @@ import numpy as np
 from mujoco.batch import Batch
 
 import simkit.gym
+from simkit.install_command import install_command
 
 ENVIRONMENT, SENSOR, PERIOD = "simkit/TurtleBot3Goal-v0", "turtlebot3::base_scan::lds", 0.1
 _VELOCITIES = int(mujoco.mjtStage.mjSTAGE_VEL)
@@ -204,7 +205,7 @@ def peers(rounds: int) -> None:
         try:
             sides[name] = make()
         except ImportError as error:
-            print(f"{name:34s} left out: {error}; pip install 'simkit-robotics[compare]' 'gymnasium[mujoco]'")
+            print(f"{name:34s} left out: {error}; {install_command('compare')} 'gymnasium[mujoco]'")
     found = medians(sides, rounds, time.process_time)
     ours = found["simkit, steps of 1 ms"]
     for name, seconds in found.items():

@@ -1,6 +1,6 @@
 """Train a TurtleBot3 to reach goals among pillars, test it on unseen seeds, and keep its policy as NumPy arrays.
 
-pip install 'simkit-robotics[rl]'
+pip install "simkit-robotics[rl] @ git+https://github.com/simkit-robotics/simkit"
 python examples/train_turtlebot3.py --minutes 15
 
 The robot learns first in a world with steps of 5 ms and MuJoCo's own contacts, which is three times as fast. It learns
@@ -20,11 +20,12 @@ from typing import Any
 import numpy as np
 
 import simkit.gym
+from simkit.install_command import install_command
 
 try:
     import gymnasium
 except ModuleNotFoundError:
-    sys.exit("the training needs Gymnasium: pip install 'simkit-robotics[rl]'")
+    sys.exit(f"the training needs Gymnasium: {install_command('rl')}")
 
 ENVIRONMENT = "simkit/TurtleBot3Goal-v0"
 PERIOD = 0.2  # [s] between two actions
@@ -142,7 +143,7 @@ def main() -> None:
     if options.test_only:
         policy = dict(np.load(POLICY))
     elif importlib.util.find_spec("stable_baselines3") is None:
-        sys.exit("the training needs Stable-Baselines3: pip install 'simkit-robotics[rl]'")
+        sys.exit(f"the training needs Stable-Baselines3: {install_command('rl')}")
     else:
         policy = train(options.minutes, options.seed, options.curve)
         np.savez(POLICY, **policy)

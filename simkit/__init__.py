@@ -12,7 +12,9 @@ with simkit.load("turtlebot3_world", seed=0) as sim:
 from __future__ import annotations
 
 import importlib
+import os
 
+from simkit.garbage_collection import no_collection
 from simkit.version import __version__
 
 TYPE_CHECKING = False  # `typing` takes 3 ms
@@ -89,14 +91,31 @@ _MODULES = {
 }
 _LAZY = {name: module for module, names in _MODULES.items() for name in names}
 
+# `simkit.errors` checks for this name: another project with the same import name may have replaced this file.
+_DISTRIBUTION = "simkit-robotics"
+
 
 def __getattr__(name: str) -> Any:
     if name not in _LAZY:
-        raise AttributeError(f"module 'simkit' has no attribute {name!r}")
+        raise AttributeError(f"module 'simkit' has no attribute {name!r}{_conflict_text()}")
 
-    value = getattr(importlib.import_module(_LAZY[name]), name)
+    try:
+        with no_collection():
+            value = getattr(importlib.import_module(_LAZY[name]), name)
+    except ImportError as error:
+        if text := _conflict_text():
+            error.add_note(text.strip())
+        raise
     globals()[name] = value
     return value
+
+
+def _conflict_text() -> str:
+    """Return a text about another project's files in this folder; empty without such files."""
+    if not os.path.exists(os.path.join(os.path.dirname(__file__), "area_normals.py")):  # noqa: PTH110, PTH118, PTH120
+        return ""
+    text: str = importlib.import_module("simkit.name_conflict").find_conflict()
+    return f"\n{text}" if text else ""
 
 
 def __dir__() -> list[str]:

@@ -14,8 +14,8 @@ from simkit import progress
 from simkit.argument_checks import check_folders
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import LoadError, PluginError, RenderError
+from simkit.garbage_collection import no_collection
 from simkit.loaders import Resolver, load_scene
-from simkit.loaders.garbage_collection import no_collection
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.model_world import add_model_world
 from simkit.loaders.resources.world_interfaces import read_interfaces

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
+from simkit.process_control import kill_process_tree
+
 _KEPT_BYTES: Final = 1 << 16  # largest number of stored bytes of output
 _CHUNK: Final = 1 << 16
 _MAX_LINE_LENGTH: Final = 500  # largest number of characters of a returned line
@@ -98,10 +100,10 @@ class ChildProcesses:
             self._is_over = True
             alive = tuple(self._alive)
         for process in alive:
-            _kill(process)
+            kill_process_tree(process)
 
     def _end(self, process: subprocess.Popen[bytes]) -> None:
-        _kill(process)
+        kill_process_tree(process)
         process.wait()
         if process.stdin is not None:
             process.stdin.close()
@@ -131,19 +133,6 @@ class _OutputTail:
                         self._on_line(line)
                 self._kept += content
                 del self._kept[:-_KEPT_BYTES]
-
-
-def _kill(process: subprocess.Popen[bytes]) -> None:
-    """Kill a process and its own child processes, which may outlive it."""
-    if hasattr(os, "killpg"):
-        try:
-            # the process has its own session, so its process id is also the id of its process group
-            os.killpg(process.pid, signal.SIGKILL)
-            return
-        except (ProcessLookupError, PermissionError):
-            pass
-    if process.poll() is None:
-        process.kill()
 
 
 def exit_with_parent() -> None:

@@ -21,10 +21,16 @@ SimkitError                 exit 1
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from simkit.diagnostic_record import NOWHERE, Diagnostic, Where
+
+if not hasattr(sys.modules["simkit"], "_DISTRIBUTION"):
+    from simkit.name_conflict import conflict_error
+
+    raise conflict_error()
 
 
 def callback_name(callback: object) -> str:

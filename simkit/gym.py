@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError
 from simkit.experiments.environments.specification import Batched, EnvironmentSpec, JointVelocities, Observation
+from simkit.install_command import install_command
 from simkit.run_spec import FilePath, RunSpec
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def make_vec(
 def _check_gymnasium(user: str) -> None:
     if importlib.util.find_spec("gymnasium") is None:
         text = f"SK-INPUT-004 {user} needs Gymnasium, which is missing"
-        raise InputError(f"{text}\n    help: pip install 'simkit-robotics[experiments]'", "SK-INPUT-004")
+        raise InputError(f"{text}\n    help: {install_command('experiments')}", "SK-INPUT-004")
 
 
 def _register() -> None:

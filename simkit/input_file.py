@@ -90,8 +90,8 @@ def _open_handle(path: Path) -> int:
     """Open a file without waiting for the writer of a named pipe."""
     try:
         return os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    except ValueError as error:  # a name with a zero byte
-        raise OSError(errno.EINVAL, str(error), repr(str(path))) from None
+    except ValueError:
+        raise OSError(errno.EINVAL, "the name has a zero byte", repr(str(path))) from None
 
 
 def _check_kind(handle: int, path: Path, *, allow_pipe: bool) -> bool:
@@ -108,7 +108,8 @@ def _check_kind(handle: int, path: Path, *, allow_pipe: bool) -> bool:
 def _read_pieces(handle: int, left: int, *, is_pipe: bool) -> bytes:
     pieces = []
     while left > 0:
-        if is_pipe and not select.select([handle], [], [], PIPE_TIMEOUT)[0]:
+        # on Windows, `select` accepts sockets only, and the read waits for the writer
+        if is_pipe and os.name != "nt" and not select.select([handle], [], [], PIPE_TIMEOUT)[0]:
             raise OSError(errno.ETIMEDOUT, f"nothing came through the pipe for {PIPE_TIMEOUT:g} s")
         piece = os.read(handle, min(left, 1 << 24))
         if not piece:

@@ -128,11 +128,15 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
             return self._all.get(name)
         if name not in self._found:
             literal, computed = self._written
-            modules = [*literal.get(name, ("", ()))[1], *computed]
-            own = (cls for module in modules for cls in self._classes(importlib.import_module(module)))
-            classes = (cls for source in (own, self._foreign) for cls in source)
+            classes = self._possible_classes([*literal.get(name, ("", ()))[1], *computed])
             self._found[name] = next((cls for cls in classes if name in self._names(cls)), None)
         return self._found[name]
+
+    def _possible_classes(self, modules: Iterable[str]) -> Iterator[type[T]]:
+        """Yield the classes of some modules, then those of the entry points, which take 10 ms to read."""
+        for module in modules:
+            yield from self._classes(importlib.import_module(module))
+        yield from self._foreign
 
     @cached_property
     def _modules(self) -> tuple[tuple[str, str], ...]:

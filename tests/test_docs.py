@@ -83,3 +83,23 @@ def test_every_command_has_its_page() -> None:
     pages = {p.stem for p in (ROOT / "docs" / "commands").glob("*.md")}
     assert pages, "docs/commands has no page"
     assert {c for c in commands if c in pages} == pages, f"pages without a command: {sorted(pages - commands)}"
+
+
+def test_each_command_that_installs_simkit_names_the_repository() -> None:
+    """No package index has the distribution; remove this test when one has it."""
+    command = re.compile(r"pip install[^`\n]*?simkit-robotics(?P<rest>[^`\n]*)")
+    repository = re.compile(r"(\[[\w,{}]+\])? @ git\+")
+    texts = [*TEXTS, ROOT / "README.md", *(ROOT / "labs").rglob("*.md"), *(ROOT / "docs").rglob("*.yml")]
+    texts += (ROOT / "simkit").rglob("*.toml")
+    wrong = []
+    found = 0
+    for path in texts:
+        if ROOT / "tests" in path.parents:
+            continue
+        for line in path.read_text(encoding="utf-8").replace('\\"', '"').splitlines():
+            for one in command.finditer(line):
+                found += 1
+                if not repository.match(one["rest"]) and "{extras}" not in one["rest"]:
+                    wrong.append(f"{path.relative_to(ROOT)}: {one[0]}")
+    assert found > 20
+    assert not wrong

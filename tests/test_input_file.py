@@ -139,7 +139,7 @@ def test_line_ends_of_windows_are_line_feeds(tmp_path: Path) -> None:
 
 
 def test_an_impossible_name_is_an_os_error() -> None:
-    with pytest.raises(OSError, match="null byte"):
+    with pytest.raises(OSError, match="the name has a zero byte"):
         read_input("a\0b", 10)
 
 

@@ -1,4 +1,4 @@
-"""simkit.linear_algebra and simkit.elementary_functions give NumPy's results, to rounding."""
+"""simkit.linear_algebra, matrix_decompositions and elementary_functions give NumPy's results, to rounding."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 
 from simkit import elementary_functions as functions
 from simkit import linear_algebra as algebra
+from simkit import matrix_decompositions as decompositions
 
 SHAPES = [((3, 3), (3,)), ((3,), (3, 3)), ((3, 3), (3, 3)), ((600, 3), (3, 3)), ((600, 3), (3, 5)), ((4,), (4,))]
 STACKS = [((7, 3, 3), (7, 3, 3)), ((7, 3, 3), (3,)), ((5, 2, 4), (4, 3)), ((2, 3), (6, 3, 2)), ((3,), (5, 3, 2))]
@@ -82,7 +83,7 @@ def test_a_singular_matrix_is_an_error(matrix: np.ndarray) -> None:
 def test_eigenvectors_are_orthogonal_and_ascending(size: int) -> None:
     half = draw(size, size)
     matrix = half + half.T
-    values, axes = algebra.eigh(matrix)
+    values, axes = decompositions.eigh(matrix)
     np.testing.assert_allclose(values, np.linalg.eigvalsh(matrix), rtol=0, atol=1e-13)
     np.testing.assert_allclose(axes.T @ axes, np.eye(size), rtol=0, atol=1e-14)
     np.testing.assert_allclose(axes * values @ axes.T, matrix, rtol=0, atol=1e-13)
@@ -91,42 +92,42 @@ def test_eigenvectors_are_orthogonal_and_ascending(size: int) -> None:
 
 def test_equal_eigenvalues_and_stacks_have_eigenvectors_too() -> None:
     matrices = np.stack([np.eye(3), np.diag([3.0, 1.0, 2.0]), np.zeros((3, 3))])
-    values, axes = algebra.eigh(matrices)
+    values, axes = decompositions.eigh(matrices)
     assert values.tolist() == [[1, 1, 1], [1, 2, 3], [0, 0, 0]]
     assert np.array_equal(axes[1], np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]]))
 
 
 def test_eigenvalues_of_tiny_inertias_keep_their_digits() -> None:
     matrix = np.array([[2e-12, 1e-13, 0], [1e-13, 3e-12, 1e-14], [0, 1e-14, 1.0]])
-    np.testing.assert_allclose(algebra.eigvalsh(matrix), [1.99009805e-12, 3.00990195e-12, 1.0], rtol=1e-6)
+    np.testing.assert_allclose(decompositions.eigvalsh(matrix), [1.99009805e-12, 3.00990195e-12, 1.0], rtol=1e-6)
 
 
 @pytest.mark.parametrize("shape", [(3, 7), (7, 3), (6, 6), (1, 4), (400, 4)])
 def test_singular_values_and_least_squares_agree_with_numpys(shape: tuple[int, int]) -> None:
     matrix, right = draw(*shape), draw(shape[0], seed=1)
-    u, s, vt = algebra.svd(matrix)
+    u, s, vt = decompositions.svd(matrix)
     np.testing.assert_allclose(u * s @ vt, matrix, rtol=0, atol=1e-13)
     np.testing.assert_allclose(s, np.linalg.svd(matrix)[1], rtol=1e-13)
-    np.testing.assert_allclose(algebra.pinv(matrix), np.linalg.pinv(matrix), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(decompositions.pinv(matrix), np.linalg.pinv(matrix), rtol=0, atol=1e-12)
     np.testing.assert_allclose(
-        algebra.lstsq(matrix, right), np.linalg.lstsq(matrix, right, rcond=None)[0], rtol=0, atol=1e-12
+        decompositions.lstsq(matrix, right), np.linalg.lstsq(matrix, right, rcond=None)[0], rtol=0, atol=1e-12
     )
 
 
 def test_least_squares_of_a_rank_deficient_matrix_is_the_shortest_solution() -> None:
     matrix = np.outer(draw(5), draw(3, seed=1))
-    found = algebra.lstsq(matrix, np.ones(5))
+    found = decompositions.lstsq(matrix, np.ones(5))
     np.testing.assert_allclose(found, np.linalg.lstsq(matrix, np.ones(5), rcond=None)[0], rtol=0, atol=1e-13)
-    u, _, _ = algebra.svd(matrix)
+    u, _, _ = decompositions.svd(matrix)
     np.testing.assert_allclose(u.T @ u, np.eye(3), rtol=0, atol=1e-14)
 
 
 def test_the_cholesky_factor_is_that_of_numpy() -> None:
     half = draw(5, 5)
     matrix = half @ half.T + np.eye(5)
-    np.testing.assert_allclose(algebra.cholesky(matrix), np.linalg.cholesky(matrix), rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(decompositions.cholesky(matrix), np.linalg.cholesky(matrix), rtol=1e-12, atol=1e-14)
     with pytest.raises(np.linalg.LinAlgError, match="positive definite"):
-        algebra.cholesky(-matrix)
+        decompositions.cholesky(-matrix)
 
 
 @pytest.mark.parametrize("name", ["exp", "expm1", "tan", "arctan", "sinh"])

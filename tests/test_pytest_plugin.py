@@ -148,7 +148,9 @@ def test_a_plugin_that_cannot_be_closed_is_an_error_of_its_test_and_the_other_wo
 
 def test_a_test_that_passes_and_one_without_a_world_say_nothing(report: str) -> None:
     assert outcome(report, "test_that_fails_without_a_world") == ["FAILED"]
-    assert "simkit" not in about(report, "test_that_fails_without_a_world")
+    text = about(report, "test_that_fails_without_a_world")
+    # the first line names the interpreter, whose folder may be called simkit
+    assert "simkit" not in re.sub(r"^\[gw\d+\] .*$", "", text, flags=re.MULTILINE)
     worlds = re.findall(r"^-+ simkit (\S+)", report, re.MULTILINE)
     # of the tests that passed nothing; where only the end of a test failed, the worlds it had
     assert sorted(worlds) == ["<sdf", "empty", "slide.sdf", "slide.sdf"]

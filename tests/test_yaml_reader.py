@@ -22,12 +22,12 @@ def test_a_text_that_is_not_a_number_stays_a_text(text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("{x: 2024-13-45}", "month must be in 1..12"),
+        ("{x: 2024-13-45}", "a value does not fit its type"),
         ("!!timestamp foo", "a value does not fit its type"),
         ("!!bool foo", "a value does not fit its type"),
-        ("!!int foo", "invalid literal"),
+        ("!!int foo", "a value does not fit its type"),
         ("!!int ''", "a value does not fit its type"),
-        ("!!float foo", "could not convert"),
+        ("!!float foo", "a value does not fit its type"),
         ("9" * 5000, "1000 digits"),
         ("&a {x: *a}", "nested too deep"),
         ("&a [*a]", "nested too deep"),

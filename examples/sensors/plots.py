@@ -10,7 +10,7 @@ from typing import Any
 try:
     import matplotlib as mpl
 except ModuleNotFoundError:
-    sys.exit("the pictures of the sensors need matplotlib: pip install 'simkit-robotics[plot]'")
+    sys.exit("the pictures of the sensors need matplotlib: pip install matplotlib")
 
 mpl.use("Agg")
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 import simkit
+from simkit.install_command import install_command
 
 FOLDER = Path(__file__).resolve().parent
 SENSORS = {"tracker": "tracker::panel::sun", "stand": "stand::panel::sun"}
@@ -41,7 +42,7 @@ class Day(NamedTuple):
 def run(seed: int = 0) -> dict[str, Day]:
     """Runs the world through the day; one record a panel."""
     if importlib.util.find_spec("pvlib") is None:
-        sys.exit("the path of the sun needs pvlib: pip install 'simkit-robotics[sun]'")
+        sys.exit(f"the path of the sun needs pvlib: {install_command('sun')}")
     with simkit.load(FOLDER / "world.sdf", plugin_paths=[FOLDER], seed=seed) as sim:
         sensors = {name: sim.sensor(scoped) for name, scoped in SENSORS.items()}
         readings = {name: [] for name in sensors}

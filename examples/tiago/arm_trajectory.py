@@ -85,7 +85,7 @@ def draw(motion: Motion, out: Path) -> None:
 def main(arguments: list[str]) -> None:
     picture = picture_of(__doc__ or "", arguments)
     if picture is not None and importlib.util.find_spec("matplotlib") is None:
-        sys.exit("the picture needs matplotlib: pip install 'simkit-robotics[plot]'")
+        sys.exit("the picture needs matplotlib: pip install matplotlib")
     motion = run()
     print(f"result {motion.result.error_code} {motion.result.error_string!r}, tracked within {motion.error:.4f} rad")
     if picture is not None:

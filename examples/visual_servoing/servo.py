@@ -29,7 +29,7 @@ SEARCH = 0.6  # [rad/s]
 TURN = 1.5  # [rad/s for an object at the edge of the image]
 DRIVE, FASTEST = 1.2, 0.22  # [1/s], [m/s]
 
-NO_PICTURE = "the picture needs matplotlib: pip install 'simkit-robotics[plot]'"
+NO_PICTURE = "the picture needs matplotlib: pip install matplotlib"
 
 
 class Sight(NamedTuple):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import queue
 import signal
 import subprocess
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import IO, Any, Final, NamedTuple, Self
 
 from simkit.errors import InputError
+from simkit.process_control import kill_process_tree
 
 _START_TIMEOUT: Final = 60.0  # [s]; the first import of rclpy on a slow disk takes several seconds
 _END_TIMEOUT: Final = 5.0  # [s] for passing on the last messages
@@ -214,8 +214,7 @@ class BridgeProcess:
         with suppress(subprocess.TimeoutExpired):
             process.wait(_END_TIMEOUT)
         self._end()
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
+        kill_process_tree(process)
         process.wait()
 
 

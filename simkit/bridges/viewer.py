@@ -8,6 +8,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError
+from simkit.install_command import install_command
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -31,9 +32,7 @@ def check_possible() -> None:
 
         _ = glfw.init  # the first use loads the library
     except ImportError as error:
-        text = (
-            f"SK-CLI-015 --view: the window library is missing ({error})\n    help: pip install 'simkit-robotics[view]'"
-        )
+        text = f"SK-CLI-015 --view: the window library is missing ({error})\n    help: {install_command('view')}"
         raise InputError(text, "SK-CLI-015") from None
 
 

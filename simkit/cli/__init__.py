@@ -11,6 +11,7 @@ import io
 import sys
 
 from simkit.cli.terminal import interruption
+from simkit.garbage_collection import permanent_imports
 
 TYPE_CHECKING = False  # `typing` itself takes 3 ms, in which Ctrl-C would print a traceback
 if TYPE_CHECKING:
@@ -25,9 +26,15 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character must not end the run
-    from simkit.cli.commands import app
-    from simkit.cli.terminal.output import output_failure_exit_code, print_error
-    from simkit.errors import SimkitError
+    try:
+        with permanent_imports():
+            from simkit.cli.commands import app
+            from simkit.cli.terminal.output import output_failure_exit_code, print_error
+            from simkit.errors import SimkitError
+    except ImportError as error:
+        if hasattr(sys.modules["simkit"], "_DISTRIBUTION"):
+            raise
+        sys.exit(f"error: {error}")  # another project with the same import name has replaced simkit's first file
 
     try:
         try:

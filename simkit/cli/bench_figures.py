@@ -295,5 +295,5 @@ def _resident_memory() -> int:
     try:
         with open("/proc/self/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    except OSError:
+    except (OSError, AttributeError):  # Windows has neither the file nor `sysconf`
         return sys.getallocatedblocks() * 64

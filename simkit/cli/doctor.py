@@ -14,7 +14,9 @@ from typing import Any
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.output import stdout_console
+from simkit.install_command import install_command
 from simkit.mujoco_import import REINSTALL
+from simkit.name_conflict import find_conflict
 from simkit.version import __version__
 
 _PACKAGES = (
@@ -23,7 +25,6 @@ _PACKAGES = (
     "trimesh",
     "opencv-python-headless",
     "rosbags",
-    "mcap",
     "typer",
     "rich",
     "PyYAML",
@@ -90,7 +91,7 @@ def doctor(
     """
     requested = options.renderer_argument(renderer).get("renderer") or "auto"
     found: dict[str, str] = {}
-    notes: list[str] = []
+    notes = list(filter(None, [find_conflict()]))
     problems, engine = _versions(found), _engine(found)
     problems += engine or _renderer(found, requested, notes)
     for name, value in found.items():
@@ -123,7 +124,7 @@ def _versions(found: dict[str, str]) -> list[str]:
             found[name] = version(name)
         except PackageNotFoundError:
             found[name] = "missing"
-            problems.append(f"{name} is missing: pip install --force-reinstall simkit-robotics")
+            problems.append(f"{name} is missing: {install_command(option='--force-reinstall')}")
     return problems
 
 

@@ -17,6 +17,7 @@ from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors, report_errors_quietly
 from simkit.errors import InputError
 from simkit.input_file import TEXT_LIMIT, read_input
+from simkit.install_command import install_command
 from simkit.loaders.resources.bundled_models import bundled_folders
 from simkit.writers.atomic_output import remove_abandoned, unfinished_folder
 
@@ -110,7 +111,7 @@ def _is_installed(package: str) -> bool:
 def _remedy(missing: list[str]) -> str:
     if sys.platform == "win32" and {"pin", "coal"} & set(missing):
         return "there are no such packages for Windows; use Linux, macOS or the Windows Subsystem for Linux"
-    return "pip install 'simkit-robotics[labs]'"
+    return install_command("labs")
 
 
 def _not_writable(folder: Path, reason: str) -> InputError:

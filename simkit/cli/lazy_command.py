@@ -14,6 +14,8 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from simkit.garbage_collection import permanent_imports
+
 # Command of click; newer versions of Typer have click as a private module.
 Command = Any
 # Context of click.
@@ -76,7 +78,8 @@ class DeferredCommand(TyperCommand):
         """The real command; its module is imported on first access."""
         if self._real is None:
             assert self.name is not None
-            module = import_module(f"simkit.cli.{self.name}")
+            with permanent_imports():
+                module = import_module(f"simkit.cli.{self.name}")
             found = getattr(module, self.name)
             maker = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
             maker.callback()(_placeholder)

@@ -24,6 +24,7 @@ from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status
 from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
+from simkit.garbage_collection import permanent_imports
 from simkit.run_spec import GROUND, Check, PluginErrorPolicy, Recording, RunSpec
 
 _TIME = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|min|)")
@@ -268,11 +269,12 @@ def execute(spec: RunSpec, display: RunDisplay) -> int:
     Raises:
         SimkitError: the run failed; the recording up to the failure is complete.
     """
-    from simkit.bridges import viewer
-    from simkit.build import load
-    from simkit.cli.run_bridges import open_bridges
-    from simkit.cli.run_session import Session, check_keyboard
-    from simkit.cli.run_verdict import RunVerdict
+    with permanent_imports():
+        from simkit.bridges import viewer
+        from simkit.build import load
+        from simkit.cli.run_bridges import open_bridges
+        from simkit.cli.run_session import Session, check_keyboard
+        from simkit.cli.run_verdict import RunVerdict
 
     if spec.recording is not None:
         from simkit.recording.bags import writer  # 3 ms: the formats of bags

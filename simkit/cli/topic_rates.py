@@ -20,6 +20,7 @@ from simkit.cli.terminal.output import JsonObject, print_json, print_line, print
 from simkit.cli.terminal.topic_sources import ReceivedMessage, Source, find_topic, open_source
 from simkit.cli.topic_echo import MessageFilter, compile_filter
 from simkit.errors import InputError
+from simkit.float_sum import float_sum
 
 _PRINT_PERIOD = 1.0  # [s] of wall time between two lines
 _DEPTH = 10_000  # queued messages while a line is printed
@@ -78,8 +79,8 @@ class Rates:
 
 def _statistics(seconds: Collection[float]) -> tuple[float, JsonObject]:
     """Return the mean of times [s], and their `min`, `max`, `std_dev` [s] and number (`window`)."""
-    mean = sum(seconds) / len(seconds)
-    deviation = math.sqrt(sum((value - mean) ** 2 for value in seconds) / len(seconds))
+    mean = float_sum(seconds) / len(seconds)
+    deviation = math.sqrt(float_sum((value - mean) ** 2 for value in seconds) / len(seconds))
     return mean, {"min": min(seconds), "max": max(seconds), "std_dev": deviation, "window": len(seconds)}
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Final
 
+from simkit.float_sum import float_sum
 from simkit.scene import SceneJoint, SceneLink
 
 WORLD: Final = "world"
@@ -156,5 +157,5 @@ def _carried_masses(tree: KinematicTree) -> None:
     tree.rigid = group
     tree.carriers = {name: heaviest[leader].scoped for name, leader in group.items()}
     for link in reversed(tree.order):
-        below = sum(tree.carried[child] for child in tree.children.get(link.scoped, ()))
+        below = float_sum(tree.carried[child] for child in tree.children.get(link.scoped, ()))
         tree.carried[link.scoped] = link.inertial.mass + below

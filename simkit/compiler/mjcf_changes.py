@@ -13,7 +13,8 @@ import numpy as np
 from simkit.compiler.contact_friction import MU_MOST
 from simkit.compiler.refused_inertias import inertia_matrix
 from simkit.diagnostics import Diagnostics
-from simkit.linear_algebra import det, eigh
+from simkit.linear_algebra import det
+from simkit.matrix_decompositions import eigh
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneCollision, SceneJoint, SceneLight, SceneLink, SceneModel, SceneVisual, SceneWorld
 from simkit.scene import geometry as shapes

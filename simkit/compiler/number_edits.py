@@ -27,6 +27,7 @@ from simkit.compiler.refused_inertias import BodyInertia, repair_inertia
 from simkit.compiler.servo_gains import tune_servos
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
+from simkit.float_sum import float_sum
 from simkit.pose import IDENTITY
 from simkit.scene import (
     Inertial,
@@ -152,9 +153,9 @@ def set_mean_values(compiled: Compiled) -> None:
     """Set the mean mass and inertia, which scale the tolerance of the engine's solver, by the compiler's formula."""
     model, given = compiled.model, compiled.builder.spec.stat
     if math.isnan(given.meaninertia) and model.nv:
-        model.stat.meaninertia = max(mujoco.mjMINVAL, sum(model.dof_M0.tolist()) / model.nv)
+        model.stat.meaninertia = max(mujoco.mjMINVAL, float_sum(model.dof_M0.tolist()) / model.nv)
     if math.isnan(given.meanmass) and model.nbody > 1:
-        model.stat.meanmass = max(mujoco.mjMINVAL, sum(model.body_mass.tolist()[1:]) / (model.nbody - 1))
+        model.stat.meanmass = max(mujoco.mjMINVAL, float_sum(model.body_mass.tolist()[1:]) / (model.nbody - 1))
 
 
 def _plan(compiled: Compiled, world: SceneWorld, change: EntityChange) -> list[Edit] | None:

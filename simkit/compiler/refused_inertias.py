@@ -27,7 +27,9 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
-from simkit.linear_algebra import det, eigh, matmul
+from simkit.float_sum import float_sum
+from simkit.linear_algebra import det, matmul
+from simkit.matrix_decompositions import eigh
 from simkit.scene import Inertial, SceneLink
 
 Matrix = npt.NDArray[np.float64]
@@ -165,7 +167,7 @@ def plan_inertials(
 
 def _rigid_groups(members: list[SceneLink], moves: bool, diagnostics: Diagnostics) -> dict[str, BodyInertia]:
     """Return the inertias of one rigid group; the first link of the group is first in `members`."""
-    if moves and sum(m.inertial.mass for m in members) < LEAST_MASS:
+    if moves and float_sum(m.inertial.mass for m in members) < LEAST_MASS:
         return _with_some_mass(members, diagnostics)
     judged = {link.scoped: repair_inertia(link.inertial) for link in members}
     refused = [m for m in members if judged[m.scoped].inertial is not m.inertial]
@@ -278,7 +280,7 @@ def restore_file_inertias(model: mujoco.MjModel, exact: Mapping[str, tuple[float
 
 def rigid_sum(links: Sequence[SceneLink]) -> tuple[float, Matrix]:
     """Return mass [kg] and tensor [kg·m²] of a rigid group of links, about its centre of mass, in world axes."""
-    mass = sum(m.inertial.mass for m in links)
+    mass = float_sum(m.inertial.mass for m in links)
     centres = [m.pose_world.transform(m.inertial.com) for m in links]
     middle = (
         sum((m.inertial.mass * c for m, c in zip(links, centres, strict=True)), np.zeros(3)) / mass

@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshFileError, MeshPart
+from simkit.float_sum import float_sum
 from simkit.input_file import read_input
 from simkit.linear_algebra import dot
 from simkit.pose import IDENTITY, Pose
@@ -76,7 +77,7 @@ def shape_sizes(shape: Geometry) -> tuple[float, ...]:
 
 def turn_z_to(normal: tuple[float, float, float]) -> tuple[float, float, float, float]:
     """Return the shortest rotation (w, x, y, z) from +z to a direction; the identity for a zero vector."""
-    length = math.sqrt(sum(c * c for c in normal))
+    length = math.sqrt(float_sum(c * c for c in normal))
     if length < 1e-12:
         return 1.0, 0.0, 0.0, 0.0
     x, y, z = (c / length for c in normal)

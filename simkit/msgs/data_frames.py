@@ -10,6 +10,7 @@ import numpy as np
 
 from simkit.argument_checks import wrong_type
 from simkit.errors import InputError, MessageError
+from simkit.install_command import install_command
 from simkit.msgs.message_columns import TEXT, Column, columns_of
 from simkit.msgs.message_text import field_nodes, field_value, is_message
 from simkit.msgs.message_types import Message, type_store
@@ -85,7 +86,7 @@ def _pandas() -> Any:
         return import_module("pandas")
     except ImportError:
         text = "SK-INPUT-004 a DataFrame needs the package pandas, which is not installed"
-        raise InputError(f"{text}\n    help: pip install 'simkit-robotics[pandas]'", "SK-INPUT-004") from None
+        raise InputError(f"{text}\n    help: {install_command('pandas')}", "SK-INPUT-004") from None
 
 
 def _stamp_path(type_name: str, store: Typestore) -> tuple[str, ...]:

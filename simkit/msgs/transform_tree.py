@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 from simkit.argument_checks import check_text, checked_number, wrong_type
 from simkit.diagnostics import did_you_mean
 from simkit.errors import TransformError
+from simkit.float_sum import float_sum
 from simkit.msgs.message_types import FieldValue, Message
 from simkit.pose import Pose
 
@@ -92,7 +93,7 @@ def _pose_of(sample: _Sample) -> Pose:
 def _interpolated(before: _Sample, after: _Sample, part: float) -> Pose:
     first, second = before[4:], after[4:]
     norms = math.hypot(*first) * math.hypot(*second)
-    cosine = sum(a * b for a, b in zip(first, second, strict=True)) / norms
+    cosine = float_sum(a * b for a, b in zip(first, second, strict=True)) / norms
     sign = -1.0 if cosine < 0 else 1.0  # q and -q are the same rotation
     angle = math.acos(min(1.0, abs(cosine)))
     if angle < 1e-9:
@@ -143,7 +144,8 @@ class TransformTree:
             child, parent = stamped.child_frame_id.lstrip("/"), stamped.header.frame_id.lstrip("/")
             numbers = position.x, position.y, position.z, rotation.w, rotation.x, rotation.y, rotation.z
             norm = math.hypot(*numbers[3:])
-            if not (child and parent and child != parent and 1e-6 < norm < 1e6 and math.isfinite(sum(numbers[:3]))):
+            is_finite = math.isfinite(float_sum(numbers[:3]))
+            if not (child and parent and child != parent and 1e-6 < norm < 1e6 and is_finite):
                 self.ignored += 1
                 continue
             frame = self._frames.get(child)

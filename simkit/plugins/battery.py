@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Final
 
 from simkit import msgs
+from simkit.float_sum import float_sum
 from simkit.msgs.topic_names import valid_topic
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import Endpoint, publishes
@@ -77,7 +78,7 @@ class Cell:
             self.soc = self.charge / self.capacity
         else:
             self.recent.append(self.current)
-            self.soc -= sum(self.recent) * step / _HOUR / self.capacity
+            self.soc -= float_sum(self.recent) * step / _HOUR / self.capacity
 
 
 STATE: Final = "sensor_msgs/msg/BatteryState"
@@ -151,7 +152,7 @@ class Battery(ModelPlugin):
 
     def demand(self) -> float:
         """Return the power that all consumers together draw [W]."""
-        return sum(consumer.power for consumer in self._consumers())
+        return float_sum(consumer.power for consumer in self._consumers())
 
     def _consumers(self) -> list[BatteryConsumer]:
         return self.sim.engine.names.shared(f"consumers {id(self)}", self._find_consumers)

@@ -11,6 +11,7 @@ from types import TracebackType
 from typing import Final
 
 from simkit.errors import InputError
+from simkit.process_control import has_ended
 
 _MARK: Final = ".unfinished-"
 _MODE = 0o666  # as `open`: the process's umask is subtracted
@@ -164,15 +165,7 @@ def _prefix(name: str) -> str:
 
 def _has_ended(process: str) -> bool:
     """Check whether the process with a number has ended."""
-    if os.name == "nt":  # on Windows, os.kill would terminate the process
-        return False
-    try:
-        os.kill(int(process), 0)
-    except ProcessLookupError:
-        return True
-    except (ValueError, OSError, OverflowError):
-        return False
-    return False
+    return process.isdecimal() and has_ended(int(process))
 
 
 def check_writable(path: str | os.PathLike[str] | None) -> None:

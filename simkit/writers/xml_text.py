@@ -8,6 +8,7 @@ from dataclasses import fields
 from html import escape
 from typing import TYPE_CHECKING
 
+from simkit.float_sum import float_sum
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene.simkit_elements import written_name
@@ -83,7 +84,7 @@ def pose(value: Pose) -> Params | None:
     roll, pitch, yaw = (float(v) for v in value.rpy)
     again = Pose.from_rpy(x, y, z, roll, pitch, yaw).quaternion
     w = [float(v) for v in value.quaternion]
-    differences = (sum(abs(a - sign * b) for a, b in zip(again, w, strict=True)) for sign in (1, -1))
+    differences = (float_sum(abs(a - sign * b) for a, b in zip(again, w, strict=True)) for sign in (1, -1))
     if min(differences) > 1e-12:
         return element("pose", numbers((x, y, z, *w[1:], w[0])), rotation_format="quat_xyzw")
     text = numbers((x, y, z, roll, pitch, yaw))

@@ -10,6 +10,7 @@ from contextlib import suppress
 import pytest
 
 from simkit.cli.terminal.keyboard import KeyDecoder, windows_keys
+from tests.cli.terminals import open_terminal
 
 
 def keys(*pieces: bytes) -> list[str]:
@@ -60,7 +61,7 @@ needs_terminals = pytest.mark.skipif(sys.platform == "win32", reason="its termin
 @pytest.fixture
 def terminal() -> Iterator[tuple[int, int]]:
     """The far and the near end of one."""
-    far, near = os.openpty()
+    far, near = open_terminal()
     yield far, near
     for end in (far, near):
         with suppress(OSError):

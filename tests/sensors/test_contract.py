@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import gc
+import inspect
 import json
 import os
 import re
@@ -181,11 +182,11 @@ def test_options_say_their_units(kind: str) -> None:
     with simkit.load(worlds.source(kind)) as sim:
         options = type(sensor_of(sim).options)
     assert dataclasses.is_dataclass(options)
-    summary, _, attributes = (options.__doc__ or "").partition("Attributes:")
+    summary, _, attributes = inspect.cleandoc(options.__doc__ or "").partition("Attributes:")
     assert summary and not summary.startswith(f"{options.__name__}(")
     for name, hint in get_type_hints(options).items():
         if numeric(hint):
-            own = re.search(rf"^ {{8}}[\w, ]*\b{name}\b[\w, ]*:(.*?)(?=^ {{8}}\w|\Z)", attributes, re.M | re.S)
+            own = re.search(rf"^ {{4}}[\w, ]*\b{name}\b[\w, ]*:(.*?)(?=^ {{4}}\w|\Z)", attributes, re.M | re.S)
             said = own[1] if own else ""
             assert _UNIT.search(said) or _UNIT.search(summary), f"{options.__name__}.{name} has no unit"
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from simkit.bridges.live.protocol import LARGEST_OUT, TELL, BadFrame, FrameReader, LiveError, read_json_frame
-from simkit.bridges.live.socket_files import file_name, is_living, is_possible, peer_credentials, sockets
+from simkit.bridges.live.socket_files import connect, file_name, is_living, process_number, sockets
 from simkit.diagnostics import did_you_mean
 
 _GREETING_TIMEOUT = 0.5  # [s] of wall time, longest wait for a simulation's greeting
@@ -38,28 +38,26 @@ class RunningSim:
 def simulations() -> list[RunningSim]:
     """Return the running simulations of this user, sorted by name."""
     callers: dict[Path, socket.socket] = {}
+    readers: dict[socket.socket, FrameReader] = {}
     for path in sockets():
-        caller = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        caller.settimeout(_GREETING_TIMEOUT)
-        try:
-            caller.connect(str(path))
-            callers[path] = caller
-        except OSError:  # the process has ended, or it does not answer
-            caller.close()
-    greetings = _read_greetings(callers)
+        with suppress(OSError):  # the process has ended, or it does not answer
+            callers[path], token = connect(path, _GREETING_TIMEOUT)
+            readers[callers[path]] = FrameReader(LARGEST_OUT, (TELL,), token)
+    greetings = _read_greetings(callers, readers)
     found = []
     for path, caller in callers.items():
         pid, world = greetings.get(path, (0, ""))
         with suppress(OSError):
-            pid = peer_credentials(caller)[0] or pid
+            pid = process_number(path, caller) or pid
         found.append(RunningSim(path.stem, path, pid, world))
         caller.close()
     return found
 
 
-def _read_greetings(callers: dict[Path, socket.socket]) -> dict[Path, tuple[int, str]]:
+def _read_greetings(
+    callers: dict[Path, socket.socket], readers: dict[socket.socket, FrameReader]
+) -> dict[Path, tuple[int, str]]:
     """Read process number and world from the greeting of each simulation; greetings that arrive late are left out."""
-    readers = {caller: FrameReader(LARGEST_OUT, (TELL,)) for caller in callers.values()}
     paths = {caller: path for path, caller in callers.items()}
     found: dict[Path, tuple[int, str]] = {}
     waiting, end = set(readers), time.monotonic() + _GREETING_TIMEOUT
@@ -86,8 +84,6 @@ def find_socket(name: str | None = None) -> Path:
         LiveError: SK-LIVE-001 no simulation runs; SK-LIVE-002 several simulations run; SK-LIVE-003 no simulation has
             the name.
     """
-    if not is_possible():
-        raise LiveError("this system's Python has no local sockets, so no simulation can be reached", "SK-LIVE-001")
     requested_name = name or os.environ.get(VARIABLE) or None
     living = [path for path in sockets() if is_living(path)]
     names = [path.stem for path in living]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from hmac import compare_digest
 from typing import Any, Final
 
 from simkit.errors import InputError
@@ -94,10 +95,11 @@ class FrameReader:
     Args:
         largest: largest accepted body [bytes].
         kinds: accepted kinds of frames.
+        token: bytes that must come before the first frame.
     """
 
-    def __init__(self, largest: int, kinds: tuple[int, ...]) -> None:
-        self._largest, self._kinds = largest, kinds
+    def __init__(self, largest: int, kinds: tuple[int, ...], token: bytes = b"") -> None:
+        self._largest, self._kinds, self._token = largest, kinds, token
         self._buffer = bytearray()
         self._begin = 0
 
@@ -117,8 +119,10 @@ class FrameReader:
         """Return the kind and the body of the next whole frame; None until a frame is complete.
 
         Raises:
-            BadFrame: the frame has an unknown kind, or is larger than allowed.
+            BadFrame: the frame has an unknown kind, or is larger than allowed, or the token before it is wrong.
         """
+        if self._token and not self._take_token():
+            return None
         buffer, begin = self._buffer, self._begin
         available = len(buffer)
         if available - begin < 5:
@@ -135,3 +139,13 @@ class FrameReader:
         if length < _COPY_BYTES:
             return kind, bytes(buffer[begin + 5 : end])
         return kind, bytes(memoryview(buffer)[begin + 5 : end])
+
+    def _take_token(self) -> bool:
+        """Compare the first bytes with the token; return False until they are complete."""
+        token = self._token
+        if len(self._buffer) < len(token):
+            return False
+        if not compare_digest(bytes(self._buffer[: len(token)]), token):
+            raise BadFrame("the first bytes are not the token of the simulation")
+        self._begin, self._token = len(token), b""
+        return True

@@ -67,7 +67,7 @@ class Server:
         self.sim = sim
         self._listening, self.name, self.path = socket_files.bind(name or sim.world.name)
         self._selector = selectors.DefaultSelector()
-        self._selector.register(self._listening, selectors.EVENT_READ)
+        self._listening.register(self._selector)
         self.feeds = TopicFeeds(sim)
         self.peers: dict[int, ClientConnection] = {}
         self.client_topics: set[str] = set()
@@ -136,7 +136,7 @@ class Server:
         return bool(ready)
 
     def fileno(self) -> int:
-        """Return a file descriptor for `select`; it is readable when `poll` has work to do."""
+        """Return a file descriptor for `select`, except on Windows; it is readable when `poll` has work to do."""
         found: int = self._selector.fileno()
         return found
 
@@ -277,29 +277,23 @@ class Server:
     def _accept_callers(self) -> bool:
         """Accept new connections; return True if clients are connected."""
         for _ in range(_MOST_CALLERS):
-            try:
-                connection, _ = self._listening.accept()
-            except OSError:  # no new connection, or no free file descriptor
+            connection = self._listening.accept()
+            if connection is None:
                 return bool(self.peers)
             self._accept(connection)
         return True
 
     def _accept(self, connection: socket.socket) -> None:
-        connection.setblocking(False)
         with suppress(OSError):  # the system allows less
             connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BYTES)
         self._numbers += 1
         peer = ClientConnection(connection, self._numbers)
-        _, user = socket_files.peer_credentials(connection)
-        if user is not None and user != os.getuid():
-            connection.close()
-            return
         self.peers[connection.fileno()] = peer
         self._selector.register(connection, selectors.EVENT_READ, peer)
         self._interest[connection.fileno()] = selectors.EVENT_READ
         hello = {"name": self.name, "world": self.sim.world.name, "pid": os.getpid(), "version": __version__}
         peer.send_json(TELL, {"tell": "hello", "protocol": PROTOCOL, **hello})
-        limit = os.sysconf("SC_OPEN_MAX")
+        limit = os.sysconf("SC_OPEN_MAX") if hasattr(os, "sysconf") else 0  # Windows has no such limit
         if len(self.peers) > MOST_CLIENTS or 0 < limit <= connection.fileno() + _RESERVED_FILES:
             self.refuse(peer, f"{len(self.peers) - 1} clients are connected to {self.name!r} already", "SK-LIVE-007")
             self._disconnect(peer)

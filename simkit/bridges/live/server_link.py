@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 
+from simkit.bridges.live import socket_files
 from simkit.bridges.live.protocol import (
     ANSWER,
     ASK,
@@ -73,44 +74,42 @@ class ServerLink:
         self._is_in_callback = False
         self._abandoned: set[int] = set()
         self._numbers = itertools.count(1)
-        self._reader = FrameReader(LARGEST_OUT, (ANSWER, TELL, MESSAGE))
         self._answers: dict[int, tuple[JsonObject, bytes]] = {}
         self._types: dict[int, str] = {}
         self._types_sent = SentTypes()
         self._closed: LiveClosed | None = None
-        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self._socket, token = self._connect()
+        self._reader = FrameReader(LARGEST_OUT, (ANSWER, TELL, MESSAGE), token)
         try:
             self._open(node)
         except BaseException:
             self._socket.close()
             raise
 
-    def _open(self, node: str | None) -> None:
-        name = self.path.stem
-        self._socket.settimeout(min(self.timeout, _LONGEST_TIMEOUT))
+    def _connect(self) -> tuple[socket.socket, bytes]:
+        """Return a connection to the socket, and the bytes that the simulation must send first."""
         end = time.monotonic() + self.timeout
         try:
-            while not self._is_connected():  # the accept queue is full while many clients connect
-                if time.monotonic() >= end:
-                    raise self._no_answer()
+            while True:
+                try:
+                    return socket_files.connect(self.path, min(self.timeout, _LONGEST_TIMEOUT))
+                except BlockingIOError:  # the accept queue is full while many clients connect
+                    if time.monotonic() >= end:
+                        raise self._no_answer() from None
                 time.sleep(CONNECT_PERIOD)
         except TimeoutError:
             raise self._no_answer() from None
         except OSError as error:
-            raise LiveError(f"simulation {name!r} cannot be reached: {error.strerror}", "SK-LIVE-003") from None
+            text = f"simulation {self.path.stem!r} cannot be reached: {error.strerror}"
+            raise LiveError(text, "SK-LIVE-003") from None
+
+    def _open(self, node: str | None) -> None:
+        name = self.path.stem
         self._wait_for_answer(lambda: bool(self.info))
         if self.info.pop("protocol", None) != PROTOCOL:
             found = self.info.get("version")
             raise LiveError(f"simulation {name!r} runs simkit {found}, with another protocol version", "SK-LIVE-006")
         self.info["node"] = self.request("node", {"name": node or f"simkit_{os.getpid()}"})[0]
-
-    def _is_connected(self) -> bool:
-        """Connect to the socket; return False while its accept queue is full."""
-        try:
-            self._socket.connect(str(self.path))
-        except BlockingIOError:
-            return False
-        return True
 
     def request(
         self, question: str, args: Mapping[str, object], data: bytes = b"", timeout: float | None = None

@@ -14,6 +14,7 @@ from typing import Any, Final
 from simkit.bridges.bridge_process import BridgeCodes, BridgeProcess
 from simkit.bridges.web.access import is_loopback
 from simkit.errors import InputError
+from simkit.install_command import install_command
 
 TOKEN_VARIABLE: Final = "SIMKIT_WEB_TOKEN"
 _TITLES: Final = MappingProxyType({"foxglove": "server for Foxglove", "rosbridge": "rosbridge server"})
@@ -76,7 +77,7 @@ class WebBridge(BridgeProcess):
         missing = [name for name in _PACKAGES[kind] if importlib.util.find_spec(name) is None]
         if missing:
             text = f"SK-WEB-001 --{kind} needs the package {missing[0]}, which is not installed"
-            raise InputError(f"{text}\n    help: pip install 'simkit-robotics[{kind}]'", "SK-WEB-001")
+            raise InputError(f"{text}\n    help: {install_command(kind)}", "SK-WEB-001")
         self._options = options
         settings = {"host": options.host, "port": options.port, "token": options.token}
         super().__init__(_TITLES[kind], _CODES, f"simkit.bridges.web.{kind}_server", settings, report)

@@ -75,7 +75,8 @@ class _Handler:
         self._unanswered.acquire(blocking=False)
         self._main_thread = _thread.get_ident()
         reader, writer = os.pipe()
-        os.set_blocking(writer, False)
+        if hasattr(os, "set_blocking"):  # Windows has it since Python 3.12, and needs it for sockets only
+            os.set_blocking(writer, False)
         signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
         _thread.start_new_thread(self._wait, (reader,))
 

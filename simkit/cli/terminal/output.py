@@ -13,11 +13,13 @@ import sys
 import traceback
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ParamSpec
+from functools import partial
+from typing import TYPE_CHECKING, Any, ParamSpec, cast
 
 import typer
 
 from simkit.cli.terminal.interruption import running_command
+from simkit.cli.terminal.plain_console import PlainConsole, is_plain_stream
 from simkit.cli.terminal.task_display import displayed_tasks
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, LoadError, PluginError, SimkitError
@@ -56,13 +58,19 @@ def printable(text: str) -> str:
 @functools.cache
 def stdout_console() -> Console:
     """Console of standard output."""
-    return _console(is_error=False)
+    return _stream_console(is_error=False)
 
 
 @functools.cache
 def stderr_console() -> Console:
     """Console of standard error."""
-    return _console(is_error=True)
+    return _stream_console(is_error=True)
+
+
+def _stream_console(*, is_error: bool) -> Console:
+    if not is_plain_stream(sys.stderr if is_error else sys.stdout):
+        return _console(is_error=is_error)
+    return cast("Console", PlainConsole(printable, partial(_console, is_error=is_error), is_error=is_error))
 
 
 def _console(*, is_error: bool) -> Console:
@@ -149,21 +157,23 @@ def print_diagnostics(
 
 def _print_entry(equal: list[Diagnostic], target: Console) -> None:
     """Print one problem with all places where it was found."""
-    from rich.text import Text
-
     d = equal[0]
     place = _location(d)
-    line = Text(printable(f"{place}: ") if place else "")
-    line.append(d.severity, style=_STYLES[d.severity])
-    line.append(printable(f" {d.code}: {d.message}"))
+    pieces = [(f"{place}: " if place else "", ""), (d.severity, _STYLES[d.severity]), (f" {d.code}: {d.message}", "")]
     if d.hint:
-        line.append(printable(f"\n    help: {d.hint}"), style="dim")
+        pieces.append((f"\n    help: {d.hint}", "dim"))
     if len(equal) > 1:
         others = [f":{o.line}" if o.file == d.file and o.line else _location(o) for o in equal[1 : _PLACES + 1]]
         rest = len(equal) - 1 - len(others)
         more = f" and {rest} more" if rest else ""
-        line.append(printable(f"\n    also at {', '.join(others)}{more}"), style="dim")
-    target.print(line)
+        pieces.append((f"\n    also at {', '.join(others)}{more}", "dim"))
+    plain: object = target
+    if isinstance(plain, PlainConsole):
+        plain.print("".join(printable(text) for text, _ in pieces))
+        return
+    from rich.text import Text
+
+    target.print(Text.assemble(*((printable(text), style) for text, style in pieces)))
 
 
 def _location(d: Diagnostic) -> str:

@@ -13,7 +13,9 @@ from simkit.compiler.first_state import first_state
 from simkit.compiler.name_map import LinkBinding
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
-from simkit.linear_algebra import eigvalsh, matmul
+from simkit.float_sum import float_sum
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import eigvalsh
 from simkit.scene import SceneModel, SceneWorld
 
 Floats = npt.NDArray[np.float64]
@@ -60,8 +62,8 @@ def _check_default_masses(top: SceneModel, diagnostics: Diagnostics) -> None:
     default = [link for link in links if not link.inertial.given and link.inertial.mass > 0]
     if not default or len(default) == len(links):
         return
-    kilograms = sum(link.inertial.mass for link in default)
-    total = sum(link.inertial.mass for link in links)
+    kilograms = float_sum(link.inertial.mass for link in default)
+    total = float_sum(link.inertial.mass for link in links)
     names = ", ".join(link.name for link in default[:6]) + (f" and {len(default) - 6} more" if len(default) > 6 else "")
     message = f"model {top.name!r}: {kilograms:g} kg of its {total:.4g} kg come from links without <inertial> ({names})"
     diagnostics.warning("SK-LINT-007", message, default[0].where, "give them an <inertial>, or make them a <frame>")

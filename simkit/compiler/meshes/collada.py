@@ -27,6 +27,7 @@ from simkit.compiler.meshes.mesh_part import (
     numbers_of,
     unique_rows,
 )
+from simkit.float_sum import float_sum
 from simkit.linear_algebra import det, matmul
 
 _DEEPEST: Final = 500  # levels of XML elements; a node has one level, its geometry has a few
@@ -322,7 +323,7 @@ def node_transform(node: XmlElement) -> Floats:
 
 def _rotation(axis: tuple[float, float, float], angle: float) -> Floats:
     """Return a rotation matrix by Rodrigues' formula."""
-    length = math.sqrt(sum(c * c for c in axis))
+    length = math.sqrt(float_sum(c * c for c in axis))
     matrix = np.eye(4)
     if length > 0.0 and math.isfinite(angle):
         x, y, z = (c / length for c in axis)

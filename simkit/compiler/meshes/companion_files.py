@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.input_file import read_input
+from simkit.loaders.resources.uris import path_of_file_uri
 
 if TYPE_CHECKING:
     from PIL.Image import Image as PilImage
@@ -66,7 +67,7 @@ class Companions:
             if name.startswith(scheme):
                 return self._of_package(name.removeprefix(scheme))
         if name.startswith("file://"):
-            name = name.removeprefix("file://")
+            name = path_of_file_uri(name.removeprefix("file://"))
         elif "://" in name:
             self.note(f"{_short(name)} is not fetched from a network")
             return None

@@ -38,6 +38,8 @@ from simkit.compiler.meshes.height_tiles import HeightTile
 from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.meshes.surface_patches import LEAST_TOLERANCE, TRIANGLES_FROM, is_large, large_surface_pieces
+from simkit.float_sum import float_sum
+from simkit.install_command import install_command
 from simkit.linear_algebra import matmul, norm
 
 THRESHOLD: Final = 0.05
@@ -72,7 +74,7 @@ def decompose(vertices: Floats, faces: Ints, most: int) -> list[Floats]:
     """
     if not is_available():
         raise DecompositionError(
-            "convex decomposition needs CoACD, which is not installed", "pip install 'simkit-robotics[decompose]'"
+            "convex decomposition needs CoACD, which is not installed", install_command("decompose")
         )
     with tempfile.TemporaryDirectory(prefix="simkit-") as folder:
         source, target = Path(folder) / "in.npz", Path(folder) / "out.npz"
@@ -210,7 +212,7 @@ def _compute_bodies(vertices: Floats, faces: Ints, fixed: bool, optimization: st
 
 def _decompose_mesh(vertices: Floats, faces: Ints, pieces: tuple[tuple[Floats, Ints], ...]) -> CollisionFinding:
     own = mesh_volume(vertices, faces)
-    total = sum(hull_volume(points) for points, _ in pieces)
+    total = float_sum(hull_volume(points) for points, _ in pieces)
     share = f"together {total / own:.2f} times its volume" if own else "the mesh is not closed"
     return "note", "SK-MESH-004", f"collides as {len(pieces)} convex pieces ({share})", ""
 
@@ -218,7 +220,7 @@ def _decompose_mesh(vertices: Floats, faces: Ints, pieces: tuple[tuple[Floats, I
 def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
     sets = [points for points in piece_hulls(vertices, faces) if hull_volume(points) > 0.0] or [vertices]
     own = mesh_volume(vertices, faces)
-    whole = sum(hull_volume(points) for points in sets)
+    whole = float_sum(hull_volume(points) for points in sets)
     hulls = "its convex hull" if len(sets) == 1 else f"the convex hulls of its {len(sets)} pieces"
     if own:
         ratio = whole / own

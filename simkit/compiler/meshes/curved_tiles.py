@@ -18,7 +18,8 @@ from simkit.compiler.meshes.connected_triangles import part_numbers
 from simkit.compiler.meshes.height_tiles import HeightTile, Mask
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.sampled_fields import SampledFields, heights_above, sampled_heights, surface_points
-from simkit.linear_algebra import eigh, matmul
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import eigh
 
 _CELLS: Final = 25
 """Largest number of cells of a tile; the engine keeps at most 50 contacts with a height field, one per triangle."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from simkit.compiler.meshes.connected_triangles import members_of, part_numbers
 from simkit.compiler.meshes.mesh_part import Floats, Indices
+from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul, norm
 
 _LEAST_AREA: Final = 8.0
@@ -153,5 +154,5 @@ def _few_points_area(points: Floats) -> float:
             ):
                 hull.pop()
             hull.append((x, y))
-        area += sum(a[0] * b[1] - a[1] * b[0] for a, b in pairwise(hull))
+        area += float_sum(a[0] * b[1] - a[1] * b[0] for a, b in pairwise(hull))
     return 0.5 * area

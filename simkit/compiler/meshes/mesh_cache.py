@@ -26,6 +26,7 @@ import numpy as np
 
 from simkit.compiler.meshes.content_digest import content_digest
 from simkit.compiler.meshes.mesh_part import MeshPart
+from simkit.home_folder import home_folder
 
 FORMAT: Final = "simkit mesh 5"
 """Version of the conversions; change it whenever a reader returns different numbers for the same file."""
@@ -59,10 +60,10 @@ def _directory(chosen: str | None, caches: str | None, windows: str | None, _hom
     if chosen:
         return Path(chosen)
     if sys.platform == "win32":
-        return Path(windows or Path.home()) / "simkit"
+        return Path(windows or home_folder()) / "simkit"
     if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "simkit"
-    return Path(caches if caches is not None else Path.home() / ".cache") / "simkit"
+        return home_folder() / "Library" / "Caches" / "simkit"
+    return Path(caches if caches is not None else home_folder() / ".cache") / "simkit"
 
 
 def mesh_key(file: Path, content: bytes) -> str:

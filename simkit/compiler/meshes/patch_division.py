@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 
 from simkit.compiler.meshes.mesh_part import Floats
-from simkit.linear_algebra import eigh, matmul
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import eigh
 
 _FEW_TRIANGLES: Final = 6
 """Number of triangles up to which a patch is divided between triangles, and never through one: a triangle is exact."""

@@ -17,7 +17,9 @@ from simkit.compiler.meshes.convex_pieces import hull_volume
 from simkit.compiler.meshes.flat_areas import connected_areas
 from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.patch_division import Patch, area_vectors, divide
-from simkit.linear_algebra import dot, eigh, matmul, norm
+from simkit.float_sum import float_sum
+from simkit.linear_algebra import dot, matmul, norm
+from simkit.matrix_decompositions import eigh
 
 TRIANGLES_PER_PIECE: Final = 12
 """Least number of triangles for one piece; height fields and patches do not need fewer pieces than that."""
@@ -325,7 +327,7 @@ def _best_plane(cell: _Cell) -> tuple[Floats, float]:
     margin = _MARGIN * float(highs[first] - lows[first])
     if lows[first] + margin < deepest < highs[first] - margin:
         planes.append((axes[first], deepest))
-    volumes = np.array([sum(map(hull_volume, _side_points(triangles, *plane))) for plane in planes])
+    volumes = np.array([float_sum(map(hull_volume, _side_points(triangles, *plane))) for plane in planes])
     whole = hull_volume(points)
     gains = whole - volumes
     if gains.max() <= _LEAST_GAIN * whole:

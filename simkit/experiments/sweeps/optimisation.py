@@ -31,6 +31,8 @@ from simkit.experiments.sweeps.sweep import (
     make_executor,
 )
 from simkit.experiments.sweeps.sweep_spec import INVALID, SweepSpec, name_problems, raise_problems
+from simkit.float_sum import float_sum
+from simkit.install_command import install_command
 
 _TOGETHER: Final = 8
 """Number of points that are asked for together; more would use fewer results for each point."""
@@ -105,7 +107,7 @@ def _optuna() -> Any:
         optuna = import_module("optuna")
     except ImportError:
         text = "SK-INPUT-004 a search needs optuna, which is missing"
-        raise InputError(f"{text}\n    help: pip install 'simkit-robotics[search]'", "SK-INPUT-004") from None
+        raise InputError(f"{text}\n    help: {install_command('search')}", "SK-INPUT-004") from None
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     return optuna
 
@@ -143,7 +145,7 @@ def _mean(rows: list[dict[str, Any]], metric: str) -> float:
     texts = [value for value in values if not isinstance(value, (bool, int, float))]
     if texts:
         raise InputError(f"{INVALID} metric {metric!r}: found {texts[0]!r:.60}; a search needs numbers", INVALID)
-    return sum(values) / len(values)
+    return float_sum(values) / len(values)
 
 
 class _Search:

@@ -26,7 +26,9 @@ from typing import Any, Final
 import numpy as np
 
 from simkit.diagnostics import did_you_mean, shorten
-from simkit.linear_algebra import cholesky, matmul
+from simkit.float_sum import float_sum
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import cholesky
 from simkit.run_spec import JsonObject
 
 Names = tuple[str, ...]
@@ -192,9 +194,9 @@ def _choice(names: Names, given: JsonObject, value: object) -> ParameterSpace:
     items = [plain_value(item) for item in items]
     weights = given.get("weights", [1.0] * len(items))
     parts = _numbers(weights, len(items), f"{len(items)} weights, one for each value")
-    if min(parts) < 0 or sum(parts) <= 0:
+    if min(parts) < 0 or float_sum(parts) <= 0:
         raise InvalidSpace(f"found the weights {weights!r}; expected numbers of at least 0, not all of them 0")
-    sums = [sum(parts[: count + 1]) / sum(parts) for count in range(len(parts))]
+    sums = [float_sum(parts[: count + 1]) / float_sum(parts) for count in range(len(parts))]
 
     def convert(unit: Sequence[float]) -> list[Any]:
         return [next((item for item, edge in zip(items, sums, strict=True) if unit[0] < edge), items[-1])]

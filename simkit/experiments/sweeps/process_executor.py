@@ -23,6 +23,8 @@ from simkit.experiments.sweeps.executor import SweepTask
 from simkit.experiments.sweeps.row_runner import CRASHED, RowResult
 from simkit.experiments.sweeps.sweep_spec import SweepSpec
 from simkit.experiments.sweeps.worker import receive_message, send_message
+from simkit.install_command import install_command
+from simkit.process_control import kill_process_tree
 
 NOT_SENDABLE: Final = "SK-SWEEP-009"
 _MOST_WAITING: Final = 64  # tasks that a worker has received and not ended
@@ -49,7 +51,7 @@ def pickled_spec(spec: SweepSpec) -> bytes:
         if dumps is pickle.dumps and b"__main__" in content:
             raise pickle.PicklingError("a function or class of the main script")
     except Exception as error:  # noqa: BLE001 - objects of the caller may raise anything
-        hint = "pip install 'simkit-robotics[experiments]'; or move functions of the script to a module; or use jobs=1"
+        hint = f"{install_command('experiments')}; or move functions of the script to a module; or use jobs=1"
         text = f"{NOT_SENDABLE} the sweep cannot be sent to other processes: {error}\n    help: {hint}"
         raise InputError(text, NOT_SENDABLE) from None
     return content
@@ -114,11 +116,7 @@ class _Worker:
 
     def kill(self) -> None:
         """Kill the process and its own child processes."""
-        with suppress(OSError):
-            if hasattr(os, "killpg"):
-                os.killpg(self._process.pid, signal.SIGKILL)
-            else:
-                self._process.kill()
+        kill_process_tree(self._process)
 
     def close(self) -> None:
         """Kill the process and wait for its end."""

@@ -27,6 +27,7 @@ from simkit.experiments.sweeps.metrics import FileMetric
 from simkit.experiments.sweeps.process_executor import pickled_spec
 from simkit.experiments.sweeps.row_runner import CRASHED, RowResult, RowRunner
 from simkit.experiments.sweeps.sweep_spec import SweepSpec
+from simkit.install_command import install_command
 from simkit.run_spec import LoadOptions, SourceOptions
 from simkit.writers.vendored_folder import vendor
 
@@ -73,7 +74,7 @@ class RayExecutor:
         try:
             self._ray: Any = import_module("ray")
         except ImportError:
-            hint = "pip install 'simkit-robotics[cluster]'"
+            hint = install_command("cluster")
             raise InputError(
                 f"{NO_CLUSTER} a cluster needs Ray, which is missing\n    help: {hint}", NO_CLUSTER
             ) from None

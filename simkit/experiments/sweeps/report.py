@@ -15,6 +15,7 @@ import numpy as np
 from simkit.experiments.sweeps.result_store import ResultStore
 from simkit.experiments.sweeps.result_table import column_kinds, flat_row, table_columns
 from simkit.experiments.sweeps.sensitivity import Numbers, Sensitivity, sensitivities
+from simkit.float_sum import float_sum
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.recording.charts.series import Series
 from simkit.run_spec import JsonObject
@@ -51,7 +52,7 @@ def write_report(folder: Path, target: Path) -> Path:
     parameters = [name for name in text["parameters"] if name in columns]
     metrics = [name for name in text["metrics"] if name in columns]
     found = sensitivities(text, columns, parameters, metrics)
-    wall = sum(row["wall_time"] or 0.0 for row in store.timings())
+    wall = float_sum(row["wall_time"] or 0.0 for row in store.timings())
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters.update(number=_number, values=describe_values)
     template = environment.from_string(_TEMPLATE.read_text("utf-8"))

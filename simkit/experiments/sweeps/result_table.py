@@ -14,6 +14,7 @@ from simkit.errors import InputError
 from simkit.experiments.sweeps.result_store import ResultStore
 from simkit.experiments.sweeps.sweep_spec import RESULT_COLUMNS, ROW_COLUMNS
 from simkit.input_file import read_failure, read_input_text
+from simkit.install_command import install_command
 from simkit.msgs.data_frames import DataFrame
 from simkit.run_spec import JsonObject
 from simkit.scene.overrides import value_text
@@ -76,7 +77,7 @@ def read_table(folder: str | Path) -> DataFrame:
     try:
         pandas = import_module("pandas")
     except ImportError:
-        hint = "pip install 'simkit-robotics[experiments]'"
+        hint = install_command("experiments")
         raise InputError(f"SK-INPUT-004 the table needs pandas, which is missing: {hint}", "SK-INPUT-004") from None
     store = ResultStore(Path(folder))
     store.open()

@@ -36,6 +36,7 @@ from simkit.experiments.sweeps.sweep_spec import (
     sequence_of_seeds,
     spec_of_world,
 )
+from simkit.install_command import install_command
 from simkit.msgs.data_frames import DataFrame
 from simkit.run_spec import FilePath, RunSpec
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
@@ -97,7 +98,7 @@ def sweep(
         LoadError: the world has errors.
     """
     if find_spec("pandas") is None:
-        hint = "pip install 'simkit-robotics[experiments]'"
+        hint = install_command("experiments")
         raise InputError(f"SK-INPUT-004 simkit.sweep needs pandas, which is missing\n    help: {hint}", "SK-INPUT-004")
     run = spec_of_world(world, duration, until)
     design = make_design(

@@ -26,6 +26,12 @@ def bundled_folders(kind: str) -> list[Path]:
     return [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
 
 
+def bundle_around(folder: Path) -> Path | None:
+    """Return the folder `assets`, `worlds` or `labs` of simkit that contains a folder, or None."""
+    bundles = (bundle for kind in ("assets", "worlds", "labs") for bundle in bundled_folders(kind))
+    return next((bundle for bundle in bundles if folder.is_relative_to(bundle)), None)
+
+
 def is_bare_name(name: str) -> bool:
     """Check whether a text can be the name of a bundled model or package: neither a path nor a pattern."""
     return 0 < len(name) < 200 and not set(name) & set("/\\*?[]<>:") and not name.startswith(".")

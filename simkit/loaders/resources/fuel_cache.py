@@ -12,6 +12,7 @@ from urllib.parse import quote, unquote
 
 from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
+from simkit.home_folder import home_folder
 from simkit.input_file import read_failure, read_input_text
 from simkit.loaders.resources.uris import is_small_integer
 
@@ -135,7 +136,7 @@ def parse_fuel_url(uri: str) -> FuelUrl | None:
 def fuel_caches() -> list[Path]:
     """Return the cache folders; `simkit fetch` stores in the first one."""
     named = [Path(p) for v in _CACHE_VARIABLES for p in os.environ.get(v, "").split(os.pathsep) if p]
-    home = Path.home()
+    home = home_folder()
     return [*named, home / ".gz" / "fuel", home / ".ignition" / "fuel"]
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from simkit.input_file import read_input
+from simkit.loaders.resources.bundled_models import bundle_around
 from simkit.loaders.resources.project_folder import enclosing_project
 from simkit.loaders.resources.uris import is_file, is_folder, is_private, is_top_folder
 
@@ -203,9 +204,14 @@ class PackageIndex:
     def _around(self, folder: Path) -> tuple[Path, ...]:
         """Return the folders around a file to search: its package, then the workspace or the folders above.
 
-        A file outside a package and outside a repository has only its own folder.
+        A file outside a package and outside a repository has only its own folder. A file that simkit ships finds only
+        shipped packages, so that it loads in the same way from a checkout, in any workspace, and from an installation.
         """
         if folder not in self._places:
+            shipped = bundle_around(folder)
+            if shipped is not None:
+                self._places[folder] = (shipped,)
+                return self._places[folder]
             home = enclosing_package(folder) or enclosing_project(folder)
             above = [] if home is None else list(takewhile(_can_be_workspace, home.parents[:4]))
             source = next((number for number, parent in enumerate(above) if parent.name == "src"), None)

@@ -30,6 +30,7 @@ from simkit.loaders.resources.uris import (
     leaves_folder,
     other_case_hint,
     package_uri,
+    path_of_file_uri,
     sibling_names,
 )
 from simkit.run_spec import PackagePaths, split_package_paths
@@ -221,7 +222,7 @@ class Resolver:
             return found, places
         rest = unquote(rest)
         if scheme == "file":
-            return self._search_path(rest, relative_to)
+            return self._search_path(path_of_file_uri(rest), relative_to)
         if scheme not in ("model", "package"):
             return None, []
         if leaves_folder(rest):

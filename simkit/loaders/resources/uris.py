@@ -9,6 +9,8 @@ from itertools import islice
 from pathlib import Path
 from urllib.parse import unquote
 
+from simkit.home_folder import home_folder
+
 _MOST_LISTED = 1000  # searched paths, and names of a folder, that are compared for a hint
 _MANIFESTS = ("model.config", "model.sdf", "package.xml", "manifest.xml")
 _ASSETS = ("assets", "materials", "media", "mesh", "meshes", "stl", "stls", "textures")
@@ -24,9 +26,20 @@ def package_uri(uri: str) -> str:
     return f"package://{words[-1]}/{rest.strip('/')}" if len(words) == 2 else uri
 
 
+def path_of_file_uri(rest: str, has_drives: bool = os.name == "nt") -> str:
+    """Return the path that the part of a URI after `file://` names.
+
+    Args:
+        rest: the part, without quoted characters.
+        has_drives: True on Windows, where `/C:/world.sdf` names `C:/world.sdf`.
+    """
+    is_drive = has_drives and rest[:1] == "/" and rest[1:2].isalpha() and rest[2:3] == ":"
+    return rest[1:] if is_drive else rest
+
+
 def is_relocated(uri: str, found: Path) -> bool:
     """Check whether the file of an absolute path was found in another folder than the path names."""
-    plain = Path(unquote(uri.removeprefix("file://")))
+    plain = Path(path_of_file_uri(unquote(uri.removeprefix("file://"))))
     return plain.is_absolute() and absolute_path(plain) != absolute_path(found)
 
 
@@ -47,7 +60,7 @@ def leaves_folder(rest: str) -> bool:
 
 def is_top_folder(folder: Path) -> bool:
     """Check for the home folder and the two highest levels of the file system, which are never searched."""
-    home = Path.home()
+    home = home_folder()
     return len(folder.parts) < 3 or folder in (home, home.resolve())
 
 
@@ -144,5 +157,5 @@ def is_small_integer(text: str) -> bool:
 
 def is_path_of_other_machine(uri: str) -> bool:
     """Check whether a URI is an absolute path that does not exist here; mesh exporters write such paths."""
-    path = Path(unquote(uri.removeprefix("file://")))
+    path = Path(path_of_file_uri(unquote(uri.removeprefix("file://"))))
     return path.is_absolute() and not os.path.lexists(path)

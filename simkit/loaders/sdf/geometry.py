@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from simkit.diagnostics import did_you_mean
+from simkit.float_sum import float_sum
 from simkit.loaders.sdf.load_context import SdfFile, Workspace
 from simkit.params import Params
 from simkit.scene import geometry as shapes
@@ -67,7 +68,7 @@ def _sizes(element: Params, name: str) -> Vec3:
 
 def _plane(element: Params) -> Geometry:
     normal = element.vector3("normal", (0.0, 0.0, 1.0))
-    length = math.sqrt(sum(v * v for v in normal))
+    length = math.sqrt(float_sum(v * v for v in normal))
     if length < 1e-12:
         element.error("SK-SDF-009", "<plane> has a normal of length zero")
         return shapes.Plane()

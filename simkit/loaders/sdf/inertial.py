@@ -7,9 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from simkit.linear_algebra import eigvalsh, matmul
+from simkit.float_sum import float_sum
+from simkit.linear_algebra import matmul
 from simkit.loaders.resources.loader import MeshReader
 from simkit.loaders.sdf.solid_moments import Solid, solid_of, solid_of_triangles
+from simkit.matrix_decompositions import eigvalsh
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Inertial, Mesh, SceneCollision
@@ -127,7 +129,7 @@ def _automatic(
         mass = volume * (common if density is None else density)
         turn = collision.pose_link.matrix
         parts.append((mass, collision.pose_link.transform(centre), matmul(turn, moments, turn.T) * (mass / volume)))
-    total = sum(mass for mass, _, _ in parts)
+    total = float_sum(mass for mass, _, _ in parts)
     if total <= 0:
         block.warning("SK-SDF-022", f"link {name!r} has no collision for automatic inertia; 1 kg is used")
         return Inertial()

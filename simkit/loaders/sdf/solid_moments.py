@@ -67,8 +67,8 @@ def solid_of_triangles(parts: Iterable[Triangles]) -> Solid | None:
         middle = a + b + c
         volume += float(sixth.sum())
         first += (sixth[:, None] * middle).sum(axis=0) / 4
-        products = sum(np.einsum("i,ij,ik->jk", sixth, p, p) for p in (a, b, c, middle))
-        second += np.asarray(products) / 20
+        products = sum((np.einsum("i,ij,ik->jk", sixth, p, p) for p in (a, b, c, middle)), np.zeros((3, 3)))
+        second += products / 20
     if abs(volume) < 1e-15 or not math.isfinite(volume):
         return None
     return _about_centroid(volume, first / volume, second)
@@ -105,8 +105,8 @@ def _polygon(outline: Outline) -> tuple[float, Floats, Floats]:
     q = np.roll(p, -1, axis=0)
     cross = p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]
     middle = p + q
-    products = sum(np.einsum("i,ij,ik->jk", cross, v, v) for v in (p, q, middle))
-    return float(cross.sum()) / 2, (cross[:, None] * middle).sum(axis=0) / 6, np.asarray(products) / 24
+    products = sum((np.einsum("i,ij,ik->jk", cross, v, v) for v in (p, q, middle)), np.zeros((2, 2)))
+    return float(cross.sum()) / 2, (cross[:, None] * middle).sum(axis=0) / 6, products / 24
 
 
 def _is_inside(point: tuple[float, float], outline: Outline) -> bool:

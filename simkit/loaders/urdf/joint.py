@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from simkit.diagnostics import did_you_mean
+from simkit.float_sum import float_sum
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensors
 from simkit.loaders.urdf import gazebo_extensions
@@ -112,9 +113,9 @@ def _plane_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
     main = max(range(3), key=lambda i: abs(normal[i]))
     seed = [0.0, 0.0, 0.0]
     seed[(main + 1) % 3] = 1.0
-    along = sum(s * n for s, n in zip(seed, normal, strict=True))
+    along = float_sum(s * n for s, n in zip(seed, normal, strict=True))
     x = [s - along * n for s, n in zip(seed, normal, strict=True)]
-    length = math.sqrt(sum(v * v for v in x))
+    length = math.sqrt(float_sum(v * v for v in x))
     a, b, c = (v / length for v in x)
     p, q, r = normal
     return (a, b, c), (q * c - r * b, r * a - p * c, p * b - q * a)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from simkit.loaders.xacro.expansion_limits import MAX_ITEMS, BoundError, ExpansionError
 from simkit.loaders.xacro.expression import Evaluator, Function, Value
@@ -48,7 +48,7 @@ def python_functions(evaluator: Evaluator) -> dict[str, Function]:
         "range": Function(_range),
         "round": Function(_round),
         "sorted": Function(sorted),
-        "sum": Function(lambda items, start=0: sum(items, start)),
+        "sum": Function(_sum),
         "type": Function(lambda value: type(value).__name__),
         "isinstance": Function(is_instance),
     }
@@ -85,6 +85,16 @@ def _round(value: Value, digits: int | None = None) -> Value:
     if digits is not None and abs(digits) > 300:
         raise ExpansionError("round to at most 300 digits")
     return round(value) if digits is None else round(value, digits)
+
+
+def _sum(items: Iterable[Value], start: Value = 0) -> Value:
+    """Return the sum of `start` and items. The built-in `sum` has other bits from Python 3.12 on (see `float_sum`)."""
+    if isinstance(start, str):
+        raise ExpansionError("sum() adds no texts; write ''.join(…)")
+    total = start
+    for item in items:
+        total = total + item
+    return total
 
 
 def _check_size(function: Callable[..., int]) -> Callable[..., int]:

@@ -10,7 +10,8 @@ import numpy as np
 from simkit.compiler.meshes.collada_skin import Skin, read_skin
 from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.diagnostics import Diagnostics
-from simkit.linear_algebra import det, matmul, norm, svd
+from simkit.linear_algebra import det, matmul, norm
+from simkit.matrix_decompositions import svd
 from simkit.plugins.actors.animated_actor import (
     AT_THE_HIPS,
     ROOT_LINK,

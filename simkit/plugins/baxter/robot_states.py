@@ -14,7 +14,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
-from simkit.linear_algebra import lstsq
+from simkit.matrix_decompositions import lstsq
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.ros2_control.controllers.baxter_controllers import (
     BaxterGripperController,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.float_sum import float_sum
 from simkit.params import Params
 from simkit.plugins.classic.diff_drive import CommonDiffDriveOptions, GazeboRosDiffDrive, Pair
 from simkit.plugins.classic.kobuki_sensors import PACKAGES, PREFIX, KobukiSensorOptions, KobukiSensors
@@ -153,7 +154,7 @@ class GazeboRosKobuki(KobukiSensors, GazeboRosDiffDrive):
         reading = self._imu.latest
         self._turn_rate = 0.0 if reading is None else float(reading.angular_velocity.z)
         angles, radius = self._first_angles(), self.options.pairs[0].radius
-        ahead = sum(new - old for new, old in zip(angles, self._angles, strict=True)) * radius / 2
+        ahead = float_sum(new - old for new, old in zip(angles, self._angles, strict=True)) * radius / 2
         self._angles = angles
         self._reckoning.go(ahead, 0.0, self._turn_rate * elapsed)
 

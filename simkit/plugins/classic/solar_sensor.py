@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 IMU = "sensor_msgs/msg/Imu"
+_TYPES = IMU, "geometry_msgs/msg/Quaternion", "geometry_msgs/msg/Vector3"
 _NONE = np.zeros(9)
 
 
@@ -112,8 +113,6 @@ class SolarSensor(ModelPlugin):
         self._covariance = np.eye(3).reshape(9) * self._noise**2
         self._stream = self.random("gaussian_noise", 3) if self._noise > 0 else None
         self._angular_stream = self.random("angular_noise", 2) if self._angular > 0 else None
-        geometry = ("geometry_msgs/msg/Quaternion", "geometry_msgs/msg/Vector3")
-        self._types = (msgs.type_of(IMU), *(msgs.type_of(name) for name in geometry))
         self._index = 0
         self._readings = self.advertise("sunloin_imu", IMU)
         self._create_view(params)
@@ -124,7 +123,7 @@ class SolarSensor(ModelPlugin):
         judges = options.shadow or params.has("field_of_view")
         self._view: SolarView | None = None
         self._compiled: Compiled | None = None
-        self._more: list[tuple[Publisher, type, Callable[[SolarReading], object]]] = []
+        self._more: list[tuple[Publisher, str, Callable[[SolarReading], object]]] = []
         if self._light is None:
             return
         solar_irradiance.report_unused_options(params, options, self._light)
@@ -138,7 +137,7 @@ class SolarSensor(ModelPlugin):
             ("shadow", "std_msgs/msg/String", options.shadow, lambda r: r.shadow),
         ):
             if is_enabled:
-                self._more.append((self.advertise(f"{topic}/{name}", kind), msgs.type_of(kind), value))
+                self._more.append((self.advertise(f"{topic}/{name}", kind), kind, value))
 
     def after_step(self) -> None:
         self._index += 1  # counted even without subscribers, because the noise depends on this number
@@ -158,8 +157,8 @@ class SolarSensor(ModelPlugin):
             self._compiled = sim.engine.compiled
             view.bind(self._compiled, self._link_name)
         reading = view.measure(sim.mj_model, sim.engine.physics.fresh(), light.state, pose.position, pose.matrix)
-        for publisher, make, value in subscribed:
-            publisher.publish(make(value(reading)))
+        for publisher, kind, value in subscribed:
+            publisher.publish(msgs.type_of(kind)(value(reading)))
         if self._readings.wanted:
             self._publish(pose, light.pose, reading.is_valid)
 
@@ -168,7 +167,7 @@ class SolarSensor(ModelPlugin):
         self._readings.publish_later(partial(self._message, time_ns, index, pose, light, is_valid))
 
     def _message(self, time_ns: int, index: int, pose: Pose, light: Pose, is_valid: bool) -> object:
-        imu, quaternion, vector = self._types
+        imu, quaternion, vector = msgs.types_of(*_TYPES)
         orientation, covariance = np.array((1.0, 0.0, 0.0, 0.0)), np.zeros(9)
         if is_valid:
             orientation, covariance = self._measured(index, pose, light)

@@ -103,7 +103,7 @@ def rolling_twist(wheels: Sequence[Joint], radius: float, separation: float) -> 
 def _first_velocity(joint: Joint) -> float:
     """Return the velocity of a joint about its first axis [rad/s]."""
     if joint._one_dof >= 0:
-        return joint._physics.data.qvel.item(joint._one_dof)
+        return float(joint._physics.data.qvel.item(joint._one_dof))
     return float(np.ravel(joint.velocity)[0])
 
 

@@ -15,6 +15,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
+from simkit.float_sum import float_sum
 from simkit.msgs.topic_names import valid_topic
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.options import Options, block, choice, number, text, vector, without_effect
@@ -131,12 +132,14 @@ class WaveField:
 
     def height(self, x: float, y: float, time: float) -> float:
         """Return the height of the surface above its mean level [m] at a point of the plane."""
-        total = sum(w.amplitude * math.cos(w.wavenumber * (w.x * x + w.y * y) - w.frequency * time) for w in self.waves)
+        total = float_sum(
+            w.amplitude * math.cos(w.wavenumber * (w.x * x + w.y * y) - w.frequency * time) for w in self.waves
+        )
         return total * self._growth(time)
 
     def vertical_velocity(self, x: float, y: float, time: float) -> float:
         """Return the vertical velocity of the water at the surface [m/s]."""
-        rate = sum(
+        rate = float_sum(
             w.amplitude * w.frequency * math.sin(w.wavenumber * (w.x * x + w.y * y) - w.frequency * time)
             for w in self.waves
         )

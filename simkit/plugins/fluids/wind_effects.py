@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.float_sum import float_sum
 from simkit.msgs.topic_names import valid_topic
 from simkit.number_text import number_or_nan
 from simkit.params import Params
@@ -101,7 +102,7 @@ class FieldPiece:
     def least(self) -> float:
         """Smallest value in the box, for coordinates from −`_FARTHEST` to `_FARTHEST`."""
         extremes = [_extremes(c, span) for c, span in zip(self.terms, self.where, strict=True)]
-        return min(self.factor * sum(corner) for corner in itertools.product(*extremes))
+        return min(self.factor * float_sum(corner) for corner in itertools.product(*extremes))
 
 
 @dataclass(frozen=True, slots=True)

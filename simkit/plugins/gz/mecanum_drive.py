@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from simkit.compiler.contact_friction import has_directional_friction
+from simkit.float_sum import float_sum
 from simkit.params import Params
 from simkit.plugins.drives.odometry import Angles, Motion, TravelOdometry, joint_angles
 from simkit.plugins.drives.speed_limits import speed_limits
@@ -45,7 +46,7 @@ class MecanumOdometry(TravelOdometry):
         """Return the displacement of the base between two samples of the wheel angles."""
         rims = [(b - a) * self._radius for a, b in zip(before, after, strict=True)]
         ahead, left, turn = (
-            sum(sign[axis] * rim for sign, rim in zip(_SIGNS, rims, strict=True)) / 4 for axis in range(3)
+            float_sum(sign[axis] * rim for sign, rim in zip(_SIGNS, rims, strict=True)) / 4 for axis in range(3)
         )
         return ahead, left, turn / self._arm
 

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from simkit.linear_algebra import matmul, norm, pinv, svd
+from simkit.float_sum import float_sum
+from simkit.linear_algebra import matmul, norm
+from simkit.matrix_decompositions import pinv, svd
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
@@ -94,7 +96,7 @@ class MulticopterVelocityControl(ModelPlugin):
         self._link = find_named_link(scene, "comLinkName", params)
         faults = params.diagnostics.error_count
         rows = [row for row in (self._read_rotor(scene, rotor) for rotor in options.configuration.rotors) if row]
-        self._mass = sum(float(link.inertial.mass) for link in scene.all_links())
+        self._mass = float_sum(float(link.inertial.mass) for link in scene.all_links())
         effects = np.array(rows).reshape(-1, 4).T
         sizes = np.linalg.norm(effects, axis=1)  # a Crazyflie's torque at 1 rad/s is only 1e-10 N·m
         if params.diagnostics.error_count > faults:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.plugins.endpoints import listens
@@ -70,7 +71,7 @@ class FloatGeometryOptions(Options):
             if min(size) <= 0:
                 self.box.params.error("SK-PARAM-002", f"found a <box> of {size}; expected lengths above 0")
                 return None
-            return Box(size), sum(size) / 3
+            return Box(size), float_sum(size) / 3
         if self.sphere.is_given:
             return Sphere(self.sphere.radius), 2 * self.sphere.radius
         if self.cylinder.is_given:

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.errors import ArgumentTypeError, ArgumentValueError, TransformError
-from simkit.linear_algebra import eigh, matmul
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import eigh
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms

@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib.util
 from enum import IntEnum
 
+from simkit.install_command import install_command
+
 
 class Code(IntEnum):
     """Values of `moveit_msgs/msg/MoveItErrorCodes` that simkit uses."""
@@ -49,7 +51,7 @@ def check_packages() -> None:
     """
     for module, package in (("pinocchio", "pin"), ("coal", "coal")):
         if importlib.util.find_spec(module) is None:
-            help_text = "pip install 'simkit-robotics[labs]'"
+            help_text = install_command("labs")
             raise PlanningFailed(Code.FAILURE, f"the package {package} is not installed; help: {help_text}")
 
 

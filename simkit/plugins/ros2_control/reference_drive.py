@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from simkit import msgs
+from simkit.float_sum import float_sum
 from simkit.params import Params
 from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, DeadReckoning, Motion
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
@@ -104,7 +105,7 @@ class ReferenceDrive(Controller):
         twist = self.measured_twist(self.states.values.tolist(), period)
         if self._open_loop:
             twist = self._reference or _AT_REST
-        if math.isfinite(sum(twist)) and period > 0.0:
+        if math.isfinite(float_sum(twist)) and period > 0.0:
             self._reckoning.go(*(speed * period for speed in twist))
             self._twists.append(twist)
         self.commands.values = self.wheel_commands(self._reference)
@@ -132,7 +133,7 @@ class ReferenceDrive(Controller):
         """Return the mean twist over the window, in the axes of the base."""
         if not self._twists:
             return BodyTwist()
-        ahead, left, turn = (sum(values) / len(self._twists) for values in zip(*self._twists, strict=True))
+        ahead, left, turn = (float_sum(values) / len(self._twists) for values in zip(*self._twists, strict=True))
         return BodyTwist((ahead, left, 0.0), (0.0, 0.0, turn))
 
     def _publish(self, now_ns: int) -> None:

@@ -157,7 +157,7 @@ def _pixels(cells: npt.NDArray[np.int8], mode: str, free: float, occupied: float
     """Return the grey values of cells, as `map_server` defines them for a mode; in the mode scale with alpha."""
     is_known = (cells >= 0) & (cells <= _LARGEST)
     if mode == "raw":
-        return np.where(is_known, cells, 255).astype(np.uint8)
+        return np.where(is_known, cells.astype(np.uint8), np.uint8(255))
     if mode == "scale":
         grey = np.where(is_known, np.rint((_LARGEST - cells.astype(float)) / _LARGEST * 255.0), 0.0)
         return np.stack([grey, np.where(is_known, 255.0, 0.0)], axis=-1).astype(np.uint8)

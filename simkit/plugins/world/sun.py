@@ -6,6 +6,7 @@ import math
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
+from simkit.install_command import install_command
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.find_entities import find_light
@@ -25,7 +26,6 @@ _DISTANCE = 149_597_870_700.0  # [m], one astronomical unit
 _MOST_KELVIN = 1000.0
 _FASTEST = 1e6  # largest number of seconds that the sun advances per simulated second: a year in half a minute
 _LOWEST, _HIGHEST = -500.0, 11_000.0  # [m]
-_INSTALL = "pip install 'simkit-robotics[sun]'"
 _DATE = "a date and time such as 2024-06-21T10:30:00Z (UTC without an offset)"
 
 
@@ -75,7 +75,8 @@ class Sun(WorldPlugin):
         try:
             self._path = SunPath(self._site)
         except ImportError as error:
-            params.diagnostics.error("SK-SENSOR-084", f"the sun's position needs pvlib: {error}", self.where, _INSTALL)
+            message = f"the sun's position needs pvlib: {error}"
+            params.diagnostics.error("SK-SENSOR-084", message, self.where, install_command("sun"))
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._light = _find_sun(self.sim, self.options)

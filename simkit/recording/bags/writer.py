@@ -220,7 +220,8 @@ class Rosbag2Folder(McapBag):
         target = self.folder / "metadata.yaml"
         draft = target.with_suffix(".yaml.tmp")
         draft.write_text(
-            yaml.dump({"rosbag2_bagfile_information": self._information()}, Dumper=_plain_dumper(), sort_keys=False)
+            yaml.dump({"rosbag2_bagfile_information": self._information()}, Dumper=_plain_dumper(), sort_keys=False),
+            encoding="utf-8",
         )
         draft.replace(target)
 

@@ -12,6 +12,8 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from simkit.float_sum import float_sum
+
 Anchor = Literal["start", "middle", "end"]
 Points = NDArray[np.float64]
 
@@ -150,7 +152,7 @@ def _dash(points: Points, dash: tuple[float, ...]) -> list[Points]:
     """Return the drawn pieces of a dashed line."""
     steps = np.hypot(*np.diff(points, axis=0).T)
     along = np.concatenate(([0.0], np.cumsum(steps)))
-    edges = np.cumsum(np.tile(dash, int(along[-1] / sum(dash)) + 1))
+    edges = np.cumsum(np.tile(dash, int(along[-1] / float_sum(dash)) + 1))
     starts = np.concatenate(([0.0], edges[1::2]))
     found = []
     for start, end in zip(starts, edges[::2], strict=False):

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.errors import InputError
+from simkit.install_command import install_command
 from simkit.msgs.message_columns import TEXT, Column
 from simkit.msgs.message_types import FieldValue
 
@@ -112,7 +113,7 @@ def check_parquet() -> None:
     except ImportError:
         text = (
             "SK-BAG-014 --format parquet needs the package pyarrow, which is not installed\n"
-            "    help: pip install 'simkit-robotics[parquet]', or use --format npz"
+            f"    help: {install_command('parquet')}, or use --format npz"
         )
         raise InputError(text, "SK-BAG-014") from None
 

@@ -11,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
+from simkit.float_sum import float_sum
+
 Edge = tuple[str, str]
 
 _SWEEPS: Final = 12
@@ -169,7 +171,7 @@ def _heights(columns: Sequence[Sequence[str]], links: Sequence[Edge], height: Ma
     for sweep in range(_SWEEPS):
         for names in columns if sweep % 2 == 0 else reversed(columns):
             near = [[middle[one] for one in (*before[name], *after[name])] or [middle[name]] for name in names]
-            _spread(names, [sum(values) / len(values) for values in near], height, middle)
+            _spread(names, [float_sum(values) / len(values) for values in near], height, middle)
     return middle
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from simkit.float_sum import float_sum
 from simkit.linear_algebra import norm
 from simkit.recording.pictures.camera import VERTICAL_FOV, Camera, frame_points, line_of_sight
 from simkit.recording.pictures.overlay import Colours, Distances, Marks, Points, draw_overlay
@@ -133,7 +134,7 @@ def _visible_share(sim: Simulation, render: Render, camera: Camera, subject: Sub
             column = np.clip(np.rint(pixels[:, 0]), 0, width - 1).astype(int)
             row = np.clip(np.rint(pixels[:, 1]), 0, height - 1).astype(int)
             shares.append(weight * float((depth <= distances[row, column] + slack).mean()))
-    return sum(shares) / sum(weights)
+    return float_sum(shares) / float_sum(weights)
 
 
 def _lit_sphere(subject: Subject, camera: Camera) -> tuple[Points, float]:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from simkit.float_sum import float_sum
 from simkit.recording.pictures.camera import MARGIN, Camera
 
 if TYPE_CHECKING:
@@ -239,10 +240,10 @@ def _draw_legend(
     left, right = between
     shown = [(*entry[:2], _fitted(entry[2], font, 16 * size)) for entry in entries]
     widths = [symbol + 0.4 * size + font.getlength(text) for _, _, text in shown]
-    while shown and sum(widths) + gap * (len(shown) - 1) > right - left:
+    while shown and float_sum(widths) + gap * (len(shown) - 1) > right - left:
         shown.pop()
         widths.pop()
-    x = right - sum(widths) - gap * max(len(shown) - 1, 0)
+    x = right - float_sum(widths) - gap * max(len(shown) - 1, 0)
     for (kind, colour, text), width in zip(shown, widths, strict=True):
         _draw_symbol(draw, kind, colour, x, y, symbol)
         _text(draw, (x + symbol + 0.4 * size, y), text, font, "lm")

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simkit.errors import InputError
+from simkit.install_command import install_command
 from simkit.recording.pictures.overlay import MARK_COLOURS
 
 Colours = NDArray[np.uint8]
@@ -75,7 +76,7 @@ def _import_av() -> Any:
     except ImportError as error:
         text = (
             f"SK-CLI-053 videos need the package av ({error})\n"
-            "    help: pip install 'simkit-robotics[video]', or write a GIF with --gif OUT.gif"
+            f"    help: {install_command('video')}, or write a GIF with --gif OUT.gif"
         )
         raise InputError(text, "SK-CLI-053") from None
     return av

@@ -168,9 +168,17 @@ class Publisher(InProcess):
         for receive in self._readers.receivers:
             receive(later)
 
-    def send_kept(self, receive: Callable[[Message], object]) -> None:
-        """Pass the last message of a latched topic, or its history, to a new subscriber."""
+    def send_kept(self, receive: Callable[[Message], object], *, makes: bool = True) -> None:
+        """Pass the last message of a latched topic, or its history, to a new subscriber.
+
+        Args:
+            receive: function that receives a message.
+            makes: False for a subscriber that makes each message when it reads the message.
+        """
         if self.history is None and isinstance(self.last, LazyMessage):
+            if not makes:
+                receive(self.last)
+                return
             self.last = self.last.get()
         kept = (self.last,) if self.history is None else tuple(self.history)
         for message in kept:

@@ -370,7 +370,7 @@ class TopicBus:
         readers.count()
         for publisher in self._publishers.get(topic, ()):
             if publisher.latched and publisher.active:
-                publisher.send_kept(subscription.receive)
+                publisher.send_kept(subscription.receive, makes=subscription.is_called)
         self._report_change(topic)
         return subscription
 

@@ -10,6 +10,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from simkit.float_sum import float_sum
 from simkit.runtime.contact.friction_contacts import (
     AnyFrictionContacts,
     Floats,
@@ -196,8 +197,8 @@ def _rotate_surface_velocity(flow: Numbers, before: Numbers, after: Numbers) -> 
     """Convert a surface velocity from the tangents of one frame to those of another, in place."""
     one, two = flow[:2]
     over = [one * a + two * b for a, b in zip(before[3:6], before[6:], strict=True)]
-    flow[0] = sum(a * b for a, b in zip(over, after[3:6], strict=True))
-    flow[1] = sum(a * b for a, b in zip(over, after[6:], strict=True))
+    flow[0] = float_sum(a * b for a, b in zip(over, after[3:6], strict=True))
+    flow[1] = float_sum(a * b for a, b in zip(over, after[6:], strict=True))
 
 
 def _rotate_vector(matrix: Numbers, vector: Numbers) -> Numbers:

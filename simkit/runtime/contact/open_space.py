@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul, norm
 from simkit.runtime.contact import travel_bounds
 
@@ -151,7 +152,7 @@ def _ball_of(model: mujoco.MjModel, tree: int, geoms: npt.NDArray[np.intp]) -> _
         joints = range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body]))
         if any(model.jnt_type[k] != _HINGE for k in joints):
             return None
-        anchors = 2.0 * sum(norm(model.jnt_pos[k]) for k in joints)
+        anchors = 2.0 * float_sum(norm(model.jnt_pos[k]) for k in joints)
         reach[body] = reach[int(model.body_parentid[body])] + norm(model.body_pos[body]) + anchors
     offsets = np.linalg.norm(model.geom_pos[geoms], axis=1) + model.geom_rbound[geoms]
     radius = max(

@@ -8,7 +8,8 @@ import mujoco
 import numpy as np
 
 from simkit.compiler import JointBinding
-from simkit.linear_algebra import lstsq, matmul
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import lstsq
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_multiply, quat_rotate
 from simkit.runtime.engine.physics_state import STALE
 

@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler import Compiled, LinkBinding
-from simkit.linear_algebra import eigh, matmul
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import eigh
 from simkit.pose import Pose, Vector
 from simkit.runtime.engine.entity_structure import WorldStructure
 from simkit.scene import SceneVisual

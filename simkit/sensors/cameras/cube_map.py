@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.sensors.cameras.rendering.view import Colours, DrawnView, Shot, View
@@ -118,7 +119,7 @@ def _faces(directions: Vector, known: npt.NDArray[np.bool_], model: WideAngleMod
     found = [_face(rotation, owner == i, directions, model) for i, rotation in enumerate(_FACES) if (owner == i).any()]
     if not found:  # a lens that shows nothing in the middle of any pixel
         return []
-    drawn = sum(np.ptp(face.right) * np.ptp(face.down) * face.scale**2 for face in found)
+    drawn = float_sum(np.ptp(face.right) * np.ptp(face.down) * face.scale**2 for face in found)
     shrink = 1.0 if model.face_size else min(1.0, math.sqrt(_MOST_TIMES * known.size / max(drawn, 1.0)))
     return [_Face(f.rotation, f.pixels, f.right, f.down, f.scale * shrink) for f in found]
 

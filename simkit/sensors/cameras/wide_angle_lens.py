@@ -10,7 +10,8 @@ from typing import Final
 import numpy as np
 
 from simkit.elementary_functions import arcsin, arctan, power, tan
-from simkit.linear_algebra import lstsq, matmul
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import lstsq
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.cameras.camera_model import MAX_PIXELS, CameraModel, read_clip

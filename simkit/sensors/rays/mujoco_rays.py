@@ -101,7 +101,7 @@ class ReducedModelCaster:
         first = int(np.count_nonzero(is_static))
         self._static = _compile_reduced_model(model, full[:first], carriers[:first])
         self._all = _compile_reduced_model(model, full, carriers) if first < len(full) else self._static
-        kept = np.unique(carriers[first:])
+        kept = np.array(sorted(set(carriers[first:].tolist())), carriers.dtype)  # `np.unique` imports `numpy.ma`, 15 ms
         self._model, self.ids = model, np.append(full, -1).astype(np.int32)
         # carrier 0 is static; the poses of the other carriers are copied for each cast
         self.movers, self._carriers = full[first:], carriers[first:]
@@ -200,7 +200,8 @@ def _bounds_to_widen(model: mujoco.MjModel, is_seen: npt.NDArray[np.bool_]) -> t
     seen = seen[model.body_bvhnum[bodies] > 0]
     bodies = model.geom_bodyid[seen]
     turn = np.empty((model.nbody, 9))
-    for body in np.unique(bodies):
+    found = np.array(sorted(set(bodies.tolist())), bodies.dtype)
+    for body in found:
         mujoco.mju_quat2Mat(turn[body], model.body_iquat[body])
     centre = model.geom_pos[seen] - model.body_ipos[bodies]
     centre = np.einsum("gji,gj->gi", turn.reshape(-1, 3, 3)[bodies], centre)
@@ -210,7 +211,6 @@ def _bounds_to_widen(model: mujoco.MjModel, is_seen: npt.NDArray[np.bool_]) -> t
     low, high = np.full((model.nbody, 3), np.inf), np.full((model.nbody, 3), -np.inf)
     np.minimum.at(low, bodies, centre - radius)
     np.maximum.at(high, bodies, centre + radius)
-    found = np.unique(bodies)
     rows = roots[found].astype(np.intp)
     box = model.bvh_aabb[rows]
     low, high = np.minimum(low[found], box[:, :3] - box[:, 3:]), np.maximum(high[found], box[:, :3] + box[:, 3:])

@@ -267,7 +267,7 @@ def cast_on_shapes(
         firsts = np.zeros(len(shapes.geoms), dtype=np.intp)
     distance = np.sqrt(np.einsum("ij,ij->i", shapes.positions, shapes.positions))
     near = (distance - shapes.radii <= reach) & (distance + shapes.radii >= start)
-    for kind in np.unique(shapes.kinds[near]).tolist():
+    for kind in sorted(set(shapes.kinds[near].tolist())):
         chosen = np.flatnonzero(near & (shapes.kinds == kind))
         selected, begin = shapes.only(chosen), firsts.take(chosen)
         origins, sizes = -np.einsum("gi,gij->jg", selected.positions, selected.turns), selected.sizes.T

@@ -98,7 +98,7 @@ class RayTargets:
     @cached_property
     def moving_shapes(self) -> int:
         """Number of carriers of shapes that move or have a sensor."""
-        return len(np.unique(self.carriers[np.isin(self.types, SHAPES)]))
+        return len(set(self.carriers[np.isin(self.types, SHAPES)].tolist()))  # `np.unique` imports `numpy.ma`, 15 ms
 
     @cached_property
     def whole(self) -> WholeModelCaster:
@@ -160,6 +160,6 @@ class RayTargets:
         carriers = self.carriers[which]
         scenes: dict[object, TriangleScene] = {}
         return [
-            TriangleBody(self.model, int(c), self.bodies[c], self.geoms[which[carriers == c]], scenes)
-            for c in np.unique(carriers)
+            TriangleBody(self.model, c, self.bodies[c], self.geoms[which[carriers == c]], scenes)
+            for c in sorted(set(carriers.tolist()))
         ]

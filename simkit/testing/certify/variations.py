@@ -9,6 +9,8 @@ from itertools import chain, count, islice
 from pathlib import Path
 from typing import Final, Literal
 
+from simkit.home_folder import home_folder
+
 Listening = Literal["called", "kept", "none", "late"]
 """Kind of subscription: callbacks, a queue that is read later, no subscribers, or two from half of the run on."""
 
@@ -59,7 +61,7 @@ class Variation:
             home = folder / "home"
             home.mkdir()
             # models that Gazebo downloaded are found in these folders, although HOME differs
-            fetched = (Path.home() / name / "fuel" for name in (".gz", ".ignition"))
+            fetched = (home_folder() / name / "fuel" for name in (".gz", ".ignition"))
             caches = [found.get("GZ_FUEL_CACHE_PATH", ""), *(str(place) for place in fetched if place.is_dir())]
             found["GZ_FUEL_CACHE_PATH"] = os.pathsep.join(place for place in caches if place)
             found.update(HOME=str(home), USERPROFILE=str(home), TZ="Asia/Kathmandu", LANG="C", LC_ALL="C")

@@ -10,6 +10,7 @@ from typing import Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.float_sum import float_sum
 from simkit.msgs.topic_names import absolute_name
 from simkit.run_spec import Check
 from simkit.runtime import Simulation
@@ -306,7 +307,7 @@ def configured_rate(sim: Simulation, topic: str) -> float | None:
             if what == "publishes" and end.active:
                 owners.append(None if getattr(end, "latched", False) else end.owner)
     rates = [_publisher_rate(owner, sim.timestep) for owner in owners]
-    return sum(rate for rate in rates if rate is not None) if rates and None not in rates else None
+    return float_sum(rate for rate in rates if rate is not None) if rates and None not in rates else None
 
 
 def _publisher_rate(owner: object, timestep: float) -> float | None:

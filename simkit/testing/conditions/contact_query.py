@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import mujoco
 import numpy as np
 
+from simkit.float_sum import float_sum
 from simkit.runtime import Simulation
 from simkit.runtime.contact.collision_contacts import Bools, collision_table
 
@@ -125,7 +126,7 @@ class ContactQuery:
             if self._second is None and self._is_fixed[touch[2]]:
                 up = up or self._up()
                 # the contact normal points from the first geom of the engine's pair to the second
-                rise = sign * sum(n * u for n, u in zip(contact.frame[row].tolist(), up, strict=False))
+                rise = sign * float_sum(n * u for n, u in zip(contact.frame[row].tolist(), up, strict=False))
                 if rise >= _MAX_SLOPE or self._is_height_map[touch[2]]:
                     continue
             found.append(touch)

@@ -15,8 +15,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
+from simkit import file_lock
 from simkit.errors import InputError
 from simkit.input_file import read_input
+from simkit.install_command import install_command
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
 from simkit.testing.golden.record_encoding import decode_record, decode_scenario, encode_record, encode_scenario
@@ -25,6 +27,7 @@ from simkit.testing.run_record.record import RunRecord
 FORMAT: Final = 1
 MAIN_FILE: Final = "golden.json"
 _DATA: Final = re.compile(r"data-[0-9a-f]{12}\.xz")
+_LOCK_NAME: Final = ".golden.lock"
 _TEMPORARY_NAME: Final = re.compile(r"\.golden-\d+\.tmp")
 _MAX_TEXT_BYTES: Final = 16 << 20  # maximum size of golden.json [bytes]
 _MAX_DATA_BYTES: Final = 256 << 20
@@ -146,7 +149,7 @@ def read_main(folder: Path) -> JsonObject:
     if main["format"] > FORMAT:
         raise InputError(
             f"SK-GOLDEN-004 {path} has format {main['format']}; this version of simkit reads formats up to {FORMAT}\n"
-            "    help: pip install --upgrade simkit-robotics",
+            f"    help: {install_command(option='--upgrade')}",
             "SK-GOLDEN-004",
         )
     if main["format"] < 1 or not isinstance(main.get("scenario"), dict):
@@ -218,20 +221,35 @@ def _locked_folder(folder: Path) -> Iterator[int | None]:
     """Lock a folder, so that only one process writes in it at a time.
 
     Yields:
-        Descriptor of the folder; None on Windows, which cannot lock a folder.
+        Descriptor of the folder; None on Windows, which cannot open a folder and locks a file in it.
     """
     if not hasattr(os, "O_DIRECTORY"):
-        yield None
+        with _locked_file(folder / _LOCK_NAME):
+            yield None
         return
-    import fcntl
-
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         with suppress(OSError):  # some file systems do not support locks
-            fcntl.flock(handle, fcntl.LOCK_EX)
+            file_lock.wait_for_lock(handle)
         yield handle
     finally:
         os.close(handle)
+
+
+@contextmanager
+def _locked_file(path: Path) -> Iterator[None]:
+    """Lock a file, and remove it at the end unless another process waits for it."""
+    is_locked = False
+    while not is_locked:
+        with path.open("ab") as file:
+            with suppress(OSError):
+                file_lock.wait_for_lock(file.fileno())
+            is_locked = file_lock.is_same_file(file.fileno(), path)  # else another process has removed it
+            if is_locked:
+                try:
+                    yield
+                finally:
+                    file_lock.remove_locked_file(file, path)
 
 
 def _remove_old_data(folder: Path, name: str) -> None:

@@ -14,6 +14,7 @@ from typing import Final
 
 from simkit.child_process import ChildProcesses
 from simkit.errors import InputError
+from simkit.float_sum import float_sum
 from simkit.input_file import read_input
 from simkit.progress import report_each
 from simkit.run_spec import JsonObject
@@ -88,12 +89,12 @@ class Grade:
     @property
     def points(self) -> float:
         """Achieved points."""
-        return sum(mark.points for outcome in self.outcomes for mark in outcome.marks)
+        return float_sum(mark.points for outcome in self.outcomes for mark in outcome.marks)
 
     @property
     def worth(self) -> float:
         """Achievable points."""
-        return sum(mark.worth for outcome in self.outcomes for mark in outcome.marks)
+        return float_sum(mark.worth for outcome in self.outcomes for mark in outcome.marks)
 
     @property
     def passed(self) -> bool:

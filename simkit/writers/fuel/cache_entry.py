@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from io import BufferedRandom
 from pathlib import Path, PurePosixPath
 
-from simkit import progress
+from simkit import file_lock, progress
 from simkit.diagnostics import Diagnostics
 from simkit.input_file import open_input, read_input_text
 from simkit.loaders.resources.bundled_models import builtin_model
@@ -47,29 +47,17 @@ def exclusive_file(path: Path) -> Iterator[BufferedRandom]:
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a+b") as file:
             _wait_for_lock(file)
-            if _is_same_file(file, path):  # else another process has removed it
+            if file_lock.is_same_file(file.fileno(), path):  # else another process has removed it
                 yield file
                 return
 
 
-def _is_same_file(file: BufferedRandom, path: Path) -> bool:
-    with suppress(FileNotFoundError):
-        return os.path.samestat(os.fstat(file.fileno()), path.stat())
-    return False
-
-
 def _wait_for_lock(file: BufferedRandom) -> None:
-    """Lock a file until it is closed. Windows and some file systems have no such lock."""
-    if os.name == "nt":
-        return
-    import fcntl
-
+    """Lock a file until it is closed. Some file systems have no such lock."""
     with suppress(OSError):
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+        if not file_lock.try_lock(file.fileno()):
             with progress.task("waiting for another simkit fetch"):
-                fcntl.flock(file, fcntl.LOCK_EX)
+                file_lock.wait_for_lock(file.fileno())
 
 
 def archive_record(file: BufferedRandom) -> Record:

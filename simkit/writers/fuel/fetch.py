@@ -13,7 +13,7 @@ from io import BufferedRandom
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from simkit import progress
+from simkit import file_lock, progress
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError
 from simkit.loaders import Resolver, find_document
@@ -281,9 +281,10 @@ class _Fetcher:
                 raise
             finally:
                 if is_finished:  # else the next run continues with this file
-                    for path in (notes, part):
-                        with suppress(OSError):
-                            path.unlink(missing_ok=True)
+                    with suppress(OSError):
+                        notes.unlink(missing_ok=True)
+                    with suppress(OSError):
+                        file_lock.remove_locked_file(file, part)
         assert found is not None
         return found
 

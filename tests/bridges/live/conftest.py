@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.bridges.live.socket_files import is_possible
+from simkit.bridges.live.socket_files import KIND_VARIABLE
 from simkit.live import Client, Server
 
 COURT = """<sdf version="1.9"><world name="court">
@@ -28,15 +28,17 @@ COURT = """<sdf version="1.9"><world name="court">
 </link></model></world></sdf>"""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    if not is_possible():
-        for item in items:
-            if Path(item.fspath).parent == Path(__file__).parent:
-                item.add_marker(pytest.mark.skip(reason="this system's Python has no local sockets"))
+@pytest.fixture
+def kind_of_sockets(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The kind that new simulations use; files that are parametrised with it run with each kind."""
+    kind = getattr(request, "param", "")
+    if kind:
+        monkeypatch.setenv(KIND_VARIABLE, kind)
+    return kind
 
 
 @pytest.fixture(autouse=True)
-def sockets(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def sockets(monkeypatch: pytest.MonkeyPatch, kind_of_sockets: str) -> Iterator[Path]:
     """Where the sockets are; a short path, since that of a socket has room for about 100 bytes."""
     with tempfile.TemporaryDirectory(prefix="sk", dir="/tmp") as folder:
         monkeypatch.setenv("XDG_RUNTIME_DIR", folder)

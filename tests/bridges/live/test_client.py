@@ -11,6 +11,8 @@ import simkit
 from simkit import msgs
 from simkit.live import Client, LiveClosed, LiveError, Server, connect, simulations
 
+pytestmark = pytest.mark.parametrize("kind_of_sockets", ["unix", "tcp"], indirect=True)
+
 
 def test_a_simulation_is_found_by_name_and_describes_itself(client: Client) -> None:
     found = simulations()

@@ -250,8 +250,8 @@ def serving_until_the_end(path: Path, failed: list[LiveError]) -> Iterator[None]
                     goal.publish_feedback({"sequence": [1]})
                     client.receive(0.1)
 
-            client.act("/fibonacci", FIBONACCI, execute)
             try:
+                client.act("/fibonacci", FIBONACCI, execute)  # a goal may come while this waits for its answer
                 client.spin()
             except LiveError as error:
                 failed.append(error)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import random
-import socket
 import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,6 +14,7 @@ import pytest
 
 import simkit
 from simkit import msgs
+from simkit.bridges.live import socket_files
 from simkit.bridges.live.connection import MOST_OPEN, ClientConnection
 from simkit.bridges.live.message_log import MOST_BYTES, Entry
 from simkit.bridges.live.protocol import (
@@ -34,14 +34,16 @@ from simkit.recording.bags.recorder import Recorder
 SLICES, STEPS = 40, 25
 
 
+pytestmark = pytest.mark.parametrize("kind_of_sockets", ["unix", "tcp"], indirect=True)
+
+
 class Caller:
     """A client that sends whatever it likes, and never waits."""
 
     def __init__(self, server: Server) -> None:
-        self.socket = socket.socket(socket.AF_UNIX)
-        self.socket.connect(str(server.path))
+        self.socket, token = socket_files.connect(server.path, timeout=5.0)
         self.socket.setblocking(False)
-        self._reader, self._numbers = FrameReader(1 << 28, (2, 3, 4)), 0
+        self._reader, self._numbers = FrameReader(1 << 28, (2, 3, 4), token), 0
 
     def ask(self, question: str, **args: Any) -> None:
         self._numbers += 1

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import socket
 from typing import Any
 
 import pytest
 
 import simkit
 from simkit import msgs
-from simkit.bridges.live import connection, message_log, topic_feed
+from simkit.bridges.live import connection, message_log, socket_files, topic_feed
 from simkit.bridges.live.connection import MOST_OPEN
 from simkit.bridges.live.message_log import MOST_BYTES
 from simkit.bridges.live.protocol import ASK, MESSAGE, MESSAGE_HEAD, FrameReader, json_frame, message_frame
@@ -28,10 +27,9 @@ class Caller:
 
     def __init__(self, server: Server) -> None:
         self.server, self.lost = server, dict[int, int]()
-        self.socket = socket.socket(socket.AF_UNIX)
-        self.socket.connect(str(server.path))
+        self.socket, token = socket_files.connect(server.path, timeout=5.0)
         self.socket.setblocking(False)
-        self._reader = FrameReader(1 << 28, (2, 3, 4))
+        self._reader = FrameReader(1 << 28, (2, 3, 4), token)
         server.poll()
 
     def ask(self, question: str, **args: Any) -> None:

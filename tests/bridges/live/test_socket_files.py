@@ -82,10 +82,25 @@ def test_a_path_that_is_too_long_is_replaced_by_the_temporary_folder(
     assert none is None and note.startswith("note SK-LIVE-009: other terminals cannot reach this run: ")
 
 
-def test_a_run_continues_without_local_sockets(court: simkit.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_python_without_unix_sockets_uses_local_tcp(
+    court: simkit.Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.delattr(socket, "AF_UNIX")
-    assert serve(court)[0] is None
-    assert simulations() == []
+    with Server(court) as server:
+        assert server.path.name == "court.port"
+        assert [found.name for found in simulations()] == ["court"]
+    monkeypatch.setenv("SIMKIT_LOCAL_SOCKETS", "unix")
+    none, note = serve(court)
+    assert none is None
+    assert note.endswith("reach this run: this system's Python has no Unix sockets; expected SIMKIT_LOCAL_SOCKETS=tcp")
+
+
+def test_an_unknown_kind_of_sockets_is_told_and_the_run_continues(
+    court: simkit.Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SIMKIT_LOCAL_SOCKETS", "pipe")
+    none, note = serve(court)
+    assert none is None and note.endswith("SIMKIT_LOCAL_SOCKETS is 'pipe'; expected unix or tcp")
 
 
 def test_a_file_that_is_not_a_socket_is_deleted_or_keeps_its_name(court: simkit.Simulation, sockets: Path) -> None:

@@ -21,7 +21,7 @@ def test_a_python_without_rclpy_is_an_error_with_the_reason_and_a_remedy() -> No
     command = ["run", "turtlebot3_empty", "--duration", "1", "--ros", "--ros-python", sys.executable]
     found = subprocess.run([sys.executable, "-m", "simkit", *command], capture_output=True, text=True)
     assert found.returncode == 2
-    assert "SK-ROS-002" in found.stderr and "No module named 'rclpy'" in found.stderr
+    assert "SK-ROS-002" in found.stderr and "'rclpy'" in found.stderr
     assert "pip install ros-jazzy-rclpy" in found.stderr
 
 

@@ -11,6 +11,7 @@ import simkit
 from simkit.errors import InputError
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.resources import ros_packages
+from simkit.loaders.resources.bundled_models import bundled_folders
 from simkit.run_spec import PackagePaths
 
 
@@ -168,6 +169,13 @@ def test_a_robot_in_an_installed_python_package_finds_the_packages_of_its_own_py
     file = f"{own}/robot/urdf/r.urdf"
     assert used(file, MESH.format("cameras"))[0] == f"{own}/cameras"
     assert used(file, MESH.format("sensors"))[0] == ""
+
+
+def test_a_shipped_file_finds_shipped_packages_and_none_of_the_workspace_of_a_checkout():
+    worlds, labs = (bundled_folders(kind)[0] for kind in ("worlds", "labs"))
+    index = Resolver().packages
+    assert [folder.name for folder in index.packages([labs / "02_interfaces"])] == ["lab_interfaces"]
+    assert [*index.packages([worlds])] == []
 
 
 @pytest.mark.parametrize("folder", ["bin", "include", "lib"])

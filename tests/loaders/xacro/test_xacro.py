@@ -330,6 +330,12 @@ def test_expressions_have_the_values_of_python(text):
     assert evaluate(text) == eval(text)
 
 
+def test_a_sum_has_the_same_bits_on_every_python():
+    """From 3.12 on, Python's own sum is 1.0."""
+    assert evaluate("sum([0.1] * 10)") == 0.9999999999999999
+    assert evaluate("sum([[1], [2]], [0])") == [0, 1, 2]
+
+
 @pytest.mark.parametrize(
     "text",
     [

@@ -305,7 +305,7 @@ def test_without_pvlib_the_hint_is_the_install_command(monkeypatch: pytest.Monke
     sun_position._algorithm.cache_clear()
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     ((code, message),) = errors(world(**NREL))
-    assert code == "SK-SENSOR-084" and "pip install 'simkit-robotics[sun]'" in message
+    assert code == "SK-SENSOR-084" and 'pip install "simkit-robotics[sun] @ git+https://' in message
 
 
 def test_another_surface_model_still_has_the_sun_of_the_earth() -> None:

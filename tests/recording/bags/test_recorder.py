@@ -219,7 +219,8 @@ def _killed_recording(folder: Path, name: str) -> Path:
         process.stdin.close()
         deadline = time.monotonic() + 60
         for line in process.stdout:
-            if float(line) >= 5.0 or time.monotonic() > deadline:
+            # at 6 s the first 5 s are on disk; at 5 s, the message that ends the fifth second may still be due
+            if float(line) >= 6.0 or time.monotonic() > deadline:
                 break
         process.send_signal(signal.SIGKILL)
     return folder / name

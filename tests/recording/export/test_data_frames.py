@@ -96,6 +96,6 @@ def test_mistakes_are_named(drive: Any) -> None:
 
 def test_a_missing_pandas_is_named_with_what_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(InputError, match=r"pip install 'simkit-robotics\[pandas\]'") as caught:
+    with pytest.raises(InputError, match=r'pip install "simkit-robotics\[pandas\] @ git\+https://') as caught:
         simkit.to_dataframe([])
     assert caught.value.code == "SK-INPUT-004"

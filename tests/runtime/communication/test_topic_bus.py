@@ -33,6 +33,21 @@ def test_a_latched_topic_sends_its_last_message_to_later_subscribers():
     assert bus.subscribe("/x").latest.data == 4.0
 
 
+def test_a_message_kept_on_a_latched_topic_is_made_when_a_subscriber_reads_it():
+    bus, made, called = TopicBus(), [], []
+
+    def make():
+        made.append(msgs.make("std_msgs/msg/Float64", data=4.0))
+        return made[-1]
+
+    bus.advertise("/x", "std_msgs/msg/Float64", latched=True).publish_later(make)
+    subscription = bus.subscribe("/x")
+    assert made == []
+    assert subscription.latest.data == 4.0
+    bus.subscribe("/x", called.append)
+    assert [len(made), *(m.data for m in called)] == [1, 4.0]
+
+
 def test_a_publisher_accepts_a_dict_of_the_fields_of_its_type():
     bus = TopicBus()
     publisher = bus.advertise("/x", "geometry_msgs/msg/Twist")

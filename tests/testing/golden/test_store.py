@@ -268,7 +268,12 @@ def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path, record: Run
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="a process cannot be forked here")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_parallel_writers_and_a_reader_see_complete_golden_runs(tmp_path: Path, record: RunRecord) -> None:
+@pytest.mark.parametrize("lock", ["of the folder", "of a file, as on Windows"])
+def test_parallel_writers_and_a_reader_see_complete_golden_runs(
+    tmp_path: Path, record: RunRecord, lock: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if lock != "of the folder":
+        monkeypatch.delattr(os, "O_DIRECTORY", raising=False)
     record = replace(record, fields={}, streams={})  # quickly written
     other = replace(record, end="until")
     write_golden(tmp_path / "g", record)

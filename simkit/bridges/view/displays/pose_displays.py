@@ -20,7 +20,8 @@ from simkit.bridges.view.displays.display import (
 )
 from simkit.bridges.view.displays.drawing import Colour, Drawing, Floats
 from simkit.bridges.view.displays.frame_poses import Placement
-from simkit.linear_algebra import det, dot, eigh, norm
+from simkit.linear_algebra import det, dot, norm
+from simkit.matrix_decompositions import eigh
 from simkit.msgs.message_types import Message
 from simkit.pose import IDENTITY, Pose
 

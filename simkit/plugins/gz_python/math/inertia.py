@@ -8,7 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from simkit.linear_algebra import det, eigh, eigvalsh, matmul
+from simkit.float_sum import float_sum
+from simkit.linear_algebra import det, matmul
+from simkit.matrix_decompositions import eigh, eigvalsh
 from simkit.plugins.gz_python.math.matrices import Matrix3d
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
@@ -178,7 +180,7 @@ class MassMatrix3d(Value):
     @staticmethod
     def epsilon(moments: VectorLike, tolerance: float = TOLERANCE) -> float:
         """Return the allowed rounding error [kg·m²]: `tolerance` · machine epsilon · half the sum of the moments."""
-        largest = 0.5 * sum(components_of(moments, 3))
+        largest = 0.5 * float_sum(components_of(moments, 3))
         return abs(tolerance) * float(np.finfo(float).eps) * largest
 
     def is_positive(self, tolerance: float = TOLERANCE) -> bool:

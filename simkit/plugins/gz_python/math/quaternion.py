@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final, Protocol
 
+from simkit.float_sum import float_sum
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, round_half_away
 from simkit.plugins.gz_python.math.value_base import (
     ClassConstant,
@@ -176,7 +177,7 @@ class Quaterniond(Components):
 
     def normalize(self) -> None:
         """Scale to length 1; a zero quaternion becomes the identity."""
-        length = math.sqrt(sum(v * v for v in self._v))
+        length = math.sqrt(float_sum(v * v for v in self._v))
         if length <= DEFAULT_TOLERANCE:
             self._v = [1.0, 0.0, 0.0, 0.0]
         else:
@@ -212,7 +213,7 @@ class Quaterniond(Components):
         self.set_from_axis_angle(axis, angle * factor)
 
     def dot(self, other: Quaterniond) -> float:
-        return sum(a * b for a, b in zip(self._v, other._v, strict=True))
+        return float_sum(a * b for a, b in zip(self._v, other._v, strict=True))
 
     def rotate_vector(self, vector: VectorLike) -> Vector3d:
         """Rotate a vector."""

@@ -10,6 +10,7 @@ from typing import ClassVar, Final, TypeAlias, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from simkit.float_sum import float_sum
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, round_half_away
 from simkit.plugins.gz_python.math.value_base import ClassConstant, Components, CppArgument, HasComponents, Operand
 
@@ -141,17 +142,17 @@ class Vector(Components):
     # ------------------------------------------------------------------ measures
 
     def sum(self) -> float:
-        return sum(self._v)
+        return float_sum(self._v)
 
     def dot(self, other: VectorLike) -> float:
-        return sum(a * b for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
+        return float_sum(a * b for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
     def abs_dot(self, other: VectorLike) -> float:
         """Return the sum of the absolute values of the products of the components."""
-        return sum(abs(a * b) for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
+        return float_sum(abs(a * b) for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
     def squared_length(self) -> float:
-        return sum(a * a for a in self._v)
+        return float_sum(a * a for a in self._v)
 
     def length(self) -> float:
         return math.sqrt(self.squared_length())

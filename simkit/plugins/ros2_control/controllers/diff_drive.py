@@ -9,6 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from simkit import msgs
+from simkit.float_sum import float_sum
 from simkit.linear_algebra import norm
 from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, DeadReckoning, command_of
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
@@ -77,7 +78,7 @@ class RollingMeanOdometry:
         if not self._speeds:
             return BodyTwist()
         count = len(self._speeds)
-        ahead, turn = (sum(speeds) / count for speeds in zip(*self._speeds, strict=True))
+        ahead, turn = (float_sum(speeds) / count for speeds in zip(*self._speeds, strict=True))
         return BodyTwist((ahead, 0.0, 0.0), (0.0, 0.0, turn))
 
 
@@ -240,7 +241,7 @@ class DiffDriveController(Controller):
         if count == 1:
             left, right = values
             return left, right
-        return sum(values[:count]) / count, sum(values[count:]) / count
+        return float_sum(values[:count]) / count, float_sum(values[count:]) / count
 
     def _publish(self, now_ns: int) -> None:
         """Publish odometry and its transform if the next multiple of the publish period is reached."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from simkit.float_sum import float_sum
 from simkit.params import Params
 from simkit.plugins.drives.odometry import Motion
 from simkit.plugins.ros2_control.reference_drive import ReferenceDrive, read_size
@@ -93,11 +94,11 @@ class MecanumDrive(ReferenceDrive):
             message = "the wheels need collisions that are cylinders or spheres of one radius"
             self.params.error("SK-CONTROL-040", message)
             return 1.0, 1.0
-        if not sum(arms):
+        if not float_sum(arms):
             message = "the joints of the wheels are at the origin of their parent link, so the wheelbase is unknown"
             self.params.error("SK-CONTROL-040", message)
             return 1.0, 1.0
-        return radii[0], sum(arms) / len(arms)
+        return radii[0], float_sum(arms) / len(arms)
 
     def _read_husarion_sizes(self, params: Params) -> None:
         """Read the sizes and set the topics of Husarion's controller, which has the same type name."""
@@ -114,7 +115,7 @@ class MecanumDrive(ReferenceDrive):
 
     def measured_twist(self, values: Sequence[float], period: float) -> Motion:
         rims = [value * self._radius / 4 for value in values]
-        x, y, turn = (sum(sign[axis] * rim for sign, rim in zip(_SIGNS, rims, strict=True)) for axis in range(3))
+        x, y, turn = (float_sum(sign[axis] * rim for sign, rim in zip(_SIGNS, rims, strict=True)) for axis in range(3))
         turn /= self._arm
         # from the centre of the wheels to the frame of the base
         offset_x, offset_y, theta = self._offset

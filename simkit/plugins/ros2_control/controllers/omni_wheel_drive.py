@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from simkit.linear_algebra import matmul, pinv
+from simkit.linear_algebra import matmul
+from simkit.matrix_decompositions import pinv
 from simkit.params import Params
 from simkit.plugins.drives.odometry import Motion
 from simkit.plugins.ros2_control.reference_drive import ReferenceDrive, read_size

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
+from simkit.float_sum import float_sum
 from simkit.params import Params
 from simkit.plugins.drives.odometry import Motion
 from simkit.plugins.ros2_control.reference_drive import ReferenceDrive, read_joints, read_size
@@ -82,7 +83,7 @@ class SteeringDrive(ReferenceDrive):
             return rims[0] * math.cos(steer), 0.0, rims[0] * math.sin(steer) / self._wheelbase
         factors = self._traction_factors(steer)
         # a wheel at the centre of rotation does not turn, so its speed says nothing about the base
-        ahead = sum(rim / factor for rim, factor in zip(rims, factors, strict=True) if abs(factor) > 1e-6) / count
+        ahead = float_sum(rim / factor for rim, factor in zip(rims, factors, strict=True) if abs(factor) > 1e-6) / count
         return ahead, 0.0, math.tan(steer) * ahead / self._wheelbase
 
     def _middle_angle(self, angles: Sequence[float]) -> float:
@@ -94,7 +95,7 @@ class SteeringDrive(ReferenceDrive):
         for sign, angle in zip((-1.0, 1.0), angles, strict=True):  # right, left
             across, along = math.sin(angle), math.cos(angle)
             found.append(math.atan2(base * across, base * along + sign * half * across))
-        return sum(found) / 2
+        return float_sum(found) / 2
 
     def _traction_factors(self, steer: float) -> list[float]:
         """Return the ratio of the speed of each driven wheel to the speed of the middle of its axle."""

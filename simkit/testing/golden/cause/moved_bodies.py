@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from simkit.float_sum import float_sum
 from simkit.linear_algebra import norm
 from simkit.pose import Pose, Vector
 from simkit.testing.golden.cause.first_tick import distinct_digits
@@ -95,7 +96,7 @@ def _is_pose(value: object) -> bool:
         return False
     if not all(isinstance(v, (int, float)) and abs(v) < _FARTHEST for v in value):
         return False
-    return bool(sum(v * v for v in value[3:]) > _CLOSE)
+    return bool(float_sum(v * v for v in value[3:]) > _CLOSE)
 
 
 def local_path(path: str) -> str:

@@ -158,7 +158,7 @@ def test_ids_name_the_geom_at_each_pixel() -> None:
     assert set(np.unique(found)) == {0, 1}
 
 
-def test_a_flex_and_a_skin_are_drawn() -> None:
+def test_a_cloth_is_drawn() -> None:
     cloth = """<mujoco><worldbody><light type="directional" dir="1 0 -1"/>
       <flexcomp name="cloth" type="grid" count="4 4 1" spacing=".4 .4 .4" pos="3 0 0" euler="0 90 0" dim="2"
         radius=".01" rgba="1 0 0 1"><edge equality="false"/></flexcomp></worldbody></mujoco>"""
@@ -169,3 +169,24 @@ def test_a_flex_and_a_skin_are_drawn() -> None:
     assert red > 2 * green
     # the middle of the cloth, within its thickness
     assert metres(found)[60, 80] == pytest.approx(3.0, abs=0.011)
+
+
+def test_a_cable_is_drawn_as_tubes() -> None:
+    cable = """<mujoco><worldbody><light type="directional" dir="1 0 -1"/>
+      <flexcomp name="cable" type="grid" count="6 1 1" spacing=".2 .2 .2" pos="3 0 0" euler="0 0 90" dim="1"
+        radius=".05" rgba="1 0 0 1"><edge equality="false"/></flexcomp></worldbody></mujoco>"""
+    world = mujoco.MjModel.from_xml_string(cable)
+    found = metres(draw(SoftwareRenderer, world, DEPTH, EYE, AHEAD))
+    # twelve sides: at most 3.4 % of the radius inside the circle
+    assert found[60, 80] == pytest.approx(2.95, abs=0.002)
+    assert np.isinf(found[50, 80])
+
+
+def test_a_skin_is_drawn_where_its_bones_are() -> None:
+    skin = """<mujoco><worldbody><light type="directional" dir="1 0 -1"/>
+      <body name="a" pos="3 0 0"><geom size=".01" group="5"/></body></worldbody>
+      <deformable><skin name="s" rgba="1 0 0 1" vertex="0 -.5 -.5  0 .5 -.5  0 .5 .5  0 -.5 .5" face="0 2 1 0 3 2">
+      <bone body="a" bindpos="0 0 0" bindquat="1 0 0 0" vertid="0 1 2 3" vertweight="1 1 1 1"/></skin></deformable>
+      </mujoco>"""
+    found = metres(draw(SoftwareRenderer, mujoco.MjModel.from_xml_string(skin), DEPTH, EYE, AHEAD))
+    np.testing.assert_allclose(found[50:70, 70:90], 3.0, rtol=1e-6)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from simkit.sensors.cameras.rendering.software.shape_meshes import ShapeMesh, face_normals
-from simkit.sensors.cameras.rendering.software.vectors import Array, dot
+from simkit.sensors.cameras.rendering.software.shape_meshes import ShapeMesh, cylinder, face_normals
+from simkit.sensors.cameras.rendering.software.vectors import Array, cross, dot, unit
 
+_TUBE_SIDES = 12  # number of sides of the edges of a flex
 _SHARP = 0.8
 """Cosine between the normals of a corner and its face below which the engine draws the corner with the face's normal
 (`mjr_uploadMesh` in render_context.c); a mesh with texture coordinates keeps the normals of its corners."""
@@ -95,15 +96,36 @@ def _strips(grid: Array) -> Array:
     )
 
 
-def flex_of(scene: mujoco.MjvScene, flex: int) -> ShapeMesh:
-    """Return the faces of a flex in world coordinates, as MuJoCo composed them."""
+def flex_of(scene: mujoco.MjvScene, flex: int, radius: float) -> ShapeMesh:
+    """Return the faces of a flex in world coordinates, as MuJoCo composed them; a flex without faces has tubes."""
     used = int(scene.flexfaceused[flex])
+    if not used:
+        return _tubes(scene, flex, radius)
     first = 3 * int(scene.flexfaceadr[flex])
     rows = slice(first, first + 3 * used)
     corners = np.asarray(scene.flexface).reshape(-1, 3)[rows]
     normals = np.asarray(scene.flexnormal).reshape(-1, 3)[rows]
     coordinates = np.asarray(scene.flextexcoord).reshape(-1, 2)[rows] if len(np.ravel(scene.flextexcoord)) else None
     return ShapeMesh.of(corners, normals, np.arange(3 * used).reshape(-1, 3), coordinates=coordinates)
+
+
+def _tubes(scene: mujoco.MjvScene, flex: int, radius: float) -> ShapeMesh:
+    """Return the edges of a flex as tubes, which MuJoCo draws for cables."""
+    first, count = int(scene.flexedgeadr[flex]), int(scene.flexedgenum[flex])
+    pairs = np.asarray(scene.flexedge).reshape(-1, 2)[first : first + count]
+    points = np.asarray(scene.flexvert, np.float64).reshape(-1, 3)[int(scene.flexvertadr[flex]) :]
+    begin, end = points[pairs[:, 0]], points[pairs[:, 1]]
+    along = unit(end - begin)
+    across = np.where(np.abs(along[:, 2:]) < 0.9, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+    right = unit(cross(along, across))
+    up = cross(along, right)
+    tube = cylinder(_TUBE_SIDES, 1, is_open=True)
+    x, y, z = (tube.corners[:, k, None] for k in range(3))
+    normals = x * right[:, None] + y * up[:, None]
+    middle, half = (begin + end) / 2.0, (end - begin) / 2.0
+    corners = middle[:, None] + radius * normals + z * half[:, None]
+    faces = tube.faces + (np.arange(count) * len(tube.corners))[:, None, None]
+    return ShapeMesh.of(corners.reshape(-1, 3), normals.reshape(-1, 3), faces.reshape(-1, 3))
 
 
 def skin_of(model: mujoco.MjModel, scene: mujoco.MjvScene, skin: int) -> ShapeMesh:

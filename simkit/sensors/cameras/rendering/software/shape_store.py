@@ -120,7 +120,7 @@ class ShapeStore:
         if kind not in _DRAWN:
             return None
         if kind in (shape_meshes.FLEX, shape_meshes.SKIN):
-            return self._deformed(scene, kind, int(table.objects[row]), frame)
+            return self._deformed(scene, kind, int(table.objects[row]), float(table.sizes[row, 0]), frame)
         key = table.poses[row].tobytes()
         place = row, int(table.numbers[row]), (kind * 1000 + sides) * 1000 + squares
         known = self._placed.get(place)
@@ -168,10 +168,10 @@ class ShapeStore:
             self._meshes[key] = make(self._model, number)
         return self._meshes[key]
 
-    def _deformed(self, scene: mujoco.MjvScene, kind: int, number: int, frame: Frame) -> Placed:
+    def _deformed(self, scene: mujoco.MjvScene, kind: int, number: int, radius: float, frame: Frame) -> Placed:
         assert self._model is not None
         if kind == shape_meshes.FLEX:
-            mesh = model_meshes.flex_of(scene, number)
+            mesh = model_meshes.flex_of(scene, number, radius)
         else:
             mesh = model_meshes.skin_of(self._model, scene, number)
         return Placed(mesh, mesh.corners - frame.origin.astype(np.float32), mesh.normals)

@@ -6,13 +6,14 @@ from typing import Final
 
 import numpy as np
 
-from simkit.sensors.cameras.rendering.software.frame import Frame
+from simkit.sensors.cameras.rendering.software.frame import FAR, Frame
 from simkit.sensors.cameras.rendering.software.rasteriser import draw_flat, draw_numbers
 from simkit.sensors.cameras.rendering.software.triangles import Triangles
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Integers
 
 _SMALL: Final = 4.0  # area [px²] of a triangle that may be visible between the middles of pixels
 _THIN: Final = 1.5  # height [px] of such a triangle
+_SHORT: Final = 4.0  # length [px] up to which a triangle is compared with the depths around its middle
 
 
 class Visibility:
@@ -54,24 +55,37 @@ class Visibility:
             Values at the pixels for each place, 0 without a shape, shape (height, width, 2) each.
         """
         chosen = np.flatnonzero(self._is_seen | self._may_hide())
-        faces = self._faces[chosen]
-        of_corners = np.zeros((len(self._points), 3), np.float32)
-        of_corners[:, :2] = np.repeat(values, 3, axis=0)
+        points = np.ascontiguousarray(self._points.reshape(-1, 3, 3)[chosen]).reshape(-1, 3)
+        faces = self._faces[: len(chosen)]
+        of_corners = np.zeros((len(points), 3), np.float32)
+        of_corners[:, :2] = np.repeat(values[chosen], 3, axis=0)
         drawn = []
         for place in places:
             image = np.zeros((*self.keys.shape, 3), np.float32)
-            draw_flat(self._frame.moved(*place), self._points, faces, of_corners, image, self._frame.empty_keys())
+            draw_flat(self._frame.moved(*place), points, faces, of_corners, image, self._frame.empty_keys())
             drawn.append(image[..., :2])
         return drawn
 
     def _may_hide(self) -> Array:
-        """Return True for each face that is so small or thin that it may lie between the middles of pixels."""
-        frame, triangles = self._frame, self._triangles
-        right, up, ahead = frame.in_camera(triangles.points)
-        scale = frame.pixels_per_tangent / np.maximum(ahead, 0.5 * frame.view.near)
-        x, y = ((values * scale)[triangles.faces] for values in (right, up))
+        """Return True for each face that may lie between the middles of pixels: small or thin, and not covered."""
+        import cv2
+
+        frame, faces = self._frame, self._triangles.faces
+        view = frame.view
+        right, up, ahead = frame.in_camera(self._triangles.points)
+        depth = np.maximum(ahead, 0.5 * view.near)
+        x = ((right / depth - view.left) * (view.width / (view.right - view.left)))[faces]
+        y = ((view.top - up / depth) * (view.height / (view.top - view.bottom)))[faces]
         sides = [(x[:, k] - x[:, k - 1], y[:, k] - y[:, k - 1]) for k in range(3)]
-        area = np.abs(sides[0][0] * sides[1][1] - sides[0][1] * sides[1][0])
+        area = sides[0][1] * sides[1][0] - sides[0][0] * sides[1][1]  # positive for a front, because y is downwards
         longest = np.sqrt(np.max([dx * dx + dy * dy for dx, dy in sides], axis=0))
-        found: Array = (0.5 * area < _SMALL) | (area < _THIN * longest)
+        column, row = np.floor(x.mean(axis=1)), np.floor(y.mean(axis=1))
+        found: Array = (area > 0.0) & ((0.5 * area < _SMALL) | (area < _THIN * longest))
+        short = longest < _SHORT
+        inside = (column >= 0) & (row >= 0) & (column < view.width) & (row < view.height)
+        found &= inside | ~short
+        checked = np.flatnonzero(found & short)
+        farthest = cv2.dilate(self.keys, np.ones((5, 5), np.uint8))
+        around = farthest[row[checked].astype(np.intp), column[checked].astype(np.intp)]
+        found[checked] = 2.0 - FAR / depth[faces[checked]].mean(axis=1) <= around
         return found
