@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import functools
 import logging
+import os
 import threading
+import weakref
 from collections.abc import Generator, Sequence
 from typing import Final
 
@@ -42,6 +44,19 @@ def describe_renderer() -> str:
     import cv2
 
     return f"software (simkit, OpenCV {cv2.__version__})"
+
+
+_renderers: weakref.WeakSet[SoftwareRenderer] = weakref.WeakSet()
+
+
+def _after_fork() -> None:
+    """Replace the locks in a forked child, because a thread that does not exist there may hold them."""
+    for renderer in list(_renderers):
+        renderer.replace_lock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)
 
 
 class MemoryReservation:
@@ -83,6 +98,7 @@ class SoftwareRenderer:
         width = appearance.quality.shadow_map
         self._shadows = ShadowMaps(width) if width else None
         self._lock = threading.RLock()
+        _renderers.add(self)
         self._is_logged = False
 
     def draw_all(self, composition: Composition, shots: Sequence[Shot]) -> Generator[DrawnView, None, None]:
@@ -116,6 +132,10 @@ class SoftwareRenderer:
             if self._store.use_model(composition.model):
                 self._forget_pictures()
             return self._draw(composition, shot, directions)
+
+    def replace_lock(self) -> None:
+        """Replace the lock of the renderer, in a process that was forked while another thread was drawing."""
+        self._lock = threading.RLock()
 
     def uploaded(self) -> list[mujoco.MjrContext]:
         """Return no context, because no graphics memory is used."""
