@@ -10,8 +10,10 @@ import numpy.typing as npt
 import pytest
 from drawn_models import draw, model, rays, view
 
+import simkit
 from simkit.scene import Surroundings
 from simkit.scene.world import Fog
+from simkit.sensors.cameras.overview_image import render_view
 from simkit.sensors.cameras.rendering.appearance import QUALITIES, Appearance
 from simkit.sensors.cameras.rendering.sky_and_fog import sky_colour
 from simkit.sensors.cameras.rendering.software.software_renderer import SoftwareRenderer
@@ -242,3 +244,31 @@ def test_an_empty_world_is_its_background() -> None:
     for quality in ("fast", "gazebo"):
         found = colours("", quality=quality, surroundings=Surroundings(background=(0.2, 0.4, 0.6, 1.0)))
         np.testing.assert_array_equal(found, np.broadcast_to((51, 102, 153), found.shape))
+
+
+def test_a_picture_with_several_passes_has_soft_shadows() -> None:
+    lid = visual_box("lid", "0 0 1", "1 1 0.1")
+    floor = visual_box("floor", "0 0 -0.05", "20 20 0.1")
+    sun = """<light type="directional" name="sun"><direction>0 0 -1</direction><cast_shadows>true</cast_shadows>
+      <diffuse>.6 .6 .6 1</diffuse><specular>0 0 0 1</specular></light>"""
+    text = f'<sdf version="1.9"><world name="w"><scene><ambient>.3 .3 .3 1</ambient></scene>{sun}{lid}{floor}</world></sdf>'
+    with simkit.load(text, renderer="software") as sim:
+        shown = [
+            render_view(
+                sim, 200, 200, eye=np.array((0.0, -3.0, 0.6)), target=np.zeros(3), quality="gazebo", passes=passes,
+                lit=(np.zeros(3), 3.0),
+            )[..., 0].astype(int)
+            for passes in (1, 16)
+        ]  # fmt: skip
+    dark, light = shown[0][100, 100], shown[0][190, 100]
+    assert light > dark + 100
+    # grey pixels of the floor: the edge of the shadow is a step, or a slope of 7 cm
+    grey = [int(((part[85:] > dark + 15) & (part[85:] < light - 15)).sum()) for part in shown]
+    assert grey[1] > 100 > 2 * grey[0]
+
+
+def visual_box(name: str, position: str, size: str) -> str:
+    shape = f"<geometry><box><size>{size}</size></box></geometry>"
+    material = "<material><ambient>1 1 1 1</ambient><diffuse>1 1 1 1</diffuse></material>"
+    return f"""<model name="{name}"><static>true</static><pose>{position} 0 0 0</pose>
+      <link name="l"><visual name="v">{shape}{material}</visual></link></model>"""
