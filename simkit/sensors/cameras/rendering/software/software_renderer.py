@@ -27,7 +27,7 @@ from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
 from simkit.sensors.cameras.rendering.software.shape_store import ShapeStore
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
 from simkit.sensors.cameras.rendering.software.textures import Texture, TexturedShapes
-from simkit.sensors.cameras.rendering.software.triangles import Triangles, View3D
+from simkit.sensors.cameras.rendering.software.triangles import Triangles, VisibleShapes
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, dot, rotate
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot
 from simkit.sensors.environment.illumination import LEAST_OPACITY
@@ -160,7 +160,7 @@ class SoftwareRenderer:
         table = ShapeTable(composition.scene)
         position, rotation = _pose(composition, shot)
         frame = Frame(shot.view, position, rotation, np.rint(position / _BLOCK) * _BLOCK)
-        shapes = View3D(composition.scene, table, self._store, frame, _from_behind(table, position))
+        shapes = VisibleShapes(composition.scene, table, self._store, frame, _from_behind(table, position))
         if shot.ids:
             return _draw_ids(shapes, table, shot)
         solid = np.flatnonzero(shapes.is_visible & (table.colours[:, 3] >= SOLID))
@@ -188,7 +188,7 @@ class SoftwareRenderer:
         self,
         composition: Composition,
         table: ShapeTable,
-        shapes: View3D,
+        shapes: VisibleShapes,
         position: Array,
         directions: Sequence[Sequence[Array]] | None,
     ) -> tuple[Sequence[Shadow], list[Lamp]]:
@@ -244,7 +244,7 @@ class SoftwareRenderer:
         logging.getLogger("simkit").info("renderer: %s; quality %s, %s", describe_renderer(), quality.name, text)
 
 
-def _draw_ids(shapes: View3D, table: ShapeTable, shot: Shot) -> DrawnView:
+def _draw_ids(shapes: VisibleShapes, table: ShapeTable, shot: Shot) -> DrawnView:
     """Draw the geom id at each pixel; transparent shapes are drawn as solid ones."""
     frame = shapes.frame
     keys = frame.empty_keys()
@@ -259,7 +259,7 @@ def _draw_ids(shapes: View3D, table: ShapeTable, shot: Shot) -> DrawnView:
     return DrawnView(shot.view, None, _raw_depths(frame, table, triangles, keys) if shot.depth else None, ids)
 
 
-def _draw_depths(shapes: View3D, table: ShapeTable, shot: Shot, solid: Array) -> DrawnView:
+def _draw_depths(shapes: VisibleShapes, table: ShapeTable, shot: Shot, solid: Array) -> DrawnView:
     """Draw only the depths of opaque shapes."""
     frame = shapes.frame
     keys = frame.empty_keys()
