@@ -23,6 +23,7 @@ controller_manager:
 arm_controller:
   ros__parameters:
     joints: [shoulder, elbow]
+    state_publish_rate: 50.0
     command_interfaces: [position]
     state_interfaces: [position, velocity]
     constraints:
@@ -134,3 +135,14 @@ def test_the_same_run_twice_and_after_a_restore_gives_the_same_bits(tmp_path: Pa
         sim.run(1.0)
         ends.append(positions(sim))
     assert ends[1:] == ends[:1] * 3
+
+
+def test_the_times_of_state_messages_do_not_depend_on_when_someone_subscribes(tmp_path: Path) -> None:
+    stamps = []
+    for wait in (0.0, 0.515):
+        sim = arm(tmp_path)
+        sim.step(round(wait / sim.timestep))
+        states = sim.subscribe("/arm_controller/controller_state")
+        sim.step(1000 - sim.tick)
+        stamps.append([m.header.stamp.nanosec for m in states.messages if m.header.stamp.nanosec > 540_000_000])
+    assert stamps[0] == stamps[1] and len(stamps[0]) > 20

@@ -7,11 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_up import MACHINE, record
 
 import simkit
 from simkit.build import read_scene
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.scene import SceneWorld
+from simkit.testing.golden.cause import explanation
 from simkit.testing.golden.cause.edits import find_changes
 from simkit.testing.golden.cause.explanation import find_effective_changes
 from simkit.testing.golden.cause.first_tick import distinct_digits, first_different_tick
@@ -160,3 +162,13 @@ def test_equal_runs_have_no_first_different_tick() -> None:
 )
 def test_numbers_have_enough_digits_to_differ(a: float, b: float, words: str) -> None:
     assert distinct_digits(a, b) == words
+
+
+def test_a_run_on_another_processor_is_not_called_nondeterministic() -> None:
+    here, there = {**MACHINE, "processor features": "AVX2"}, {**MACHINE, "processor features": "AVX512F"}
+    same = explanation._no_cause(record(machine=here), record(machine=here))
+    assert "the run is not deterministic" in same
+    other = explanation._no_cause(record(machine=here), record(machine=there))
+    assert "the processors differ (AVX2 → AVX512F)" in other and "not deterministic" not in other
+    versions = explanation._no_cause(record(machine=here), record(machine={**there, "mujoco": "4.0.1"}))
+    assert versions == "no input of the run changed; the versions or the machine differ"

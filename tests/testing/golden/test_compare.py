@@ -12,6 +12,7 @@ from made_up import (
     CONTACTS,
     IMU,
     JOINTS,
+    MACHINE,
     ODOM,
     OTHER_MACHINE,
     SCAN,
@@ -275,6 +276,40 @@ def test_another_machine_is_compared_with_tolerances_and_its_differences_are_lis
     assert found.machine == {"mujoco": ("4.0.0", "4.0.1")}
     (note,) = found.notes
     assert note.startswith("/scan.ranges: up to 0.3 mm off") and "within 1 mm +" in note
+
+
+def test_other_instructions_of_numpy_and_blas_allow_no_difference() -> None:
+    def a_little(ranges: Any) -> None:
+        ranges += 3e-4
+
+    here = {**MACHINE, "processor features": "AVX512F OPENBLAS_CORETYPE=Zen"}
+    found = compare(golden_of(scan()), record(scan(a_little), machine=here))
+    assert not found.passed and found.tier == "exact" and not found.machine
+
+
+def test_another_ray_tracer_allows_differences_in_topics_of_rays_only() -> None:
+    here = {**MACHINE, "ray tracer": "embree 4.4.0 avx2"}
+
+    def a_little(ranges: Any) -> None:
+        ranges += 3e-4
+
+    found = compare(golden_of(scan(), imu()), record(scan(a_little), imu(), machine=here))
+    assert found.passed and found.tier == "exact" and not found.is_identical
+    assert found.machine == {"ray tracer": ("", "embree 4.4.0 avx2")}
+    shifted = imu()
+    shifted.columns["linear_acceleration.z"].values[:] += 1e-4
+    assert words(golden_of(scan(), imu()), record(scan(), hashed(shifted), machine=here))
+
+
+def test_equal_bits_of_another_machine_are_identical_and_cannot_be_blessed() -> None:
+    same = compare(golden_of(scan()), record(scan(), machine=OTHER_MACHINE))
+    assert same.tier == "tolerant" and same.is_identical and not same.can_be_blessed
+
+    def a_little(ranges: Any) -> None:
+        ranges += 3e-4
+
+    near = compare(golden_of(scan()), record(scan(a_little), machine=OTHER_MACHINE))
+    assert near.passed and not near.is_identical and near.can_be_blessed
 
 
 def test_a_share_of_the_rays_may_differ_more_on_another_machine() -> None:

@@ -125,6 +125,7 @@ class JointTrajectoryController(Controller):
         self._is_holding = self._is_first = self._is_idle = False
         self._elapsed = self._last = self._start = 0
         self._next_feedback = self._next_state = 0
+        self._is_due = False
         self._command: Setpoint | None = None
         self._ahead: tuple[int, Setpoint] | None = None  # setpoint at the start of the next period
         self._watches_path = False
@@ -224,9 +225,12 @@ class JointTrajectoryController(Controller):
     # ------------------------------------------------------------------ each period
 
     def update(self, now_ns: int, period: float) -> None:
+        self._is_due = now_ns >= self._next_state
+        if self._is_due:  # the times do not depend on the subscribers
+            self._next_state = now_ns + self._state_ns
         if self._next_trajectory is None:
             if self._is_idle:
-                if self._is_state_due(now_ns) and self._command is not None:
+                if self._is_state_due() and self._command is not None:
                     state = self._group.state(self.states.values)
                     self._publish(now_ns, self._command.motion, state, self._errors(self._command.motion, state))
                 return
@@ -252,7 +256,7 @@ class JointTrajectoryController(Controller):
         elapsed = self._elapsed + passed
         if elapsed >= spline.times[-1] or (self._goal is not None and now >= self._next_feedback):
             return False
-        if now >= self._next_state and self._has_subscribers():
+        if self._is_state_due():
             return False
         self._elapsed, self._last = elapsed, now
         step = round(self._period_ns * scaling)
@@ -319,7 +323,7 @@ class JointTrajectoryController(Controller):
         if goal is not None and (now >= self._next_feedback):
             self._next_feedback = now + self._feedback_ns
             goal.publish_feedback(self._messages.feedback(now, desired.motion, state, errors))
-        if self._is_state_due(now):
+        if self._is_state_due():
             self._publish(now, desired.motion, state, errors)
         if violates_path:
             what = describe_violation(absolute, tolerances.path, self._group.joints)
@@ -371,12 +375,9 @@ class JointTrajectoryController(Controller):
         current, deprecated = self._publishers
         return current.wanted or deprecated.wanted
 
-    def _is_state_due(self, now: int) -> bool:
-        """Check whether the state has to be published now."""
-        if now < self._next_state or not self._has_subscribers():
-            return False
-        self._next_state = now + self._state_ns
-        return True
+    def _is_state_due(self) -> bool:
+        """Check whether the state has to be published in this period."""
+        return self._is_due and self._has_subscribers()
 
     def _publish(self, now: int, desired: Vector, state: Vector, errors: Vector) -> None:
         message = self._messages.state(now, desired, state, errors, self.commands.values, self._scaling)
