@@ -251,7 +251,8 @@ def test_a_picture_with_several_passes_has_soft_shadows() -> None:
     floor = visual_box("floor", "0 0 -0.05", "20 20 0.1")
     sun = """<light type="directional" name="sun"><direction>0 0 -1</direction><cast_shadows>true</cast_shadows>
       <diffuse>.6 .6 .6 1</diffuse><specular>0 0 0 1</specular></light>"""
-    text = f'<sdf version="1.9"><world name="w"><scene><ambient>.3 .3 .3 1</ambient></scene>{sun}{lid}{floor}</world></sdf>'
+    scene = "<scene><ambient>.3 .3 .3 1</ambient></scene>"
+    text = f'<sdf version="1.9"><world name="w">{scene}{sun}{lid}{floor}</world></sdf>'
     with simkit.load(text, renderer="software") as sim:
         shown = [
             render_view(
