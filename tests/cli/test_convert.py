@@ -322,7 +322,7 @@ def test_a_world_with_errors_leaves_nothing_behind(here: Path) -> None:
 
 
 OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
-  <entity_services>classic</entity_services><scene><quality>high</quality></scene>
+  <entity_services>classic</entity_services><scene><quality>high</quality><renderer>software</renderer></scene>
 <light name="sun" type="directional"><irradiance>900</irradiance></light>
 <model name="m"><link name="l">
 <sensor name="imu" type="imu"><update_rate>100</update_rate><phase>0.001</phase><jitter>0.002</jitter>

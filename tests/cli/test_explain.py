@@ -20,6 +20,7 @@ from typer.testing import CliRunner
 import simkit
 from simkit.cli import app, diagnostic_catalogue
 from simkit.cli.diagnostic_catalogue import Example, catalogue, code_text, page
+from simkit.sensors.cameras.rendering import gl_context
 
 ROOT = Path(__file__).resolve().parents[2]
 CODE = re.compile(r"\bSK-[A-Z]+-\d{3}\b")
@@ -98,7 +99,7 @@ def test_every_entry_is_complete() -> None:
 def test_every_example_of_an_area_causes_its_code(area: str, tmp_path: Path) -> None:
     wrong = {}
     for code in catalogue(f"SK-{area}-").values():
-        if code.example is None:
+        if code.example is None or (code.code == "SK-RENDER-011" and not _has_opengl()):
             continue
         folder = tmp_path / code.code
         folder.mkdir()
@@ -116,6 +117,14 @@ def test_every_example_of_an_area_causes_its_code(area: str, tmp_path: Path) -> 
         if severities is None or (severities and not severities & set(code.severity.split(", "))):
             wrong[code.code] = found
     assert not wrong
+
+
+def _has_opengl() -> bool:
+    try:
+        gl_context.ensure_open()
+    except simkit.RenderError:
+        return False
+    return True
 
 
 def _write(files: Mapping[str, str | bytes], folder: Path) -> None:

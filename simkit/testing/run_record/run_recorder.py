@@ -198,7 +198,7 @@ class RunRecorder:
         has_images = any(s.type_name in _RENDERED and len(s.times_ns) for s in streams.values())
         return RunRecord(
             self._scenario,
-            fingerprint(self._sim if has_images else None),
+            fingerprint(self._sim if has_images or self._sim.engine.renderer else None),
             streams,
             self._marks.states(),
             self._leaves,

@@ -225,9 +225,8 @@ class JointTrajectoryController(Controller):
     # ------------------------------------------------------------------ each period
 
     def update(self, now_ns: int, period: float) -> None:
-        self._is_due = now_ns >= self._next_state
-        if self._is_due:  # the times do not depend on the subscribers
-            self._next_state = now_ns + self._state_ns
+        self._is_due = now_ns >= self._next_state  # with and without subscribers: their times do not matter
+        self._next_state = now_ns + self._state_ns if self._is_due else self._next_state
         if self._next_trajectory is None:
             if self._is_idle:
                 if self._is_state_due() and self._command is not None:

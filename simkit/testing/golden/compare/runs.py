@@ -16,7 +16,13 @@ from simkit.testing.golden.compare.world_edits import field_edits
 from simkit.testing.run_record.fingerprint import RAY_TRACER, fingerprint_differences
 from simkit.testing.run_record.record import RunRecord, Stream
 
-_PICTURES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+_FROM_IMAGES = (
+    "sensor_msgs/msg/Image",
+    "sensor_msgs/msg/CompressedImage",
+    "sensor_msgs/msg/PointCloud2",  # also of lidars
+    "vision_msgs/msg/Detection2DArray",
+    "vision_msgs/msg/Detection3DArray",
+)
 _RAYS = ("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/Range")
 _NOTES = 12  # maximum number of notes about topics
 
@@ -129,7 +135,7 @@ def _missing_topic(stream: Stream, is_new: bool, golden: RunRecord, run: RunReco
 
 def _is_rendered(stream: Stream) -> bool:
     """Check whether a renderer produced the topic."""
-    return stream.pictures is not None or stream.type_name in _PICTURES
+    return stream.pictures is not None or stream.type_name in _FROM_IMAGES
 
 
 def _is_traced(stream: Stream) -> bool:

@@ -10,11 +10,14 @@ import numpy.typing as npt
 import pytest
 from drawn_models import draw, model, rays, view
 
+import simkit
 from simkit.scene import Surroundings
 from simkit.scene.world import Fog
+from simkit.sensors.cameras.overview_image import render_view
+from simkit.sensors.cameras.rendering.appearance import QUALITIES, Appearance
 from simkit.sensors.cameras.rendering.sky_and_fog import sky_colour
 from simkit.sensors.cameras.rendering.software.software_renderer import SoftwareRenderer
-from simkit.sensors.cameras.rendering.view import Shot
+from simkit.sensors.cameras.rendering.view import Shot, look_at
 
 Colours = npt.NDArray[np.int64]
 EYE = (0.0, 0.0, 0.0)
@@ -198,8 +201,75 @@ def test_shapes_that_pictures_add_are_drawn() -> None:
         assert red.sum() > 20, kind
 
 
-def test_the_same_scene_has_the_same_bits_after_other_scenes() -> None:
-    renderer_of: dict[str, Colours] = {}
-    for name in ("first", "second"):
-        renderer_of[name] = colours(FLOOR + LID, lights=HIGH, ambient=0.3, quality="gazebo")
-    np.testing.assert_array_equal(*renderer_of.values())
+def test_an_image_does_not_depend_on_the_images_before() -> None:
+    """A renderer keeps triangles and shadow maps; what it keeps for one camera must not change another's image."""
+    sun = HIGH.replace("0 0 -1", ".3 .2 -1")
+    world = model(FLOOR + LID + '<geom type="sphere" size=".5" pos="3 1 0"/>', lights=sun)
+    data = mujoco.MjData(world)
+    mujoco.mj_forward(world, data)
+    renderer = SoftwareRenderer(Appearance(Surroundings(), QUALITIES["gazebo"]))
+
+    def image(x: float, y: float) -> npt.NDArray[np.uint8]:
+        eye = np.array((x, y, 0.5))
+        composition = renderer.composer.compose(world, data, eye, look_at(eye, np.array((4.0, 0.0, 0.0))))
+        found = renderer.draw(composition, Shot(view())).colours
+        assert found is not None
+        return found.copy()
+
+    first = image(0.0, 0.0)
+    for x, y in ((3.0, 3.0), (100.0, 0.0), (2.5, 0.9)):
+        image(x, y)
+    np.testing.assert_array_equal(image(0.0, 0.0), first)
+
+
+def test_a_mesh_and_another_at_the_same_place_are_not_confused() -> None:
+    """The list of shapes of another composition may have another mesh in the same row."""
+    assets = """<mesh name="a" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/>
+      <mesh name="b" vertex="0 0 0 2 0 0 0 2 0 0 0 2"/>"""
+    both = '<geom type="mesh" mesh="a" pos="3 0 0"/><geom type="mesh" mesh="b" pos="3 0 0"/>'
+    world = model(both, assets)
+    data = mujoco.MjData(world)
+    mujoco.mj_forward(world, data)
+    renderer = SoftwareRenderer(Appearance(Surroundings(), QUALITIES["fast"]))
+    sizes = []
+    for unseen in ((1,), (0,)):
+        composition = renderer.composer.compose(world, data, np.zeros(3), np.eye(3), unseen=unseen)
+        ids = renderer.draw(composition, Shot(view(), ids=True)).ids
+        assert ids is not None
+        sizes.append(int((ids >= 0).sum()))
+    assert sizes[1] > 2 * sizes[0] > 0
+
+
+def test_an_empty_world_is_its_background() -> None:
+    for quality in ("fast", "gazebo"):
+        found = colours("", quality=quality, surroundings=Surroundings(background=(0.2, 0.4, 0.6, 1.0)))
+        np.testing.assert_array_equal(found, np.broadcast_to((51, 102, 153), found.shape))
+
+
+def test_a_picture_with_several_passes_has_soft_shadows() -> None:
+    lid = visual_box("lid", "0 0 1", "1 1 0.1")
+    floor = visual_box("floor", "0 0 -0.05", "20 20 0.1")
+    sun = """<light type="directional" name="sun"><direction>0 0 -1</direction><cast_shadows>true</cast_shadows>
+      <diffuse>.6 .6 .6 1</diffuse><specular>0 0 0 1</specular></light>"""
+    scene = "<scene><ambient>.3 .3 .3 1</ambient></scene>"
+    text = f'<sdf version="1.9"><world name="w">{scene}{sun}{lid}{floor}</world></sdf>'
+    with simkit.load(text, renderer="software") as sim:
+        shown = [
+            render_view(
+                sim, 200, 200, eye=np.array((0.0, -3.0, 0.6)), target=np.zeros(3), quality="gazebo", passes=passes,
+                lit=(np.zeros(3), 3.0),
+            )[..., 0].astype(int)
+            for passes in (1, 16)
+        ]  # fmt: skip
+    dark, light = shown[0][100, 100], shown[0][190, 100]
+    assert light > dark + 100
+    # grey pixels of the floor: the edge of the shadow is a step, or a slope of 7 cm
+    grey = [int(((part[85:] > dark + 15) & (part[85:] < light - 15)).sum()) for part in shown]
+    assert grey[1] > 100 > 2 * grey[0]
+
+
+def visual_box(name: str, position: str, size: str) -> str:
+    shape = f"<geometry><box><size>{size}</size></box></geometry>"
+    material = "<material><ambient>1 1 1 1</ambient><diffuse>1 1 1 1</diffuse></material>"
+    return f"""<model name="{name}"><static>true</static><pose>{position} 0 0 0</pose>
+      <link name="l"><visual name="v">{shape}{material}</visual></link></model>"""

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.sensors.cameras.rendering.software.frame import Frame
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Integers
@@ -35,29 +36,26 @@ def clip(frame: Frame, points: Floats, values: Floats, faces: Integers) -> tuple
     corners = np.flatnonzero(used)
     right, up, ahead = frame.in_camera(points[corners])
     middle = frame.view.left + frame.half[0], frame.view.bottom + frame.half[1]
-    distances = _distances(frame, right - middle[0] * ahead, up - middle[1] * ahead, ahead, 1.0)
-    outside = np.zeros((len(points), 5), bool)
-    outside[corners] = distances < 0.0
-    of_faces = outside[faces]
-    is_outside: Array = np.asarray(of_faces.all(axis=1))
-    seen = np.flatnonzero(~is_outside.any(axis=1))
-    wide = np.zeros(len(points), bool)
-    wide[corners] = (_distances(frame, right - middle[0] * ahead, up - middle[1] * ahead, ahead, _MARGIN) < 0.0).any(
-        axis=1
-    )
-    crosses = wide[faces[seen]].any(axis=1)
+    across, along = right - middle[0] * ahead, up - middle[1] * ahead
+    # one bit for each plane that a corner is outside of
+    bits = _bits(frame, across, along, ahead, 1.0, corners, len(points))
+    a, b, c = (bits.take(faces[:, k]) for k in range(3))
+    seen = np.flatnonzero((a & b & c) == 0)
+    bits = _bits(frame, across, along, ahead, _MARGIN, corners, len(points))
+    a, b, c = (bits.take(faces[seen, k]) for k in range(3))
+    crosses = (a | b | c) != 0
     whole, cut = faces[seen[~crosses]], seen[crosses]
     place = np.zeros(len(points), np.intp)
     place[corners] = np.arange(len(corners))
     rows = place[faces[cut]]
-    in_camera = np.stack((right - middle[0] * ahead, up - middle[1] * ahead, ahead), axis=-1)
+    in_camera = np.stack((across, along, ahead), axis=-1)
     numbers = np.broadcast_to(cut[:, None, None].astype(np.float64), (len(cut), 3, 1))
     data = np.concatenate((in_camera[rows], values[faces[cut]].astype(np.float64), numbers), axis=2)
     for plane in range(5):
         if not len(data):
             break
         flat = data.reshape(-1, data.shape[2])
-        away = _distances(frame, flat[:, 0], flat[:, 1], flat[:, 2], _MARGIN)[:, plane]
+        away = _distances(frame, flat[:, 0], flat[:, 1], flat[:, 2], _MARGIN)[plane]
         data = _cut(data, away.reshape(-1, 3))
     flat = data.reshape(-1, data.shape[2])
     new_points = frame.from_camera(flat[:, 0] + middle[0] * flat[:, 2], flat[:, 1] + middle[1] * flat[:, 2], flat[:, 2])
@@ -65,10 +63,22 @@ def clip(frame: Frame, points: Floats, values: Floats, faces: Integers) -> tuple
     return whole, new_points, flat[:, 3:-1].astype(np.float32), sources
 
 
-def _distances(frame: Frame, right: Array, up: Array, ahead: Array, margin: float) -> Array:
-    """Return how far points are inside the near plane and the four sides of a frustum, shape (n, 5)."""
+def _distances(frame: Frame, right: Array, up: Array, ahead: Array, margin: float) -> tuple[Array, ...]:
+    """Return how far points are inside the near plane and the four sides of a frustum, shape (n,) each."""
     wide, high = margin * frame.half[0] * ahead, margin * frame.half[1] * ahead
-    return np.stack((ahead - frame.view.near, wide + right, wide - right, high + up, high - up), axis=-1)
+    return ahead - frame.view.near, wide + right, wide - right, high + up, high - up
+
+
+def _bits(
+    frame: Frame, right: Array, up: Array, ahead: Array, margin: float, corners: Array, count: int
+) -> npt.NDArray[np.uint8]:
+    """Return one bit for each plane that a corner is outside of, shape (count,); 0 for corners without a face."""
+    bits = np.zeros(len(corners), np.uint8)
+    for plane, distance in enumerate(_distances(frame, right, up, ahead, margin)):
+        bits |= (distance < 0.0).astype(np.uint8) << np.uint8(plane)
+    found = np.zeros(count, np.uint8)
+    found[corners] = bits
+    return found
 
 
 def _cut(data: Array, away: Array) -> Array:

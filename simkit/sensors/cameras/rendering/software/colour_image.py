@@ -17,7 +17,7 @@ from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
 from simkit.sensors.cameras.rendering.software.smoothing import smooth
 from simkit.sensors.cameras.rendering.software.textures import TexturedShapes
-from simkit.sensors.cameras.rendering.software.triangles import Triangles, View3D
+from simkit.sensors.cameras.rendering.software.triangles import Triangles, VisibleShapes
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Integers
 from simkit.sensors.cameras.rendering.software.visibility import Visibility
 
@@ -39,7 +39,7 @@ class ColourImage:
 
     def __init__(
         self,
-        shapes: View3D,
+        shapes: VisibleShapes,
         table: ShapeTable,
         lamps: list[Lamp],
         textures: TexturedShapes,

@@ -44,7 +44,11 @@ def exact_depths(frame: Frame, table: ShapeTable, triangles: Triangles, keys: Fl
     found = number[pixels].astype(np.intp)
     if not len(found):
         return pixels, np.zeros(0)
-    used, rows = np.unique(found, return_inverse=True)
+    counts = np.bincount(found)
+    used = np.flatnonzero(counts)
+    row_of = np.zeros(len(counts), np.intp)
+    row_of[used] = np.arange(len(used))
+    rows = row_of[found]
     terms = np.array([_terms(frame, table, int(use) // _PARTS, int(use) % _PARTS) for use in used])
     width = keys.shape[1]
     x, y = frame.columns()[pixels % width], frame.rows()[pixels // width]

@@ -17,6 +17,7 @@ _SPOT: Final = int(mujoco.mjtLightType.mjLIGHT_SPOT)
 _EVERYWHERE: Final = 180.0  # [degrees] cutoff of a spot light that shines in all directions
 _UNLIT: Final = 0.3  # ambient light of a scene without any light (`initLights` in render_gl3.c)
 _GLOSSIEST: Final = 128.0
+_BLOCK: Final = 16384  # number of corners lit at once: so few stay in the processor's cache
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +106,15 @@ class CornerLight:
             normals: unit normals, shape (n, 3).
             owners: rows of the shapes in the table, shape (n,).
         """
+        layers = [np.empty(points.shape, np.float32) for _ in range(1 + len(self.shadowed))]
+        for first in range(0, len(points), _BLOCK):
+            rows = slice(first, first + _BLOCK)
+            for layer, part in zip(layers, self._block(points[rows], normals[rows], owners[rows]), strict=True):
+                layer[rows] = part
+        return layers
+
+    def _block(self, points: Floats, normals: Floats, owners: Integers) -> list[Floats]:
+        """Return the layers of light of a few corners."""
         table = self._table
         surface = table.colours[:, :3].take(owners, axis=0)
         basic = table.emission.take(owners)[:, None] * surface
@@ -112,10 +122,12 @@ class CornerLight:
             basic += np.float32(_UNLIT) * surface
         layers = [basic]
         specular = table.specular.take(owners)
-        shiny = np.flatnonzero(specular > 0.0)
+        is_shiny = specular > 0.0
+        shiny: slice | Array = slice(None) if is_shiny.all() else np.flatnonzero(is_shiny)
+        has_gloss = bool(is_shiny.any())
         for lamp in self._lamps:
             part = self._light(lamp, surface, points, normals)
-            if lamp.specular.any() and len(shiny):
+            if has_gloss and lamp.specular.any():
                 gloss = self._gloss(lamp, points[shiny], normals[shiny], owners[shiny])
                 part[shiny] += (specular[shiny] * gloss)[:, None] * lamp.specular
             if lamp.has_shadow and not lamp.is_ambient:

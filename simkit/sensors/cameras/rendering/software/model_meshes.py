@@ -8,7 +8,7 @@ import numpy as np
 from simkit.sensors.cameras.rendering.software.shape_meshes import ShapeMesh, cylinder, face_normals
 from simkit.sensors.cameras.rendering.software.vectors import Array, cross, dot, unit
 
-_TUBE_SIDES = 12  # number of sides of the edges of a flex
+_TUBE_SIDES = 24  # number of sides of the edges of a flex
 _SHARP = 0.8
 """Cosine between the normals of a corner and its face below which the engine draws the corner with the face's normal
 (`mjr_uploadMesh` in render_context.c); a mesh with texture coordinates keeps the normals of its corners."""

@@ -22,7 +22,7 @@ from simkit.sensors.cameras.rendering.software.lamps import Lamp
 from simkit.sensors.cameras.rendering.software.rasteriser import draw_keys
 from simkit.sensors.cameras.rendering.software.shape_meshes import BOX, CAPSULE, CYLINDER, ELLIPSOID, SPHERE
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
-from simkit.sensors.cameras.rendering.software.triangles import Corners, View3D
+from simkit.sensors.cameras.rendering.software.triangles import Corners, VisibleShapes
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, cross, dot, rotate, unit
 from simkit.sensors.cameras.rendering.view import View
 
@@ -197,7 +197,7 @@ class ShadowMaps:
         lamps: list[Lamp],
         model: mujoco.MjModel,
         table: ShapeTable,
-        shapes: View3D,
+        shapes: VisibleShapes,
         casters: Array,
         reach: float,
         far: float,
@@ -246,7 +246,7 @@ class ShadowMaps:
         return maps
 
     def draw_once(
-        self, lamp: Lamp, table: ShapeTable, shapes: View3D, casters: Array, reach: float, far: float
+        self, lamp: Lamp, table: ShapeTable, shapes: VisibleShapes, casters: Array, reach: float, far: float
     ) -> ShadowMap:
         """Draw the shadow map of one lamp, and overwrite the map before; see `draw`."""
         if not self._buffers:
@@ -256,7 +256,7 @@ class ShadowMaps:
         self._add(found, shapes, table, casters, found.keys)
         return found
 
-    def _map(self, lamp: Lamp, reach: float, far: float, shapes: View3D, keys: Floats) -> ShadowMap:
+    def _map(self, lamp: Lamp, reach: float, far: float, shapes: VisibleShapes, keys: Floats) -> ShadowMap:
         """Return an empty map of a lamp."""
         axes = _axes(lamp.direction)
         if lamp.is_parallel:
@@ -268,7 +268,7 @@ class ShadowMaps:
         frame = Frame(view, lamp.place + origin, rotation, origin, shift=0.0)
         return ShadowMap(keys, lamp.place, axes, wide, 0.0, float(frame.far_key), frame)
 
-    def _add(self, found: ShadowMap, shapes: View3D, table: ShapeTable, rows: Array, keys: Floats) -> None:
+    def _add(self, found: ShadowMap, shapes: VisibleShapes, table: ShapeTable, rows: Array, keys: Floats) -> None:
         """Draw shapes into a map; of a closed shape only the sides that face the light."""
         if found.frame is not None:
             from_light = shapes.seen_from(found.frame)
@@ -285,7 +285,7 @@ class ShadowMaps:
         draw_keys(matrix, points, faces[is_closed], keys)
         draw_keys(matrix, points, faces[~is_closed], keys, both_sides=True)
 
-    def _is_ground(self, found: ShadowMap, shapes: View3D, table: ShapeTable) -> Array:
+    def _is_ground(self, found: ShadowMap, shapes: VisibleShapes, table: ShapeTable) -> Array:
         """Return True for each plane below everything that is lit: light and camera are above, and the map is inside.
 
         Such a plane shadows nothing that is visible, but it would fill the map.

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import functools
 import logging
+import os
 import threading
+import weakref
 from collections.abc import Generator, Sequence
 from typing import Final
 
@@ -25,7 +27,7 @@ from simkit.sensors.cameras.rendering.software.shape_meshes import PLANE
 from simkit.sensors.cameras.rendering.software.shape_store import ShapeStore
 from simkit.sensors.cameras.rendering.software.shape_table import ShapeTable
 from simkit.sensors.cameras.rendering.software.textures import Texture, TexturedShapes
-from simkit.sensors.cameras.rendering.software.triangles import Triangles, View3D
+from simkit.sensors.cameras.rendering.software.triangles import Triangles, VisibleShapes
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, dot, rotate
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot
 from simkit.sensors.environment.illumination import LEAST_OPACITY
@@ -42,6 +44,19 @@ def describe_renderer() -> str:
     import cv2
 
     return f"software (simkit, OpenCV {cv2.__version__})"
+
+
+_renderers: weakref.WeakSet[SoftwareRenderer] = weakref.WeakSet()
+
+
+def _after_fork() -> None:
+    """Replace the locks in a forked child, because a thread that does not exist there may hold them."""
+    for renderer in list(_renderers):
+        renderer.replace_lock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)
 
 
 class MemoryReservation:
@@ -83,6 +98,7 @@ class SoftwareRenderer:
         width = appearance.quality.shadow_map
         self._shadows = ShadowMaps(width) if width else None
         self._lock = threading.RLock()
+        _renderers.add(self)
         self._is_logged = False
 
     def draw_all(self, composition: Composition, shots: Sequence[Shot]) -> Generator[DrawnView, None, None]:
@@ -117,6 +133,10 @@ class SoftwareRenderer:
                 self._forget_pictures()
             return self._draw(composition, shot, directions)
 
+    def replace_lock(self) -> None:
+        """Replace the lock of the renderer, in a process that was forked while another thread was drawing."""
+        self._lock = threading.RLock()
+
     def uploaded(self) -> list[mujoco.MjrContext]:
         """Return no context, because no graphics memory is used."""
         return []
@@ -140,7 +160,7 @@ class SoftwareRenderer:
         table = ShapeTable(composition.scene)
         position, rotation = _pose(composition, shot)
         frame = Frame(shot.view, position, rotation, np.rint(position / _BLOCK) * _BLOCK)
-        shapes = View3D(composition.scene, table, self._store, frame, _from_behind(table, position))
+        shapes = VisibleShapes(composition.scene, table, self._store, frame, _from_behind(table, position))
         if shot.ids:
             return _draw_ids(shapes, table, shot)
         solid = np.flatnonzero(shapes.is_visible & (table.colours[:, 3] >= SOLID))
@@ -168,7 +188,7 @@ class SoftwareRenderer:
         self,
         composition: Composition,
         table: ShapeTable,
-        shapes: View3D,
+        shapes: VisibleShapes,
         position: Array,
         directions: Sequence[Sequence[Array]] | None,
     ) -> tuple[Sequence[Shadow], list[Lamp]]:
@@ -224,7 +244,7 @@ class SoftwareRenderer:
         logging.getLogger("simkit").info("renderer: %s; quality %s, %s", describe_renderer(), quality.name, text)
 
 
-def _draw_ids(shapes: View3D, table: ShapeTable, shot: Shot) -> DrawnView:
+def _draw_ids(shapes: VisibleShapes, table: ShapeTable, shot: Shot) -> DrawnView:
     """Draw the geom id at each pixel; transparent shapes are drawn as solid ones."""
     frame = shapes.frame
     keys = frame.empty_keys()
@@ -239,7 +259,7 @@ def _draw_ids(shapes: View3D, table: ShapeTable, shot: Shot) -> DrawnView:
     return DrawnView(shot.view, None, _raw_depths(frame, table, triangles, keys) if shot.depth else None, ids)
 
 
-def _draw_depths(shapes: View3D, table: ShapeTable, shot: Shot, solid: Array) -> DrawnView:
+def _draw_depths(shapes: VisibleShapes, table: ShapeTable, shot: Shot, solid: Array) -> DrawnView:
     """Draw only the depths of opaque shapes."""
     frame = shapes.frame
     keys = frame.empty_keys()

@@ -73,7 +73,7 @@ class Triangles:
         return chosen
 
 
-class View3D:
+class VisibleShapes:
     """Visible shapes of one image.
 
     Args:
@@ -112,9 +112,9 @@ class View3D:
         self.distances = np.sqrt(right * right + up * up + ahead * ahead)
         self._sides = store.sides(table, frame.pixels_per_tangent / np.maximum(self.distances, view.near))
 
-    def seen_from(self, frame: Frame) -> View3D:
+    def seen_from(self, frame: Frame) -> VisibleShapes:
         """Return the same shapes as seen in another frame."""
-        return View3D(self._scene, self._table, self._store, frame, self._hidden)
+        return VisibleShapes(self._scene, self._table, self._store, frame, self._hidden)
 
     def casters(self, rows: Array) -> Corners:
         """Return the corners of shapes that cast shadows; they do not depend on the camera.
