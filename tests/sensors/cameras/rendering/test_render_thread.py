@@ -283,7 +283,9 @@ def test_the_interpreter_ends_while_images_are_being_drawn(end: str) -> None:
         """
     )
     assert done.returncode == (3 if "exit" in end else -2 if "Interrupt" in end else 0), done.stderr
-    assert done.stderr == "" or "KeyboardInterrupt" in done.stderr
+    # a note says that OpenGL is missing
+    problems = [line for line in done.stderr.splitlines() if "SK-RENDER-015" not in line]
+    assert not problems or "KeyboardInterrupt" in done.stderr
 
 
 def test_an_interrupt_is_raised_and_the_run_can_continue() -> None:
