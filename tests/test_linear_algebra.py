@@ -32,7 +32,9 @@ def test_several_factors_are_multiplied_from_left_to_right() -> None:
     assert np.array_equal(algebra.matmul(a, b, c), algebra.matmul(algebra.matmul(a, b), c))
 
 
-@pytest.mark.parametrize("first, second", [((600, 3), (4, 3)), ((3, 3), (4,)), ((3,), (4, 2)), ((3, 3), (1,)), ((5, 3, 3), (1, 3))])
+@pytest.mark.parametrize(
+    "first, second", [((600, 3), (4, 3)), ((3, 3), (4,)), ((3,), (4, 2)), ((3, 3), (1,)), ((5, 3, 3), (1, 3))]
+)
 def test_factors_that_do_not_fit_are_an_error(first: tuple[int, ...], second: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match="cannot be multiplied"):
         algebra.matmul(draw(*first), draw(*second))
