@@ -154,7 +154,8 @@ def test_functions_at_the_ends_of_their_range_give_infinity_or_nan_without_an_er
     assert functions.log10([0.0, 100.0]).tolist() == [-math.inf, 2.0] and np.isnan(functions.log2(-1.0))
     assert np.isnan(functions.log(-1.0)) and np.isnan(functions.arcsin(1.5)) and np.isnan(functions.arccos(-1.5))
     assert functions.power([-2.0, 0.0, 1e300], [3.0, -1.0, 2.0]).tolist() == [-8.0, math.inf, math.inf]
-    assert np.isnan(functions.power(-2.0, 0.5))
+    assert np.isnan(functions.power(-2.0, 0.5)) and np.isnan(functions.tan([math.inf])).all()
+    assert functions.sinh([1e4, -1e4]).tolist() == [math.inf, -math.inf] and functions.expm1(1e4) == math.inf
 
 
 def test_arctan2_broadcasts_as_numpys() -> None:
