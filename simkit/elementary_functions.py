@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,21 +27,28 @@ def _each(function: Callable[..., float], *arrays: ArrayLike) -> Any:
         columns = list(np.broadcast_arrays(*columns))
     first = columns[0]
     if not first.ndim:
-        return function(*(float(c) for c in columns))
-    numbers = map(function, *(c.ravel().tolist() for c in columns))
-    return np.fromiter(numbers, np.float64, first.size).reshape(first.shape)
+        return _guarded(function, *(float(c) for c in columns))
+    lists = [c.ravel().tolist() for c in columns]
+    try:
+        found = np.fromiter(map(function, *lists), np.float64, first.size)
+    except (OverflowError, ValueError):
+        found = np.fromiter(map(partial(_guarded, function), *lists), np.float64, first.size)
+    return found.reshape(first.shape)
+
+
+def _guarded(function: Callable[..., float], *values: float) -> float:
+    """Apply a function; infinity or NaN, as NumPy gives, where Python's `math` raises an error."""
+    try:
+        return function(*values)
+    except OverflowError:
+        return math.copysign(math.inf, values[0])
+    except ValueError:
+        return math.nan
 
 
 def exp(values: ArrayLike) -> Any:
     """Return e to the power of each number; infinity where the result is too large for a float."""
-    return _each(_exp, values)
-
-
-def _exp(value: float) -> float:
-    try:
-        return math.exp(value)
-    except OverflowError:
-        return math.inf
+    return _each(math.exp, values)
 
 
 def expm1(values: ArrayLike) -> Any:
@@ -76,20 +84,12 @@ def tan(angles: ArrayLike) -> Any:
 
 def arcsin(values: ArrayLike) -> Any:
     """Return the angle in [-π/2, π/2] of each sine; NaN outside [-1, 1]."""
-    return _each(_arcsin, values)
-
-
-def _arcsin(value: float) -> float:
-    return math.asin(value) if -1.0 <= value <= 1.0 else math.nan
+    return _each(math.asin, values)
 
 
 def arccos(values: ArrayLike) -> Any:
     """Return the angle in [0, π] of each cosine; NaN outside [-1, 1]."""
-    return _each(_arccos, values)
-
-
-def _arccos(value: float) -> float:
-    return math.acos(value) if -1.0 <= value <= 1.0 else math.nan
+    return _each(math.acos, values)
 
 
 def arctan(values: ArrayLike) -> Any:
@@ -113,9 +113,9 @@ def power(values: ArrayLike, exponent: ArrayLike) -> Any:
 
 
 def _power(value: float, exponent: float) -> float:
+    if value == 0.0 and exponent < 0.0:
+        return math.inf
     try:
         return math.pow(value, exponent)
     except OverflowError:
         return math.inf if value > 0.0 or exponent % 2.0 == 0.0 else -math.inf
-    except ValueError:
-        return math.nan if value else math.inf

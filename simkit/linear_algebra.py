@@ -35,6 +35,8 @@ def matmul(first: Any, second: Any, *more: Any) -> Any:
         ValueError: The shapes do not fit.
     """
     a, b = np.asarray(first), np.asarray(second)
+    if a.shape[-1] != b.shape[-2 if b.ndim > 1 else 0]:  # einsum repeats an axis of length one
+        raise ValueError(f"arrays of shapes {a.shape} and {b.shape} cannot be multiplied")
     if a.ndim == 2 and b.ndim == 2:
         is_long = len(a) >= _LONG and max(b.shape) <= _SMALL
         # einsum takes ten times as long where rows are not contiguous, and its result would not be contiguous
@@ -54,8 +56,6 @@ def matmul(first: Any, second: Any, *more: Any) -> Any:
 
 def _columns(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
     """Return the product of many short rows and a small matrix; a third of einsum's time for 5000 points."""
-    if len(b) != a.shape[1]:
-        raise ValueError(f"arrays of shapes {a.shape} and {b.shape} cannot be multiplied")
     rows = np.ascontiguousarray(a.T)
     found = np.zeros((b.shape[1], len(a)), np.result_type(a, b))
     for k, column in enumerate(found):
@@ -72,6 +72,8 @@ def dot(first: Any, second: Any) -> float:
     """
     if isinstance(first, np.ndarray):
         if first.size > _SHORT:
+            if np.size(second) != first.size:
+                raise ValueError(f"vectors of {first.size} and {np.size(second)} numbers cannot be multiplied")
             flat = (first, second) if first.ndim == 1 else (first.ravel(), np.ravel(second))
             return float(np.einsum("i,i->", *flat))
         first = first.tolist() if first.ndim == 1 else first.ravel().tolist()

@@ -32,10 +32,18 @@ def test_several_factors_are_multiplied_from_left_to_right() -> None:
     assert np.array_equal(algebra.matmul(a, b, c), algebra.matmul(algebra.matmul(a, b), c))
 
 
-@pytest.mark.parametrize("first, second", [((600, 3), (4, 3)), ((3, 3), (4,)), ((3,), (4, 2))])
+@pytest.mark.parametrize(
+    "first, second", [((600, 3), (4, 3)), ((3, 3), (4,)), ((3,), (4, 2)), ((3, 3), (1,)), ((5, 3, 3), (1, 3))]
+)
 def test_factors_that_do_not_fit_are_an_error(first: tuple[int, ...], second: tuple[int, ...]) -> None:
-    with pytest.raises(ValueError, match=r"shape|dimension|broadcast"):
+    with pytest.raises(ValueError, match="cannot be multiplied"):
         algebra.matmul(draw(*first), draw(*second))
+
+
+@pytest.mark.parametrize("size", [3, 40])
+def test_vectors_of_different_lengths_have_no_product(size: int) -> None:
+    with pytest.raises(ValueError, match=r"shorter|longer|cannot be multiplied"):
+        algebra.dot(draw(size), draw(1))
 
 
 @pytest.mark.parametrize("size", [1, 3, 16, 17, 1000])
@@ -146,7 +154,8 @@ def test_functions_at_the_ends_of_their_range_give_infinity_or_nan_without_an_er
     assert functions.log10([0.0, 100.0]).tolist() == [-math.inf, 2.0] and np.isnan(functions.log2(-1.0))
     assert np.isnan(functions.log(-1.0)) and np.isnan(functions.arcsin(1.5)) and np.isnan(functions.arccos(-1.5))
     assert functions.power([-2.0, 0.0, 1e300], [3.0, -1.0, 2.0]).tolist() == [-8.0, math.inf, math.inf]
-    assert np.isnan(functions.power(-2.0, 0.5))
+    assert np.isnan(functions.power(-2.0, 0.5)) and np.isnan(functions.tan([math.inf])).all()
+    assert functions.sinh([1e4, -1e4]).tolist() == [math.inf, -math.inf] and functions.expm1(1e4) == math.inf
 
 
 def test_arctan2_broadcasts_as_numpys() -> None:

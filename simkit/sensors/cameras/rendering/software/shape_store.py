@@ -97,7 +97,7 @@ class ShapeStore:
             table: shapes of the scene.
             pixels: pixels per metre at the nearest point of each shape, shape (n,).
         """
-        wanted = _SIDES_PER_ROOT * np.sqrt(np.maximum(table.sizes[:, 0], table.sizes[:, 1]) * pixels)
+        wanted = _SIDES_PER_ROOT * np.sqrt(table.sizes[:, :2].max(axis=1) * pixels)
         steps = np.minimum(np.searchsorted(_SIDES, wanted), len(_SIDES) - 1)
         is_round = np.isin(table.kinds, tuple(ROUND))
         found: Integers = np.where(is_round, np.array(_SIDES, np.int32)[steps], 0).astype(np.int32)
