@@ -42,7 +42,7 @@ def restore_front(site: Path) -> None:
 
 def python(site: Path, code: str, *words: str) -> subprocess.CompletedProcess[str]:
     """Run code with the packages of this Python, and with simkit from a folder only."""
-    others = [path for path in sys.path if path and Path(path).resolve() != PACKAGE.parent]
+    others = [str(_without_simkit(Path(path), site)) for path in sys.path if path and Path(path).is_dir()]
     return subprocess.run(
         [sys.executable, "-S", "-P", "-c", code, *words],
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(site), *others])},
@@ -52,6 +52,19 @@ def python(site: Path, code: str, *words: str) -> subprocess.CompletedProcess[st
         encoding="utf-8",
         check=False,
     )
+
+
+def _without_simkit(folder: Path, site: Path) -> Path:
+    """Return a folder of packages; if simkit is installed there, one of links to the others."""
+    if not (folder / "simkit" / "__init__.py").is_file():
+        return folder
+    links = site.parent / f"others{abs(hash(folder))}"
+    if not links.exists():
+        links.mkdir()
+        for path in folder.iterdir():
+            if path.name != "simkit":
+                (links / path.name).symlink_to(path)
+    return links
 
 
 @pytest.fixture
