@@ -45,7 +45,14 @@ def _exp(value: float) -> float:
 
 def expm1(values: ArrayLike) -> Any:
     """Return e to the power of each number, less one, exact for numbers near zero."""
-    return _each(math.expm1, values)
+    return _each(_expm1, values)
+
+
+def _expm1(value: float) -> float:
+    try:
+        return math.expm1(value)
+    except OverflowError:
+        return math.inf
 
 
 def log(values: ArrayLike) -> Any:
@@ -70,8 +77,12 @@ def log2(values: ArrayLike) -> Any:
 
 
 def tan(angles: ArrayLike) -> Any:
-    """Return the tangent of each angle [rad]."""
-    return _each(math.tan, angles)
+    """Return the tangent of each angle [rad]; NaN for an infinite one."""
+    return _each(_tan, angles)
+
+
+def _tan(angle: float) -> float:
+    return math.nan if math.isinf(angle) else math.tan(angle)
 
 
 def arcsin(values: ArrayLike) -> Any:
@@ -103,8 +114,15 @@ def arctan2(y: ArrayLike, x: ArrayLike) -> Any:
 
 
 def sinh(values: ArrayLike) -> Any:
-    """Return the hyperbolic sine of each number."""
-    return _each(math.sinh, values)
+    """Return the hyperbolic sine of each number; infinity where the result is too large for a float."""
+    return _each(_sinh, values)
+
+
+def _sinh(value: float) -> float:
+    try:
+        return math.sinh(value)
+    except OverflowError:
+        return math.copysign(math.inf, value)
 
 
 def power(values: ArrayLike, exponent: ArrayLike) -> Any:
@@ -118,4 +136,6 @@ def _power(value: float, exponent: float) -> float:
     except OverflowError:
         return math.inf if value > 0.0 or exponent % 2.0 == 0.0 else -math.inf
     except ValueError:
-        return math.nan if value else math.inf
+        if value:
+            return math.nan
+        return math.copysign(math.inf, value) if exponent % 2.0 == 1.0 else math.inf
