@@ -78,7 +78,7 @@ def log2(values: ArrayLike) -> Any:
 
 
 def tan(angles: ArrayLike) -> Any:
-    """Return the tangent of each angle [rad]."""
+    """Return the tangent of each angle [rad]; NaN for an infinite one."""
     return _each(math.tan, angles)
 
 
@@ -114,7 +114,7 @@ def power(values: ArrayLike, exponent: ArrayLike) -> Any:
 
 def _power(value: float, exponent: float) -> float:
     if value == 0.0 and exponent < 0.0:
-        return math.inf
+        return math.copysign(math.inf, value) if exponent % 2.0 == 1.0 else math.inf
     try:
         return math.pow(value, exponent)
     except OverflowError:

@@ -75,6 +75,8 @@ def dot(first: Any, second: Any) -> float:
             if np.size(second) != first.size:
                 raise ValueError(f"vectors of {first.size} and {np.size(second)} numbers cannot be multiplied")
             flat = (first, second) if first.ndim == 1 else (first.ravel(), np.ravel(second))
+            if flat[0].dtype.kind in "biu":  # a sum of integers has too few bits, and a sum of booleans has one
+                flat = tuple(numbers.astype(np.float64) for numbers in flat)
             return float(np.einsum("i,i->", *flat))
         first = first.tolist() if first.ndim == 1 else first.ravel().tolist()
     if isinstance(second, np.ndarray):
@@ -126,6 +128,8 @@ def solve(matrix: ArrayLike, right: ArrayLike) -> Floats:
         numpy.linalg.LinAlgError: A matrix is singular.
     """
     m, r = np.asarray(matrix, np.float64), np.asarray(right, np.float64)
+    if not m.shape[-1] and not r.size:
+        return np.zeros(r.shape)
     if m.shape[-2:] == (1, 1) and r.ndim == m.ndim:
         if not m.all():
             raise np.linalg.LinAlgError("Singular matrix")
@@ -213,4 +217,5 @@ def _eliminate(rows: list[list[float]], sides: list[list[float]]) -> float:
             if factor:
                 rows[j] = [x - factor * y for x, y in zip(rows[j], pivot_row, strict=True)]
                 sides[j] = [x - factor * y for x, y in zip(sides[j], side, strict=True)]
-    return determinant if determinant else math.ulp(0.0)  # an underflow of the product does not make it singular
+    # an underflow of the product does not make the matrix singular
+    return determinant if determinant else math.copysign(math.ulp(0.0), determinant)

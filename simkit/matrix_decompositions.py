@@ -25,7 +25,8 @@ def cholesky(matrix: ArrayLike) -> Floats:
     Raises:
         numpy.linalg.LinAlgError: The matrix is not positive definite.
     """
-    return np.asarray(_cholesky(square_rows(np.asarray(matrix, np.float64))), np.float64)
+    m = np.asarray(matrix, np.float64)
+    return np.asarray(_cholesky(square_rows(m)), np.float64).reshape(m.shape)
 
 
 def _cholesky(rows: list[list[float]]) -> list[list[float]]:
@@ -73,6 +74,8 @@ def eigh(matrix: ArrayLike) -> tuple[Floats, Floats]:
     m = np.asarray(matrix, np.float64)
     if m.ndim == 2:
         return _eigh(m)
+    if not m.size:
+        return np.zeros(m.shape[:-1]), np.zeros(m.shape)
     pairs = [_eigh(one) for one in m.reshape(-1, *m.shape[-2:])]
     values, axes = np.zeros(m.shape[:-1]), np.zeros(m.shape)
     for k, (value, axis) in enumerate(pairs):
@@ -134,8 +137,16 @@ def svd(matrix: ArrayLike) -> tuple[Floats, Floats, Floats]:
 
     Returns:
         `u` (..., m, k), the singular values (..., k), descending, and `v` transposed (..., k, n), with k = min(m, n).
+
+    Raises:
+        numpy.linalg.LinAlgError: A number is NaN or infinite.
     """
     m = np.asarray(matrix, np.float64)
+    if not m.size:
+        *stack, rows, columns = m.shape
+        least = min(rows, columns)
+        u, v = (np.broadcast_to(np.eye(count, least), (*stack, count, least)).copy() for count in (rows, columns))
+        return u, np.zeros((*stack, least)), np.swapaxes(v, -1, -2)
     if m.ndim > 2:
         found = [svd(one) for one in m.reshape(-1, *m.shape[-2:])]
         parts = [np.array(part) for part in zip(*found, strict=True)]
@@ -144,6 +155,7 @@ def svd(matrix: ArrayLike) -> tuple[Floats, Floats, Floats]:
     if m.shape[0] < m.shape[1]:
         v, s, ut = svd(m.T)
         return ut.T, s, v.T
+    m, exponent = _scaled(m)
     columns, turns = _orthogonal_columns(m)
     lengths = [norm(column) for column in columns]
     order = sorted(range(len(lengths)), key=lambda k: -lengths[k])
@@ -152,7 +164,20 @@ def svd(matrix: ArrayLike) -> tuple[Floats, Floats, Floats]:
         if lengths[k] > 0.0:
             u[:, place] = columns[k] / lengths[k]
     _complete(u, [lengths[k] for k in order])
-    return u, np.array([lengths[k] for k in order]), np.array([turns[k] for k in order]).reshape(-1, m.shape[1])
+    values = np.ldexp([lengths[k] for k in order], exponent)
+    return u, values, np.array([turns[k] for k in order]).reshape(-1, m.shape[1])
+
+
+def _scaled(matrix: Floats) -> tuple[Floats, int]:
+    """Return a matrix by a power of two whose largest number is about 1, and the exponent that undoes it.
+
+    The products of columns of very large or small numbers overflow or underflow. A power of two changes no other bit.
+    """
+    largest = float(np.abs(matrix).max(initial=0.0))
+    if not math.isfinite(largest):
+        raise np.linalg.LinAlgError("Array must not contain infs or NaNs")
+    exponent = math.frexp(largest)[1]
+    return np.ldexp(matrix, -exponent), exponent
 
 
 def _orthogonal_columns(matrix: Floats) -> tuple[list[Floats], list[Floats]]:
@@ -214,12 +239,14 @@ def lstsq(matrix: ArrayLike, right: ArrayLike, rcond: float | None = None) -> Fl
     m, r = np.asarray(matrix, np.float64), np.asarray(right, np.float64)
     share = float(np.finfo(np.float64).eps) * max(m.shape) if rcond is None else rcond
     if m.shape[0] >= m.shape[1]:  # 30 µs for six unknowns; the singular values take 600
-        lower = _well_conditioned_factor(matmul(m.T, m))
+        scaled, exponent = _scaled(m)
+        lower = _well_conditioned_factor(matmul(scaled.T, scaled))
         if lower is not None:
-            sides = matmul(m.T, r).reshape(m.shape[1], -1).T.tolist()
-            return np.array([_substitute(lower, side) for side in sides]).T.reshape(m.shape[1:] + r.shape[1:])
-    found: Floats = matmul(pinv(m, share), r)
-    return found
+            sides = matmul(scaled.T, r).reshape(m.shape[1], r[:1].size).T.tolist()
+            found = np.array([_substitute(lower, side) for side in sides]).T.reshape(m.shape[1:] + r.shape[1:])
+            return np.ldexp(found, -exponent)
+    shortest: Floats = matmul(pinv(m, share), r)
+    return shortest
 
 
 def _well_conditioned_factor(gram: Floats) -> list[list[float]] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -161,3 +162,56 @@ def test_functions_at_the_ends_of_their_range_give_infinity_or_nan_without_an_er
 def test_arctan2_broadcasts_as_numpys() -> None:
     y, x = draw(4, 1), draw(3, seed=1)
     np.testing.assert_allclose(functions.arctan2(y, x), np.arctan2(y, x), rtol=1e-15)
+
+
+@pytest.mark.parametrize("value", [-np.inf, -1e308, -1000.0, -1.0, -0.0, 0.0, 1.0, 1000.0, 1e308, np.inf, np.nan])
+@pytest.mark.parametrize("name", ["exp", "expm1", "log", "log2", "log10", "tan", "arcsin", "arccos", "arctan", "sinh"])
+def test_functions_of_extreme_numbers_are_infinite_or_nan_like_numpys_and_never_errors(name: str, value: float) -> None:
+    with np.errstate(all="ignore"):
+        np.testing.assert_allclose(getattr(functions, name)(value), getattr(np, name)(value), rtol=1e-14)
+
+
+@pytest.mark.parametrize("exponent", [-3.0, -2.0, -0.5])
+@pytest.mark.parametrize("base", [0.0, -0.0])
+def test_a_negative_power_of_zero_is_infinite_with_the_sign_of_an_odd_one(base: float, exponent: float) -> None:
+    with np.errstate(all="ignore"):
+        assert functions.power(base, exponent) == np.power(base, exponent)
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-200, 1e-155, 1e100, 1e200])
+@pytest.mark.parametrize("shape", [(1, 1), (4, 2), (3, 3), (2, 4)])
+def test_decompositions_do_not_overflow_or_underflow(shape: tuple[int, int], scale: float) -> None:
+    matrix, right = draw(*shape), draw(shape[0], seed=1)
+    u, s, vt = decompositions.svd(matrix * scale)
+    np.testing.assert_allclose((u * (s / scale)) @ vt, matrix, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(decompositions.pinv(matrix * scale) * scale, np.linalg.pinv(matrix), rtol=1e-11)
+    found, expected = decompositions.lstsq(matrix * scale, right), np.linalg.lstsq(matrix, right)[0]
+    np.testing.assert_allclose(found * scale, expected, rtol=1e-11)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_empty_matrices_have_numpys_shapes(count: int) -> None:
+    none = np.zeros((0, 0))
+    assert algebra.solve(none, np.zeros((0, count))).shape == (0, count)
+    assert algebra.inverse(none).shape == decompositions.cholesky(none).shape == (0, 0)
+    for empty in (np.zeros((0, count)), np.zeros((count, 0)), np.zeros((0, 3, count)), np.zeros((2, 0, count))):
+        ours, numpys = decompositions.svd(empty), np.linalg.svd(empty, full_matrices=False)
+        assert [part.shape for part in ours] == [part.shape for part in numpys]
+    assert np.array_equal(decompositions.lstsq(np.zeros((0, count)), np.zeros(0)), np.zeros(count))
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf])
+@pytest.mark.parametrize("function", [decompositions.svd, decompositions.pinv, decompositions.eigh])
+def test_numbers_that_are_not_finite_have_no_decomposition(function: Any, number: float) -> None:
+    with pytest.raises(np.linalg.LinAlgError):
+        function([[1.0, number], [number, 1.0]])
+
+
+@pytest.mark.parametrize("kind", [bool, np.uint8, np.int8])
+def test_a_long_scalar_product_of_integers_does_not_wrap(kind: type) -> None:
+    many = np.full(100, 100).astype(kind)
+    assert algebra.dot(many, many) == algebra.norm(many) ** 2 == 100.0 * float(many[0]) ** 2
+
+
+def test_the_determinant_of_tiny_numbers_keeps_its_sign() -> None:
+    assert algebra.det(np.diag([-1e-200, 1e-200])) < 0.0 < algebra.det(np.diag([1e-200, 1e-200]))
