@@ -75,8 +75,8 @@ def dot(first: Any, second: Any) -> float:
             if np.size(second) != first.size:
                 raise ValueError(f"vectors of {first.size} and {np.size(second)} numbers cannot be multiplied")
             flat = (first, second) if first.ndim == 1 else (first.ravel(), np.ravel(second))
-            if flat[0].dtype.kind in "biu":  # a sum of integers has too few bits, and a sum of booleans has one
-                flat = tuple(numbers.astype(np.float64) for numbers in flat)
+            if first.dtype.kind in "biu":  # a sum of integers may have too few bits, and that of booleans has one
+                flat = (flat[0].astype(np.float64), flat[1])
             return float(np.einsum("i,i->", *flat))
         first = first.tolist() if first.ndim == 1 else first.ravel().tolist()
     if isinstance(second, np.ndarray):

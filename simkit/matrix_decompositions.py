@@ -16,6 +16,7 @@ from simkit.linear_algebra import dot, matmul, norm, square_rows
 Floats = NDArray[np.float64]
 
 _SWEEPS = 60  # Jacobi's method converges quadratically: 6 to 10 sweeps are usual
+_LARGEST = 1e300  # numbers above it are scaled, because their sums and differences may be infinite
 _WELL_CONDITIONED = 1e-3  # ratio of pivots above which normal equations lose less than six of 16 digits
 
 
@@ -92,6 +93,10 @@ def _eigh(matrix: Floats) -> tuple[Floats, Floats]:
     a = square_rows(matrix)
     if not np.isfinite(matrix).all():
         raise np.linalg.LinAlgError("Array must not contain infs or NaNs")
+    if np.abs(matrix).max(initial=0.0) > _LARGEST:
+        smaller, exponent = _scaled(matrix)
+        values, columns = _eigh(smaller)
+        return _unscaled(values, exponent), columns
     n = len(a)
     axes = [[float(i == j) for j in range(n)] for i in range(n)]  # rows are eigenvectors
     for _ in range(_SWEEPS):
@@ -164,7 +169,7 @@ def svd(matrix: ArrayLike) -> tuple[Floats, Floats, Floats]:
         if lengths[k] > 0.0:
             u[:, place] = columns[k] / lengths[k]
     _complete(u, [lengths[k] for k in order])
-    values = np.ldexp([lengths[k] for k in order], exponent)
+    values = _unscaled([lengths[k] for k in order], exponent)
     return u, values, np.array([turns[k] for k in order]).reshape(-1, m.shape[1])
 
 
@@ -177,7 +182,14 @@ def _scaled(matrix: Floats) -> tuple[Floats, int]:
     if not math.isfinite(largest):
         raise np.linalg.LinAlgError("Array must not contain infs or NaNs")
     exponent = math.frexp(largest)[1]
-    return np.ldexp(matrix, -exponent), exponent
+    return _unscaled(matrix, -exponent), exponent
+
+
+def _unscaled(numbers: ArrayLike, exponent: int) -> Floats:
+    """Return numbers times a power of two; those that are too large for a float are infinite."""
+    with np.errstate(over="ignore", under="ignore"):
+        found: Floats = np.ldexp(np.asarray(numbers, np.float64), exponent)
+    return found
 
 
 def _orthogonal_columns(matrix: Floats) -> tuple[list[Floats], list[Floats]]:
@@ -244,7 +256,7 @@ def lstsq(matrix: ArrayLike, right: ArrayLike, rcond: float | None = None) -> Fl
         if lower is not None:
             sides = matmul(scaled.T, r).reshape(m.shape[1], r[:1].size).T.tolist()
             found = np.array([_substitute(lower, side) for side in sides]).T.reshape(m.shape[1:] + r.shape[1:])
-            return np.ldexp(found, -exponent)
+            return _unscaled(found, -exponent)
     shortest: Floats = matmul(pinv(m, share), r)
     return shortest
 

@@ -126,7 +126,7 @@ class Pose:
             _raise_pose_error(position, quaternion)
         if p.shape != (3,) or q.shape != (4,):
             _raise_pose_error(position, quaternion)
-        norm = math.sqrt(dot(q, q))  # `vdot` gives the bits of `dot`, but no warning for an overflow
+        norm = math.sqrt(dot(q, q))
         x, y, z = p.tolist()
         if not (1e-12 < norm < math.inf and math.isfinite(x) and math.isfinite(y) and math.isfinite(z)):
             _raise_pose_error(p, q)

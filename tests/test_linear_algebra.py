@@ -215,3 +215,11 @@ def test_a_long_scalar_product_of_integers_does_not_wrap(kind: type) -> None:
 
 def test_the_determinant_of_tiny_numbers_keeps_its_sign() -> None:
     assert algebra.det(np.diag([-1e-200, 1e-200])) < 0.0 < algebra.det(np.diag([1e-200, 1e-200]))
+
+
+def test_eigenvalues_of_the_largest_numbers_do_not_overflow() -> None:
+    matrix = np.array([[3.0, 1.0, 0.0], [1.0, -4.0, 2.0], [0.0, 2.0, 1.0]])
+    values, axes = decompositions.eigh(matrix * 3e307)
+    np.testing.assert_allclose(values / 3e307, np.linalg.eigvalsh(matrix), rtol=1e-13)
+    np.testing.assert_allclose(axes.T @ axes, np.eye(3), atol=1e-14)
+    assert np.isinf(decompositions.svd(np.full((2, 2), 1.7e308))[1][0])

@@ -37,12 +37,12 @@ def bench(
     from simkit.build import load
     from simkit.cli.bench_figures import compare_with_bare_mujoco, measure_import_time, measure_memory_growth
 
-    stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'goal':>8}")
     spec = RunSpec(
         world,
         model_world=model_world or GROUND,
         options=load_options(resource_path, package_path, xacro_arg, base, plugin_path, renderer=renderer),
     )
+    stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'goal':>8}")
     figures = []
     for figure in compare_with_bare_mujoco(spec, rounds=rounds):
         figures.append(figure)

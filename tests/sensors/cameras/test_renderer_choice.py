@@ -169,8 +169,13 @@ def test_an_unknown_name_lists_the_allowed_ones(tmp_path: Path) -> None:
         simkit.load(cameras("vulkan"))
     (tmp_path / "w.sdf").write_text(cameras())
     (tmp_path / "s.yaml").write_text("world: w.sdf\nrenderer: vulkan\n")
-    for words, place in (("run w.sdf --renderer vulkan", "--renderer"), ("golden record s.yaml -o g", "s.yaml:2")):
+    for words, place in (
+        ("run w.sdf --renderer vulkan", "--renderer"),
+        ("bench w.sdf --renderer vulkan", "--renderer"),
+        ("golden record s.yaml -o g", "s.yaml:2"),
+    ):
         done = command(tmp_path, *words.split())
+        assert not done.stdout
         assert done.returncode == 2 and place in done.stderr, done.stderr
         assert all(name in done.stderr for name in ("vulkan", "auto", "gl", "software"))
 

@@ -45,6 +45,15 @@ def test_a_run_that_passes_is_one_line() -> None:
     assert text_report(passing()) == ["ok      stand: 5 topics, 900 messages, bit for bit (0.5 s)"]
 
 
+def test_a_run_that_another_renderer_draws_within_tolerances_is_not_called_equal() -> None:
+    verdict = passing()
+    verdict.comparison.machine["renderer"] = ("llvmpipe", "software")
+    assert "bit for bit" in text_report(verdict)[0]
+    verdict.comparison.is_identical = False
+    first = text_report(verdict, 200)[0]
+    assert "within the tolerances of another machine (renderer llvmpipe → software)" in first
+
+
 def test_differences_checks_notes_and_versions_are_reported() -> None:
     text = "\n".join(text_report(failing(), 200))
     for said in (

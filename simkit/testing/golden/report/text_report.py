@@ -46,7 +46,8 @@ def text_report(verdict: Verdict, width: int = 100, *, most: int = MAX_DIFFERENC
 def passed_text(verdict: Verdict) -> str:
     """Describe the comparison of a run that passed: `5 topics, 1200 messages, bit for bit; 2 checks (1.3 s)`."""
     comparison = verdict.comparison
-    if comparison.tier == "exact" or comparison.is_identical:
+    # where only the renderer or the ray tracer differs, the tier is "exact", and tolerances apply to their topics
+    if comparison.is_identical or (comparison.tier == "exact" and not comparison.machine):
         tier = "bit for bit"
     else:
         tier = "within the tolerances" + (
