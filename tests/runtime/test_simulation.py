@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.runtime.engine.physics_state import ENGINE_WARNINGS
 
 BALL = """<sdf version="1.9"><world name="w"><gravity>0 0 -9.8</gravity>{extra}
   <model name="ball"><pose>0 0 5 0 0 0</pose><link name="l"><inertial><mass>2</mass></inertial>
@@ -254,6 +255,18 @@ def test_bodies_pass_through_disabled_collisions():
         assert link.collisions_enabled
         sim.run(2.0)
         assert sim.model("ball").pose.position[2] == pytest.approx(0.1, abs=2e-3)
+
+
+def test_a_divergence_has_no_engine_text_of_an_earlier_simulation():
+    texts = []
+    for _ in range(2):
+        with load(SWING) as sim:
+            sim.mj_data.qvel[:] = np.nan
+            with pytest.raises(simkit.SimulationDiverged) as caught:
+                sim.step(3)
+            texts.append(str(caught.value))
+            ENGINE_WARNINGS.record("left over")
+    assert texts[0] == texts[1] and "left over" not in texts[1]
 
 
 def test_a_diverged_run_stops_with_the_joint_and_the_time():

@@ -40,8 +40,12 @@ class EngineWarnings:
     def take_first(self) -> str:
         """Return the first text and clear all texts."""
         text = self._texts[0] if self._texts else ""
-        self._texts.clear()
+        self.clear()
         return text
+
+    def clear(self) -> None:
+        """Forget all texts, such as those of a simulation that has ended."""
+        self._texts.clear()
 
 
 ENGINE_WARNINGS: Final = EngineWarnings()
@@ -155,6 +159,7 @@ class PhysicsState:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, clock: Clock, may_sleep: bool = True) -> None:
         mujoco.set_mju_user_warning(ENGINE_WARNINGS.record)
+        ENGINE_WARNINGS.clear()
         self.clock, self._may_sleep = clock, may_sleep
         self.tick = self.edition = 0
         self.rebind(model, data)
