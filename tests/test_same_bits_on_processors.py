@@ -76,5 +76,7 @@ def test_messages_do_not_depend_on_instructions(
 def test_messages_are_the_same_on_an_emulated_haswell(
     world: str, tmp_path: Path, usual_hashes: Callable[[str], Hashes]
 ) -> None:
+    """NumPy uses no AVX2 here, because qemu 7.2 sorts int32 numbers wrongly with NumPy's AVX2 code (`np.argsort`)."""
     assert EMULATOR is not None
-    assert run_program(world, tmp_path, {}, (EMULATOR, "-cpu", "Haswell")) == usual_hashes(world)
+    settings = {"NPY_DISABLE_CPU_FEATURES": NO_V3}
+    assert run_program(world, tmp_path, settings, (EMULATOR, "-cpu", "Haswell")) == usual_hashes(world)
