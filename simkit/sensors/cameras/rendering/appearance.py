@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -29,6 +30,12 @@ class Quality:
         """Return the features that Gazebo draws and this quality does not, as a text."""
         parts = [word for word, there in (("shadows", self.shadow_map), ("smooth edges", self.samples)) if not there]
         return " and ".join(parts)
+
+    def log_use(self, renderer: str) -> None:
+        """Log the name of the renderer and the features that images of this quality lack."""
+        missing = self.missing_features()
+        text = f"without {missing}" if missing else "with shadows and smooth edges"
+        logging.getLogger("simkit").info("renderer: %s; quality %s, %s", renderer, self.name, text)
 
 
 QUALITIES: Final[Mapping[str, Quality]] = {

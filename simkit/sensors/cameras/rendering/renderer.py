@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Generator, Sequence
 
 import mujoco
@@ -275,9 +274,4 @@ class Renderer:
         if self._is_logged:
             return
         self._is_logged = True
-        quality = self._appearance.quality
-        missing = quality.missing_features()
-        text = f"without {missing}" if missing else "with shadows and smooth edges"
-        logging.getLogger("simkit").info(
-            "renderer: %s; quality %s, %s", gl_context.describe_renderer(), quality.name, text
-        )
+        self._appearance.quality.log_use(gl_context.describe_renderer())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import logging
 import os
 import threading
 import weakref
@@ -238,10 +237,7 @@ class SoftwareRenderer:
         if self._is_logged:
             return
         self._is_logged = True
-        quality = self._appearance.quality
-        missing = quality.missing_features()
-        text = f"without {missing}" if missing else "with shadows and smooth edges"
-        logging.getLogger("simkit").info("renderer: %s; quality %s, %s", describe_renderer(), quality.name, text)
+        self._appearance.quality.log_use(describe_renderer())
 
 
 def _draw_ids(shapes: VisibleShapes, table: ShapeTable, shot: Shot) -> DrawnView:
