@@ -193,7 +193,7 @@ def _has_manifest(folder: str) -> bool:
 
 
 def _prefix(folder: str) -> str:
-    """Return a path with a separator at its end, so that `/a/bc` is not below `/a/b`; Windows ignores capital letters."""
+    """Return a path with a separator at its end, so that `/ab` is not below `/a`; Windows ignores capital letters."""
     return os.path.normcase(folder).rstrip(os.sep) + os.sep
 
 
