@@ -159,8 +159,8 @@ def used_variables(spec: SweepSpec) -> set[str]:
 # ---------------------------------------------------------------------- description
 
 
-_PLACES: Final = ("file", "folder", "where")
-"""Fields that say where a value stands; they differ between machines and working folders."""
+_PLACES: Final = ("file", "folder", "where", "code_requests")
+"""Fields that say where a value stands, which differs between machines and working folders, or what is allowed."""
 
 
 def plain_description(value: Any, seen: dict[int, tuple[int, Any]] | None = None) -> Any:

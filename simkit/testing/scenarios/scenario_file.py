@@ -5,11 +5,12 @@ All problems of a file are reported at once, with file and line.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final, cast
 
+from simkit.code_requests import CodeRequest, folder_request
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
 from simkit.recording.bags.reader import open_bag_to_read
@@ -19,6 +20,7 @@ from simkit.run_spec import (
     RENDERERS,
     Check,
     CheckKind,
+    FilePath,
     JsonObject,
     LoadOptions,
     RunSpec,
@@ -26,6 +28,7 @@ from simkit.run_spec import (
     change_package_paths,
     named_values,
 )
+from simkit.testing.scenarios.code_permission import permit_code
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
 
@@ -62,14 +65,19 @@ def is_scenario_file(source: str | Path) -> bool:
     return Path(source).suffix.lower() in _SCENARIO_SUFFIXES
 
 
-def read_scenario(path: str | Path) -> RunSpec:
+def read_scenario(path: str | Path, *, allow_code: bool = False, plugin_paths: Sequence[FilePath] = ()) -> RunSpec:
     """Read a scenario file.
+
+    Without a permission, the plugin folders of a YAML file are in `code_requests`, and the result cannot be run.
 
     Args:
         path: YAML file, or Python file with `scenario = RunSpec(...)`, which is run.
+        allow_code: Allow the plugin folders that a YAML file names. Their code has the same rights as the user.
+        plugin_paths: Allow these folders only; the file must not name others.
 
     Raises:
-        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-005); the error lists all of them.
+        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-005); the error lists all of them. SK-SCEN-008: it
+            names other folders than `plugin_paths`.
     """
     file = Path(path)
     diagnostics = Diagnostics()
@@ -82,7 +90,7 @@ def read_scenario(path: str | Path) -> RunSpec:
     if diagnostics.has_errors:
         _check_world(scenario, diagnostics)
     diagnostics.raise_if_errors()
-    return scenario
+    return permit_code(scenario, allow_code, plugin_paths) if allow_code or plugin_paths else scenario
 
 
 def _check_world(scenario: RunSpec, diagnostics: Diagnostics) -> None:
@@ -147,6 +155,7 @@ class ScenarioReader(ValueReader):
             wall_timeout=wall,
             checks=tuple(check for key, kind in _CHECKS.items() for check in self._checks(key, kind)),
             options=cast(LoadOptions, self._options()),
+            code_requests=self._code_requests(),
             folder=self._document.path.parent,
             file=self._document.path,
         )
@@ -222,7 +231,7 @@ class ScenarioReader(ValueReader):
     def _options(self) -> dict[str, object]:
         folder = self._document.path.parent
         found: dict[str, object] = {}
-        for key in ("resource_paths", "plugin_paths", "interfaces"):
+        for key in ("resource_paths", "interfaces"):
             if key in self._fields:
                 found[key] = tuple(folder / one for one in self._texts(key))
         if "params_files" in self._fields:
@@ -242,6 +251,11 @@ class ScenarioReader(ValueReader):
             if found["renderer"] not in RENDERERS:
                 self._wrong(found.pop("renderer"), "auto, gl or software", "renderer")
         return found
+
+    def _code_requests(self) -> tuple[CodeRequest, ...]:
+        folder, found = self._document.path.parent, self._texts("plugin_paths")
+        places = [self._document.where("plugin_paths", number) for number in range(len(found))]
+        return tuple(folder_request(one, folder / one, where) for one, where in zip(found, places, strict=True))
 
     # ------------------------------------------------------------------ comparison
 
