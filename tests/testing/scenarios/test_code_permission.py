@@ -84,9 +84,12 @@ def stranger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     (tmp_path / "own.yaml").write_text(
-        "world: plain.sdf\nduration: 0.02\ngoals: ['time > 0']\nexercise: {title: Own, hand_in: code/evil.py, robot: m}\n"
+        "world: plain.sdf\nduration: 0.02\ngoals: ['time > 0']\n"
+        "exercise: {title: Own, hand_in: code/evil.py, robot: m}\n"
     )
-    (tmp_path / "good.py").write_text("import simkit\nclass Good(simkit.ModelPlugin):\n    def load(self, parent, params):\n        pass\n")
+    (tmp_path / "good.py").write_text(
+        "import simkit\nclass Good(simkit.ModelPlugin):\n    def load(self, parent, params):\n        pass\n"
+    )
     monkeypatch.chdir(tmp_path)
     yield tmp_path
     for name in [name for name in sys.modules if str(tmp_path) in name]:
@@ -304,6 +307,7 @@ def test_a_permission_does_not_change_a_golden_run(stranger: Path) -> None:
         assert run("golden", "check", "new", "--plugin-path", "code")[0] == 0
 
 
+@pytest.mark.slow
 def test_golden_runs_are_checked_in_processes_with_the_same_permission(stranger: Path) -> None:
     for name in ("one", "two"):
         assert run("golden", "record", "s.yaml", "-o", f"golden/{name}", "--allow-code")[0] == 0
@@ -320,6 +324,7 @@ def test_golden_runs_are_checked_in_processes_with_the_same_permission(stranger:
 SHADOWS = ("numpy", "pandas", "cloudpickle", "signal", "pickle", "struct", "random", "json", "yaml", "sitecustomize")
 
 
+@pytest.mark.slow
 def test_no_command_imports_a_file_of_the_working_directory(stranger: Path) -> None:
     """A file that has the name of a module is not imported, also not by child processes."""
     for name in (*SHADOWS, "usercustomize", "mujoco", "ray", "simkit_evil"):
@@ -351,9 +356,7 @@ def test_no_command_imports_a_file_of_the_working_directory(stranger: Path) -> N
     )
     entry = "import sys; from simkit.cli import main; sys.exit(main())"  # what the installed program runs
     for words in lines:
-        done = subprocess.run(
-            [sys.executable, "-P", "-c", entry, *words], capture_output=True, text=True, check=False
-        )
+        done = subprocess.run([sys.executable, "-P", "-c", entry, *words], capture_output=True, text=True, check=False)
         assert not (stranger / MARKER).exists(), (words, (stranger / MARKER).read_text(), done.stderr)
         assert done.returncode in (0, 2), (words, done.stderr)
 
@@ -372,6 +375,7 @@ def test_python_m_simkit_does_not_search_the_working_directory(stranger: Path) -
     assert not (stranger / MARKER).exists()
 
 
+@pytest.mark.slow
 def test_commands_that_read_no_description_run_no_file_beside_it(stranger: Path) -> None:
     """A scenario or a program in place of a world is an error, or data."""
     golden_of(stranger, "g", **GOLDEN["golden check of a golden run with a folder"])
@@ -394,7 +398,11 @@ def test_the_report_of_another_state_is_refused(tmp_path: Path, monkeypatch: pyt
     (tmp_path / "finds").chmod(0o755)
     (tmp_path / "finds" / "evil.py").write_text(EVIL)
     monkeypatch.chdir(tmp_path / "finds")
-    for words in (("golden", "record", "s.yaml", "-o", "out"), ("golden", "check", "g"), ("bundle", "s.yaml", "-o", "b.zip")):
+    for words in (
+        ("golden", "record", "s.yaml", "-o", "out"),
+        ("golden", "check", "g"),
+        ("bundle", "s.yaml", "-o", "b.zip"),
+    ):
         code, output = run(*words)
         assert (code, CODE_REFUSED in output) == (2, True), output
         assert not (tmp_path / "finds" / MARKER).exists()
