@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Sequence
 from contextlib import chdir
 from dataclasses import replace
@@ -26,6 +27,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.errors import InputError, RegressionError
 from simkit.testing.golden.parallel_check import CheckResult
+from simkit.testing.scenarios.readable_files import HELP
 from simkit.writers.atomic_output import check_writable
 
 if TYPE_CHECKING:
@@ -234,6 +236,7 @@ def record(
         print_diagnostics(found.simulation.diagnostics, verbose=False)
         add_diagnostics(found.simulation.diagnostics)
         found.simulation.close()
+    _print_needed_folders(out_)
     messages = sum(len(stream.times_ns) for stream in found.streams.values())
     size = sum(path.stat().st_size for path in out_.iterdir())
     stdout_console().print(f"{out_}: {len(found.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
@@ -243,6 +246,18 @@ def record(
     for result in found.checks:
         if not result.passed:
             print_status(f"warning: the scenario's own check failed: {result.check.title}: {result.message}")
+
+
+def _print_needed_folders(folder: Path) -> None:
+    """Print the options that a check of a golden run needs, because the run names files of other folders."""
+    from simkit.testing.golden.check import refused_files
+    from simkit.testing.golden.record_encoding import decode_scenario
+    from simkit.testing.golden.store import read_main
+
+    found = refused_files(folder, decode_scenario(read_main(folder)["scenario"], folder))
+    needed = dict.fromkeys(problem.hint.removeprefix(HELP) for problem in found)
+    if needed:
+        print_status(f"note: simkit golden check {shlex.quote(str(folder))} needs {' '.join(needed)}")
 
 
 @golden.command()
@@ -258,6 +273,7 @@ def check(
     jobs: Annotated[int, option("Number of parallel processes.", "N", "--jobs", "-n", min=1)] = 1,
     causes: Annotated[bool, Option("--causes/--no-causes", help="Search for the causes of differences.")] = True,
     budget: Annotated[float, option("Wall time limit of the search for each golden run.", "S", min=0)] = 60.0,
+    resource_path: options.ReadableFolders = [],
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print only failures.")] = False,
 ) -> int:
@@ -266,6 +282,8 @@ def check(
 
     check_writable(html)
     check_writable(junit)
-    check_options = CheckOptions(bless, bless_other_renderer, causes, budget, pictures=html is not None)
+    check_options = CheckOptions(
+        bless, bless_other_renderer, causes, budget, pictures=html is not None, folders=tuple(resource_path)
+    )
     results = check_goldens(folders, check_options, jobs)
     return report_results(results, blessed=bless is not None, html=html, junit=junit, quiet=quiet)

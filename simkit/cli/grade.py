@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +12,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_json, report_errors, stdout_console
 from simkit.errors import InputError
+from simkit.run_spec import FilePath
 from simkit.writers.atomic_output import check_writable
 
 _FAILED = 5
@@ -26,10 +28,11 @@ def grade(
     junit: Annotated[Path | None, option("JUnit XML report to write.", "OUT.xml")] = None,
     pictures: Annotated[Path | None, option("Folder for a picture of the path of each run.", "DIR")] = None,
     jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
+    resource_path: options.ReadableFolders = [],
     json_: options.Json = False,
 ) -> int:
     """Run an exercise with submitted plugins and print the results."""
-    return grade_files([exercise], submissions, junit, pictures, jobs, json_=json_)
+    return grade_files([exercise], submissions, junit, pictures, jobs, json_=json_, folders=resource_path)
 
 
 def grade_files(
@@ -40,6 +43,7 @@ def grade_files(
     jobs: int = 1,
     *,
     json_: bool = False,
+    folders: Sequence[FilePath] = (),
 ) -> int:
     """Grade plugins, print the results, and return the exit code; the arguments are those of the command.
 
@@ -51,7 +55,7 @@ def grade_files(
     from simkit.testing.scenarios.grading import grade_all, grade_json, grade_text, junit_cases
 
     check_writable(junit)
-    tasks = [read_exercise(exercise) for exercise in exercises]
+    tasks = [read_exercise(exercise, folders) for exercise in exercises]
     files = [_files(submissions, task.file.parent / task.hand_in if task.hand_in else None) for task in tasks]
     grades = []
     for task, of_task in zip(tasks, files, strict=True):

@@ -116,7 +116,10 @@ def scenario_spec(
     from simkit.testing.scenarios.scenario_file import is_scenario_file, read_scenario
 
     if "<" not in world and is_scenario_file(world):
-        found = read_scenario(world)
+        found = read_scenario(world, options.get("resource_paths", ()))
+        own = found.options.get("resource_paths", ())
+        if own and "resource_paths" in options:  # the option allows files; it does not replace the scenario's folders
+            options = {**options, "resource_paths": (*options["resource_paths"], *own)}
     else:
         found = RunSpec(world, duration=usual_duration)
     return replace(

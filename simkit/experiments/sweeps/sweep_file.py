@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, cast
 
@@ -12,6 +12,7 @@ from simkit.experiments.sweeps.design import SAMPLINGS
 from simkit.experiments.sweeps.metrics import FileMetric
 from simkit.experiments.sweeps.sweep import make_design
 from simkit.experiments.sweeps.sweep_spec import Keep, Metric, SweepSpec, sequence_of_seeds
+from simkit.run_spec import FilePath
 from simkit.testing.conditions.parser import parse
 from simkit.testing.scenarios.scenario_file import parse_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader
@@ -31,14 +32,19 @@ SWEEP_KEYS: Final = (
 _CORRELATED_KEYS: Final = ("parameters", "mean", "deviation", "correlation")
 
 
-def read_sweep(path: str | Path) -> SweepSpec:
+def read_sweep(path: str | Path, folders: Sequence[FilePath] = ()) -> SweepSpec:
     """Read a sweep file.
 
+    Args:
+        path: file.
+        folders: folders in which the file may name files, beside its own folder and its project.
+
     Raises:
-        LoadError: the file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SWEEP-001, SK-COND-001); the error lists all.
+        LoadError: the file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SWEEP-001, SK-COND-001, SK-URI-003); the error
+            lists all.
     """
     diagnostics = Diagnostics()
-    document = Document(Path(path), diagnostics)
+    document = Document(Path(path), diagnostics, folders)
     if document.values is None:
         diagnostics.raise_if_errors()
     run = parse_scenario(document, also=SWEEP_KEYS)
@@ -57,7 +63,8 @@ class _SweepReader(ValueReader):
         metrics, keep = self._metrics(), self._keep()
         bags = self._texts("bags")
         design = self._design(run.seed)
-        return None if design is None else SweepSpec(run, design, metrics, keep, bags)
+        files = self._document.files
+        return None if design is None else SweepSpec(run, design, metrics, keep, bags, files=files)
 
     def _design(self, seed: int) -> Any:
         samples = self._whole("samples", 0, 1) if "samples" in self._fields else None
@@ -73,6 +80,8 @@ class _SweepReader(ValueReader):
         found: Any = self._fields.get("parameters", {})
         if isinstance(found, str):
             found = self._document.path.parent / found
+            if self._document.refuses(self._document.files.refusal(found), "parameters"):
+                return None
         elif isinstance(found, dict):
             found = {**found, **self._correlated()}
         elif not isinstance(found, list):

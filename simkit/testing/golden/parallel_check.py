@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from simkit import progress
 from simkit.errors import SimkitError
+from simkit.run_spec import FilePath
 
 if TYPE_CHECKING:
     from simkit.testing.golden.compare.difference import Verdict
@@ -28,6 +29,7 @@ class CheckOptions:
     causes: bool = True
     budget_s: float = 60.0
     pictures: bool = False
+    folders: tuple[FilePath, ...] = ()
 
 
 @dataclass

@@ -17,7 +17,7 @@ from typing import Final
 
 from simkit import file_lock
 from simkit.errors import InputError
-from simkit.input_file import read_input
+from simkit.input_file import read_input, read_input_text
 from simkit.install_command import install_command
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
@@ -161,6 +161,12 @@ def read_history(folder: str | os.PathLike[str]) -> list[JsonMapping]:
     """Return the history of a golden run, oldest entry first."""
     found = read_main(golden_folder(folder)).get("history", [])
     return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
+
+
+def line_of_key(folder: Path, key: str) -> int | None:
+    """Return the line of `golden.json` in which a key of the scenario is; None without such a line."""
+    lines = read_input_text(folder / MAIN_FILE, _MAX_TEXT_BYTES).split("\n")
+    return next((number for number, line in enumerate(lines, 1) if line.lstrip().startswith(f'"{key}":')), None)
 
 
 def golden_folder(path: str | os.PathLike[str]) -> Path:

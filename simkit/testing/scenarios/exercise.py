@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
 from simkit.diagnostics import Diagnostics
-from simkit.run_spec import JsonMapping, RunSpec
+from simkit.run_spec import FilePath, JsonMapping, RunSpec
 from simkit.testing.scenarios.scenario_file import is_scalar_text, parse_scenario, yaml_value_text
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
 from simkit.yaml_reader import finite_number
@@ -45,6 +46,7 @@ class Exercise:
         pass_mark: Share of the points needed to pass, 0 to 1.
         runs: Runs in which the plugin is tested.
         file: File of the exercise.
+        folders: Folders of the user in which the file may name files.
     """
 
     title: str
@@ -54,16 +56,21 @@ class Exercise:
     pass_mark: float
     runs: tuple[ExerciseRun, ...]
     file: Path
+    folders: tuple[FilePath, ...] = ()
 
 
-def read_exercise(path: str | Path) -> Exercise:
+def read_exercise(path: str | Path, folders: Sequence[FilePath] = ()) -> Exercise:
     """Read an exercise from a YAML file.
 
+    Args:
+        path: File.
+        folders: Folders in which the file may name files, beside its own folder and its project.
+
     Raises:
-        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006); the error lists all of them.
+        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006, SK-URI-003); the error lists all.
     """
     diagnostics = Diagnostics()
-    document = Document(Path(path), diagnostics)
+    document = Document(Path(path), diagnostics, folders)
     if document.values is None:
         diagnostics.raise_if_errors()
     scenario = parse_scenario(document, also=("exercise",))
@@ -90,7 +97,10 @@ class _ExerciseReader(ValueReader):
         runs = self._runs(scenario, parameters)
         title, text, hand_in, robot = (self._stripped(key) for key in ("title", "text", "hand_in", "robot"))
         file = self._document.path
-        return Exercise(title or scenario.title, text, hand_in, robot, self._pass_mark(), runs, file)
+        self._document.refuses(self._document.files.refusal(file.parent / hand_in), *self._at, "hand_in")
+        return Exercise(
+            title or scenario.title, text, hand_in, robot, self._pass_mark(), runs, file, self._document.files.folders
+        )
 
     def _runs(self, scenario: RunSpec, parameters: JsonMapping) -> tuple[ExerciseRun, ...]:
         listed = self._fields.get("runs", [{}])
@@ -107,7 +117,10 @@ class _ExerciseReader(ValueReader):
     def run(self, number: int, scenario: RunSpec, parameters: JsonMapping) -> ExerciseRun:
         duration = self._number("duration", scenario.duration, above=0.0)
         folder = self._document.path.parent
-        spawn = (resolve_spawn_file(folder, one) for one in self._texts_of(self._fields.get("spawn", []), "spawn"))
+        listed = self._texts_of(self._fields.get("spawn", []), "spawn")
+        spawn = tuple(resolve_spawn_file(folder, one) for one in listed)
+        for place, one in enumerate(spawn):
+            self._document.refuses(self._document.files.spawn_refusal(one, folder), *self._at, "spawn", place)
         changed = replace(
             scenario,
             seed=self._whole("seed", scenario.seed, 0),

@@ -5,8 +5,8 @@ All problems of a file are reported at once, with file and line.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Final, cast
 
@@ -19,6 +19,7 @@ from simkit.run_spec import (
     RENDERERS,
     Check,
     CheckKind,
+    FilePath,
     JsonObject,
     LoadOptions,
     RunSpec,
@@ -62,20 +63,21 @@ def is_scenario_file(source: str | Path) -> bool:
     return Path(source).suffix.lower() in _SCENARIO_SUFFIXES
 
 
-def read_scenario(path: str | Path) -> RunSpec:
+def read_scenario(path: str | Path, folders: Sequence[FilePath] = ()) -> RunSpec:
     """Read a scenario file.
 
     Args:
         path: YAML file, or Python file with `scenario = RunSpec(...)`, which is run.
+        folders: Folders in which a YAML file may name files, beside its own folder and its project.
 
     Raises:
-        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-005); the error lists all of them.
+        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-005, SK-URI-003); the error lists all of them.
     """
     file = Path(path)
     diagnostics = Diagnostics()
     if file.suffix.lower() == ".py":
         return load_python_scenario(file, diagnostics)
-    document = Document(file, diagnostics)
+    document = Document(file, diagnostics, folders)
     if document.values is None:
         diagnostics.raise_if_errors()
     scenario = parse_scenario(document)
@@ -125,7 +127,7 @@ class ScenarioReader(ValueReader):
         if "timeout" in self._fields and "duration" in self._fields:
             message = "'timeout' and 'duration' both define the end of the run"
             self._document.error("SK-SCEN-003", message, "timeout", hint="with 'until', keep only 'timeout'")
-        return RunSpec(
+        found = RunSpec(
             world=self._text("world", ""),
             duration=self._number("duration", self._bag_duration(), least=0.0) or 0.0,
             seed=self._whole("seed", 0, 0),
@@ -150,6 +152,8 @@ class ScenarioReader(ValueReader):
             folder=self._document.path.parent,
             file=self._document.path,
         )
+        refused = [self._document.refuses(one, *keys) for keys, one in self._document.files.refused(found)]
+        return replace(found, world="") if refused else found  # nobody reads the world of such a file
 
     # ------------------------------------------------------------------ world and inputs
 
@@ -188,7 +192,9 @@ class ScenarioReader(ValueReader):
         value = self._fields.get("commands", ())
         try:
             if isinstance(value, str):
-                return tuple(script_items(self._document.path.parent / value))
+                script = self._document.path.parent / value
+                is_refused = self._document.refuses(self._document.files.refusal(script), "commands")
+                return () if is_refused else tuple(script_items(script))
             if isinstance(value, (list, tuple)):
                 places = [str(self._document.where("commands", number)) for number in range(len(value))]
                 return tuple(validate_items(zip(value, places, strict=True)))
@@ -212,8 +218,11 @@ class ScenarioReader(ValueReader):
             if "play" in self._fields:
                 self._wrong(bag_name, "the name of a bag", "play")
             return 10.0
+        file = self._document.path.parent / bag_name
+        if not self._document.files.allows(file):  # reported with the other files
+            return 10.0
         try:
-            with open_bag_to_read(self._document.path.parent / bag_name) as bag:
+            with open_bag_to_read(file) as bag:
                 return bag.duration
         except InputError as error:
             self._document.error(error.code, f"play: {str(error).removeprefix(error.code).strip()}", "play")
