@@ -57,6 +57,28 @@ def join_below(folder: Path, text: str, *, in_uri: bool = False, is_windows: boo
     return folder.joinpath(*below)
 
 
+def join_within(limits: Iterable[Path], folder: Path, text: str) -> Path | None:
+    """Return the path that an untrusted text names from a folder: absolute, or with `..`, but inside one of the limits.
+
+    Return None for a path outside of all limits.
+
+    Args:
+        limits: trusted folders, as absolute paths.
+        folder: absolute path of the folder from which a relative path starts.
+        text: untrusted path, which is joined as it is written.
+    """
+    if len(text) > _LONGEST or "\0" in text:
+        return None
+    path = Path(os.path.abspath(folder / text))  # noqa: PTH100 - resolve() would follow links
+    for limit in limits:
+        if path == limit or limit in path.parents:
+            try:
+                return join_below(limit, path.relative_to(limit).as_posix())
+            except OutsideError:
+                continue
+    return None
+
+
 def _names_below(form: str, text: str, *, in_uri: bool, is_windows: bool) -> list[str]:
     """Return the names of the folders and the file in one decoded form of a text."""
     if is_windows:
@@ -193,7 +215,7 @@ def _has_manifest(folder: str) -> bool:
 
 
 def _prefix(folder: str) -> str:
-    """Return a path with a separator at its end, so that `/a/bc` is not below `/a/b`; Windows ignores capital letters."""
+    """Return a path with a separator at its end, so that `/ab` is not below `/a`; Windows ignores capital letters."""
     return os.path.normcase(folder).rstrip(os.sep) + os.sep
 
 
