@@ -15,6 +15,7 @@ from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostics, shorten
 from simkit.errors import InputError
+from simkit.project_folder import enclosing_project, is_top_folder
 from simkit.run_spec import EMPTY_SPACE, GROUND, FilePath, RunSpec, split_package_paths
 from simkit.trusted_folders import TrustedFolders
 
@@ -42,8 +43,7 @@ class ReadableFiles:
     def __init__(self, file: FilePath, folders: Sequence[FilePath] = (), container: Path | None = None) -> None:
         from simkit.loaders import Resolver
         from simkit.loaders.resources.bundled_models import bundled_folders
-        from simkit.loaders.resources.project_folder import enclosing_project
-        from simkit.loaders.resources.uris import absolute_path, is_top_folder
+        from simkit.loaders.resources.uris import absolute_path
 
         self.folders = tuple(folders)
         folder = absolute_path(Path(file)).parent
