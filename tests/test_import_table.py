@@ -46,7 +46,8 @@ SMALL_MODULES = frozenset(
         "pose",
         "process_control",
     }
-    | {"progress", "registry", "run_spec", "save_path", "topic_logger", "version", "yaml_reader"}
+    | {"hidden_text", "linked_files", "project_folder"}
+    | {"progress", "registry", "run_spec", "save_path", "topic_logger", "trusted_folders", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Sequence
 from contextlib import chdir
 from dataclasses import replace
@@ -27,6 +28,7 @@ from simkit.cli.terminal.output import (
 from simkit.errors import InputError, RegressionError
 from simkit.testing.golden.parallel_check import CheckResult
 from simkit.testing.scenarios.code_permission import without_permissions
+from simkit.testing.scenarios.readable_files import HELP
 from simkit.writers.atomic_output import check_writable
 
 if TYPE_CHECKING:
@@ -224,7 +226,7 @@ def record(
 ) -> None:
     """Run a scenario and store the result as a golden run."""
     loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer)
-    source = read_run(world)
+    source = read_run(world, folders=resource_path)
     spec = scenario_spec(
         source, loading, allow_code=allow_code, duration=duration, seed=seed, topics=topic, skip=skip,
         overrides=set_, spawn=spawn, model_world=model_world, cmd_vel=cmd_vel, script=script,
@@ -237,6 +239,7 @@ def record(
         print_diagnostics(found.simulation.diagnostics, verbose=False)
         add_diagnostics(found.simulation.diagnostics)
         found.simulation.close()
+    _print_needed_folders(out_)
     messages = sum(len(stream.times_ns) for stream in found.streams.values())
     size = sum(path.stat().st_size for path in out_.iterdir())
     stdout_console().print(f"{out_}: {len(found.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
@@ -246,6 +249,18 @@ def record(
     for result in found.checks:
         if not result.passed:
             print_status(f"warning: the scenario's own check failed: {result.check.title}: {result.message}")
+
+
+def _print_needed_folders(folder: Path) -> None:
+    """Print the options that a check of a golden run needs, because the run names files of other folders."""
+    from simkit.testing.golden.check import refused_files
+    from simkit.testing.golden.record_encoding import decode_scenario
+    from simkit.testing.golden.store import read_main
+
+    found = refused_files(folder, decode_scenario(read_main(folder)["scenario"], folder))
+    needed = dict.fromkeys(problem.hint.removeprefix(HELP) for problem in found)
+    if needed:
+        print_status(f"note: simkit golden check {shlex.quote(str(folder))} needs {' '.join(needed)}")
 
 
 @golden.command()
@@ -263,6 +278,7 @@ def check(
     budget: Annotated[float, option("Wall time limit of the search for each golden run.", "S", min=0)] = 60.0,
     plugin_path: options.CodePaths = [],
     allow_code: options.AllowCode = False,
+    resource_path: options.ReadableFolders = [],
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print only failures.")] = False,
 ) -> int:
@@ -272,7 +288,14 @@ def check(
     check_writable(html)
     check_writable(junit)
     check_options = CheckOptions(
-        bless, bless_other_renderer, causes, budget, html is not None, allow_code, tuple(plugin_path)
+        bless,
+        bless_other_renderer,
+        causes,
+        budget,
+        html is not None,
+        allow_code=allow_code,
+        plugin_paths=tuple(plugin_path),
+        folders=tuple(resource_path),
     )
     results = check_goldens(folders, check_options, jobs)
     return report_results(results, blessed=bless is not None, html=html, junit=junit, quiet=quiet)

@@ -12,6 +12,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_json, report_errors, stdout_console
 from simkit.errors import InputError
+from simkit.run_spec import FilePath
 from simkit.writers.atomic_output import check_writable
 
 _FAILED = 5
@@ -29,12 +30,14 @@ def grade(
     jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
     plugin_path: options.CodePaths = [],
     allow_code: options.AllowCode = False,
+    resource_path: options.ReadableFolders = [],
     json_: options.Json = False,
 ) -> int:
     """Run an exercise with submitted plugins and print the results."""
     return grade_files(
-        [exercise], submissions, junit, pictures, jobs, json_=json_, allow_code=allow_code, plugin_paths=plugin_path
-    )
+        [exercise], submissions, junit, pictures, jobs, json_=json_,
+        allow_code=allow_code, plugin_paths=plugin_path, folders=resource_path,
+    )  # fmt: skip
 
 
 def grade_files(
@@ -47,6 +50,7 @@ def grade_files(
     json_: bool = False,
     allow_code: bool = False,
     plugin_paths: Sequence[Path] = (),
+    folders: Sequence[FilePath] = (),
 ) -> int:
     """Grade plugins, print the results, and return the exit code; the arguments are those of the command.
 
@@ -59,7 +63,9 @@ def grade_files(
     from simkit.testing.scenarios.grading import grade_all, grade_json, grade_text, junit_cases
 
     check_writable(junit)
-    tasks = [read_exercise(exercise, allow_code=allow_code, plugin_paths=plugin_paths) for exercise in exercises]
+    tasks = [
+        read_exercise(exercise, folders, allow_code=allow_code, plugin_paths=plugin_paths) for exercise in exercises
+    ]
     files = [_files(submissions, task.file.parent / task.hand_in if task.hand_in else None) for task in tasks]
     for task in tasks:
         named = task.own_code if not submissions else None

@@ -96,7 +96,7 @@ def start(
 def _missing_packages(folder: Path) -> list[str]:
     """Return the packages that a lab needs and that are not installed."""
     file = folder / _REQUIREMENTS
-    needed = read_input(file, TEXT_LIMIT).decode("utf-8", "replace").split() if file.is_file() else []
+    needed = read_input(file, TEXT_LIMIT, inside=folder).decode("utf-8", "replace").split() if file.is_file() else []
     return [name for name in needed if not _is_installed(name)]
 
 

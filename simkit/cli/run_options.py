@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.cli.terminal.given_interfaces import interface_folders
 from simkit.cli.terminal.options import renderer_argument, source_arguments
-from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
+from simkit.run_spec import FilePath, LoadOptions, PluginErrorPolicy, RunSpec
 
 if TYPE_CHECKING:
     from simkit.bridges.ros.bridge_process import RosOptions
@@ -79,12 +79,13 @@ def load_options(
     return cast(LoadOptions, {**given, **renderer_argument(renderer)})
 
 
-def read_run(world: str, usual_duration: float = 10.0) -> RunSpec:
+def read_run(world: str, usual_duration: float = 10.0, folders: Sequence[FilePath] = ()) -> RunSpec:
     """Return the run specification of a world or scenario file, with the requests of the file for code.
 
     Args:
         world: world or scenario file.
         usual_duration: simulated time of a world without a scenario [s].
+        folders: folders of the user in which a scenario may name files.
 
     Raises:
         LoadError: the scenario file has errors.
@@ -92,7 +93,7 @@ def read_run(world: str, usual_duration: float = 10.0) -> RunSpec:
     from simkit.testing.scenarios.scenario_file import is_scenario_file, read_scenario
 
     if "<" not in world and is_scenario_file(world):
-        return read_scenario(world)
+        return read_scenario(world, folders)
     return RunSpec(world, duration=usual_duration)
 
 
@@ -134,7 +135,11 @@ def scenario_spec(
     """
     from simkit.testing.scenarios.code_permission import add_options
 
-    found = read_run(world, usual_duration) if isinstance(world, str) else world
+    folders = options.get("resource_paths", ())
+    found = read_run(world, usual_duration, folders) if isinstance(world, str) else world
+    own = found.options.get("resource_paths", ())
+    if own and "resource_paths" in options:  # the option allows files; it does not replace the scenario's folders
+        options = {**options, "resource_paths": (*options["resource_paths"], *own)}
     found = add_options(found, options, allow_code)
     return replace(
         found,

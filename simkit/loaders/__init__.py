@@ -113,7 +113,8 @@ def find_document(
         source cannot be read.
     """
     is_uri = isinstance(source, str) and "://" in source and "<" not in source
-    document = _document_of_uri(str(source), resolver, diagnostics) if is_uri else _document(source, diagnostics)
+    read = _document_of_uri if is_uri else _document
+    document = read(source, resolver, diagnostics)
     if document is None or not needs_expansion(document):
         return document, False
     from simkit.loaders.xacro.expansion import expand  # 5 ms, and most files are not xacro
@@ -121,17 +122,18 @@ def find_document(
     return expand(document, resolver.around(document.folder), named_values(xacro_args, "xacro_args"), diagnostics), True
 
 
-def _document_of_uri(uri: str, resolver: Resolver, diagnostics: Diagnostics) -> Document | None:
+def _document_of_uri(source: str | os.PathLike[str], resolver: Resolver, diagnostics: Diagnostics) -> Document | None:
+    uri = str(source)
     if uri.startswith("file://"):
-        return _document(Path(unquote(uri.removeprefix("file://"))), diagnostics)  # in any folder, as a path
+        return _document(Path(unquote(uri.removeprefix("file://"))), resolver, diagnostics)  # in any folder, as a path
     text = builtin_model(uri) if resolver.search(uri, None)[0] is None else None
     if text is not None:
-        return _document(text, diagnostics)
+        return _document(text, resolver, diagnostics)
     path = resolver.resolve(uri, Where(uri), diagnostics, None)
-    return None if path is None else _document(path, diagnostics)
+    return None if path is None else _document(path, resolver, diagnostics)
 
 
-def _document(source: str | os.PathLike[str], diagnostics: Diagnostics) -> Document | None:
+def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: Diagnostics) -> Document | None:
     if isinstance(source, str) and "<" in source:
         root = parse_text(source, diagnostics)
         return None if root is None else Document(root, None, source.encode())
@@ -145,7 +147,7 @@ def _document(source: str | os.PathLike[str], diagnostics: Diagnostics) -> Docum
         return None
     if path.is_dir():
         found = Diagnostics()
-        model = model_file(path, Where(str(path)), found)
+        model = model_file(path, Where(str(path)), found, lambda file: resolver.allows(file, path))
         if model is None and (bundled := find_bundled_world(str(source)) or find_bundled_model(str(source))):
             return parse_file(bundled, diagnostics)  # the folder only has the name of a bundled file
         diagnostics.extend(found)

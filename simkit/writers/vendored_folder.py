@@ -208,7 +208,7 @@ class WorldCollector:
         if not path.is_dir():
             return self._collect_file(path)
         if parent == "include" or element.name == "include":
-            file = model_file(path, element.where, self.diagnostics)
+            file = model_file(path, element.where, self.diagnostics, self.resolver.allows)
             return None if file is None else self._collect_model(path, file)
         return self._collect_folder(path) if "://" in reference or "/" in reference else None
 

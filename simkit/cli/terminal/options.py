@@ -75,6 +75,12 @@ ResourcePaths = Annotated[
     list[Path],
     option("Search folder for model://, package:// and relative URIs; repeatable.", "DIR", "--resource-path"),
 ]
+ReadableFolders = Annotated[
+    list[Path],
+    option(
+        "Folder in which the file may name files, beside its own and its project; repeatable.", "DIR", "--resource-path"
+    ),
+]
 PackagePaths = Annotated[
     list[str],
     option("Workspace of ROS packages, or folder of the package NAME; repeatable.", "[NAME=]DIR", "--package-path"),

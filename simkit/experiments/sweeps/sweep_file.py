@@ -34,21 +34,28 @@ SWEEP_KEYS: Final = (
 _CORRELATED_KEYS: Final = ("parameters", "mean", "deviation", "correlation")
 
 
-def read_sweep(path: str | Path, *, allow_code: bool = False, plugin_paths: Sequence[FilePath] = ()) -> SweepSpec:
+def read_sweep(
+    path: str | Path,
+    folders: Sequence[FilePath] = (),
+    *,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+) -> SweepSpec:
     """Read a sweep file.
 
     Args:
-        path: sweep file.
+        path: file.
+        folders: folders in which the file may name files, beside its own folder and its project.
         allow_code: allow the plugin folders and metric functions that the file names. Their code has the same rights
             as the user.
         plugin_paths: allow the code in these folders only.
 
     Raises:
-        LoadError: the file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SWEEP-001, SK-COND-001), or SK-SCEN-008 it
-            names code that is not allowed; the error lists all.
+        LoadError: the file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SWEEP-001, SK-COND-001, SK-URI-003), or
+            SK-SCEN-008 it names code that is not allowed; the error lists all.
     """
     diagnostics = Diagnostics()
-    document = Document(Path(path), diagnostics)
+    document = Document(Path(path), diagnostics, folders)
     if document.values is None:
         diagnostics.raise_if_errors()
     run = parse_scenario(document, also=SWEEP_KEYS)
@@ -75,7 +82,8 @@ class _SweepReader(ValueReader):
         metrics, keep = self._metrics(runs_code=runs_code), self._keep()
         bags = self._texts("bags")
         design = self._design(run.seed)
-        return None if design is None else SweepSpec(run, design, metrics, keep, bags)
+        files = self._document.files
+        return None if design is None else SweepSpec(run, design, metrics, keep, bags, files=files)
 
     def _design(self, seed: int) -> Any:
         samples = self._whole("samples", 0, 1) if "samples" in self._fields else None
@@ -91,6 +99,8 @@ class _SweepReader(ValueReader):
         found: Any = self._fields.get("parameters", {})
         if isinstance(found, str):
             found = self._document.path.parent / found
+            if self._document.refuses(self._document.files.refusal(found), "parameters"):
+                return None
         elif isinstance(found, dict):
             found = {**found, **self._correlated()}
         elif not isinstance(found, list):

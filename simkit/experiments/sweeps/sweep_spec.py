@@ -18,6 +18,7 @@ from simkit.experiments.sweeps.design import Design, SweepRow
 from simkit.input_file import read_input
 from simkit.run_spec import LoadOptions, RunSpec
 from simkit.scene.overrides import override_texts, value_text
+from simkit.testing.scenarios.readable_files import ReadableFiles
 
 Metric = str | Callable[[Any], Any]
 """Expression of the condition language, or a Python function of the simulation."""
@@ -47,6 +48,7 @@ class SweepSpec:
         metrics: measurements at the end of each run by name.
         keep: runs whose bundle and bag are kept.
         bag_topics: patterns of the topics in the bags of kept runs; empty for no bags.
+        files: check of the files that variables name, for the sweep of a file; None for a sweep made in Python.
         is_warm: True if a worker resets its world between runs instead of loading it again; the results are the same.
     """
 
@@ -56,6 +58,7 @@ class SweepSpec:
     keep: Keep = 10
     bag_topics: tuple[str, ...] = ()
     is_warm: bool = True
+    files: ReadableFiles | None = None
 
     def __post_init__(self) -> None:
         is_count = isinstance(self.keep, int) and not isinstance(self.keep, bool) and self.keep >= 0
@@ -87,6 +90,8 @@ class SweepSpec:
         spec = replace(self.run, seed=row.seed)
         if variables:
             spec = _substitute(spec, variables)
+            if self.files is not None:  # a variable can be the name of a model
+                self.files.check(spec)
         return replace(spec, overrides=(*spec.overrides, *override_texts(paths)))
 
     def row_metrics(self, row: SweepRow) -> Mapping[str, Metric]:

@@ -43,7 +43,8 @@ def find_bundled_model(name: str) -> Path | None:
         return None
     for bundle in bundled_folders("assets"):
         for folder in (bundle / name, *sorted(bundle.glob(f"*/{name}")), *sorted(bundle.glob(f"*/models/{name}"))):
-            found = model_file(folder, Where(str(folder)), Diagnostics()) if folder.is_dir() else None
+            where = Where(str(folder))
+            found = model_file(folder, where, Diagnostics(), lambda _: True) if folder.is_dir() else None
             if found is not None:
                 return found
         for suffix in ("sdf", "urdf", "xacro"):

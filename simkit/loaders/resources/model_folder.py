@@ -2,45 +2,66 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.resources.uris import is_file, is_small_integer, leaves_folder
+from simkit.loaders.resources.uris import is_file, is_small_integer
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.params import Params
+from simkit.trusted_folders import OutsideError, join_below
 
 NEWEST_SDF = (1, 12)
 
 
-def model_file(folder: Path, where: Where, diagnostics: Diagnostics) -> Path | None:
+def model_file(folder: Path, where: Where, diagnostics: Diagnostics, allows: Callable[[Path], bool]) -> Path | None:
     """Return the file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`.
 
     A folder without these two files is searched for one robot in URDF, or one model in MJCF.
+
+    Args:
+        folder: folder of the model.
+        where: place of the URI that names the folder, for messages.
+        diagnostics: receives the problems.
+        allows: checks whether a file may be read; a file behind a link out of the user's folders may not.
     """
+
+    def is_readable(file: Path) -> bool:
+        return is_file(file) and allows(file)
+
     for manifest in (folder / "model.config", folder / "manifest.xml"):
-        if not is_file(manifest):
+        if not is_readable(manifest):
             continue
         document = parse_file(manifest, diagnostics)
         if document is None:
             return None
         listed = _listed_files(document.root)
         for _, name in sorted(listed, key=lambda item: item[0], reverse=True):
-            if is_file(folder / name) and not leaves_folder(name):
-                return folder / name
+            file = _file_below(folder, name)
+            if file is not None and is_readable(file):
+                return file
         names = ", ".join(name for _, name in listed) or "none"
-        if is_file(folder / "model.sdf"):
+        if is_readable(folder / "model.sdf"):
             return folder / "model.sdf"
         diagnostics.error("SK-URI-005", f"{manifest} lists no SDF file that exists (listed: {names})", where)
         return None
     for name in ("model.sdf", f"{folder.name}.sdf", "model.urdf", f"{folder.name}.urdf"):
-        if is_file(folder / name):
+        if is_readable(folder / name):
             return folder / name
-    models = _mjcf_models(folder)
+    models = [file for file in _mjcf_models(folder) if allows(file)]
     if len(models) == 1:
         return models[0]
     unnamed = f"; none of {', '.join(m.name for m in models[:8])} is named {folder.name}.xml" if models else ""
     diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf{unnamed}", where)
     return None
+
+
+def _file_below(folder: Path, name: str) -> Path | None:
+    """Return the path of a listed file; None if it is outside of the model's folder."""
+    try:
+        return join_below(folder, name)
+    except OutsideError:
+        return None
 
 
 def sdf_version(text: str) -> tuple[int, int] | None:

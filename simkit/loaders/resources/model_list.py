@@ -25,7 +25,8 @@ def spawnable_models(resolver: Resolver) -> dict[str, str]:
     near = [] if resolver.base is None else [resolver.base, resolver.base / "models", resolver.base.parent / "models"]
     packages = (package / "models" for package in resolver.packages.packages(near[:1]))
     found: dict[str, str] = {}
-    for folder in islice(_model_folders((*resolver.paths, *near, *packages)), _MOST_MODELS):
+    folders = (folder for folder in _model_folders((*resolver.paths, *near, *packages)) if resolver.allows(folder))
+    for folder in islice(folders, _MOST_MODELS):
         found.setdefault(folder.name, str(folder))
     for bundle in bundled_folders("assets"):
         for folder in _model_folders((bundle, *sorted(bundle.glob("*/")), *sorted(bundle.glob("*/models/")))):

@@ -13,8 +13,9 @@ from typing import Final
 
 from simkit.input_file import read_input
 from simkit.loaders.resources.bundled_models import bundle_around
-from simkit.loaders.resources.project_folder import enclosing_project
-from simkit.loaders.resources.uris import is_file, is_folder, is_private, is_top_folder
+from simkit.loaders.resources.uris import is_file, is_folder, is_link, is_private
+from simkit.project_folder import enclosing_project, is_top_folder
+from simkit.trusted_folders import TrustedFolders, built_workspace, join_below
 
 _PARENT_LEVELS: Final = 6  # folders above a file that are searched for its package.xml
 _SEARCH_DEPTH: Final = 5  # levels of folders below a search path: workspace/src/repository/group/package
@@ -59,13 +60,17 @@ class PackageIndex:
         named: folders given by the user, by package name.
         workspaces: folders given by the user whose packages are searched before all others.
         paths: folders that are searched last.
+        trusted: folders that a link to a package may lead to, besides the folder that is searched.
 
     Attributes:
         notes: description of each decision that was made for a file that was found, by package name.
     """
 
-    def __init__(self, named: Mapping[str, Path], workspaces: Iterable[Path], paths: Iterable[Path]) -> None:
+    def __init__(
+        self, named: Mapping[str, Path], workspaces: Iterable[Path], paths: Iterable[Path], trusted: TrustedFolders
+    ) -> None:
         self.named, self.workspaces, self.paths = dict(named), tuple(workspaces), tuple(dict.fromkeys(paths))
+        self.trusted = trusted
         self.notes: dict[str, str] = {}
         self._areas: dict[Path, _Area] = {}
         self._names: dict[Path, str] = {}
@@ -137,7 +142,7 @@ class PackageIndex:
         for place in dict.fromkeys(places):
             yield from self._same_name(name, place, around)
         for path in self.paths:
-            direct = path / name
+            direct = join_below(path, name)
             if self._name_of(direct) in ("", name):
                 yield self._offer(name, direct)
             if name in (self._name_of(path), path.name) and self._name_of(path) in ("", name):
@@ -166,10 +171,10 @@ class PackageIndex:
         for folder in around:
             yield from (self._offer(name, own) for own in _own_folders(name, folder))
             home = enclosing_package(folder)
-            if home is not None and not is_private(home.parent / name):
-                yield self._offer(name, home.parent / name)
+            if home is not None and not is_private(join_below(home.parent, name)):
+                yield self._offer(name, join_below(home.parent, name))
         for path in self.paths:
-            yield self._offer(name, path / name)
+            yield self._offer(name, join_below(path, name))
 
     def _similar(self, name: str, around: tuple[Path, ...]) -> Iterator[Path]:
         """Yield the only package with this name in other capital letters, else the only one with the same end."""
@@ -230,20 +235,21 @@ class PackageIndex:
         Each folder of the user has the full limits; all folders around the files share them.
         """
         area, level = _Area(), [place]
+        inside = TrustedFolders((place, *built_workspace(place)))
         is_given = place in self.workspaces or place in self.paths
         count, seconds = (0, 0.0) if is_given else (self._searched_count, self._searched_seconds)
         begin = time.monotonic() - seconds
         for _ in range(_SEARCH_DEPTH + 1):
             below: list[Path] = []
             for folder in level:
-                name = self._name_of(folder)
+                name = self._name_of(folder, inside)
                 if name:
                     area.by_name.setdefault(name, []).append(folder)
                 elif folder in self._areas:  # a folder of a file that was searched before
                     for own, folders in self._areas[folder].by_name.items():
                         area.by_name.setdefault(own, []).extend(folders)
                     continue
-                children = _subfolders(folder)
+                children = [child for child in _subfolders(folder) if self._follows(folder / child, inside)]
                 count += len(children)
                 area.is_complete = count <= _MAX_FOLDERS and time.monotonic() - begin <= _MAX_SECONDS
                 if not area.is_complete:
@@ -255,10 +261,27 @@ class PackageIndex:
             self._searched_count, self._searched_seconds = count, time.monotonic() - begin
         return area
 
-    def _name_of(self, folder: Path) -> str:
-        """Return the name in a folder's `package.xml`, its folder's name if there is none in it, else an empty text."""
+    def _follows(self, folder: Path, inside: TrustedFolders) -> bool:
+        """Check whether a folder is searched: it is no link, or the link leads to a trusted folder.
+
+        After the call, the files of a package that a link leads to may also be read.
+        """
+        if is_link(folder):
+            if not self.trusted.allows(folder) and not inside.allows(folder):
+                return False
+            if _has_manifest(str(folder)):
+                self.trusted.add(folder)
+        return True
+
+    def _name_of(self, folder: Path, inside: TrustedFolders | None = None) -> str:
+        """Return the name in a folder's `package.xml`, its folder's name if there is none in it, else an empty text.
+
+        A file `package.xml` that is a link out of the trusted folders is not read.
+        """
         if folder not in self._names:
-            self._names[folder] = _read_name(folder)
+            file = folder / "package.xml"
+            may_read = not is_link(file) or self.trusted.allows(file) or (inside is not None and inside.allows(file))
+            self._names[folder] = _read_name(folder, may_read=may_read)
         return self._names[folder]
 
 
@@ -271,9 +294,11 @@ def _has_manifest(folder: str) -> bool:
     return os.path.isfile(f"{folder}/package.xml")  # noqa: PTH113 - a path object for each folder takes as long again
 
 
-def _read_name(folder: Path) -> str:
+def _read_name(folder: Path, *, may_read: bool) -> str:
     if not _has_manifest(str(folder)):
         return ""
+    if not may_read:
+        return folder.name
     try:
         found = _NAME.search(read_input(folder / "package.xml", 65536))
     except OSError:

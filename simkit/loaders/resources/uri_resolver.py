@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import replace
 from itertools import chain
@@ -12,53 +12,43 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
-from simkit.errors import InputError, LoadError
+from simkit.errors import InputError
+from simkit.linked_files import SEARCH_VARIABLES, choose_folders
 from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
-from simkit.loaders.resources.fuel_cache import LOCK_NAME, LockEntry, cached_versions, parse_fuel_url, read_lock
-from simkit.loaders.resources.project_folder import readable_folder
-from simkit.loaders.resources.ros_packages import PackageIndex, enclosing_package
+from simkit.loaders.resources.fuel_cache import parse_fuel_url
+from simkit.loaders.resources.uri_candidates import UriCandidates
 from simkit.loaders.resources.uris import (
     absolute_path,
-    first_existing,
     format_searched,
     is_existing,
     is_file,
     is_folder,
     is_path_of_other_machine,
-    is_private,
     is_relocated,
-    leaves_folder,
     other_case_hint,
     package_uri,
     path_of_file_uri,
     sibling_names,
+    split_rest,
 )
 from simkit.run_spec import PackagePaths, split_package_paths
+from simkit.trusted_folders import OutsideError, join_below, join_within
 
-_SEARCH_VARIABLES = (
-    "SIMKIT_RESOURCE_PATH",
-    "GZ_SIM_RESOURCE_PATH",
-    "IGN_GAZEBO_RESOURCE_PATH",
-    "SDF_PATH",
-    "GAZEBO_MODEL_PATH",
-    "GAZEBO_RESOURCE_PATH",
-    "ROS_PACKAGE_PATH",
-)
 _SCHEMES = ("model", "package", "file")
 NOT_FOUND_CODES = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
-_MEDIA = ("Media/models", "media/models", "Media", "media")  # folders of a package that Gazebo Classic searches
 _PATH_HINT = "add its folder with --resource-path or SIMKIT_RESOURCE_PATH"
 
 
-class Resolver:
+class Resolver(UriCandidates):
     """Finder of files and folders by URI.
+
+    Only files in folders that the user chose are found: a URI can neither leave them, nor follow a link out of them.
 
     Args:
         paths: folders for `model://`, `package://` and relative URIs, searched before those of environment variables.
         base: folder of the loaded file; searched last.
         missing_meshes: reports any unusable mesh as a warning only, even if its URI is refused. This setting allows
             inspecting a file without its meshes.
-        anywhere: allows absolute paths and `..` outside these folders.
         package_paths: folder of each ROS package that the caller knows, or workspaces with such packages; searched
             before all other folders.
     """
@@ -69,26 +59,22 @@ class Resolver:
         *,
         base: Path | None = None,
         missing_meshes: bool = False,
-        anywhere: bool = False,
         package_paths: PackagePaths | None = None,
     ) -> None:
-        self.base, self.missing_meshes, self.anywhere = base, missing_meshes, anywhere
-        self._found: dict[str, Path] = {}
-        self._locks: dict[Path | None, dict[str, LockEntry]] = {}
-        self._lock_problems: list[Diagnostic] = []
         found = [Path(p).expanduser() for p in paths]
-        for variable in _SEARCH_VARIABLES:
+        for variable in SEARCH_VARIABLES:
             found += [Path(p) for p in os.environ.get(variable, "").split(os.pathsep) if p]
         found += [Path(p) / "share" for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
-        self.paths: tuple[Path, ...] = tuple(dict.fromkeys(absolute_path(p) for p in found))
         named, workspaces = split_package_paths(package_paths)
         for folder in (*workspaces, *named.values()):
             if not Path(folder).is_dir():
                 message = f"SK-CLI-018 package path: found {str(folder)!r}; expected NAME=DIR or a folder that exists"
                 raise InputError(message, "SK-CLI-018")
-        self.packages = PackageIndex(
-            {name: absolute_path(p) for name, p in named.items()}, [absolute_path(p) for p in workspaces], self.paths
-        )
+        folders = {name: absolute_path(p) for name, p in named.items()}
+        searched = tuple(dict.fromkeys(absolute_path(p) for p in found))
+        choose_folders((*searched, *folders.values(), *map(absolute_path, workspaces)))
+        super().__init__(searched, folders, [absolute_path(p) for p in workspaces], base)
+        self.missing_meshes = missing_meshes
         self._reported: set[str] = set()
 
     def around(self, folder: Path | None) -> Resolver:
@@ -151,7 +137,9 @@ class Resolver:
             return found
         uri = package_uri(uri)
         scheme, _, rest = uri.partition("://")
-        if uri.startswith(("http://", "https://")):
+        if self.refused is not None:
+            self.report_refused(uri, self.refused, where, diagnostics)
+        elif uri.startswith(("http://", "https://")):
             message = f"{uri} is not on this machine and nothing is downloaded{format_searched(places)}"
             hint = f"{download_hint(uri, where)}, or {_PATH_HINT}"
             diagnostics.error("SK-URI-002", message, where, hint)
@@ -172,6 +160,10 @@ class Resolver:
                 message = f"{uri} is not found{format_searched(places)}"
                 diagnostics.error("SK-URI-001", message, where, near or other_case_hint(places) or _PATH_HINT)
         return None
+
+    def report_refused(self, uri: str, path: Path, where: Where, diagnostics: Diagnostics) -> None:
+        """Record the error that a file exists, but that a symbolic link leads to it out of the folders of the user."""
+        diagnostics.error("SK-URI-003", f"{uri}: {self.trusted.refusal(path)}", where, self.trusted.help(path))
 
     def format_searched_packages(self, places: list[Path]) -> str:
         """Format the searched paths for a message about a package, and the searches that stopped at a limit."""
@@ -197,109 +189,50 @@ class Resolver:
         tried: dict[Path, None] = {}
         for folder in chain(self.packages.candidates(name, self._around(relative_to)), bundled):
             tried[folder] = None
-            if is_folder(folder):
+            if is_folder(folder) and self.allows(self._trust_plain(folder), relative_to):
                 self._found[name] = folder
                 self.packages.confirm(name, folder)
                 return folder, list(tried)
         return None, list(tried)
 
-    def _around(self, relative_to: Path | None) -> list[Path]:
-        """Return the folder of the file that contains a URI, and that of the loaded file."""
-        return [absolute_path(f) for f in (relative_to, self.base) if f is not None]
-
     def search(self, uri: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
         """Return the path that `resolve` finds, and all searched paths (None for a URI outside the folders)."""
+        self.refused = None
         if len(uri) > 4096 or "\0" in uri or any(len(part.encode(errors="replace")) > 255 for part in uri.split("/")):
             return None, []  # no file can have such a name
+        try:
+            return self._search(uri, relative_to)
+        except OutsideError:
+            return None, None
+
+    def _search(self, uri: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
+        """Search a URI.
+
+        Raises:
+            OutsideError: the URI leaves the folders.
+        """
         if uri.startswith(("http://", "https://")):
-            return first_existing(self._fuel_candidates(uri))
+            return self.first_allowed(self.fuel_candidates(uri), relative_to)
         uri = package_uri(uri)
         scheme, separator, rest = uri.partition("://")
         if not separator:
             found, places = self._search_path(unquote(uri) if not self._exists(uri, relative_to) else uri, relative_to)
             if found is None and places is not None and is_bare_name(uri):  # gz reads a name as model://NAME
-                return first_existing(chain(places, self._all_models(uri, relative_to)))
+                return self.first_allowed(chain(places, self.all_models(uri, "", relative_to)), relative_to)
             return found, places
         rest = unquote(rest)
         if scheme == "file":
             return self._search_path(path_of_file_uri(rest), relative_to)
         if scheme not in ("model", "package"):
             return None, []
-        if leaves_folder(rest):
-            return None, None
-        if scheme == "model":
-            return first_existing(self._all_models(rest, relative_to))
-        named = self._model_candidates(rest, relative_to)
-        renamed = self._renamed_checkout_candidates(rest, relative_to)
-        return first_existing(chain(self._package_candidates(rest, relative_to), named, renamed))
+        name, inside = split_rest(rest)
+        if not name:
+            return None, []
+        candidates = self.all_models if scheme == "model" else self.all_packages
+        return self.first_allowed(candidates(name, inside, relative_to), relative_to)
 
     def _exists(self, text: str, relative_to: Path | None) -> bool:
         return relative_to is not None and is_existing(relative_to / text)
-
-    def _all_models(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield all candidates for `model://name/...`."""
-        yield from self._model_candidates(rest, relative_to)
-        yield from self._package_candidates(rest, relative_to)
-        yield from self._models_of_packages(rest, relative_to)
-
-    def _model_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for `model://name/...`: below each folder, and in a folder that itself has that name."""
-        name, _, inside = rest.strip("/").partition("/")
-        for root in self.paths:
-            yield root / name / inside
-        for root in self.paths:
-            if root.name == name:
-                yield root / inside
-        for folder in (relative_to, self.base):
-            if folder is None:
-                continue
-            folder = absolute_path(folder)
-            for ancestor in (folder, *folder.parents[:3]):
-                if ancestor.name == name and not is_private(ancestor):
-                    yield ancestor / inside
-            yield folder / name / inside
-            for near in (folder / "models" / name, folder.parent / name, folder.parent / "models" / name):
-                if not is_private(near):
-                    yield near / inside
-        for bundle in bundled_folders("assets"):
-            yield bundle / name / inside
-            groups = sorted(bundle.glob(f"*/{name}/")) if name.replace("_", "").isalnum() else ()
-            yield from (model / inside for model in groups)
-
-    def _package_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for `package://name/...` in the package of that name, then in a package of its group."""
-        name, _, inside = rest.strip("/").partition("/")
-        around = self._around(relative_to)
-        for folder in self.packages.candidates(name, around):
-            yield folder / inside
-        member, _, inside = inside.partition("/")
-        for folder in self.packages.members(name, member, around) if inside else ():
-            yield folder / inside
-
-    def _models_of_packages(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for `model://name/...` in the folders `models` of packages, which packages export."""
-        name, _, inside = rest.strip("/").partition("/")
-        for package in self.packages.packages(self._around(relative_to)):
-            folder = package / "models" / name
-            if is_folder(folder) and not is_private(folder):
-                yield folder / inside
-
-    def _media_candidates(self, text: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for a relative path in the folders `Media` of search paths and packages."""
-        if ".." not in Path(text).parts:
-            roots = chain(self.paths, self.packages.packages(self._around(relative_to)))
-            yield from (root / media / text for root in roots for media in _MEDIA)
-
-    def _renamed_checkout_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for `package://name/a/b`: the path `a/b` in the folders above the file.
-
-        This finds a package in a folder with another name, such as a renamed checkout.
-        """
-        inside = rest.strip("/").partition("/")[2]
-        if relative_to is None or "/" not in inside or enclosing_package(absolute_path(relative_to)) is not None:
-            return  # the enclosing package already defines the name
-        folder = absolute_path(relative_to)
-        yield from (ancestor / inside for ancestor in (folder, *folder.parents[:2]) if not is_private(ancestor))
 
     def _find_relocated(self, path: Path, relative_to: Path | None) -> Path | None:
         """Search the last components of an absolute path from another machine, in packages that exist here."""
@@ -308,8 +241,9 @@ class Resolver:
             name = parts[position]
             if name not in ("share", "src", "install", "home", "opt", "meshes", "models"):
                 folder, _ = self.find_package(name, relative_to)
-                if folder is not None and is_file(folder.joinpath(*parts[position + 1 :])):
-                    return folder.joinpath(*parts[position + 1 :])
+                file = None if folder is None else join_below(folder, "/".join(parts[position + 1 :]))
+                if file is not None and is_file(file) and self.allows(file, relative_to):
+                    return file
         return None
 
     def _search_path(self, text: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
@@ -318,49 +252,20 @@ class Resolver:
         An absolute path that does not exist here is searched for in its package, because `$(find pkg)` leaves absolute
         paths of the machine that expanded the file.
         """
-        folders = [f for f in (relative_to, self.base) if f is not None] or [Path.cwd()]
-        roots = [*folders, *self.paths]
-        if Path(text).is_absolute():
-            candidates = [absolute_path(Path(text))]
-        else:
-            candidates = list(dict.fromkeys(absolute_path(root / text) for root in roots))
-        if not self.anywhere:
-            limits = [absolute_path(r) for r in (*roots, *bundled_folders("assets"))]
-            limits += [package for f in folders if (package := enclosing_package(absolute_path(f))) is not None]
-            limits += [readable_folder(absolute_path(f)) for f in folders]
-            limits += [*self.packages.named.values(), *self.packages.workspaces, *self._found.values()]
-            kept = [c for c in candidates if any(c == limit or limit in c.parents for limit in limits)]
-            if not any(is_existing(c) for c in kept) and Path(text).is_absolute() and ".." not in Path(text).parts:
-                moved = self._find_relocated(Path(text), relative_to)
-                if moved is not None:
-                    return moved, [moved]
-            if candidates and not kept:
-                return None, None
-            candidates = kept
-        media = () if Path(text).is_absolute() else self._media_candidates(text, relative_to)
-        found, places = first_existing(chain(candidates, media))
-        return found, candidates if found is None else places
-
-    def _fuel_candidates(self, uri: str) -> Iterator[Path]:
-        """Yield candidates for a Fuel URL in Gazebo's caches, then a folder of that name in the resource folders."""
-        url = parse_fuel_url(uri)
-        if url is None:
-            return
-        locked = self._lock().get(url.key)
-        yield from (folder / url.inside for folder in cached_versions(url, locked.version if locked else None))
-        name, inside = url.name, url.inside
-        for root in self.paths:
-            yield from (root / folder / inside for folder in dict.fromkeys((name, name.replace(" ", "_").lower())))
-
-    def _lock(self) -> dict[str, LockEntry]:
-        """Return the entries of the file `simkit.lock` beside the loaded file."""
-        if self.base is not None and self.base not in self._locks:
-            self._locks[self.base] = {}
-            try:
-                self._locks[self.base] = read_lock(self.base / LOCK_NAME)
-            except LoadError as error:
-                self._lock_problems += error.diagnostics
-        return self._locks.get(self.base, {})
+        folders = self._around(relative_to) or [Path.cwd()]
+        limits = self.limits(folders)
+        is_absolute = Path(text).is_absolute()
+        places = [Path(os.sep)] if is_absolute else dict.fromkeys((*folders, *self.paths))
+        inside = [path for place in places if (path := join_within(limits, place, text)) is not None]
+        if is_absolute and ".." not in Path(text).parts and not any(map(is_existing, inside)):
+            moved = self._find_relocated(Path(text), relative_to)
+            if moved is not None:
+                return moved, [moved]
+        if not inside:
+            return None, None
+        media = () if is_absolute else self.media_candidates(text, relative_to)
+        found, searched = self.first_allowed(chain(inside, media), relative_to)
+        return found, inside if found is None else searched
 
     def _nearby_names(self, relative_to: Path | None) -> Iterable[str]:
         for root in (*self.paths, *([relative_to.parent] if relative_to else [])):

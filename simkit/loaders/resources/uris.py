@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
 from urllib.parse import unquote
 
-from simkit.home_folder import home_folder
+from simkit.project_folder import is_top_folder
+from simkit.trusted_folders import OutsideError, join_below
 
 _MOST_LISTED = 1000  # searched paths, and names of a folder, that are compared for a hint
 _MANIFESTS = ("model.config", "model.sdf", "package.xml", "manifest.xml")
@@ -48,20 +48,18 @@ def absolute_path(path: Path) -> Path:
     return Path(os.path.abspath(path))  # noqa: PTH100 - resolve() would follow links
 
 
-def leaves_folder(rest: str) -> bool:
-    """Check whether the part after `scheme://name` leaves the folder of that name."""
-    depth = 0
-    for part in rest.split("/")[1:]:
-        depth += {"..": -1, ".": 0, "": 0}.get(part, 1)
-        if depth < 0:
-            return True
-    return rest.split("/")[0] in ("..", ".")
+def split_rest(rest: str) -> tuple[str, str]:
+    """Return the name and the path below it in the part of a URI after `model://` or `package://`, without quotes.
 
+    Doubled slashes are dropped. An empty name names nothing.
 
-def is_top_folder(folder: Path) -> bool:
-    """Check for the home folder and the two highest levels of the file system, which are never searched."""
-    home = home_folder()
-    return len(folder.parts) < 3 or folder in (home, home.resolve())
+    Raises:
+        OutsideError: the path leaves the folder of that name.
+    """
+    name, _, inside = rest.lstrip("/").partition("/")
+    if len(join_below(Path(), name).parts) != 1 and name:
+        raise OutsideError(f"{rest!r} has no name")
+    return name, join_below(Path(), inside, in_uri=True).as_posix()
 
 
 def is_private(folder: Path) -> bool:
@@ -74,17 +72,6 @@ def is_private(folder: Path) -> bool:
         return True
     is_open = any(is_file(folder / name) for name in _MANIFESTS) or any(is_folder(folder / name) for name in _ASSETS)
     return not is_open and is_existing(folder)
-
-
-def first_existing(candidates: Iterable[Path]) -> tuple[Path | None, list[Path]]:
-    """Return the first candidate that exists, and the candidates up to it; later candidates are not generated."""
-    looked: dict[Path, None] = {}
-    for candidate in candidates:
-        if candidate not in looked:
-            looked[candidate] = None
-            if is_existing(candidate):
-                return candidate, list(looked)
-    return None, list(looked)
 
 
 def is_existing(path: Path) -> bool:
@@ -148,6 +135,13 @@ def is_file(path: Path) -> bool:
 def is_folder(path: Path) -> bool:
     """Check whether a folder exists and is visible."""
     return os.path.isdir(path)  # noqa: PTH112
+
+
+def is_link(path: Path) -> bool:
+    """Check whether the last name of a path is a symbolic link, or a junction of Windows."""
+    if os.name == "nt":
+        return os.path.realpath(path) != str(Path(os.path.realpath(path.parent)) / path.name)
+    return os.path.islink(path)  # noqa: PTH114 - `Path.is_symlink` raises an error for an invalid name
 
 
 def is_small_integer(text: str) -> bool:

@@ -8,10 +8,11 @@ from pathlib import Path
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InterfaceError
-from simkit.loaders.resources.project_folder import enclosing_project
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.uris import is_file
 from simkit.msgs import own_interfaces
+from simkit.project_folder import enclosing_project
+from simkit.trusted_folders import join_below
 
 
 def read_interfaces(
@@ -40,13 +41,15 @@ def read_interfaces(
     is_text = isinstance(source, str) and "<" in source
     home = (Path.cwd() if is_text else Path(source).expanduser().absolute().parent).resolve()
     nearby = dict.fromkeys((home, enclosing_project(home) or home))
+    near_world = resolver.around(home)
 
     def find(package: str, file: str) -> Path | None:
-        beside = (folder / package for folder in nearby)
+        beside = (join_below(folder, package) for folder in nearby)
         named = (folder for folder in nearby if folder.name == package)
         for place in (*beside, *named, *resolver.packages.named_exactly(package, (home,))):
-            if is_file(place / file):
-                return place / file
+            path = join_below(place, file)
+            if is_file(path) and near_world.allows(path):
+                return path
         return None
 
     own_interfaces.set_finder(find)

@@ -126,7 +126,7 @@ def _open_include(uri: str, include: Params, file: SdfFile, workspace: Workspace
         workspace.missing += [(uri, problem) for problem in found if is_missing]
         diagnostics.extend(() if is_missing else found)
     if path is not None and path.is_dir():
-        path = model_file(path, place.where, diagnostics)
+        path = model_file(path, place.where, diagnostics, resolver.allows)
     if path is None:
         return None
     workspace.has_found = True

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit import progress
 from simkit.errors import SimkitError
+from simkit.run_spec import FilePath
 
 _SAFE_PATH: Final = "PYTHONSAFEPATH"
 
@@ -32,6 +33,7 @@ class CheckOptions:
     pictures: bool = False
     allow_code: bool = False
     plugin_paths: tuple[Path, ...] = ()
+    folders: tuple[FilePath, ...] = ()
 
 
 @dataclass

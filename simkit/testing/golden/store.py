@@ -19,7 +19,7 @@ from typing import Final
 from simkit import file_lock
 from simkit.diagnostic_record import Where
 from simkit.errors import InputError
-from simkit.input_file import read_input
+from simkit.input_file import read_input, read_input_text
 from simkit.install_command import install_command
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
@@ -115,7 +115,7 @@ def _read_main_and_data(place: Path) -> tuple[JsonObject, str, str, bytes]:
         main = read_main(place)
         name, digest = _read_data(place, main)
         try:
-            return main, name, digest, read_input(place / name, _MAX_DATA_BYTES)
+            return main, name, digest, read_input(place / name, _MAX_DATA_BYTES, inside=place)
         except FileNotFoundError as error:  # another process may have replaced the golden run just now
             if trial == _READ_ATTEMPTS - 1 or read_main(place) == main:
                 raise _damaged_error(place / name, f"cannot be read: {error.strerror}") from None
@@ -132,7 +132,7 @@ def read_main(folder: Path) -> JsonObject:
     """
     path = folder / MAIN_FILE
     try:
-        text = read_input(path, _MAX_TEXT_BYTES)
+        text = read_input(path, _MAX_TEXT_BYTES, inside=folder)
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(
             f"SK-GOLDEN-002 {folder}: there is no golden run (no {MAIN_FILE})\n"
@@ -171,6 +171,12 @@ def read_history(folder: str | os.PathLike[str]) -> list[JsonMapping]:
     """Return the history of a golden run, oldest entry first."""
     found = read_main(golden_folder(folder)).get("history", [])
     return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
+
+
+def line_of_key(folder: Path, key: str) -> int | None:
+    """Return the line of `golden.json` in which a key of the scenario is; None without such a line."""
+    lines = read_input_text(folder / MAIN_FILE, _MAX_TEXT_BYTES, inside=folder).split("\n")
+    return next((number for number, line in enumerate(lines, 1) if line.lstrip().startswith(f'"{key}":')), None)
 
 
 def golden_folder(path: str | os.PathLike[str]) -> Path:

@@ -11,8 +11,14 @@ from simkit.code_requests import CodeRequest
 from simkit.diagnostics import Diagnostics
 from simkit.run_spec import FilePath, JsonMapping, RunSpec
 from simkit.testing.scenarios.code_permission import check_requests, permit_code
-from simkit.testing.scenarios.scenario_file import is_scalar_text, parse_scenario, yaml_value_text
-from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
+from simkit.testing.scenarios.scenario_file import parse_scenario
+from simkit.testing.scenarios.yaml_document import (
+    Document,
+    ValueReader,
+    is_scalar_text,
+    resolve_spawn_file,
+    yaml_value_text,
+)
 from simkit.yaml_reader import finite_number
 
 _KEYS: Final = ("title", "text", "hand_in", "robot", "parameters", "pass", "runs")
@@ -49,6 +55,7 @@ class Exercise:
         pass_mark: Share of the points needed to pass, 0 to 1.
         runs: Runs in which the plugin is tested.
         file: File of the exercise.
+        folders: Folders of the user in which the file may name files.
     """
 
     title: str
@@ -58,6 +65,7 @@ class Exercise:
     pass_mark: float
     runs: tuple[ExerciseRun, ...]
     file: Path
+    folders: tuple[FilePath, ...] = ()
     own_code: CodeRequest | None = None
 
     @property
@@ -66,22 +74,29 @@ class Exercise:
         return tuple(dict.fromkeys(request for run in self.runs for request in run.scenario.code_requests))
 
 
-def read_exercise(path: str | Path, *, allow_code: bool = False, plugin_paths: Sequence[FilePath] = ()) -> Exercise:
+def read_exercise(
+    path: str | Path,
+    folders: Sequence[FilePath] = (),
+    *,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+) -> Exercise:
     """Read an exercise from a YAML file.
 
     Without a permission, an exercise with plugin folders can be read, but not run.
 
     Args:
         path: File.
+        folders: Folders in which the file may name files, beside its own folder and its project.
         allow_code: Allow the plugin folders that the file names. Their code has the same rights as the user.
         plugin_paths: Allow these folders only.
 
     Raises:
-        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006); the error lists all of them.
-            SK-SCEN-008: it names other folders than `plugin_paths`.
+        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006, SK-URI-003); the error lists all.
+            SK-SCEN-008: it names other plugin folders than `plugin_paths`.
     """
     diagnostics = Diagnostics()
-    document = Document(Path(path), diagnostics)
+    document = Document(Path(path), diagnostics, folders)
     if document.values is None:
         diagnostics.raise_if_errors()
     scenario = parse_scenario(document, also=("exercise",))
@@ -115,11 +130,15 @@ class _ExerciseReader(ValueReader):
         runs = self._runs(scenario, parameters)
         title, text, hand_in, robot = (self._stripped(key) for key in ("title", "text", "hand_in", "robot"))
         file = self._document.path
-        words = f"the exercise names the plugin {hand_in!r:.200}"
-        own = (
-            CodeRequest(words, file.parent / hand_in, self._document.where("exercise", "hand_in")) if hand_in else None
-        )
-        return Exercise(title or scenario.title, text, hand_in, robot, self._pass_mark(), runs, file, own)
+        self._document.refuses(self._document.files.refusal(file.parent / hand_in), *self._at, "hand_in")
+        own = None
+        if hand_in:
+            words, where = f"the exercise names the plugin {hand_in!r:.200}", self._document.where(*self._at, "hand_in")
+            own = CodeRequest(words, file.parent / hand_in, where)
+        return Exercise(
+            title or scenario.title, text, hand_in, robot, self._pass_mark(), runs, file,
+            self._document.files.folders, own,
+        )  # fmt: skip
 
     def _runs(self, scenario: RunSpec, parameters: JsonMapping) -> tuple[ExerciseRun, ...]:
         listed = self._fields.get("runs", [{}])
@@ -136,7 +155,10 @@ class _ExerciseReader(ValueReader):
     def run(self, number: int, scenario: RunSpec, parameters: JsonMapping) -> ExerciseRun:
         duration = self._number("duration", scenario.duration, above=0.0)
         folder = self._document.path.parent
-        spawn = (resolve_spawn_file(folder, one) for one in self._texts_of(self._fields.get("spawn", []), "spawn"))
+        listed = self._texts_of(self._fields.get("spawn", []), "spawn")
+        spawn = tuple(resolve_spawn_file(folder, one) for one in listed)
+        for place, one in enumerate(spawn):
+            self._document.refuses(self._document.files.spawn_refusal(one, folder), *self._at, "spawn", place)
         changed = replace(
             scenario,
             seed=self._whole("seed", scenario.seed, 0),

@@ -218,6 +218,7 @@ def _run_in_process(
         token = secrets.token_hex()
         job = {
             "exercise": str(exercise.file.absolute()),
+            "folders": [os.path.abspath(folder) for folder in exercise.folders],  # noqa: PTH100 (links stay)
             "hand_in": "" if hand_in is None else str(hand_in.absolute()),
             "number": number,
             "target": str(target),

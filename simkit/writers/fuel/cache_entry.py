@@ -19,8 +19,9 @@ from simkit.diagnostics import Diagnostics
 from simkit.input_file import open_input, read_input_text
 from simkit.loaders.resources.bundled_models import builtin_model
 from simkit.loaders.resources.fuel_cache import TIP, FuelUrl
-from simkit.loaders.resources.uris import leaves_folder
+from simkit.loaders.resources.uris import split_rest
 from simkit.loaders.resources.xml_reader import parse_file
+from simkit.trusted_folders import OutsideError, join_below
 from simkit.writers import zip_checks
 from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
 from simkit.writers.fuel.download import DownloadError
@@ -167,12 +168,16 @@ def _resolve_model_uris(folder: Path, url: FuelUrl) -> None:
 
 def _fuel_url(text: str, folder: Path, url: FuelUrl) -> FuelUrl | None:
     """Return the Fuel URL of a `model://` URI in a downloaded model; None if the URI stays as it is."""
-    rest = text.removeprefix("model://").strip("/")
-    name, _, inside = rest.partition("/")
-    if builtin_model(text) is not None or not name or leaves_folder(rest):
+    try:
+        name, inside = split_rest(text.removeprefix("model://").rstrip("/"))
+        if builtin_model(text) is not None or not name:
+            return None
+        inside = "" if inside == "." else inside
+        whole, part = join_below(folder, f"{name}/{inside}"), join_below(folder, inside)
+    except OutsideError:
         return None
-    if (folder / rest).exists():
-        return replace(url, inside=rest)
-    if name.lower() == url.name.lower() or (inside and (folder / inside).exists()):
+    if whole.exists():
+        return replace(url, inside=whole.relative_to(folder).as_posix())
+    if name.lower() == url.name.lower() or (inside and part.exists()):
         return replace(url, inside=inside)
     return replace(url, kind="models", name=name, version=TIP, inside=inside)

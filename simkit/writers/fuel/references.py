@@ -64,7 +64,7 @@ class ReferenceSearch:
     def _of_include(self, uri: str, document: Document) -> Iterator[Reference]:
         path, _ = self.resolver.search(uri, document.folder)
         if path is not None and path.is_dir():
-            path = model_file(path, Where(str(path)), Diagnostics())
+            path = model_file(path, Where(str(path)), Diagnostics(), self.resolver.allows)
         if path is not None and path.suffix in _SUFFIXES:
             yield from self._of_file(path)
 
