@@ -10,9 +10,9 @@ from simkit.bridges.live.bridge_requests import BRIDGE_REQUESTS
 from simkit.bridges.live.connection import ClientConnection
 from simkit.bridges.live.endpoint_requests import ENDPOINT_REQUESTS, LATER
 from simkit.bridges.live.protocol import ANSWER, BadFrame, JsonObject, read_json_frame
+from simkit.bridges.live.request_fields import CODE, RequestRefused, client_text
 from simkit.bridges.live.requests import REQUESTS, Request, RequestHost, Response, define_types
 from simkit.bridges.live.type_exchange import LARGEST_IN, detach
-from simkit.bridges.request_fields import CODE, RequestRefused, client_text
 from simkit.errors import PluginError, SimkitError, SimulationDiverged, SubscriberError
 
 _HANDLERS: Final = {**REQUESTS, **BRIDGE_REQUESTS, **ENDPOINT_REQUESTS}

@@ -8,8 +8,8 @@ from types import MappingProxyType
 from typing import Final
 
 from simkit.bridges.live.introspection import topic_list
+from simkit.bridges.live.request_fields import RequestRefused, client_text
 from simkit.bridges.live.requests import Request, RequestHandler, Response
-from simkit.bridges.request_fields import RequestRefused, client_text
 from simkit.errors import MessageError
 from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of

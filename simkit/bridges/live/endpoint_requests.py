@@ -14,8 +14,8 @@ from simkit.bridges.live.client_endpoints import (
     ClientParameter,
     ClientService,
 )
+from simkit.bridges.live.request_fields import RequestRefused, read_items
 from simkit.bridges.live.requests import Request, RequestHandler, Response, count_new_topic
-from simkit.bridges.request_fields import RequestRefused, read_items
 from simkit.errors import SimkitError
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.log_topic import LOG, log_message

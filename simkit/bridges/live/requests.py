@@ -13,8 +13,8 @@ from simkit.bridges.live.connection import MOST_OPEN, ClientConnection
 from simkit.bridges.live.introspection import model_state, node_list, parameter_list, topic_list
 from simkit.bridges.live.message_log import ClientSubscription
 from simkit.bridges.live.protocol import TELL, JsonObject
+from simkit.bridges.live.request_fields import RequestRefused, read_field
 from simkit.bridges.live.topic_feed import TopicFeeds
-from simkit.bridges.request_fields import RequestRefused, read_field
 from simkit.errors import SimkitError
 from simkit.msgs import own_interfaces
 

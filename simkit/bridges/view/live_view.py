@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.bridges.request_fields import CODE, client_text
+from simkit.bridges.live.request_fields import CODE, client_text
 from simkit.bridges.view import scene_packet
 from simkit.bridges.view.driving import Driving
 from simkit.bridges.view.packet import make_packet

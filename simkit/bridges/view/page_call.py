@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
-from simkit.bridges.request_fields import RequestRefused, checked_value, read_field
+from simkit.bridges.live.request_fields import RequestRefused, checked_value, read_field
 
 if TYPE_CHECKING:
     from simkit.bridges.view.driving import Driving

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
-from simkit.bridges.request_fields import RequestRefused
+from simkit.bridges.live.request_fields import RequestRefused
 from simkit.bridges.view.model_requests import set_pose, spawn_standing, spawnable
 from simkit.bridges.view.page_call import Call, ViewHost
 from simkit.bridges.view.panel_requests import PANEL_REQUESTS

@@ -19,7 +19,7 @@ from websockets.asyncio.server import broadcast, serve
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
-from simkit.bridges.request_fields import CODE, RequestRefused, read_field, read_identifier, read_json
+from simkit.bridges.live.request_fields import CODE, RequestRefused, read_field, read_identifier, read_json
 from simkit.bridges.web.access import has_token, is_known_host, is_own_origin, quiet_logger, split_address
 
 PAGE: Final = Path(__file__).parent / "page"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from simkit.bridges.request_fields import RequestRefused
+from simkit.bridges.live.request_fields import RequestRefused
 from simkit.bridges.view.message_form import describe_form
 from simkit.bridges.view.page_call import Call
 from simkit.bridges.view.page_calls import shown_message

@@ -11,7 +11,7 @@ from typing import Any, Final
 from simkit import msgs
 from simkit.argument_checks import shown
 from simkit.bridges.live.protocol import LARGEST_OUT, JsonObject, LiveClosed, LiveError
-from simkit.bridges.request_fields import (
+from simkit.bridges.live.request_fields import (
     RequestRefused,
     checked_value,
     client_text,

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from simkit.bridges.live.protocol import JsonObject
-from simkit.bridges.request_fields import read_field, read_json
+from simkit.bridges.live.request_fields import read_field, read_json
 from simkit.bridges.web.web_server import WebClient
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE
 from simkit.msgs.message_text import field_nodes

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from simkit import msgs
 from simkit.bridges.live.protocol import JsonObject, LiveClosed, LiveError
-from simkit.bridges.request_fields import (
+from simkit.bridges.live.request_fields import (
     RequestRefused,
     client_text,
     read_field,

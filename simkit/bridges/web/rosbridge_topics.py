@@ -6,19 +6,42 @@ import asyncio
 import json
 import time
 from collections import deque
-from typing import TYPE_CHECKING, Final, NamedTuple
+from collections.abc import Callable
+from typing import Final, NamedTuple, Protocol
 
 from simkit import msgs
 from simkit.bridges.live.protocol import JsonObject, LiveError
-from simkit.bridges.request_fields import read_field
+from simkit.bridges.live.request_fields import read_field
 from simkit.bridges.web.json_messages import message_from_json, message_to_json
-
-if TYPE_CHECKING:
-    from simkit.bridges.web.rosbridge_server import RosbridgeClient
+from simkit.bridges.web.web_server import WebLink
 
 _DEPTH: Final = 100  # queued messages of a topic in the simulation, unless the client requests more
 MOST_WAITING: Final = 1000
 """Messages that wait: for a topic that the simulation has not opened yet, or for a client."""
+
+
+class TopicClient(Protocol):
+    """Client with subscriptions and publishers.
+
+    Attributes:
+        link: connection to the simulation.
+        publishers: publishers by topic.
+    """
+
+    link: WebLink
+    publishers: dict[str, TopicPublisher]
+
+    def send(self, data: str | bytes) -> None:
+        """Queue a message for the client."""
+
+    def report_error(self, text: str, identifier: object = None) -> None:
+        """Send a status with an error."""
+
+    def guarded(self, words: JsonObject, process: Callable[[JsonObject], None]) -> None:
+        """Process a message, and answer errors of its content with a status."""
+
+    def drop_subscription(self, topic: str) -> None:
+        """Forget the subscription to a topic."""
 
 
 class SubscriptionOptions(NamedTuple):
@@ -37,7 +60,7 @@ class TopicSubscription:
         options: options by id.
     """
 
-    def __init__(self, client: RosbridgeClient, topic: str, depth: int) -> None:
+    def __init__(self, client: TopicClient, topic: str, depth: int) -> None:
         self._client, self._topic = client, topic
         self.options: dict[object, SubscriptionOptions] = {}
         self._waiting: deque[str | bytes] = deque()
@@ -88,7 +111,7 @@ class TopicSubscription:
 class TopicPublisher:
     """Topic that a client publishes. Messages wait until the simulation has opened the topic."""
 
-    def __init__(self, client: RosbridgeClient, topic: str, words: JsonObject) -> None:
+    def __init__(self, client: TopicClient, topic: str, words: JsonObject) -> None:
         self._client, self._topic = client, topic
         self.number = client.link.next_number()
         self._type: str | None = None

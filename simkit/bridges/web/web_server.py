@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from simkit.bridges.bridge_program import begin, run_until_end, tell
 from simkit.bridges.live.protocol import LARGEST_IN, JsonObject, LiveClosed, LiveError
-from simkit.bridges.request_fields import CODE, client_text
+from simkit.bridges.live.request_fields import CODE, client_text
 from simkit.bridges.simulation_link import DEPTH, Failed, SimulationLink, Then
 from simkit.bridges.web.access import has_token, is_known_origin, is_token, quiet_logger, split_address
 from simkit.bridges.web.web_process import TOKEN_VARIABLE

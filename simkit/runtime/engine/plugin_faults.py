@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
-from simkit.errors import InputError, InterfaceError, PluginError, SimkitError, SimulationDiverged
+from simkit.errors import InputError, InterfaceError, PluginError, SimkitError, SimulationDiverged, cause_text
 from simkit.run_spec import PluginErrorPolicy
 
 if TYPE_CHECKING:
@@ -152,7 +152,7 @@ class PluginFaults:
         if isinstance(error, InterfaceError) or (isinstance(error, SimkitError) and not isinstance(error, InputError)):
             raise error
         if self.policy(plugin) == "stop":
-            raise PluginError(plugin.name, hook, self._engine.time, str(plugin.where), repr(error)) from error
+            raise PluginError(plugin.name, hook, self._engine.time, str(plugin.where), cause_text(error)) from error
         if (
             isinstance(error, RecursionError)
             and sum(c.plugin is plugin for c in active_plugin_calls(sys._getframe())) > 1
