@@ -18,6 +18,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Protocol
 
+from simkit.argument_checks import checked_integer
 from simkit.errors import ArgumentTypeError, MessageError, NoMessageError
 from simkit.msgs.cdr_serializer import SizeMismatch, make_serializer
 from simkit.msgs.message_types import Message, definition, full_name, message_class, type_of, type_store, types_of
@@ -163,12 +164,12 @@ def _stamp_types() -> tuple[type[Time], type[Duration], type[Header]]:
 
 def time(ns: int) -> Time:
     """Return a `builtin_interfaces/msg/Time` of `ns` nanoseconds."""
-    return _stamp_types()[0](*divmod(ns, _NS))
+    return _stamp_types()[0](*divmod(ns if type(ns) is int else checked_integer(ns, "ns"), _NS))
 
 
 def duration(ns: int) -> Duration:
     """Return a `builtin_interfaces/msg/Duration` of `ns` nanoseconds."""
-    return _stamp_types()[1](*divmod(ns, _NS))
+    return _stamp_types()[1](*divmod(ns if type(ns) is int else checked_integer(ns, "ns"), _NS))
 
 
 def header(time_ns: int, frame_id: str) -> Header:
@@ -230,5 +231,9 @@ def _field_fault(message: Message) -> str:
 
 
 def deserialize(data: bytes | memoryview, type_name: str) -> Message:
-    """Decode a message that `serialize` encoded."""
+    """Decode a message that `serialize` encoded.
+
+    Raises:
+        MessageError: the type is unknown.
+    """
     return type_store().deserialize_cdr(data, full_name(type_name))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.argument_checks import check_function, checked_integer
+from simkit.argument_checks import check_function, checked_seed
 from simkit.errors import InputError, SimulationDiverged
 from simkit.in_process import InProcess
 from simkit.pose import Pose, Vector
@@ -180,7 +180,7 @@ class Simulation(ScriptGraph, InProcess):
     @journaled
     def _reset(self, seed: int | None = None) -> None:
         loaded, engine = self._loaded_state(), self.engine
-        seed = engine.streams.seed if seed is None else checked_integer(seed, "seed")
+        seed = engine.streams.seed if seed is None else checked_seed(seed)
         engine.loop.drop_deferred()
         self.communication.bus.settle()
         engine.streams.reseed(seed)
@@ -282,7 +282,7 @@ class Simulation(ScriptGraph, InProcess):
 
     def contacts(self, model: Model | str | None = None) -> list[Contact]:
         """Return the contacts of a model, also with itself, or of all; a KeyError suggests the closest name."""
-        given = model if model is None or isinstance(model, str) else model.scoped
+        given = model if model is None or isinstance(model, str) else getattr(model, "scoped", model)
         name = None if given is None else self.model(given).scoped
         return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), name)
 
