@@ -14,6 +14,7 @@ from simkit.pose import Pose, Vector
 from simkit.run_spec import PluginErrorPolicy, RunSpec
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
+from simkit.runtime.communication.large_commands import large_commands
 from simkit.runtime.communication.script_graph import ScriptGraph
 from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.contact.collision_contacts import Contact, list_contacts
@@ -158,7 +159,7 @@ class Simulation(ScriptGraph, InProcess):
             else:
                 self._page.advance(target, advance)
         except SimulationDiverged as error:
-            add_driver_hints(self.engine.structure.all_plugins(), error)
+            add_driver_hints(self.engine.structure.all_plugins(), error, large_commands(self._bus))
             raise
         finally:
             if journal is not None:
@@ -183,6 +184,7 @@ class Simulation(ScriptGraph, InProcess):
         seed = engine.streams.seed if seed is None else checked_seed(seed)
         engine.loop.drop_deferred()
         self.communication.bus.settle()
+        self.communication.bus.forget_commands()
         engine.streams.reseed(seed)
         self._restore(loaded)
         for sensor in engine.structure.all_sensors():

@@ -273,13 +273,14 @@ def active_plugin_calls(frame: FrameType | None) -> list[PluginCall]:
 _MAX_EXPLANATIONS = 3
 
 
-def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged) -> None:
-    """Add the explanations of plugins to a divergence error.
+def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged, commands: Sequence[str] = ()) -> None:
+    """Add the explanations of plugins and the largest commands to a divergence error.
 
     A plugin explains with its method `explain_divergence(name) -> str`. The name is that of the diverged joint. If no
     plugin drives the joint, the name is that of the model.
     """
     found = _explanations(plugins, error.joint) or _explanations(plugins, error.joint.split("::")[0])
+    found = [*commands, *found]
     if found:
         more = "; ".join(found[:_MAX_EXPLANATIONS]) + (
             f"; and {len(found) - _MAX_EXPLANATIONS} more" if len(found) > _MAX_EXPLANATIONS else ""
