@@ -7,13 +7,14 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.argument_checks import check_function, checked_integer
+from simkit.argument_checks import check_function, checked_seed
 from simkit.errors import InputError, SimulationDiverged
 from simkit.in_process import InProcess
 from simkit.pose import Pose, Vector
 from simkit.run_spec import PluginErrorPolicy, RunSpec
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
+from simkit.runtime.communication.large_commands import large_commands
 from simkit.runtime.communication.script_graph import ScriptGraph
 from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.contact.collision_contacts import Contact, list_contacts
@@ -158,7 +159,7 @@ class Simulation(ScriptGraph, InProcess):
             else:
                 self._page.advance(target, advance)
         except SimulationDiverged as error:
-            add_driver_hints(self.engine.structure.all_plugins(), error)
+            add_driver_hints(self.engine.structure.all_plugins(), error, large_commands(self._bus))
             raise
         finally:
             if journal is not None:
@@ -180,9 +181,10 @@ class Simulation(ScriptGraph, InProcess):
     @journaled
     def _reset(self, seed: int | None = None) -> None:
         loaded, engine = self._loaded_state(), self.engine
-        seed = engine.streams.seed if seed is None else checked_integer(seed, "seed")
+        seed = engine.streams.seed if seed is None else checked_seed(seed)
         engine.loop.drop_deferred()
         self.communication.bus.settle()
+        self.communication.bus.forget_commands()
         engine.streams.reseed(seed)
         self._restore(loaded)
         for sensor in engine.structure.all_sensors():
@@ -282,7 +284,7 @@ class Simulation(ScriptGraph, InProcess):
 
     def contacts(self, model: Model | str | None = None) -> list[Contact]:
         """Return the contacts of a model, also with itself, or of all; a KeyError suggests the closest name."""
-        given = model if model is None or isinstance(model, str) else model.scoped
+        given = model if model is None or isinstance(model, str) else getattr(model, "scoped", model)
         name = None if given is None else self.model(given).scoped
         return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), name)
 

@@ -272,6 +272,12 @@ class TopicBus:
 
     # ------------------------------------------------------------------ messages
 
+    def forget_commands(self) -> None:
+        """Forget the last commands, because a reset ends their effect."""
+        for listeners in self._listeners.values():
+            for listener in listeners:
+                listener.last = None
+
     def settle(self) -> None:
         """Make every message that is not made yet, before its source data change."""
         for publishers in self._publishers.values():
@@ -342,6 +348,7 @@ class TopicBus:
     def _deliver_input(self, topic: str, message: Message) -> None:
         for listener in tuple(self._listeners.get(topic, ())):
             if listener.active and msgs.type_name(message) in listener.types:
+                listener.last = message
                 try:
                     listener.callback(message)
                 except SimkitError:
