@@ -13,7 +13,7 @@ from mutation import shuffled_bytes
 from reader import FINE, Reader
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
-from test_broken_files import SEED, complaint
+from test_broken_files import SECONDS, SEED, complaint
 
 SOME, MANY = 200, 20_000
 NAMES = ("zstd", "lz4", "none", "plain", "sqlite", "folder", "compressed")
