@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import re
 import shutil
@@ -105,7 +106,7 @@ CASES = {
     "lab": Case("lab start 02 new"),
     "sweep": Case("sweep run sweep.yaml -o new -n 1 -q", is_resumed=True),
     "sweep of two": Case("sweep run sweep.yaml -o new -n 2 -q", is_resumed=True),
-    "certify": Case("certify w.sdf --duration 0.05 --runs 1 -o new.json"),
+    "certify": Case("certify w.sdf --duration 0.05 --runs 2 -o new.json"),
     "plot": Case("plot b.mcap /odom.pose.pose.position.x -o new.svg"),
     "results": Case("golden check golden --no-causes --html new.html --junit new.xml"),
     "extract": Case("replay b.zip --extract new"),
