@@ -14,8 +14,12 @@ from __future__ import annotations
 import importlib
 import os
 
-from simkit.garbage_collection import no_collection
-from simkit.version import __version__
+from simkit.early_interrupts import install_in_command
+
+install_in_command()  # before the other imports of this file
+
+from simkit.garbage_collection import no_collection  # noqa: E402
+from simkit.version import __version__  # noqa: E402
 
 TYPE_CHECKING = False  # `typing` takes 3 ms
 if TYPE_CHECKING:
@@ -68,7 +72,7 @@ __all__ = [
 ]
 
 # Lazy imports: MuJoCo takes most of the import time and NumPy most of the rest. Test runs that open no world do not pay
-# for either (`simkit.pytest_plugin`). The command line can handle Ctrl-C only after this file has been imported.
+# for either (`simkit.pytest_plugin`).
 _MODULES = {
     "simkit.build": ("load", "describe", "check"),
     "simkit.runtime": ("Simulation",),

@@ -123,6 +123,37 @@ def interrupt_after(delay: float, number: int, words: tuple[str, ...]) -> None:
     assert has_begun or done.stderr.splitlines()[-1] == "interrupted", (delay, words, done.stderr)
 
 
+START = """
+import os, signal, sys
+left = [int(os.environ["SIMKIT_TEST_FILE"])]
+def hear(event, values):
+    if event == "exec" and f"{os.sep}simkit{os.sep}" in getattr(values[0], "co_filename", ""):
+        left[0] -= 1
+        if left[0] == 0:
+            signal.raise_signal(int(os.environ["SIMKIT_TEST_SIGNAL"]))
+sys.addaudithook(hear)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("file", [3, 4, 6, 8, 9, 12])
+def test_a_signal_while_the_first_files_are_imported_ends_with_one_line(
+    file: int, number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first two files are `simkit/__init__.py` and the one with the handler."""
+    (tmp_path / "sitecustomize.py").write_text(START)
+    monkeypatch.syspath_prepend(tmp_path)
+    with start("--version", SIMKIT_TEST_FILE=str(file), SIMKIT_TEST_SIGNAL=str(int(number))) as process:
+        _, messages = process.communicate()
+    assert (process.returncode, messages) == (128 + number, "interrupted\n")
+
+
+def test_importing_simkit_changes_no_signal_handler() -> None:
+    script = "import signal, simkit.cli; print(signal.getsignal(2) is signal.default_int_handler, signal.getsignal(15))"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout == f"True {signal.SIG_DFL}\n"
+
+
 LONG = (
     ("run", "turtlebot3_world", "--rtf", "1"),
     ("run", "turtlebot3_empty", "--rtf", "1"),

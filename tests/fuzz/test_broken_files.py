@@ -12,6 +12,7 @@ from typing import Any
 from zlib import crc32
 
 import pytest
+from campaign import several_readers, try_many
 from grammar import Grammar
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from mutation import Mutator, shuffled_bytes
@@ -50,10 +51,13 @@ def mutator() -> Mutator:
 
 
 @pytest.fixture(scope="module")
-def reader() -> Iterator[Reader]:
-    with Reader(resources()) as made:
-        yield made
-        print(f"\n{made.report()}")  # noqa: T201 -- read with -s
+def readers() -> Iterator[list[Reader]]:
+    yield from several_readers(resources())
+
+
+@pytest.fixture(scope="module")
+def reader(readers: list[Reader]) -> Reader:
+    return readers[0]
 
 
 def resources() -> list[Path]:
@@ -122,32 +126,29 @@ def test_a_sample_that_is_not_broken_loads(sample: Sample, reader: Reader) -> No
 
 
 @pytest.mark.fuzz
-def test_mutated_real_files_are_loaded_or_refused_for_minutes(reader: Reader, tmp_path: Path) -> None:
+def test_mutated_real_files_are_loaded_or_refused_for_minutes(readers: list[Reader], tmp_path: Path) -> None:
     files = real_files(SUFFIXES)
-    until, index, problems = time.monotonic() + SECONDS / 2, 0, []
-    while time.monotonic() < until:
+
+    def one(reader: Reader, index: int) -> str:
         chance = random.Random(f"{SEED} minutes {index}")
         path = chance.choice(files)
         content = {f"input{path.suffix}": mutator().mutated(path.read_bytes(), chance)}
         answer = reader.read(f"input{path.suffix}", content, f"{path.name} {index}")
-        if answer["outcome"] not in FINE:
-            problems.append(complaint(f"input{path.suffix}", content, answer, tmp_path))
-        index += 1
-    assert not problems, f"{len(problems)} of {index}\n" + "\n".join(problems[:20])
+        return "" if answer["outcome"] in FINE else complaint(f"input{path.suffix}", content, answer, tmp_path)
+
+    try_many("worlds", one, readers, SECONDS / 2)
 
 
 @pytest.mark.fuzz
-def test_whatever_files_name_may_be_broken_for_minutes(reader: Reader, tmp_path: Path) -> None:
-    until, index, problems = time.monotonic() + SECONDS / 4, 0, []
-    while time.monotonic() < until:
+def test_whatever_files_name_may_be_broken_for_minutes(readers: list[Reader], tmp_path: Path) -> None:
+    def one(reader: Reader, index: int) -> str:
         chance = random.Random(f"{SEED} samples for minutes {index}")
         sample = chance.choice(samples())
         files = broken(sample, chance)
         answer = reader.read(sample.main, files, f"{sample.name} {index}")
-        if answer["outcome"] not in FINE:
-            problems.append(complaint(sample.main, files, answer, tmp_path))
-        index += 1
-    assert not problems, f"{len(problems)} of {index}\n" + "\n".join(problems[:20])
+        return "" if answer["outcome"] in FINE else complaint(sample.main, files, answer, tmp_path)
+
+    try_many("samples", one, readers, SECONDS / 4)
 
 
 @pytest.mark.fuzz

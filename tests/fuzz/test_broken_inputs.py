@@ -6,13 +6,12 @@ traceback, no other exit code, no control character on the terminal, no file, pr
 
 from __future__ import annotations
 
-import os
 import random
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from campaign import several_readers, try_many
 from containers import damaged, sealed
 from reader import FINE, Reader
 from targets import WORLD_FILES, Target, targets
@@ -22,17 +21,19 @@ KINDS = (
     "bag", "bag folder", "sqlite bag", "script", "parameters", "motions", "scenario", "exercise", "bundle",
     "bundle with code", "golden", "condition", "command", "packets",
 )  # fmt: skip
-MOST = int(os.environ.get("SIMKIT_FUZZ_INPUTS", "1000000"))  # inputs of a kind; SECONDS ends it, too
 QUICK = 5  # inputs of a kind that are always tried
 # What an intact input gives where it is not "loaded"
 REFUSED = {("bag", "recover", "sqlite"): "SK-BAG-004", ("replay", "c.zip"): "SK-BUNDLE-005"}
 
 
 @pytest.fixture(scope="module")
-def reader() -> Iterator[Reader]:
-    with Reader() as made:
-        yield made
-        print(f"\n{made.report()}")  # noqa: T201 -- read with -s
+def readers() -> Iterator[list[Reader]]:
+    yield from several_readers()
+
+
+@pytest.fixture(scope="module")
+def reader(readers: list[Reader]) -> Reader:
+    return readers[0]
 
 
 def of_kind(kind: str) -> list[Target]:
@@ -79,30 +80,22 @@ def test_every_command_accepts_the_intact_input(kind: str, reader: Reader) -> No
 
 @pytest.mark.fuzz
 @pytest.mark.parametrize("kind", KINDS)
-def test_broken_inputs_are_accepted_or_refused_for_minutes(kind: str, reader: Reader, tmp_path: Path) -> None:
+def test_broken_inputs_are_accepted_or_refused_for_minutes(kind: str, readers: list[Reader], tmp_path: Path) -> None:
     chosen = of_kind(kind)
-    try_many(kind, lambda index: problem(reader, chosen[index % len(chosen)], f"for minutes {index}", tmp_path))
+
+    def one(reader: Reader, index: int) -> str:
+        return problem(reader, chosen[index % len(chosen)], f"for minutes {index}", tmp_path)
+
+    try_many(kind, one, readers, SECONDS / (len(KINDS) + 1))
 
 
 @pytest.mark.fuzz
 def test_odd_arguments_of_the_python_interface_raise_errors_with_a_code_for_minutes(
-    reader: Reader, tmp_path: Path
+    readers: list[Reader], tmp_path: Path
 ) -> None:
-    def one(index: int) -> str:
+    def one(reader: Reader, index: int) -> str:
         files = {**WORLD_FILES, "calls.txt": f"{SEED} {index}".encode()}
         answer = reader.read("calls.txt", files, f"calls {index}", ("*calls", "calls.txt"))
         return "" if answer["outcome"] in FINE else complaint("calls.txt", files, answer, tmp_path)
 
-    try_many("calls", one)
-
-
-def try_many(kind: str, one: Callable[[int], str]) -> None:
-    """Try the inputs of a kind for its share of the time, at most MOST; print the number and each find at once."""
-    until, index, found = time.monotonic() + SECONDS / (len(KINDS) + 1), 0, []
-    while index < MOST and time.monotonic() < until:
-        if text := one(index):
-            found.append(text)
-            print(f"\n{kind} {index}: {text}", flush=True)  # noqa: T201 -- read with -s
-        index += 1
-    print(f"\n{kind}: {index} inputs, {len(found)} finds", flush=True)  # noqa: T201 -- read with -s
-    assert not found, f"{len(found)} of {index}\n" + "\n".join(found[:20])
+    try_many("calls", one, readers, SECONDS / (len(KINDS) + 1))

@@ -1,0 +1,35 @@
+"""Ctrl-C and SIGTERM in the first milliseconds of a command, before its own handler of signals is imported.
+
+Without this module, Ctrl-C would print a traceback of simkit's first files. While Python itself starts, a signal still
+ends the process in Python's way: without a message, or with a traceback of Python's own files.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+
+TYPE_CHECKING = False  # `typing` takes 3 ms
+if TYPE_CHECKING:
+    from typing import NoReturn
+
+
+def install_in_command() -> None:
+    """Handle both signals if this process is the command `simkit`, not another program that imports simkit."""
+    if not _is_command():
+        return
+    for number in (signal.SIGINT, signal.SIGTERM):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _end)
+
+
+def _is_command() -> bool:
+    """Check for `python -m simkit …` and `simkit …`; a process that `multiprocessing` starts has other arguments."""
+    given = sys.orig_argv[1:3]
+    return given == ["-m", "simkit"] or os.path.basename("".join(given[:1])) in ("simkit", "simkit.exe")  # noqa: PTH119
+
+
+def _end(number: int, _frame: object) -> NoReturn:
+    os.write(2, b"interrupted\n")
+    os._exit(128 + number)
