@@ -21,10 +21,10 @@ from simkit.loaders.resources.bundled_models import builtin_model
 from simkit.loaders.resources.fuel_cache import TIP, FuelUrl
 from simkit.loaders.resources.uris import leaves_folder
 from simkit.loaders.resources.xml_reader import parse_file
-from simkit.writers import zip_checks
 from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
 from simkit.writers.fuel.download import DownloadError
 from simkit.writers.vendored_folder import file_elements, replace_uris
+from simkit.writers.zip_archive import RefusedArchiveError, open_archive
 
 BAD_ARCHIVE = "SK-FETCH-004"
 STAGE = ".simkit-fetch"
@@ -87,7 +87,7 @@ def store(file: BufferedRandom, record: Record, url: FuelUrl, cache: Path, most:
     try:
         new = stage / "new"
         new.mkdir()
-        _unpack(file, new, record.size, most)
+        _unpack(file, new, most)
         _resolve_model_uris(new, url)
         content = {"sha256": record.sha256, "size": record.size, "content": _content_hash(new)}
         (new / _RECORD).write_text(json.dumps(content) + "\n", encoding="utf-8")
@@ -122,25 +122,18 @@ def _content_hash(folder: Path) -> str:
     return digest.hexdigest()
 
 
-def _unpack(file: BufferedRandom, folder: Path, size: int, most: int) -> None:
+def _unpack(file: BufferedRandom, folder: Path, most: int) -> None:
     """Write the files of an archive below a folder, after all names and sizes are checked."""
-    problem, is_large = zip_checks.index_fault(file)
-    if problem:
-        raise _bad_archive(f"it {'has' if is_large else 'is'} {problem}")
     try:
-        with zipfile.ZipFile(file) as archive:
-            infos = [info for info in archive.infolist() if not info.is_dir()]
-            folders = [info.filename.rstrip("/") for info in archive.infolist() if info.is_dir()]
-            bad = next((f"the folder {n!r:.80} {fault}" for n in folders if (fault := zip_checks.name_fault(n))), "")
-            if problem := zip_checks.size_fault(archive.infolist(), size, most):
-                raise _bad_archive(f"it {problem}")
-            if problem := bad or zip_checks.files_fault(infos):
-                raise _bad_archive(problem)
-            for info in infos:
-                target = folder.joinpath(*PurePosixPath(info.filename).parts)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                with archive.open(info) as source, target.open("xb") as output:
-                    shutil.copyfileobj(source, output, _CHUNK)
+        with open_archive(file, most) as archive:
+            for info in archive.infolist():
+                if not info.is_dir():
+                    target = folder.joinpath(*PurePosixPath(info.filename).parts)
+                    target.parent.mkdir(parents=True, exist_ok=True)
+                    with archive.open(info) as source, target.open("xb") as output:
+                        shutil.copyfileobj(source, output, _CHUNK)
+    except RefusedArchiveError as error:
+        raise _bad_archive(str(error) if error.kind == "name" else f"it {error}") from None
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError) as error:
         raise _bad_archive(f"it is damaged: {error}") from None
 
