@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import shutil
+import time
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -21,8 +23,9 @@ from simkit.loaders.resources.bundled_models import builtin_model
 from simkit.loaders.resources.fuel_cache import TIP, FuelUrl
 from simkit.loaders.resources.uris import leaves_folder
 from simkit.loaders.resources.xml_reader import parse_file
+from simkit.output_file import open_regular
 from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
-from simkit.writers.fuel.download import DownloadError
+from simkit.writers.fuel.download import NETWORK, DownloadError
 from simkit.writers.vendored_folder import file_elements, replace_uris
 from simkit.writers.zip_archive import RefusedArchiveError, open_archive
 
@@ -30,6 +33,7 @@ BAD_ARCHIVE = "SK-FETCH-004"
 STAGE = ".simkit-fetch"
 _RECORD = ".simkit-fetch.json"
 _CHUNK = 1 << 20  # [bytes]
+_LOCK_INTERVAL = 0.05  # [s] between two attempts to lock a file
 
 
 @dataclass(frozen=True)
@@ -41,23 +45,38 @@ class Record:
 
 
 @contextmanager
-def exclusive_file(path: Path) -> Iterator[BufferedRandom]:
-    """Open a file for reading and appending, when no other process or thread has it open this way."""
+def exclusive_file(path: Path, end: float = math.inf) -> Iterator[BufferedRandom]:
+    """Open a file for reading and appending, when no other process or thread has it open this way.
+
+    Args:
+        path: file, which is created.
+        end: time of `time.monotonic` at which the wait for the other process ends.
+
+    Raises:
+        DownloadError: SK-FETCH-006 the other process does not end in time.
+        OSError: the file cannot be written.
+    """
     while True:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("a+b") as file:
-            _wait_for_lock(file)
+        with open_regular(path) as file:
+            _wait_for_lock(file, end)
             if file_lock.is_same_file(file.fileno(), path):  # else another process has removed it
                 yield file
                 return
 
 
-def _wait_for_lock(file: BufferedRandom) -> None:
+def _wait_for_lock(file: BufferedRandom, end: float) -> None:
     """Lock a file until it is closed. Some file systems have no such lock."""
     with suppress(OSError):
-        if not file_lock.try_lock(file.fileno()):
-            with progress.task("waiting for another simkit fetch"):
-                file_lock.wait_for_lock(file.fileno())
+        if file_lock.try_lock(file.fileno()):
+            return
+        with progress.task("waiting for another simkit fetch"):
+            while time.monotonic() < end:
+                if file_lock.try_lock(file.fileno()):
+                    return
+                time.sleep(_LOCK_INTERVAL)
+        message = "another simkit fetch downloads it and has not ended in time (--max-time)"
+        raise DownloadError(NETWORK, message, "end the other one, or wait for its end")
 
 
 def archive_record(file: BufferedRandom) -> Record:
