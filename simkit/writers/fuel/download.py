@@ -8,7 +8,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Mapping
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from http.client import HTTPException, HTTPMessage
 from io import BufferedRandom
@@ -88,9 +88,16 @@ class Connection:
         self.check(address)
         agent = {"User-Agent": f"simkit/{__version__}", "Accept-Encoding": "identity"}
         limits = RequestLimits(self.timeout, self.end)
+        with ExitStack() as failure:
+            failure.callback(limits.close)
+            response = self._send(address, {**agent, **headers}, limits)
+            failure.pop_all()
+        limits.begin_content()
+        return response
+
+    def _send(self, address: str, headers: Mapping[str, str], limits: RequestLimits) -> Any:
         try:
-            request = Request(address, headers={**agent, **headers})
-            response = _opener(address, limits).open(request)
+            return _opener(address, limits).open(Request(address, headers=dict(headers)))
         except HTTPError as error:
             error.close()
             if error.code in (408, 416, 425, 429) or error.code >= 500:
@@ -101,8 +108,6 @@ class Connection:
             raise DownloadError(MISSING, text, "check the owner, the name and the version in the URL") from None
         except (OSError, HTTPException, ValueError) as error:  # a ValueError means an invalid address in a redirect
             raise _NoAnswerError(error) from None
-        limits.begin_content()
-        return response
 
 
 class _SameServer(HTTPRedirectHandler):

@@ -33,6 +33,21 @@ class RequestLimits:
         self._deadline = time.monotonic() + timeout
         self._received = 0  # [bytes] of the headers, then of a step of the content
         self._is_content = False
+        self._sockets: list[socket.socket] = []
+
+    def close(self) -> None:
+        """Close the connections of a request that failed.
+
+        `urllib` leaves some of them to the garbage collector, with readers that would keep a closed one open.
+        """
+        for connection in self._sockets:
+            handle = connection.detach()
+            if handle >= 0:
+                socket.close(handle)
+
+    def keep(self, connection: socket.socket) -> None:
+        """Note a connection for `close`."""
+        self._sockets.append(connection)
 
     def begin_content(self) -> None:
         """Note that the headers are complete."""
@@ -81,12 +96,12 @@ class RequestLimits:
         for family, kind, protocol, _name, place in self._look_up(*address):
             connection = _TimedSocket(family, kind, protocol)
             connection.limits = self
+            self.keep(connection)
             try:
                 connection.settimeout(self.time_left())
                 connection.connect(place)
                 connection.settimeout(self.time_left())
             except TimeoutError:
-                connection.close()
                 raise self.expired() from None
             except OSError as error:
                 connection.close()
@@ -163,6 +178,7 @@ class _TimedTlsConnection(HTTPSConnection):
             raise self._limits.expired() from None
         connection: Any = self.sock
         connection.limits = self._limits
+        self._limits.keep(connection)
 
 
 class _TimedHandler(HTTPHandler):
