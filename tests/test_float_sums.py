@@ -59,7 +59,7 @@ INTEGERS = {
         "testing/golden/record_encoding.py",
         "array.size for _, table in fields.tables.values() for array in table.values()",
     ): "numbers",
-    ("writers/zip_checks.py", "sizes"): "bytes",
+    ("writers/zip_archive.py", "sizes"): "bytes",
 }
 """File and argument of each other `sum` of integers or booleans, with what it counts."""
 

@@ -30,7 +30,12 @@ def fetch(
     ] = None,
     max_size: Annotated[float, option("Largest archive in MB.", "MB", "--max-size", min=0)] = 2000.0,
     max_total: Annotated[float, option("Largest sum of all archives in MB.", "MB", "--max-total", min=0)] = 10000.0,
-    timeout: Annotated[float, option("Longest time without data in seconds.", "S", "--timeout", min=0.001)] = 30.0,
+    timeout: Annotated[
+        float, option("Longest time in seconds for an answer, and for each 100 kB.", "S", "--timeout", min=0.001)
+    ] = 30.0,
+    max_time: Annotated[
+        float, option("Longest time in seconds for everything.", "S", "--max-time", min=0.001)
+    ] = 21600.0,
     allow_http: Annotated[
         bool, Option("--allow-http", help="Allow servers without encryption on other computers.")
     ] = False,
@@ -48,6 +53,7 @@ def fetch(
         connection=Connection(timeout, allow_http),
         max_size=_bytes(max_size, "--max-size"),
         max_total=_bytes(max_total, "--max-total"),
+        max_time=max_time,
         update=update,
         dry_run=dry_run,
     )

@@ -11,6 +11,7 @@ from types import TracebackType
 from typing import Final
 
 from simkit.errors import InputError
+from simkit.output_file import open_special
 from simkit.process_control import has_ended
 
 _MARK: Final = ".unfinished-"
@@ -188,20 +189,29 @@ def check_writable(path: str | os.PathLike[str] | None) -> None:
         raise InputError(f"SK-CLI-016 cannot write {path}: {reason}", "SK-CLI-016")
 
 
-def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
+def write_atomically(path: str | os.PathLike[str], data: bytes, *, follow_link: bool = True) -> None:
     """Write a file completely, or keep the old one. A reader always sees the old or the new content.
 
     Missing parent folders are created. A special file (`/dev/stdout`, a pipe) is written directly.
+
+    Args:
+        path: file to write.
+        data: its content.
+        follow_link: writes the target of a symbolic link; else the file replaces the link, and a pipe too. Used where
+            the folder may come from somebody else.
 
     Raises:
         InputError: SK-CLI-016 the path is not writable.
     """
     target = Path(path)
     try:
-        if target.exists() and not target.is_file() and not target.is_dir():
-            target.write_bytes(data)
+        if follow_link and target.exists() and not target.is_file() and not target.is_dir():
+            with open_special(target) as pipe:
+                rest = memoryview(data)
+                while rest:
+                    rest = rest[pipe.write(rest) :]
             return
-        target = target.resolve() if target.is_symlink() else target
+        target = target.resolve() if follow_link and target.is_symlink() else target
         target.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
         try:

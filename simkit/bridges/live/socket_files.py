@@ -23,6 +23,7 @@ from simkit import file_lock
 from simkit.bridges.live import loopback_socket, unix_socket
 from simkit.bridges.live.loopback_socket import LoopbackListener
 from simkit.bridges.live.unix_socket import UnixListener
+from simkit.output_file import open_regular
 
 KIND_VARIABLE: Final = "SIMKIT_LOCAL_SOCKETS"
 SUFFIXES: Final = (unix_socket.SUFFIX, loopback_socket.SUFFIX)
@@ -132,16 +133,13 @@ def _bind_in(folder: Path, requested: str, suffix: str) -> tuple[Listener, str, 
 @contextmanager
 def _lock_folder(folder: Path) -> Iterator[None]:
     """Lock the folder, so that two simulations that start at the same time do not choose the same name."""
-    handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0), 0o600)
-    try:
+    with open_regular(folder / ".lock", 0o600) as file:
         end = time.monotonic() + _LOCK_TIMEOUT
-        while not file_lock.try_lock(handle):
+        while not file_lock.try_lock(file.fileno()):
             if time.monotonic() >= end:
                 raise OSError("another simulation holds its lock and does not finish starting")
             time.sleep(0.01)
         yield
-    finally:
-        os.close(handle)
 
 
 def is_living(path: Path) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Final
 
 from simkit import file_lock
 from simkit.errors import InputError
+from simkit.output_file import open_regular
 
 _LOCKS: Final = "locks"
 
@@ -20,8 +22,11 @@ def make_folder(folder: Path) -> None:
         InputError: SK-CLI-016 the folder cannot be written to.
     """
     try:
+        for name in (_LOCKS, "rows", "timings"):  # a link in the folder would lead the rows to another folder
+            if (folder / name).is_symlink():
+                raise OSError(errno.ELOOP, "it is a symbolic link", str(folder / name))
         (folder / _LOCKS).mkdir(parents=True, exist_ok=True)
-        (folder / _LOCKS / "folder.lock").touch()
+        open_regular(folder / _LOCKS / "folder.lock").close()
     except OSError as error:
         raise _not_writable(folder, error) from None
 
@@ -40,7 +45,7 @@ def locked_blocks(folder: Path, blocks: Sequence[int]) -> Iterator[None]:
     with ExitStack() as files:
         for block in blocks:
             try:
-                file = files.enter_context((folder / _LOCKS / f"{block:06d}.lock").open("ab"))
+                file = files.enter_context(open_regular(folder / _LOCKS / f"{block:06d}.lock"))
                 is_free = file_lock.try_lock(file.fileno())
             except OSError as error:
                 raise _not_writable(folder, error) from None
@@ -50,4 +55,5 @@ def locked_blocks(folder: Path, blocks: Sequence[int]) -> Iterator[None]:
 
 
 def _not_writable(folder: Path, error: OSError) -> InputError:
-    return InputError(f"SK-CLI-016 cannot write to {folder}: {error.strerror or error}", "SK-CLI-016")
+    place = error.filename or folder
+    return InputError(f"SK-CLI-016 cannot write to {place}: {error.strerror or error}", "SK-CLI-016")

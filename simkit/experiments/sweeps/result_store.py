@@ -15,11 +15,13 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import suppress
+from io import RawIOBase
 from pathlib import Path
-from typing import IO, Any, Final
+from typing import Any, Final
 
 from simkit.errors import InputError
 from simkit.input_file import read_failure, read_input, read_input_text
+from simkit.output_file import open_regular
 from simkit.run_spec import JsonObject
 from simkit.writers.atomic_output import write_atomically
 
@@ -53,7 +55,7 @@ class ResultStore:
         self.folder = folder
         self.count, self.size = 0, 1
         self.description: JsonObject = {}
-        self._logs: dict[int, tuple[IO[bytes], IO[bytes]]] = {}
+        self._logs: dict[int, tuple[RawIOBase, RawIOBase]] = {}
         self._open_rows: dict[int, set[int]] = {}
 
     # ------------------------------------------------------------------ begin
@@ -99,7 +101,7 @@ class ResultStore:
         self.count = count
         self.size = int(self.description.get("block", block_size(count)))
         content = {"format": _FORMAT, "fingerprint": fingerprint, "count": count, "block": self.size, **description}
-        write_atomically(path, (json.dumps(content, indent=1) + "\n").encode())
+        write_atomically(path, (json.dumps(content, indent=1) + "\n").encode(), follow_link=False)
         self.description = content
 
     # ------------------------------------------------------------------ rows
@@ -188,7 +190,7 @@ class ResultStore:
                 return set(found)
         return found
 
-    def _log(self, block: int) -> tuple[IO[bytes], IO[bytes]]:
+    def _log(self, block: int) -> tuple[RawIOBase, RawIOBase]:
         logs = self._logs.get(block)
         if logs is None:
             (self.folder / "rows").mkdir(parents=True, exist_ok=True)
@@ -196,11 +198,11 @@ class ResultStore:
             rows = self._path(block, "log")
             ordered = self._path(block, "rows")
             if ordered.exists() and not rows.exists():  # the sweep has more runs than when the block was completed
-                write_atomically(rows, _content(ordered))
+                write_atomically(rows, _content(ordered), follow_link=False)
             timings = self.folder / "timings" / f"{block:06d}.log"
             _repair(timings)
             # without a buffer: a line reaches the system with its call, and a kill of this process cannot lose it
-            logs = self._logs[block] = (rows.open("ab", buffering=0), timings.open("ab", buffering=0))
+            logs = self._logs[block] = (_open_log(rows), _open_log(timings))
             with suppress(OSError):
                 os.fsync(logs[0].fileno())
         return logs
@@ -212,7 +214,8 @@ class ResultStore:
         log_path = self._path(block, "log")
         if log_path.exists():
             found = {row["run"]: line for line in _whole_lines(log_path) if (row := _row_of(line)) is not None}
-            write_atomically(self._path(block, "rows"), b"".join(found[run] + b"\n" for run in sorted(found)))
+            content = b"".join(found[run] + b"\n" for run in sorted(found))
+            write_atomically(self._path(block, "rows"), content, follow_link=False)
             log_path.unlink(missing_ok=True)
         self._open_rows.pop(block, None)
 
@@ -225,6 +228,10 @@ def _content(path: Path) -> bytes:
         return b""
     except (OSError, ValueError) as error:
         raise InputError(f"{NO_SWEEP} {path} cannot be read: {read_failure(error)}", NO_SWEEP) from None
+
+
+def _open_log(path: Path) -> RawIOBase:
+    return open_regular(path).detach()
 
 
 def _whole_lines(path: Path) -> list[bytes]:
@@ -247,4 +254,4 @@ def _repair(path: Path) -> None:
     content = _content(path)
     whole = b"".join(line + b"\n" for line in _whole_lines(path) if _row_of(line) is not None)
     if whole != content:
-        write_atomically(path, whole)
+        write_atomically(path, whole, follow_link=False)

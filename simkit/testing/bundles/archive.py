@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import struct
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator
@@ -16,11 +15,11 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
 from simkit.errors import InputError
-from simkit.input_file import open_input
+from simkit.input_file import open_input, read_failure
 from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject
 from simkit.testing.bundles.manifest import BAG, BROKEN, COMMANDS, PAGE, Manifest, read_manifest
-from simkit.writers import zip_checks
-from simkit.writers.zip_checks import MAX_FILES
+from simkit.writers import zip_archive
+from simkit.writers.zip_archive import RefusedArchiveError, open_archive
 
 MAX_BYTES: Final = 2 << 30
 _MAX_PAGE_BYTES: Final = 64 << 20  # limit for bundle.json
@@ -31,7 +30,7 @@ _BAD_NAME, _TOO_LARGE = "SK-BUNDLE-003", "SK-BUNDLE-004"
 
 def name_fault(name: str) -> str:
     """Return the reason why a bundle must not contain a file of this name; empty if the name is allowed."""
-    problem = zip_checks.name_fault(name)
+    problem = zip_archive.name_fault(name)
     if problem:
         return problem
     parts = name.split("/")
@@ -54,17 +53,16 @@ class Bundle:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
-        _check_index(self.path)
         try:
-            self._zip = zipfile.ZipFile(self.path)
-        except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, struct.error) as error:
-            raise self._broken(str(error)) from None
+            self._file = open_input(self.path)
+        except (OSError, ValueError) as error:  # a ValueError means that the path contains a null character
+            raise InputError(f"{BROKEN} cannot read {self.path}: {read_failure(error)}", BROKEN) from None
         try:
-            self._check_files()
+            self._zip = self._open_zip()
             self.manifest: Manifest = read_manifest(self._whole(PAGE, _MAX_PAGE_BYTES), str(self.path))
             self._check_manifest()
         except BaseException:
-            self._zip.close()
+            self._file.close()
             raise
 
     def __enter__(self) -> Bundle:
@@ -76,6 +74,7 @@ class Bundle:
     def close(self) -> None:
         """Close the archive."""
         self._zip.close()
+        self._file.close()
 
     @property
     def brings_code(self) -> bool:
@@ -127,12 +126,15 @@ class Bundle:
 
     # ------------------------------------------------------------------ validation
 
-    def _check_files(self) -> None:
-        infos = self._zip.infolist()
-        if problem := zip_checks.size_fault(infos, self.path.stat().st_size, MAX_BYTES):
-            raise self._too_large(problem)
-        if problem := zip_checks.files_fault(infos, name_fault):
-            raise InputError(f"{_BAD_NAME} {self.path}: {problem}", _BAD_NAME)
+    def _open_zip(self) -> zipfile.ZipFile:
+        try:
+            return open_archive(self._file, MAX_BYTES, name_fault)
+        except RefusedArchiveError as error:
+            if error.kind == "damaged":
+                raise InputError(f"{BROKEN} {self.path} is not a simkit bundle: it {error}", BROKEN) from None
+            if error.kind == "large":
+                raise self._too_large(str(error)) from None
+            raise InputError(f"{_BAD_NAME} {self.path}: {error}", _BAD_NAME) from None
 
     def _check_manifest(self) -> None:
         manifest, there = self.manifest, {info.filename for info in self._zip.infolist()} - {PAGE}
@@ -222,21 +224,3 @@ def open_bundle(path: str | os.PathLike[str]) -> Bundle:
         InputError: SK-BUNDLE-001 to SK-BUNDLE-004, see `Bundle`.
     """
     return Bundle(path)
-
-
-def _check_index(path: Path) -> None:
-    """Check the size of the ZIP archive's list of files before the list is read.
-
-    Raises:
-        InputError: SK-BUNDLE-001 or SK-BUNDLE-004.
-    """
-    try:
-        with open_input(path) as file:
-            problem, is_large = zip_checks.index_fault(file)
-    except (OSError, ValueError) as error:  # a ValueError means that the path contains a null character
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{BROKEN} cannot read {path}: {reason}", BROKEN) from None
-    if is_large:
-        raise InputError(f"{_TOO_LARGE} {path} has more files than a bundle may have ({MAX_FILES})", _TOO_LARGE)
-    if problem:
-        raise InputError(f"{BROKEN} {path} is not a simkit bundle ({problem})", BROKEN)

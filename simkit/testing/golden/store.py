@@ -21,6 +21,7 @@ from simkit.diagnostic_record import Where
 from simkit.errors import InputError
 from simkit.input_file import read_input, read_input_text
 from simkit.install_command import install_command
+from simkit.output_file import open_regular
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
 from simkit.testing.golden.record_encoding import decode_record, decode_scenario, encode_record, encode_scenario
@@ -257,7 +258,7 @@ def _locked_file(path: Path) -> Iterator[None]:
     """Lock a file, and remove it at the end unless another process waits for it."""
     is_locked = False
     while not is_locked:
-        with path.open("ab") as file:
+        with open_regular(path) as file:
             with suppress(OSError):
                 file_lock.wait_for_lock(file.fileno())
             is_locked = file_lock.is_same_file(file.fileno(), path)  # else another process has removed it

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import shutil
+import time
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -21,16 +23,18 @@ from simkit.loaders.resources.bundled_models import builtin_model
 from simkit.loaders.resources.fuel_cache import TIP, FuelUrl
 from simkit.loaders.resources.uris import split_rest
 from simkit.loaders.resources.xml_reader import parse_file
+from simkit.output_file import open_regular
 from simkit.trusted_folders import OutsideError, join_below
-from simkit.writers import zip_checks
 from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
-from simkit.writers.fuel.download import DownloadError
+from simkit.writers.fuel.download import NETWORK, DownloadError
 from simkit.writers.vendored_folder import file_elements, replace_uris
+from simkit.writers.zip_archive import RefusedArchiveError, open_archive
 
 BAD_ARCHIVE = "SK-FETCH-004"
 STAGE = ".simkit-fetch"
 _RECORD = ".simkit-fetch.json"
 _CHUNK = 1 << 20  # [bytes]
+_LOCK_INTERVAL = 0.05  # [s] between two attempts to lock a file
 
 
 @dataclass(frozen=True)
@@ -42,23 +46,38 @@ class Record:
 
 
 @contextmanager
-def exclusive_file(path: Path) -> Iterator[BufferedRandom]:
-    """Open a file for reading and appending, when no other process or thread has it open this way."""
+def exclusive_file(path: Path, end: float = math.inf) -> Iterator[BufferedRandom]:
+    """Open a file for reading and appending, when no other process or thread has it open this way.
+
+    Args:
+        path: file, which is created.
+        end: time of `time.monotonic` at which the wait for the other process ends.
+
+    Raises:
+        DownloadError: SK-FETCH-006 the other process does not end in time.
+        OSError: the file cannot be written.
+    """
     while True:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("a+b") as file:
-            _wait_for_lock(file)
+        with open_regular(path) as file:
+            _wait_for_lock(file, end)
             if file_lock.is_same_file(file.fileno(), path):  # else another process has removed it
                 yield file
                 return
 
 
-def _wait_for_lock(file: BufferedRandom) -> None:
+def _wait_for_lock(file: BufferedRandom, end: float) -> None:
     """Lock a file until it is closed. Some file systems have no such lock."""
     with suppress(OSError):
-        if not file_lock.try_lock(file.fileno()):
-            with progress.task("waiting for another simkit fetch"):
-                file_lock.wait_for_lock(file.fileno())
+        if file_lock.try_lock(file.fileno()):
+            return
+        with progress.task("waiting for another simkit fetch"):
+            while time.monotonic() < end:
+                if file_lock.try_lock(file.fileno()):
+                    return
+                time.sleep(_LOCK_INTERVAL)
+        message = "another simkit fetch downloads it and has not ended in time (--max-time)"
+        raise DownloadError(NETWORK, message, "end the other one, or wait for its end")
 
 
 def archive_record(file: BufferedRandom) -> Record:
@@ -88,7 +107,7 @@ def store(file: BufferedRandom, record: Record, url: FuelUrl, cache: Path, most:
     try:
         new = stage / "new"
         new.mkdir()
-        _unpack(file, new, record.size, most)
+        _unpack(file, new, most)
         _resolve_model_uris(new, url)
         content = {"sha256": record.sha256, "size": record.size, "content": _content_hash(new)}
         (new / _RECORD).write_text(json.dumps(content) + "\n", encoding="utf-8")
@@ -123,25 +142,18 @@ def _content_hash(folder: Path) -> str:
     return digest.hexdigest()
 
 
-def _unpack(file: BufferedRandom, folder: Path, size: int, most: int) -> None:
+def _unpack(file: BufferedRandom, folder: Path, most: int) -> None:
     """Write the files of an archive below a folder, after all names and sizes are checked."""
-    problem, is_large = zip_checks.index_fault(file)
-    if problem:
-        raise _bad_archive(f"it {'has' if is_large else 'is'} {problem}")
     try:
-        with zipfile.ZipFile(file) as archive:
-            infos = [info for info in archive.infolist() if not info.is_dir()]
-            folders = [info.filename.rstrip("/") for info in archive.infolist() if info.is_dir()]
-            bad = next((f"the folder {n!r:.80} {fault}" for n in folders if (fault := zip_checks.name_fault(n))), "")
-            if problem := zip_checks.size_fault(archive.infolist(), size, most):
-                raise _bad_archive(f"it {problem}")
-            if problem := bad or zip_checks.files_fault(infos):
-                raise _bad_archive(problem)
-            for info in infos:
-                target = folder.joinpath(*PurePosixPath(info.filename).parts)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                with archive.open(info) as source, target.open("xb") as output:
-                    shutil.copyfileobj(source, output, _CHUNK)
+        with open_archive(file, most) as archive:
+            for info in archive.infolist():
+                if not info.is_dir():
+                    target = folder.joinpath(*PurePosixPath(info.filename).parts)
+                    target.parent.mkdir(parents=True, exist_ok=True)
+                    with archive.open(info) as source, target.open("xb") as output:
+                        shutil.copyfileobj(source, output, _CHUNK)
+    except RefusedArchiveError as error:
+        raise _bad_archive(str(error) if error.kind == "name" else f"it {error}") from None
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError) as error:
         raise _bad_archive(f"it is damaged: {error}") from None
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import ipaddress
 import json
+import math
 import os
 import re
-import time
 from collections.abc import Callable, Mapping
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from http.client import HTTPException, HTTPMessage
 from io import BufferedRandom
@@ -21,11 +21,12 @@ from urllib.request import HTTPRedirectHandler, OpenerDirector, ProxyHandler, Re
 from simkit.input_file import read_input_text
 from simkit.progress import Task
 from simkit.version import __version__
+from simkit.writers.fuel.timed_request import RequestLimits, timed_handlers
 
 MISSING, REFUSED, TOO_LARGE, NETWORK = "SK-FETCH-001", "SK-FETCH-002", "SK-FETCH-003", "SK-FETCH-006"
 _CHUNK = 1 << 16  # [bytes]
-_LEAST = 1024  # [bytes] that a server must send within the time limit
 _MOST_ATTEMPTS = 10
+_MOST_VALIDATOR = 1000  # characters
 _VERSION_HEADERS = ("X-Ign-Resource-Version", "X-Gz-Resource-Version")
 _RANGE = re.compile(r"bytes (\d{1,18})-\d{1,18}/(\d{1,18})")
 
@@ -36,7 +37,7 @@ class DownloadError(Exception):
     Attributes:
         code: code of the diagnostic.
         hint: remedy.
-        is_unreachable: true if the server gave no answer at all.
+        is_unreachable: true if the server gave no answer, or no complete one in time.
     """
 
     def __init__(self, code: str, message: str, hint: str = "", *, is_unreachable: bool = False) -> None:
@@ -57,12 +58,14 @@ class Connection:
     """Rules for connections to servers.
 
     Attributes:
-        timeout: longest time without data [s].
+        timeout: longest time [s] until the headers of an answer are complete, and then for each 100 kB of content.
         allow_http: allows connections without encryption to other computers.
+        end: time of `time.monotonic` at which all requests end.
     """
 
     timeout: float = 30.0
     allow_http: bool = False
+    end: float = math.inf
 
     def check(self, address: str) -> None:
         """Check that a server may be used.
@@ -84,9 +87,17 @@ class Connection:
         """
         self.check(address)
         agent = {"User-Agent": f"simkit/{__version__}", "Accept-Encoding": "identity"}
-        request = Request(address, headers={**agent, **headers})
+        limits = RequestLimits(self.timeout, self.end)
+        with ExitStack() as failure:
+            failure.callback(limits.close)
+            response = self._send(address, {**agent, **headers}, limits)
+            failure.pop_all()
+        limits.begin_content()
+        return response
+
+    def _send(self, address: str, headers: Mapping[str, str], limits: RequestLimits) -> Any:
         try:
-            return _opener(address).open(request, timeout=self.timeout)
+            return _opener(address, limits).open(Request(address, headers=dict(headers)))
         except HTTPError as error:
             error.close()
             if error.code in (408, 416, 425, 429) or error.code >= 500:
@@ -95,7 +106,7 @@ class Connection:
             reason = {404: "does not have it", 410: "does not have it any more", 401: "does not give it without login"}
             text = f"{server} {reason.get(error.code, 'does not give it')} (HTTP {error.code})"
             raise DownloadError(MISSING, text, "check the owner, the name and the version in the URL") from None
-        except (OSError, HTTPException) as error:
+        except (OSError, HTTPException, ValueError) as error:  # a ValueError means an invalid address in a redirect
             raise _NoAnswerError(error) from None
 
 
@@ -119,10 +130,10 @@ def is_loopback(host: str) -> bool:
         return False
 
 
-def _opener(address: str) -> OpenerDirector:
+def _opener(address: str, limits: RequestLimits) -> OpenerDirector:
     """Return an opener; a proxy of the environment is used, except for servers on this computer."""
     direct = [ProxyHandler({})] if is_loopback(urlsplit(address).hostname or "") else []
-    return build_opener(_SameServer, *direct)
+    return build_opener(_SameServer, *timed_handlers(limits), *direct)
 
 
 def remote_size(address: str, connection: Connection) -> tuple[int | None, int | None]:
@@ -174,17 +185,19 @@ class Download:
         Raises:
             DownloadError: the file cannot be downloaded.
         """
-        for attempt in range(_MOST_ATTEMPTS):
+        attempts, has_restarted = 0, False
+        while True:
+            attempts += 1
             before = self.file.seek(0, os.SEEK_END)
             try:
                 return self._receive(before)
             except (OSError, HTTPException) as error:
                 size = self.file.seek(0, os.SEEK_END)
-                if isinstance(error, HTTPError) and error.code == 416 and before:
+                if isinstance(error, HTTPError) and error.code == 416 and before and not has_restarted:
                     self.file.truncate(0)  # the beginning does not belong to the file that the server has now
-                elif size <= before or attempt == _MOST_ATTEMPTS - 1:
+                    has_restarted = True
+                elif size <= before or attempts == _MOST_ATTEMPTS or isinstance(error, TimeoutError):
                     raise _network_error(self.address, error, f" after {size} bytes" if size else "") from None
-        raise AssertionError
 
     def _receive(self, at: int) -> tuple[int | None, bool]:
         """Request the part of the file that is not there yet, and append it."""
@@ -194,16 +207,20 @@ class Download:
             headers["If-Range"] = str(notes["validator"])
         with self.connection.open(self.address, headers) as response:
             version, length = _version(response.headers), _length(response.headers)
+            total = None if length is None else at + length
             if response.status == 206:
                 found = _RANGE.fullmatch(response.headers.get("Content-Range", ""))
-                if at and (not found or int(found[1]) != at or notes.get("version") != version):
+                if not at:
+                    raise ConnectionError("the server sends a part of the file instead of the whole file")
+                here = {"version": version, "validator": _validator(response.headers) or notes.get("validator")}
+                if not found or int(found[1]) != at or total not in (None, int(found[2])) or here != notes:
                     self.file.truncate(0)
                     return self._receive(0)
+                total = int(found[2])
             else:
                 self.file.truncate(0)
-                at = 0
+                at, total = 0, length
                 self._write_notes(version, response.headers)
-            total = None if length is None else at + length
             self._check_size(total or at)
             if not self._is_needed(version):
                 return version, False
@@ -212,17 +229,11 @@ class Download:
         return version, True
 
     def _append(self, response: Any, at: int, total: int | None) -> None:
-        window, received = time.monotonic(), 0
         while piece := response.read1(_CHUNK):
             self.file.write(piece)
-            at, received = at + len(piece), received + len(piece)
+            at += len(piece)
             self._check_size(at)
             self._task.done = at / 1e6
-            now = time.monotonic()
-            if now - window > self.connection.timeout:
-                if received < _LEAST:
-                    raise TimeoutError(f"only {received} bytes came in {self.connection.timeout:g} s")
-                window, received = now, 0
         self.file.flush()
         if total is not None and at != total:
             raise ConnectionError(f"the connection ended after {at} of {total} bytes")
@@ -240,9 +251,14 @@ class Download:
         return {}
 
     def _write_notes(self, version: int | None, headers: HTTPMessage) -> None:
-        tag = headers.get("ETag", "")
-        validator = tag if tag.startswith('"') else headers.get("Last-Modified", "")  # a weak tag is not allowed
-        self.notes.write_text(json.dumps({"version": version, "validator": validator}), encoding="utf-8")
+        self.notes.write_text(json.dumps({"version": version, "validator": _validator(headers)}), encoding="utf-8")
+
+
+def _validator(headers: HTTPMessage) -> str:
+    """Return the text that identifies the content of a file on the server; a weak tag does not."""
+    tag = headers.get("ETag", "")
+    text = tag if tag.startswith('"') else headers.get("Last-Modified", "")
+    return text if text.isascii() and text.isprintable() and len(text) <= _MOST_VALIDATOR else ""
 
 
 def _version(headers: HTTPMessage) -> int | None:
@@ -251,21 +267,29 @@ def _version(headers: HTTPMessage) -> int | None:
 
 
 def _length(headers: HTTPMessage) -> int | None:
+    """Return the stated size of the content [bytes]; None if the server states no size.
+
+    Raises:
+        ConnectionError: the size is not a number, or has more than 18 digits.
+    """
     text = headers.get("Content-Length", "").strip()
-    return int(text) if text.isascii() and text.isdigit() and len(text) < 19 else None
+    if text and not (text.isascii() and text.isdigit() and len(text) < 19):
+        raise ConnectionError(f"the server states the size {text!r:.40}")
+    return int(text) if text else None
 
 
 def _network_error(address: str, error: Exception, place: str) -> DownloadError:
     server = "://".join(urlsplit(address)[:2])
     if isinstance(error, HTTPError):
         return DownloadError(NETWORK, f"{server} answers with an error (HTTP {error.code})", "try again later")
-    is_unreachable = isinstance(error, _NoAnswerError)
+    has_no_answer = isinstance(error, _NoAnswerError)
     reason = error.reason if isinstance(error, _NoAnswerError) else error
     text = getattr(reason, "strerror", None) or str(reason) or type(reason).__name__
-    message = f"cannot reach {server}: {text}" if is_unreachable else f"the download broke off{place}: {text}"
+    message = f"cannot reach {server}: {text}" if has_no_answer else f"the download broke off{place}: {text}"
     hint = (
         "run the command again: it continues where it stopped"
         if place
         else "run `simkit fetch` again when the network works"
     )
+    is_unreachable = has_no_answer or isinstance(error, TimeoutError)
     return DownloadError(NETWORK, message, hint, is_unreachable=is_unreachable)

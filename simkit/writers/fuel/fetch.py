@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
@@ -57,6 +58,7 @@ class FetchOptions:
         connection: rules for connections.
         max_size: largest archive [bytes].
         max_total: largest sum of all archives of one run [bytes].
+        max_time: longest time of the whole run [s].
         update: replaces locked and cached resources by the newest versions of the server.
         dry_run: downloads and writes nothing.
     """
@@ -65,6 +67,7 @@ class FetchOptions:
     connection: Connection = field(default_factory=Connection)
     max_size: int = 2 * 10**9
     max_total: int = 10 * 10**9
+    max_time: float = 6 * 3600.0
     update: bool = False
     dry_run: bool = False
 
@@ -132,6 +135,7 @@ def fetch(
         LoadError: the source cannot be read, or SK-FETCH-007 the lock file is invalid.
         InputError: SK-CLI-016 the cache is not writable.
     """
+    options = replace(options, connection=replace(options.connection, end=time.monotonic() + options.max_time))
     report = FetchReport()
     resolver = Resolver(list(resource_paths), missing_meshes=True, package_paths=tuple(package_paths))
     search = ReferenceSearch(resolver, report.diagnostics)
@@ -266,7 +270,7 @@ class _Fetcher:
         name = hashlib.sha256(address.encode()).hexdigest()[:32]
         part, notes = self.cache / STAGE / f"{name}.part", self.cache / STAGE / f"{name}.json"
         limit = min(self.options.max_size, self._left)
-        with exclusive_file(part) as file:
+        with exclusive_file(part, self.options.connection.end) as file:
             found = None if self.options.update else self._cached(url, entry)  # from another process, meanwhile
             is_finished = True
             try:
