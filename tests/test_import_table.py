@@ -22,6 +22,7 @@ SMALL_MODULES = frozenset(
     {
         "argument_checks",
         "child_process",
+        "code_requests",
         "diagnostic_record",
         "diagnostics",
         "errors",

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer import Option
 
-from simkit.cli.run_options import load_options, scenario_spec
+from simkit.cli.run_options import load_options, read_run, scenario_spec
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report, error_diagnostics, report_errors_and_json
 from simkit.cli.terminal.options import argument, option
@@ -27,6 +27,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.errors import InputError, RegressionError
 from simkit.testing.golden.parallel_check import CheckResult
+from simkit.testing.scenarios.code_permission import without_permissions
 from simkit.testing.scenarios.readable_files import HELP
 from simkit.writers.atomic_output import check_writable
 
@@ -216,6 +217,7 @@ def record(
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
+    allow_code: options.AllowCode = False,
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
     renderer: options.Renderer = None,
@@ -224,12 +226,13 @@ def record(
 ) -> None:
     """Run a scenario and store the result as a golden run."""
     loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer)
+    source = read_run(world, folders=resource_path)
     spec = scenario_spec(
-        world, loading, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
-        model_world=model_world, cmd_vel=cmd_vel, script=script,
+        source, loading, allow_code=allow_code, duration=duration, seed=seed, topics=topic, skip=skip,
+        overrides=set_, spawn=spawn, model_world=model_world, cmd_vel=cmd_vel, script=script,
     )  # fmt: skip
-    is_changed = duration is not None or seed is not None
-    if is_changed or any((topic, skip, set_, spawn, model_world, cmd_vel, script, loading)):
+    is_changed = duration is not None or seed is not None or bool(without_permissions(source, loading))
+    if is_changed or any((topic, skip, set_, spawn, model_world, cmd_vel, script)):
         spec = replace(spec, file=None)  # the golden run itself keeps the changes to the scenario file
     found = record_golden(spec, out_, force=force)
     if found.simulation is not None:
@@ -274,6 +277,8 @@ def check(
     causes: Annotated[bool, Option("--causes/--no-causes", help="Search for the causes of differences.")] = True,
     budget: Annotated[float, option("Wall time limit of the search for each golden run.", "S", min=0)] = 60.0,
     resource_path: options.ReadableFolders = [],
+    plugin_path: options.CodePaths = [],
+    allow_code: options.AllowCode = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print only failures.")] = False,
 ) -> int:
@@ -283,7 +288,14 @@ def check(
     check_writable(html)
     check_writable(junit)
     check_options = CheckOptions(
-        bless, bless_other_renderer, causes, budget, pictures=html is not None, folders=tuple(resource_path)
+        bless,
+        bless_other_renderer,
+        causes,
+        budget,
+        html is not None,
+        allow_code,
+        tuple(plugin_path),
+        folders=tuple(resource_path),
     )
     results = check_goldens(folders, check_options, jobs)
     return report_results(results, blessed=bless is not None, html=html, junit=junit, quiet=quiet)

@@ -137,4 +137,5 @@ def grade(
     if missing:
         message = f"SK-CLI-056 {folder}: the lab needs {' and '.join(missing)}\n    help: {_remedy(missing)}"
         raise InputError(message, "SK-CLI-056")
-    return grade_files(exercises, pictures=pictures, jobs=jobs, json_=json_)
+    # grading a folder means running its file
+    return grade_files(exercises, pictures=pictures, jobs=jobs, json_=json_, allow_code=True)

@@ -94,6 +94,13 @@ PluginPaths = Annotated[
     list[Path],
     Option("--plugin-path", help="Folder of Python plugins to allow; repeatable.", metavar="DIR", exists=True),
 ]
+AllowCode = Annotated[
+    bool, Option("--allow-code", help="Run the code that the file names, with all your rights; read it first.")
+]
+CodePaths = Annotated[
+    list[Path],
+    Option("--plugin-path", help="Run only the code in this folder; repeatable.", metavar="DIR", exists=True),
+]
 ParamsFiles = Annotated[
     list[str],
     option(

@@ -68,6 +68,9 @@ def repeat_run(
     file: Path | None = None,
     bundle: Path | None = None,
     folders: Sequence[FilePath] = (),
+    *,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
 ) -> Repetition:
     """Repeat a run of a sweep in this process.
 
@@ -78,10 +81,13 @@ def repeat_run(
         bundle: bundle to write; None for none.
         folders: folders in which the results may name the sweep file and the sweep file may name files, beside their
             own folders and their projects.
+        allow_code: allow the code that the sweep file names, as in `read_sweep`.
+        plugin_paths: allow the code in these folders only.
 
     Raises:
         InputError: SK-URI-003 the folder names a file elsewhere; SK-SWEEP-003 the file describes another sweep;
-            SK-SWEEP-008 the folder has no such run, or names no file.
+            SK-SWEEP-008 the folder has no such run, or names no file; SK-SCEN-008 the file names code that is not
+            allowed.
     """
     store = ResultStore(folder)
     store.open()
@@ -97,7 +103,7 @@ def repeat_run(
         raise InputError(f"{text}\n    help: repeat it with simkit.load and the values of the row", NO_SWEEP)
     if not 0 <= number < store.count:
         raise InputError(f"{NO_SWEEP} {folder} has no run {number}; its runs are 0 to {store.count - 1}", NO_SWEEP)
-    spec = read_sweep(source, folders)
+    spec = read_sweep(source, folders, allow_code=allow_code, plugin_paths=plugin_paths)
     if spec.fingerprint() != store.description.get("fingerprint"):
         text = f"{OTHER_SWEEP} {source} describes another sweep than {folder}"
         raise InputError(f"{text}\n    help: undo the changes of the file or the world, or pass --file", OTHER_SWEEP)

@@ -75,7 +75,7 @@ class SweepSpec:
         """Return a hash of everything that decides the results, to recognise a stored sweep."""
         design = self.design
         content = {
-            "run": plain_description(self.run),
+            "run": plain_description(_with_relative_folders(self.run)),
             "world": _world_hash(self.run),
             "spaces": [[space.names, plain_description(space.description)] for space in design.spaces],
             "design": plain_description((design.seeds, design.samples, design.sampling, design.design_seed)),
@@ -164,8 +164,8 @@ def used_variables(spec: SweepSpec) -> set[str]:
 # ---------------------------------------------------------------------- description
 
 
-_PLACES: Final = ("file", "folder", "where")
-"""Fields that say where a value stands; they differ between machines and working folders."""
+_PLACES: Final = ("file", "folder", "where", "code_requests")
+"""Fields that say where a value stands, which differs between machines and working folders, or what is allowed."""
 
 
 def plain_description(value: Any, seen: dict[int, tuple[int, Any]] | None = None) -> Any:
@@ -235,6 +235,14 @@ def _code_hash(code: CodeType) -> str:
     """Return a hash of a function's code that does not depend on its file and lines."""
     inner = [_code_hash(one) if isinstance(one, CodeType) else _constant_text(one) for one in code.co_consts]
     return hashlib.sha256(repr((code.co_code, inner, code.co_names)).encode()).hexdigest()[:16]
+
+
+def _with_relative_folders(run: RunSpec) -> RunSpec:
+    """Return a run whose plugin folders start from its own folder, so that `sweep replay` finds the same sweep."""
+    if run.file is None or "plugin_paths" not in run.options:
+        return run
+    folders = [os.path.relpath(folder, run.folder) for folder in run.options["plugin_paths"]]
+    return replace(run, options=cast(LoadOptions, {**run.options, "plugin_paths": folders}))
 
 
 def _world_hash(run: RunSpec) -> str:

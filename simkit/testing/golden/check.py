@@ -29,6 +29,7 @@ from simkit.testing.golden.world_pictures import draw_worlds
 from simkit.testing.run_record.fingerprint import RENDERER
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES, run_record
+from simkit.testing.scenarios.code_permission import check_requests, permit_code
 from simkit.testing.scenarios.readable_files import OUTSIDE, ReadableFiles, Refusal, label
 from simkit.testing.scenarios.scenario_file import read_scenario
 
@@ -47,6 +48,8 @@ def check_golden(
     causes: bool = True,
     budget_s: float = CAUSE_BUDGET_SECONDS,
     pictures: bool = False,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
     folders: Sequence[FilePath] = (),
 ) -> Verdict:
     """Run the scenario of a golden run again and compare the results.
@@ -63,14 +66,17 @@ def check_golden(
         pictures: Draw the worlds of both runs if their results differ.
         folders: Folders in which the golden run may name files, beside its own folder, the folder that contains it, and
             its project.
+        allow_code: Allow the code that the golden run and its scenario name: plugin folders, or a scenario in Python.
+            The code has the same rights as the user.
+        plugin_paths: Allow the code in these folders only.
 
     Returns:
         Verdict. After a blessing, the verdict lists the differences from the previous golden run.
 
     Raises:
         InputError: SK-GOLDEN-002 to SK-GOLDEN-004 the golden run cannot be read; SK-GOLDEN-006 its scenario cannot be
-            run here; SK-GOLDEN-007 the run must not be blessed; SK-URI-003 it names a file elsewhere; or the world
-            cannot be loaded.
+            run here; SK-GOLDEN-007 the run must not be blessed; SK-SCEN-008 it needs code that is not allowed;
+            SK-URI-003 it names a file elsewhere; or the world cannot be loaded.
         RenderError: The scenario has pictures, and no renderer is available.
     """
     if bless is not None and not bless.strip():
@@ -80,7 +86,8 @@ def check_golden(
         )
     place = golden_folder(folder)
     golden = read_golden(place)
-    current_scenario = _current_scenario(place, golden, scenario, folders)
+    current_scenario = scenario or _current_scenario(place, golden, folders, allow_code, plugin_paths)
+    current_scenario = permit_code(current_scenario, allow_code, plugin_paths)
     with _recorded_environment(golden.environment), _run_today(golden, current_scenario) as (run, elapsed):
         comparison = compare(golden, run)
         verdict = Verdict(place.resolve().name, golden, run, comparison, None, run.checks, elapsed)
@@ -128,14 +135,20 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
     return InputError(f"{error}\n{text}", error.code)
 
 
-def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None, folders: Sequence[FilePath]) -> RunSpec:
+def _current_scenario(
+    place: Path,
+    golden: RunRecord,
+    folders: Sequence[FilePath],
+    allow_code: bool,
+    plugin_paths: Sequence[FilePath],
+) -> RunSpec:
     """Return the scenario to run. If the scenario has a file, read the file again, because it may have been changed."""
     stored = golden.scenario
-    if given is not None:
-        return given
     if stored.file is not None or not (stored.test or stored.plugins):
         refused_files(place, stored, folders).raise_if_errors()
     if stored.file is not None and stored.file.is_file():
+        scripts = [request for request in stored.code_requests if not request.is_folder]
+        check_requests(scripts, allow_code, plugin_paths)
         return read_scenario(stored.file, folders)
     if stored.file is not None:
         problem = f": its scenario {stored.file.resolve()} does not exist\n    help: restore the file, or record anew"

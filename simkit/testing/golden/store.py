@@ -12,10 +12,12 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Final
 
 from simkit import file_lock
+from simkit.diagnostic_record import Where
 from simkit.errors import InputError
 from simkit.input_file import read_input, read_input_text
 from simkit.install_command import install_command
@@ -23,6 +25,7 @@ from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
 from simkit.testing.golden.record_encoding import decode_record, decode_scenario, encode_record, encode_scenario
 from simkit.testing.run_record.record import RunRecord
+from simkit.testing.scenarios.code_permission import permit_code
 
 FORMAT: Final = 1
 MAIN_FILE: Final = "golden.json"
@@ -66,7 +69,7 @@ def write_golden(
     text = json.dumps(
         {
             "format": FORMAT,
-            "scenario": encode_scenario(record.scenario, place),
+            "scenario": encode_scenario(permit_code(record.scenario, allow_code=True), place),  # stored, not run
             **about,
             "data": {"file": name, "sha256": digest, "bytes": len(data)},
             "history": [*history, entry][-_MAX_HISTORY:],
@@ -99,7 +102,7 @@ def read_golden(folder: str | os.PathLike[str]) -> RunRecord:
     if hashlib.sha256(data).hexdigest() != digest:
         raise _damaged_error(place / name, f"does not have the hash that {MAIN_FILE} lists")
     try:
-        return decode_record(main, data, decode_scenario(main["scenario"], place))
+        return decode_record(main, data, decode_scenario(main["scenario"], place, partial(_where, place)))
     except PackingError as error:
         raise _damaged_error(place / name, f"is damaged: {error}") from None
     except (ValueError, TypeError, KeyError, AttributeError, IndexError, OverflowError, RecursionError) as error:
@@ -155,6 +158,13 @@ def read_main(folder: Path) -> JsonObject:
     if main["format"] < 1 or not isinstance(main.get("scenario"), dict):
         raise _damaged_error(path, "is not the file of a golden run")
     return main
+
+
+def _where(folder: Path, key: str) -> Where:
+    """Return the position of a key in `golden.json`; its first line if the key is not written plainly."""
+    text = read_input(folder / MAIN_FILE, _MAX_TEXT_BYTES)
+    before = text.partition(f'"{key}"'.encode())[0]
+    return Where(str(folder / MAIN_FILE), 1 if before == text else before.count(b"\n") + 1)
 
 
 def read_history(folder: str | os.PathLike[str]) -> list[JsonMapping]:
