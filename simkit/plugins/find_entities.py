@@ -161,11 +161,12 @@ def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Seq
             builder.files_read.append(path)
             return path
         name = uri.replace("\\", "/").rpartition("/")[2]
-        if folder is None or not name:
-            return None
-        found = next((file for place in (".", *places) if (file := folder / place / name).is_file()), None)
-        builder.files_read += [found] if found is not None else []
-        return found
+        for place in (".", *places) if folder is not None and name else ():
+            path = builder.find_file(f"{place}/{name}", folder)
+            if path is not None and path.is_file():
+                builder.files_read.append(path)
+                return path
+        return None
     except (OSError, ValueError):  # the URI is not a valid file name
         return None
 

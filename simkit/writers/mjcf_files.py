@@ -53,5 +53,5 @@ def _named_files(root: Params, bases: Iterable[Path], inside: Iterable[str], res
         elements += reversed(element.children)
     places = [base / part for base in bases for part in inside]
     for source in (absolute_path(place / name) for name in names for place in places):
-        if source.is_file() and resolver.search(str(source), places[0])[0] is not None:
+        if source.is_file() and resolver.search(str(source), places[0])[0] == source:
             yield source

@@ -123,13 +123,14 @@ class WorldCollector:
         """Collect a whole folder, such as a folder of material scripts."""
         path = absolute_path(path)
         target = self._target_path(path)
-        for source in sorted(p for p in path.rglob("*") if p.is_file() and not p.is_symlink()):
+        for source in sorted(p for p in path.rglob("*") if p.is_file() and self.resolver.allows(p)):
             self._copy(source, target / source.relative_to(path).as_posix())
         return target
 
     def _copy_licences(self, folder: Path, target: PurePosixPath) -> None:
         for source in sorted(folder.iterdir()) if folder.is_dir() else ():
-            if source.is_file() and (source.name in _COPIED_FILES or _LICENCES.match(source.name)):
+            is_copied = source.name in _COPIED_FILES or _LICENCES.match(source.name)
+            if is_copied and source.is_file() and self.resolver.allows(source):
                 self._copy(source, target / source.name)
 
     def _target_path(self, path: Path) -> PurePosixPath:

@@ -15,7 +15,9 @@ import numpy.typing as npt
 
 from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.input_file import read_input
-from simkit.loaders.resources.uris import path_of_file_uri
+from simkit.loaders.resources.project_folder import readable_folder
+from simkit.loaders.resources.uris import absolute_path, is_top_folder, path_of_file_uri, split_rest
+from simkit.trusted_folders import OutsideError, TrustedFolders, join_below, join_within
 
 if TYPE_CHECKING:
     from PIL.Image import Image as PilImage
@@ -50,8 +52,12 @@ class Companions:
     @cached_property
     def _roots(self) -> tuple[Path, Path, Path]:
         """Folder of the file's model as written, with links resolved, and the model folder of the resolved file."""
-        written = model_folder(_normal(self.file))
+        written = model_folder(absolute_path(self.file))
         return written, Path(os.path.realpath(written)), model_folder(Path(os.path.realpath(self.file)))
+
+    @cached_property
+    def _trusted(self) -> TrustedFolders:
+        return TrustedFolders(self._roots)
 
     def note(self, text: str) -> None:
         """Record a note about an omitted element; equal notes are recorded once."""
@@ -72,21 +78,28 @@ class Companions:
             self.note(f"{_short(name)} is not fetched from a network")
             return None
         spelt = dict.fromkeys((name, unquote(name)))
-        places = [*spelt, Path(name).name, f"../materials/textures/{Path(name).name}"]
-        return self._first([self.folder / place for place in places], name)
+        folder = absolute_path(self.folder)
+        places = [join_within(self._roots, folder, place) for place in spelt]
+        usual = (Path(name).name, f"../materials/textures/{Path(name).name}")
+        places += [path for place in usual if (path := join_within(self._roots, folder, place)) is not None]
+        return self._first(places, name)
 
     def _of_package(self, rest: str) -> Path | None:
-        package, _, inside = unquote(rest).partition("/")
         root = self._roots[0]
+        try:
+            package, inside = split_rest(unquote(rest))
+        except OutsideError:
+            return self._first([None], rest)
         if package != root.name:
             self.note(f"{_short(rest)} belongs to another model and is not read")
             return None
-        return self._first([root / inside], rest)
+        return self._first([join_below(root, inside)], rest)
 
-    def _first(self, places: list[Path], name: str) -> Path | None:
+    def _first(self, places: list[Path | None], name: str) -> Path | None:
+        """Return the first place that exists; None is a place outside of the model."""
         outside = False
-        for place in dict.fromkeys(_normal(p) for p in places):
-            if not self._is_inside(place):
+        for place in dict.fromkeys(places):
+            if place is None or not self._trusted.allows(place):
                 outside = True
                 continue
             try:
@@ -99,10 +112,6 @@ class Companions:
                 return place
         self.note(f"{_short(name)} is outside of the model's folder" if outside else f"{_short(name)} is not found")
         return None
-
-    def _is_inside(self, place: Path) -> bool:
-        real = Path(os.path.realpath(place))
-        return any(_holds(r, place) for r in self._roots) and any(_holds(r, real) for r in self._roots[1:])
 
     def content(self, name: str) -> bytes | None:
         """Return the content of a companion file; record a note and return None if the file cannot be read."""
@@ -132,10 +141,15 @@ class Companions:
 
 
 def model_folder(file: Path) -> Path:
-    """Return the folder of the outermost model or package of a file, else the parent of the file's folder."""
-    found = file.parent.parent if len(file.parent.parts) > 2 else file.parent
+    """Return the folder of the outermost model or package of a file.
+
+    Without a manifest, it is the parent of the file's folder, if the parent is in the same project or looks like a
+    model; else the file's folder.
+    """
+    above = file.parent.parent
+    found = above if above.is_relative_to(readable_folder(file.parent)) else file.parent
     for ancestor in (file.parent, *list(file.parents)[1:6]):
-        if any((ancestor / name).is_file() for name in _MANIFESTS):
+        if any((ancestor / name).is_file() for name in _MANIFESTS) and not is_top_folder(ancestor):
             found = ancestor
     return found
 
@@ -174,14 +188,6 @@ def _rgb(image: PilImage) -> Pixels:
     image = image.convert("RGB")
     image.thumbnail((LARGEST_TEXTURE, LARGEST_TEXTURE))
     return np.asarray(image, np.uint8)
-
-
-def _normal(path: Path) -> Path:
-    return Path(os.path.abspath(path))  # noqa: PTH100 - resolve() would follow links
-
-
-def _holds(folder: Path, place: Path) -> bool:
-    return place == folder or folder in place.parents
 
 
 def _short(text: str) -> str:

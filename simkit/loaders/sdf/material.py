@@ -37,7 +37,7 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
     workflow = _workflow(block)
     texture, scale = _texture(workflow, file, workspace), (1.0, 1.0)
     if texture is None and ogre is not None and ogre.texture:
-        texture, scale = find_texture(ogre, places), ogre.scale or scale
+        texture, scale = find_texture(ogre, places, workspace.resolver.allows), ogre.scale or scale
         if texture is None:
             _report_missing_texture(f"texture {ogre.texture} of material {name!r}", script, workspace)
     if name and not script_colours and ogre is None and not block.has("diffuse") and texture is None:
@@ -80,7 +80,8 @@ def _script_material(
     # Gazebo's own scripts are identified by name, in the table of gazebo_materials.py
     uris = [e.value for e in script.all("uri") if e.value and "media/materials" not in e.value]
     places = [place for uri in uris if (place := workspace.resolver.search(uri, file.folder)[0]) is not None]
-    return (find_material(name, places) if name and places else None), places
+    found = find_material(name, places, workspace.resolver.allows) if name and places else None
+    return found, places
 
 
 def _script_colours(name: str, ogre: OgreMaterial | None) -> dict[str, Colour]:
@@ -132,8 +133,19 @@ def _texture(workflow: Params, file: SdfFile, workspace: Workspace) -> Path | No
     path, _ = workspace.resolver.search(found.value, file.folder)
     if path is not None and path.is_file():
         return path.absolute()
-    _report_missing_texture(f"texture {found.value}", found, workspace)
+    if workspace.resolver.refused is not None:
+        _report_refused_texture(found.value, found, workspace.resolver.refused, workspace)
+    else:
+        _report_missing_texture(f"texture {found.value}", found, workspace)
     return None
+
+
+def _report_refused_texture(uri: str, element: Params, path: Path, workspace: Workspace) -> None:
+    if uri not in workspace.reported:
+        workspace.reported.add(uri)
+        trusted = workspace.resolver.trusted
+        message = f"texture {uri}: {trusted.refusal(path)}; the visual is drawn without the texture"
+        workspace.diagnostics.warning("SK-URI-003", message, element.where, trusted.help(path))
 
 
 def _report_missing_texture(what: str, element: Params, workspace: Workspace) -> None:

@@ -5,9 +5,8 @@ The first value of each kind in a script's techniques and passes is used. Shader
 
 from __future__ import annotations
 
-import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Final
 from simkit.input_file import read_input_text
 from simkit.loaders.sdf.gazebo_materials import gazebo_colours
 from simkit.scene.model import Colour
+from simkit.trusted_folders import join_within
 
 _LARGEST_SCRIPT: Final = 1 << 20
 _MOST_SCRIPTS: Final = 200
@@ -46,10 +46,16 @@ class OgreMaterial:
     scale: tuple[float, float] | None = None
 
 
-def find_material(name: str, places: Sequence[Path]) -> OgreMaterial | None:
-    """Return the material of that name in script files and folders, with inherited values; None if there is none."""
+def find_material(name: str, places: Sequence[Path], allows: Callable[[Path], bool]) -> OgreMaterial | None:
+    """Return the material of that name in script files and folders, with inherited values; None if there is none.
+
+    Args:
+        name: name of the material.
+        places: script files, and folders with such files.
+        allows: checks whether a file may be read; a file behind a link out of the user's folders may not.
+    """
     known: dict[str, OgreMaterial] = {}
-    for script in _scripts(places):
+    for script in filter(allows, _scripts(places)):
         for material in _materials(script):
             known.setdefault(material.name, material)
     found = known.get(name)
@@ -71,15 +77,20 @@ def find_material(name: str, places: Sequence[Path]) -> OgreMaterial | None:
     return found
 
 
-def find_texture(material: OgreMaterial, places: Sequence[Path]) -> Path | None:
-    """Return the image that a material names: in the given folders, beside its script, or in `../textures`."""
+def find_texture(material: OgreMaterial, places: Sequence[Path], allows: Callable[[Path], bool]) -> Path | None:
+    """Return the image that a material names: in the given folders, beside its script, or in `../textures`.
+
+    Args:
+        material: material of a script.
+        places: script files, and folders with such files.
+        allows: checks whether a file may be read; a file behind a link out of the user's folders may not.
+    """
     folders = [p if p.is_dir() else p.parent for p in places]
     folders += [material.folder, material.folder.parent / "textures"]
     name = material.texture.replace("\\", "/")
     for folder in dict.fromkeys(folders):
-        path = Path(os.path.abspath(folder / name))  # noqa: PTH100 - resolve() would follow links
-        real, home = Path(os.path.realpath(path)), Path(os.path.realpath(folder))
-        if folder in path.parents and home in real.parents and path.is_file():
+        path = join_within([folder], folder, name)
+        if path is not None and path.is_file() and allows(path):
             return path
     return None
 

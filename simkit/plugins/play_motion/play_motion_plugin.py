@@ -100,7 +100,7 @@ class PlayMotion(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         contents = MotionFile()
         for element in params.all("motions"):
-            path = self._find(element.value, builder)
+            path = self._find(element, builder)
             if path is None:
                 hint = "add --package-path NAME=DIR for the package, or put the file next to the robot's file"
                 element.warning("SK-MOTION-001", f"the motion file {element.value} is not found", hint)
@@ -114,14 +114,16 @@ class PlayMotion(ModelPlugin):
         excluded = [name for p in params.all("exclude_from_planning_joints") for name in p.value.split()]
         self._free_joints = tuple(excluded) if excluded else contents.excluded_joints
 
-    def _find(self, uri: str, builder: SpecBuilder) -> Path | None:
-        """Find a motion file by its URI, next to the robot's file, or as a plain path.
+    def _find(self, element: Params, builder: SpecBuilder) -> Path | None:
+        """Find a motion file by its URI, or next to the robot's file.
 
-        The Python API passes plain paths.
+        The Python API passes plain paths, in any folder; its elements have no line.
         """
+        uri = element.value
         found = find_plugin_file(self, uri, builder, ("motions", "config", "../motions"))
         with suppress(OSError, ValueError):  # the URI is not a valid file name
-            return Path(uri) if found is None and Path(uri).is_file() else found
+            is_own = found is None and element.where.line is None
+            return Path(uri) if is_own and Path(uri).is_file() else found
         return found
 
     # ------------------------------------------------------------------ loading

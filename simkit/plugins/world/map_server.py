@@ -23,6 +23,7 @@ from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text
 from simkit.pose import Pose
 from simkit.sensors.occupancy_map import OccupancyMap, make_map
+from simkit.trusted_folders import TrustedFolders, join_within
 from simkit.yaml_reader import NotYaml, finite_number, read_yaml
 
 if TYPE_CHECKING:
@@ -195,14 +196,12 @@ def read_map(path: Path) -> OccupancyMap:
         raise MapFileError(f"{path}: {'; '.join(problems)}", _BAD_YAML)
     assert resolution is not None and occupied is not None and free is not None
     name = values["image"]
-    try:
-        image = (path.parent / name).resolve() if isinstance(name, str) and name else None
-    except (OSError, ValueError):  # the text cannot be a file name
-        image = None
-    if image is None:
+    if not isinstance(name, str) or not name or "\0" in name:
         raise MapFileError(f"{path}: found image: {name!r:.100}; expected the name of a file", _BAD_YAML)
-    if not image.is_relative_to(path.parent.resolve()):
-        raise MapFileError(f"{path}: the image {values['image']!r:.100} is outside of the map's folder", _BAD_YAML)
+    folder = path.absolute().parent
+    image = join_within([folder], folder, name)
+    if image is None or not TrustedFolders([folder, path.resolve().parent]).allows(image):
+        raise MapFileError(f"{path}: the image {name!r:.100} is outside of the map's folder", _BAD_YAML)
     shade, alpha = _read_image(image)
     cells = _cells(shade, shade if negate else 1.0 - shade, alpha, mode, (occupied, free))
     x, y, yaw = (value or 0.0 for value in place)
