@@ -3,9 +3,9 @@
 import sys
 
 if __name__ == "__main__" and not sys.flags.safe_path:
-    # Python searches the working directory first, so that a file `random.py` of the user would replace the module of
-    # the standard library. Plugins in the working directory are still found at the end of the path.
-    sys.path.append(sys.path.pop(0))
+    # Python searches the working directory first, so that a file `random.py` in it would replace the module of the
+    # standard library, and a file `pandas.py` of a stranger would run. The program `simkit` does not search it either.
+    del sys.path[0]
 
 from simkit.cli import main
 

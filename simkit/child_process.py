@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
+from simkit.hidden_text import hide_everywhere
 from simkit.process_control import kill_process_tree
 
 _KEPT_BYTES: Final = 1 << 16  # largest number of stored bytes of output
@@ -137,6 +138,7 @@ class _OutputTail:
 
 def exit_with_parent() -> None:
     """Exit this child process, with its own child processes, as soon as its parent has ended for any reason."""
+    hide_everywhere()
     try:
         pipe = os.dup(0)
         null_device = os.open(os.devnull, os.O_RDONLY)

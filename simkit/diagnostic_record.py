@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import Any, Final, Literal
 
+from simkit import hidden_text
+
 TEXT_SOURCE: Final = "<string>"
 """Name of XML that was passed as text, instead of a file name."""
 
@@ -49,6 +51,13 @@ class Diagnostic:
     file: str | None = None
     line: int | None = None
     hint: str = ""
+
+    def __post_init__(self) -> None:
+        if hidden_text.hides(self.message, self.file):
+            file, line = hidden_text.place_without_text(self.file, self.line)
+            message, hint = hidden_text.message_without_text(self.code)
+            for name, value in (("message", message), ("hint", hint), ("file", file), ("line", line)):
+                object.__setattr__(self, name, value)
 
     def __str__(self) -> str:
         text = f"{Where(self.file, self.line)}: {self.severity} {self.code}: {self.message}"

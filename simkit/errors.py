@@ -25,6 +25,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
+from simkit import hidden_text
 from simkit.diagnostic_record import NOWHERE, Diagnostic, Where
 
 if not hasattr(sys.modules["simkit"], "_DISTRIBUTION"):
@@ -50,6 +51,15 @@ class SimkitError(Exception):
 
     exit_code: ClassVar[int] = 1
     code: str = "SK-CORE-001"
+    _lists_diagnostics: ClassVar[bool] = False  # their text is hidden already
+
+    def __init__(self, *args: object) -> None:
+        if not self._lists_diagnostics:
+            args = tuple(
+                hidden_text.error_without_text(one) if isinstance(one, str) and hidden_text.hides(one) else one
+                for one in args
+            )
+        super().__init__(*args)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the exception with all its attributes, independently of the arguments of its constructor."""
@@ -96,6 +106,8 @@ class LoadError(InputError):
     Attributes:
         diagnostics: every problem found in one pass, including warnings and notes.
     """
+
+    _lists_diagnostics = True
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics: tuple[Diagnostic, ...] = tuple(diagnostics)

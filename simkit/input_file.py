@@ -13,6 +13,9 @@ import stat
 from io import BufferedReader
 from pathlib import Path
 
+from simkit import hidden_text
+from simkit.linked_files import is_below, leads_outside
+
 TEXT_LIMIT = 8 << 20  # [bytes] of a text file that a person writes: YAML, a script, Python code
 PIPE_TIMEOUT = 10.0  # [s] without data from the writer of a pipe
 
@@ -25,22 +28,28 @@ class FileTooLargeError(OSError):
         super().__init__(errno.EFBIG, f"it is larger than {size}", str(path))
 
 
-def open_input(path: str | Path) -> BufferedReader:
+def open_input(path: str | Path, *, inside: Path | None = None) -> BufferedReader:
     """Open a regular file for reading at any position. The size is not limited.
 
+    Args:
+        path: File.
+        inside: See `read_input`.
+
     Raises:
-        OSError: the file cannot be opened, or the path is a folder, a pipe or a device. `strerror` has the reason.
+        OSError: the file cannot be opened, or the path is a folder, a pipe or a device; or a link leads outside.
+            `strerror` has the reason.
     """
-    handle = _open_handle(Path(path))
+    handle = _open_handle(Path(path), inside)
     try:
         _check_kind(handle, Path(path), allow_pipe=False)
+        _hide_linked_text(Path(path), inside)
     except OSError:
         os.close(handle)
         raise
     return os.fdopen(handle, "rb")
 
 
-def read_input(path: str | Path, limit: int, *, allow_pipe: bool = False) -> bytes:
+def read_input(path: str | Path, limit: int, *, allow_pipe: bool = False, inside: Path | None = None) -> bytes:
     """Return the content of a file.
 
     The pipe of a shell (`<(command)`) is always accepted. The reported size of a file is not used, because a file can
@@ -50,16 +59,20 @@ def read_input(path: str | Path, limit: int, *, allow_pipe: bool = False) -> byt
         path: File.
         limit: Largest size [bytes].
         allow_pipe: Accept a named pipe too.
+        inside: Folder in which simkit found the file, or whose file names it. A symbolic link may not lead out of this
+            folder, its project and the folders of the user. None for a file that the user names: it may be a link to
+            any place, but no message shows its text then.
 
     Raises:
         FileTooLargeError: the file is larger than the limit.
-        OSError: the file cannot be read, the path is a folder or a device, or a pipe has no data for 10 s.
-            `strerror` has the reason.
+        OSError: the file cannot be read, the path is a folder or a device, a pipe has no data for 10 s, or a link
+            leads outside. `strerror` has the reason.
     """
     path = Path(path)
-    handle = _open_handle(path)
+    handle = _open_handle(path, inside)
     with os.fdopen(handle, "rb", buffering=0):
         is_pipe = _check_kind(handle, path, allow_pipe=allow_pipe or str(path).startswith(("/dev/fd/", "/proc/self/")))
+        _hide_linked_text(path, inside)
         if not is_pipe and os.fstat(handle).st_size > limit:
             raise FileTooLargeError(path, limit)
         content = _read_pieces(handle, limit + 1, is_pipe=is_pipe)
@@ -68,14 +81,16 @@ def read_input(path: str | Path, limit: int, *, allow_pipe: bool = False) -> byt
     return content
 
 
-def read_input_text(path: str | Path, limit: int = TEXT_LIMIT, *, errors: str = "strict") -> str:
+def read_input_text(
+    path: str | Path, limit: int = TEXT_LIMIT, *, errors: str = "strict", inside: Path | None = None
+) -> str:
     """Return the UTF-8 text of a file, with line feeds at the ends of lines; see `read_input`.
 
     Raises:
         OSError: see `read_input`.
         UnicodeDecodeError: the file is not UTF-8 text.
     """
-    text = read_input(path, limit).decode("utf-8", errors)
+    text = read_input(path, limit, inside=inside).decode("utf-8", errors)
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -86,12 +101,33 @@ def read_failure(error: OSError | ValueError) -> str:
     return getattr(error, "strerror", None) or str(error)
 
 
-def _open_handle(path: Path) -> int:
+def _open_handle(path: Path, inside: Path | None) -> int:
     """Open a file without waiting for the writer of a named pipe."""
     try:
+        _check_links(path, inside)
         return os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except ValueError:
         raise OSError(errno.EINVAL, "the name has a zero byte", repr(str(path))) from None
+
+
+def _check_links(path: Path, inside: Path | None) -> None:
+    """Refuse a link of a folder that leads out of it.
+
+    Raises:
+        OSError: a link leads outside.
+    """
+    if inside is not None and not is_below(path, inside):
+        target = os.path.dirname(os.path.realpath(path))  # noqa: PTH120
+        reason = f"a symbolic link leads to {target}, outside the chosen folders; to allow it, set SIMKIT_RESOURCE_PATH"
+        raise OSError(errno.EACCES, reason, str(path))
+
+
+def _hide_linked_text(path: Path, inside: Path | None) -> None:
+    """Hide the text of a file if a link on the way to the file or folder that the user names leads outside."""
+    if leads_outside(str(path if inside is None else inside)):
+        hidden_text.hide(str(path), os.path.dirname(os.path.realpath(path)))  # noqa: PTH120
+    elif hidden_text.is_hiding():
+        hidden_text.show(str(path))
 
 
 def _check_kind(handle: int, path: Path, *, allow_pipe: bool) -> bool:

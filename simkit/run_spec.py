@@ -1,7 +1,7 @@
 """Run specification: world, seed, overrides, resources, commands, limits, topics and recording.
 
 The command line, Python, a scenario file and a bundle each make one typed, frozen and picklable `RunSpec`. The commands
-run, golden, certify, bundle, grade and plot, and `Simulation.run_spec` use it. This module imports only errors.
+run, golden, certify, bundle, grade and plot, and `Simulation.run_spec` use it.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal, Protocol, TypedDict, cast, get_args
 
+from simkit.code_requests import CodeRequest, code_refusal
 from simkit.errors import InputError
 
 FilePath = str | os.PathLike[str]
@@ -282,6 +283,7 @@ class RunSpec:
         paused: start the run paused.
         steps: number of steps before a pause; None for no pause.
         change_world: function that receives the resolved world and returns the world to build. From Python only.
+        code_requests: code that the file asks for and the user has not allowed; such a run is refused.
     """
 
     world: str
@@ -317,17 +319,16 @@ class RunSpec:
     paused: bool = False
     steps: int | None = None
     change_world: Callable[[Any], Any] | None = None
+    code_requests: tuple[CodeRequest, ...] = ()
 
     def load_arguments(self) -> LoadArguments:
-        """Return the keyword arguments of `simkit.load` for `source`."""
+        """Return the keyword arguments of `simkit.load` for `source`; raise LoadError for code that is not allowed."""
+        if self.code_requests:
+            raise code_refusal(self.code_requests)
         arguments = LoadArguments(
-            seed=self.seed,
-            overrides=self.overrides,
-            spawn=self.spawn,
-            model_world=self.model_world_source,
-            plugins=self.plugins,
-            change_world=self.change_world,
-        )
+            seed=self.seed, overrides=self.overrides, spawn=self.spawn, model_world=self.model_world_source,
+            plugins=self.plugins, change_world=self.change_world,
+        )  # fmt: skip
         return cast(LoadArguments, {**arguments, **self.options})
 
     def source_options(self) -> SourceOptions:

@@ -22,6 +22,7 @@ SMALL_MODULES = frozenset(
     {
         "argument_checks",
         "child_process",
+        "code_requests",
         "diagnostic_record",
         "diagnostics",
         "errors",
@@ -45,6 +46,7 @@ SMALL_MODULES = frozenset(
         "pose",
         "process_control",
     }
+    | {"hidden_text", "linked_files", "project_folder"}
     | {"progress", "registry", "run_spec", "save_path", "topic_logger", "trusted_folders", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""

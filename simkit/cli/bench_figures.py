@@ -140,7 +140,7 @@ def measure_import_time(rounds: int) -> float:
     for _ in range(rounds):
         for statement, times in durations.items():
             start = time.perf_counter()
-            subprocess.run([sys.executable, "-c", statement], check=True, env=environment)
+            subprocess.run([sys.executable, "-P", "-c", statement], check=True, env=environment)
             times.append(time.perf_counter() - start)
     empty, ours = (statistics.median(times) for times in durations.values())
     return ours - empty

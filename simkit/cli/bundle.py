@@ -36,6 +36,7 @@ def bundle(
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
+    allow_code: options.AllowCode = False,
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
     renderer: options.Renderer = None,
@@ -53,7 +54,7 @@ def bundle(
     scenario = scenario_spec(
         world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer),
         duration=duration, seed=seed, overrides=set_, spawn=spawn, cmd_vel=cmd_vel, script=script,
-        model_world=model_world,
+        model_world=model_world, allow_code=allow_code,
     )  # fmt: skip
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)

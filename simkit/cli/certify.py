@@ -39,6 +39,7 @@ def certify(
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
+    allow_code: options.AllowCode = False,
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
     renderer: options.Renderer = None,
@@ -53,8 +54,8 @@ def certify(
     check_writable(output)
     scenario = scenario_spec(
         world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer),
-        duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn, cmd_vel=cmd_vel,
-        model_world=model_world, script=script, usual_duration=_DEFAULT_DURATION,
+        allow_code=allow_code, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
+        cmd_vel=cmd_vel, model_world=model_world, script=script, usual_duration=_DEFAULT_DURATION,
     )  # fmt: skip
     if scenario.velocity is not None or scenario.script is not None:
         with open_scenario(scenario) as sim:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Sequence
 from contextlib import chdir
 from dataclasses import replace
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer import Option
 
-from simkit.cli.run_options import load_options, scenario_spec
+from simkit.cli.run_options import load_options, read_run, scenario_spec
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report, error_diagnostics, report_errors_and_json
 from simkit.cli.terminal.options import argument, option
@@ -26,6 +27,8 @@ from simkit.cli.terminal.output import (
 )
 from simkit.errors import InputError, RegressionError
 from simkit.testing.golden.parallel_check import CheckResult
+from simkit.testing.scenarios.code_permission import without_permissions
+from simkit.testing.scenarios.readable_files import HELP
 from simkit.writers.atomic_output import check_writable
 
 if TYPE_CHECKING:
@@ -214,6 +217,7 @@ def record(
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
+    allow_code: options.AllowCode = False,
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
     renderer: options.Renderer = None,
@@ -222,18 +226,20 @@ def record(
 ) -> None:
     """Run a scenario and store the result as a golden run."""
     loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer)
+    source = read_run(world, folders=resource_path)
     spec = scenario_spec(
-        world, loading, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
-        model_world=model_world, cmd_vel=cmd_vel, script=script,
+        source, loading, allow_code=allow_code, duration=duration, seed=seed, topics=topic, skip=skip,
+        overrides=set_, spawn=spawn, model_world=model_world, cmd_vel=cmd_vel, script=script,
     )  # fmt: skip
-    is_changed = duration is not None or seed is not None
-    if is_changed or any((topic, skip, set_, spawn, model_world, cmd_vel, script, loading)):
+    is_changed = duration is not None or seed is not None or bool(without_permissions(source, loading))
+    if is_changed or any((topic, skip, set_, spawn, model_world, cmd_vel, script)):
         spec = replace(spec, file=None)  # the golden run itself keeps the changes to the scenario file
     found = record_golden(spec, out_, force=force)
     if found.simulation is not None:
         print_diagnostics(found.simulation.diagnostics, verbose=False)
         add_diagnostics(found.simulation.diagnostics)
         found.simulation.close()
+    _print_needed_folders(out_)
     messages = sum(len(stream.times_ns) for stream in found.streams.values())
     size = sum(path.stat().st_size for path in out_.iterdir())
     stdout_console().print(f"{out_}: {len(found.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
@@ -243,6 +249,18 @@ def record(
     for result in found.checks:
         if not result.passed:
             print_status(f"warning: the scenario's own check failed: {result.check.title}: {result.message}")
+
+
+def _print_needed_folders(folder: Path) -> None:
+    """Print the options that a check of a golden run needs, because the run names files of other folders."""
+    from simkit.testing.golden.check import refused_files
+    from simkit.testing.golden.record_encoding import decode_scenario
+    from simkit.testing.golden.store import read_main
+
+    found = refused_files(folder, decode_scenario(read_main(folder)["scenario"], folder))
+    needed = dict.fromkeys(problem.hint.removeprefix(HELP) for problem in found)
+    if needed:
+        print_status(f"note: simkit golden check {shlex.quote(str(folder))} needs {' '.join(needed)}")
 
 
 @golden.command()
@@ -258,6 +276,9 @@ def check(
     jobs: Annotated[int, option("Number of parallel processes.", "N", "--jobs", "-n", min=1)] = 1,
     causes: Annotated[bool, Option("--causes/--no-causes", help="Search for the causes of differences.")] = True,
     budget: Annotated[float, option("Wall time limit of the search for each golden run.", "S", min=0)] = 60.0,
+    resource_path: options.ReadableFolders = [],
+    plugin_path: options.CodePaths = [],
+    allow_code: options.AllowCode = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print only failures.")] = False,
 ) -> int:
@@ -266,6 +287,15 @@ def check(
 
     check_writable(html)
     check_writable(junit)
-    check_options = CheckOptions(bless, bless_other_renderer, causes, budget, pictures=html is not None)
+    check_options = CheckOptions(
+        bless,
+        bless_other_renderer,
+        causes,
+        budget,
+        html is not None,
+        allow_code,
+        tuple(plugin_path),
+        folders=tuple(resource_path),
+    )
     results = check_goldens(folders, check_options, jobs)
     return report_results(results, blessed=bless is not None, html=html, junit=junit, quiet=quiet)

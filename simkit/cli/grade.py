@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +12,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_json, report_errors, stdout_console
 from simkit.errors import InputError
+from simkit.run_spec import FilePath
 from simkit.writers.atomic_output import check_writable
 
 _FAILED = 5
@@ -26,10 +28,16 @@ def grade(
     junit: Annotated[Path | None, option("JUnit XML report to write.", "OUT.xml")] = None,
     pictures: Annotated[Path | None, option("Folder for a picture of the path of each run.", "DIR")] = None,
     jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
+    resource_path: options.ReadableFolders = [],
+    plugin_path: options.CodePaths = [],
+    allow_code: options.AllowCode = False,
     json_: options.Json = False,
 ) -> int:
     """Run an exercise with submitted plugins and print the results."""
-    return grade_files([exercise], submissions, junit, pictures, jobs, json_=json_)
+    return grade_files(
+        [exercise], submissions, junit, pictures, jobs, json_=json_, folders=resource_path, allow_code=allow_code,
+        plugin_paths=plugin_path,
+    )  # fmt: skip
 
 
 def grade_files(
@@ -40,19 +48,28 @@ def grade_files(
     jobs: int = 1,
     *,
     json_: bool = False,
+    folders: Sequence[FilePath] = (),
+    allow_code: bool = False,
+    plugin_paths: Sequence[Path] = (),
 ) -> int:
     """Grade plugins, print the results, and return the exit code; the arguments are those of the command.
 
     Raises:
-        LoadError: an exercise has problems.
+        LoadError: an exercise has problems, or SK-SCEN-008 it names code that is not allowed.
         InputError: a plugin does not exist, or a file cannot be written.
     """
+    from simkit.testing.scenarios.code_permission import check_requests
     from simkit.testing.scenarios.exercise import read_exercise
     from simkit.testing.scenarios.grading import grade_all, grade_json, grade_text, junit_cases
 
     check_writable(junit)
-    tasks = [read_exercise(exercise) for exercise in exercises]
+    tasks = [
+        read_exercise(exercise, folders, allow_code=allow_code, plugin_paths=plugin_paths) for exercise in exercises
+    ]
     files = [_files(submissions, task.file.parent / task.hand_in if task.hand_in else None) for task in tasks]
+    for task in tasks:
+        named = task.own_code if not submissions else None
+        check_requests((*task.code_requests, *([named] if named else [])), allow_code, plugin_paths)
     grades = []
     for task, of_task in zip(tasks, files, strict=True):
         folder = pictures if pictures is None or len(tasks) == 1 else pictures / task.file.stem

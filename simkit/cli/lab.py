@@ -96,7 +96,7 @@ def start(
 def _missing_packages(folder: Path) -> list[str]:
     """Return the packages that a lab needs and that are not installed."""
     file = folder / _REQUIREMENTS
-    needed = read_input(file, TEXT_LIMIT).decode("utf-8", "replace").split() if file.is_file() else []
+    needed = read_input(file, TEXT_LIMIT, inside=folder).decode("utf-8", "replace").split() if file.is_file() else []
     return [name for name in needed if not _is_installed(name)]
 
 
@@ -137,4 +137,5 @@ def grade(
     if missing:
         message = f"SK-CLI-056 {folder}: the lab needs {' and '.join(missing)}\n    help: {_remedy(missing)}"
         raise InputError(message, "SK-CLI-056")
-    return grade_files(exercises, pictures=pictures, jobs=jobs, json_=json_)
+    # grading a folder means running its file
+    return grade_files(exercises, pictures=pictures, jobs=jobs, json_=json_, allow_code=True)

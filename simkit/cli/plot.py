@@ -37,6 +37,7 @@ def plot(
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
+    allow_code: options.AllowCode = False,
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
     renderer: options.Renderer = None,
@@ -48,6 +49,7 @@ def plot(
     run = partial(
         scenario_spec,
         options=loading,
+        allow_code=allow_code,
         duration=duration,
         seed=seed,
         overrides=set_,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.cli.terminal.given_interfaces import interface_folders
 from simkit.cli.terminal.options import renderer_argument, source_arguments
-from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
+from simkit.run_spec import FilePath, LoadOptions, PluginErrorPolicy, RunSpec
 
 if TYPE_CHECKING:
     from simkit.bridges.ros.bridge_process import RosOptions
@@ -79,10 +79,29 @@ def load_options(
     return cast(LoadOptions, {**given, **renderer_argument(renderer)})
 
 
+def read_run(world: str, usual_duration: float = 10.0, folders: Sequence[FilePath] = ()) -> RunSpec:
+    """Return the run specification of a world or scenario file, with the requests of the file for code.
+
+    Args:
+        world: world or scenario file.
+        usual_duration: simulated time of a world without a scenario [s].
+        folders: folders in which the scenario file may name files, beside its own folder and its project.
+
+    Raises:
+        LoadError: the scenario file has errors.
+    """
+    from simkit.testing.scenarios.scenario_file import is_scenario_file, read_scenario
+
+    if "<" not in world and is_scenario_file(world):
+        return read_scenario(world, folders)
+    return RunSpec(world, duration=usual_duration)
+
+
 def scenario_spec(
-    world: str,
+    world: str | RunSpec,
     options: LoadOptions,
     *,
+    allow_code: bool = False,
     duration: float | None = None,
     seed: int | None = None,
     topics: Sequence[str] = (),
@@ -97,8 +116,9 @@ def scenario_spec(
     """Return the run specification of a world, or of a scenario file with the options of a command.
 
     Args:
-        world: world or scenario file.
-        options: load options of the world.
+        world: world, scenario file, or its run specification.
+        options: load options of the world. Its plugin folders allow the code in them.
+        allow_code: allow all plugin folders that the scenario names.
         duration: simulated time [s]; None for the scenario's.
         seed: seed of all random streams; None for the scenario's.
         topics: topic patterns that replace the scenario's.
@@ -111,14 +131,16 @@ def scenario_spec(
         usual_duration: simulated time of a world without a scenario [s].
 
     Raises:
-        LoadError: the scenario file has errors.
+        LoadError: the scenario file has errors, or SK-SCEN-008 it names code that is not allowed.
     """
-    from simkit.testing.scenarios.scenario_file import is_scenario_file, read_scenario
+    from simkit.testing.scenarios.code_permission import add_options
 
-    if "<" not in world and is_scenario_file(world):
-        found = read_scenario(world)
-    else:
-        found = RunSpec(world, duration=usual_duration)
+    folders = options.get("resource_paths", ())
+    found = read_run(world, usual_duration, folders) if isinstance(world, str) else world
+    own = found.options.get("resource_paths", ())
+    if folders and own:  # the option allows files; it does not replace the scenario's folders
+        options = {**options, "resource_paths": (*folders, *own)}
+    found = add_options(found, options, allow_code)
     return replace(
         found,
         duration=found.duration if duration is None else duration,
@@ -128,7 +150,6 @@ def scenario_spec(
         overrides=(*found.overrides, *overrides),
         spawn=(*found.spawn, *spawn),
         model_world=model_world or found.model_world,
-        options={**found.options, **options},
         velocity=found.velocity if cmd_vel is None else cmd_vel,
         script=script or found.script,
     )

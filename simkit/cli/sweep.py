@@ -69,6 +69,9 @@ def run(
     ] = None,
     trials: Annotated[int | None, option("Number of trials of a search; default: 100.", "N", min=1)] = None,
     maximise: Annotated[bool, Option("--maximise", help="Search for the largest value.")] = False,
+    resource_path: options.ReadableFolders = [],
+    plugin_path: options.CodePaths = [],
+    allow_code: options.AllowCode = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> int:
@@ -81,7 +84,7 @@ def run(
 
     _check_combination(optimise=optimise, trials=trials, maximise=maximise, shard=shard, cluster=cluster, jobs=jobs)
     part = _shard(shard or "0/1")
-    spec = read_sweep(file)
+    spec = read_sweep(file, resource_path, allow_code=allow_code, plugin_paths=plugin_path)
     spec = replace(spec, is_warm=not cold, keep=spec.keep if keep is None else _kept(keep))
     folder = output or Path(f"{file.stem}_sweep")
     if optimise is not None:
@@ -223,12 +226,15 @@ def replay(
     number: Annotated[int, argument("Number of the run.", "RUN")],
     file: Annotated[Path | None, option("Sweep file; default: the file that the folder names.", "SWEEP.yaml")] = None,
     bundle: Annotated[Path | None, option("Write a bundle of the run.", "FILE.zip")] = None,
+    resource_path: options.ReadableFolders = [],
+    plugin_path: options.CodePaths = [],
+    allow_code: options.AllowCode = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> int:
     """Repeat one run of a sweep and compare its end with the table. Exit code 5 if it differs."""
     from simkit.experiments.sweeps.repetition import repeat_run
 
-    repeated = repeat_run(folder, number, file, bundle)
+    repeated = repeat_run(folder, number, file, bundle, resource_path, allow_code=allow_code, plugin_paths=plugin_path)
     add_to_report(**repeated.as_dict())
     for line in repeated.lines():
         stdout_console().print(line)

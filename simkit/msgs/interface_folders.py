@@ -48,7 +48,7 @@ def _package_of(folder: Path) -> str:
 
 def _package_xml_name(folder: Path) -> str:
     try:
-        found = _PACKAGE_NAME.search(read_input(folder / "package.xml", 65536))
+        found = _PACKAGE_NAME.search(read_input(folder / "package.xml", 65536, inside=folder))
     except OSError:
         return ""
     return found[1].decode() if found else folder.name

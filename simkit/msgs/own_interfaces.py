@@ -14,10 +14,12 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
+from simkit import hidden_text
 from simkit.diagnostic_record import Diagnostic
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InterfaceError
 from simkit.input_file import read_failure, read_input_text
+from simkit.linked_files import choose_folders, leads_outside
 from simkit.msgs.definition_parser import (
     PARTS,
     UNKNOWN_TYPE,
@@ -164,6 +166,9 @@ def add_folders(folders: Iterable[str | os.PathLike[str]]) -> None:
     problems: list[Diagnostic] = []
     for folder in folders:
         path = Path(folder).expanduser()
+        if leads_outside(str(path)):
+            hidden_text.hide(str(path), os.path.realpath(path))
+        choose_folders([path.absolute()])
         found = list(definitions_in(path)) if path.is_dir() else []
         if not found:
             what = "has no file .msg, .srv or .action" if path.is_dir() else "is not a folder"
@@ -279,7 +284,10 @@ class _Batch:
             self._report(file, wrong.code, 0, wrong.message, wrong.hint)
             return
         try:
-            text = read_input_text(source, _LARGEST_FILE) if isinstance(source, Path) else source
+            if isinstance(source, Path):
+                text = read_input_text(source, _LARGEST_FILE, inside=source.parent)
+            else:
+                text = source
         except (OSError, UnicodeDecodeError) as error:
             self._report(file, _UNREADABLE, 0, f"the definition cannot be read: {read_failure(error)}")
             return

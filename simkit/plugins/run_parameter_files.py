@@ -59,7 +59,7 @@ def read_run_parameter_files(
     read: dict[Path, ParameterFile | None] = {}
     found = []
     for argument in named:
-        model, text = _model_and_file(argument)
+        model, text = model_and_file(argument)
         path = _find_file(text, find)
         if path is None:
             message = f"cannot find the parameter file {text[:200]}"
@@ -75,7 +75,7 @@ def read_run_parameter_files(
     return tuple(found)
 
 
-def _model_and_file(named: ParameterFileArgument) -> tuple[str, str]:
+def model_and_file(named: ParameterFileArgument) -> tuple[str, str]:
     """Return the name of the model and the path of the file; an empty name means all models."""
     if isinstance(named, tuple):
         return str(named[0]), os.fspath(named[1])

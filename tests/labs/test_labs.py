@@ -75,7 +75,7 @@ def test_a_typical_mistake_fails_the_check_that_names_it(mistake: tuple[str, str
     if "runs" in document["exercise"]:  # one run is enough; the last one differs most from the world file
         document["exercise"]["runs"] = document["exercise"]["runs"][-1:]
         first.write_text(yaml.safe_dump(document), "utf-8")
-    found = CliRunner().invoke(app, ["grade", str(first), "--json"])
+    found = CliRunner().invoke(app, ["grade", str(first), "--json", "--plugin-path", str(first.parent)])
     assert found.exit_code == 5
     assert check in failed_checks(found.stdout)
 

@@ -75,6 +75,12 @@ ResourcePaths = Annotated[
     list[Path],
     option("Search folder for model://, package:// and relative URIs; repeatable.", "DIR", "--resource-path"),
 ]
+ReadableFolders = Annotated[
+    list[Path],
+    option(
+        "Folder in which the file may name files, beside its own and its project; repeatable.", "DIR", "--resource-path"
+    ),
+]
 PackagePaths = Annotated[
     list[str],
     option("Workspace of ROS packages, or folder of the package NAME; repeatable.", "[NAME=]DIR", "--package-path"),
@@ -87,6 +93,13 @@ Base = Annotated[
 PluginPaths = Annotated[
     list[Path],
     Option("--plugin-path", help="Folder of Python plugins to allow; repeatable.", metavar="DIR", exists=True),
+]
+AllowCode = Annotated[
+    bool, Option("--allow-code", help="Run the code that the file names, with all your rights; read it first.")
+]
+CodePaths = Annotated[
+    list[Path],
+    Option("--plugin-path", help="Run only the code in this folder; repeatable.", metavar="DIR", exists=True),
 ]
 ParamsFiles = Annotated[
     list[str],

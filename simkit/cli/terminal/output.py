@@ -23,6 +23,7 @@ from simkit.cli.terminal.plain_console import PlainConsole, is_plain_stream
 from simkit.cli.terminal.task_display import displayed_tasks
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, LoadError, PluginError, SimkitError
+from simkit.hidden_text import hidden_in_command, is_hiding
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderableType
@@ -190,7 +191,7 @@ def print_error(error: SimkitError) -> None:
         else:
             stderr_console().print("--strict treats warnings as errors; nothing was run", style="bold")
         return
-    if isinstance(error, PluginError) and error.__cause__ is not None:
+    if isinstance(error, PluginError) and error.__cause__ is not None and not is_hiding():
         sys.stderr.write(printable("".join(traceback.format_exception(error.__cause__))))
     message = str(error)
     if error.code not in message:
@@ -204,7 +205,8 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         try:
-            with running_command(), displayed_tasks(stderr_console, quiet=bool(kwargs.get("quiet"))):
+            is_quiet = bool(kwargs.get("quiet"))
+            with running_command(), hidden_in_command(), displayed_tasks(stderr_console, quiet=is_quiet):
                 code = command(*args, **kwargs)
         except KeyboardInterrupt as stopped:
             print_status(f"interrupted {stopped}".rstrip())

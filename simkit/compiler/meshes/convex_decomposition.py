@@ -92,7 +92,7 @@ def decompose(vertices: Floats, faces: Ints, most: int) -> list[Floats]:
 def _run(source: Path, target: Path, triangles: int, most: int) -> None:
     """Run CoACD in a child process and report its progress."""
     single_thread = {"OMP_NUM_THREADS": "1", "OMP_DYNAMIC": "false"}
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), **single_thread}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path)), **single_thread}
     rounds = most.bit_length() + 1  # each round divides all pieces that are not convex enough
     with progress.task(f"decomposing {triangles} triangles into convex pieces", rounds, unit="%") as task:
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,8 @@ from simkit.errors import InputError
 from simkit.experiments.sweeps.result_store import NO_SWEEP, OTHER_SWEEP, ResultStore
 from simkit.experiments.sweeps.row_runner import RowResult, RowRunner
 from simkit.experiments.sweeps.sweep_file import read_sweep
+from simkit.run_spec import FilePath
+from simkit.testing.scenarios.readable_files import OUTSIDE, ReadableFiles
 
 _COMPARED = ("exit_code", "end", "code", "time", "steps", "state_hash")
 
@@ -59,7 +62,16 @@ class Repetition:
         return [*found, f"differs from the table: {', '.join(self.differences)}" if self.differences else same]
 
 
-def repeat_run(folder: Path, number: int, file: Path | None = None, bundle: Path | None = None) -> Repetition:
+def repeat_run(
+    folder: Path,
+    number: int,
+    file: Path | None = None,
+    bundle: Path | None = None,
+    folders: Sequence[FilePath] = (),
+    *,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+) -> Repetition:
     """Repeat a run of a sweep in this process.
 
     Args:
@@ -67,20 +79,31 @@ def repeat_run(folder: Path, number: int, file: Path | None = None, bundle: Path
         number: number of the run.
         file: sweep file; None for the file that the folder names.
         bundle: bundle to write; None for none.
+        folders: folders in which the results may name the sweep file and the sweep file may name files, beside their
+            own folders and their projects.
+        allow_code: allow the code that the sweep file names, as in `read_sweep`.
+        plugin_paths: allow the code in these folders only.
 
     Raises:
-        InputError: SK-SWEEP-003 the file describes another sweep; SK-SWEEP-008 the folder has no such run, or names no
-            file.
+        InputError: SK-URI-003 the folder names a file elsewhere; SK-SWEEP-003 the file describes another sweep;
+            SK-SWEEP-008 the folder has no such run, or names no file; SK-SCEN-008 the file names code that is not
+            allowed.
     """
     store = ResultStore(folder)
     store.open()
-    source = file or (Path(store.description["file"]) if store.description.get("file") else None)
+    source = file or (Path(str(store.description["file"])) if store.description.get("file") else None)
+    if file is None and source is not None:
+        folder = folder.absolute()
+        refusal = ReadableFiles(folder / "sweep.json", folders, folder.parent).refusal(source)
+        if refusal is not None:
+            text = f"{folder / 'sweep.json'}: {OUTSIDE} file: {refusal[0]}\n    help: pass --file SWEEP.yaml"
+            raise InputError(text, OUTSIDE)
     if source is None:
         text = f"{NO_SWEEP} the sweep in {folder} was made in Python, so no file describes its runs"
         raise InputError(f"{text}\n    help: repeat it with simkit.load and the values of the row", NO_SWEEP)
     if not 0 <= number < store.count:
         raise InputError(f"{NO_SWEEP} {folder} has no run {number}; its runs are 0 to {store.count - 1}", NO_SWEEP)
-    spec = read_sweep(source)
+    spec = read_sweep(source, folders, allow_code=allow_code, plugin_paths=plugin_paths)
     if spec.fingerprint() != store.description.get("fingerprint"):
         text = f"{OTHER_SWEEP} {source} describes another sweep than {folder}"
         raise InputError(f"{text}\n    help: undo the changes of the file or the world, or pass --file", OTHER_SWEEP)

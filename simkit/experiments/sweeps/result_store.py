@@ -65,7 +65,7 @@ class ResultStore:
             InputError: SK-SWEEP-008 the folder has no sweep.
         """
         try:
-            found = json.loads(read_input_text(self.folder / _DESCRIPTION, _LARGEST_FILE))
+            found = json.loads(read_input_text(self.folder / _DESCRIPTION, _LARGEST_FILE, inside=self.folder))
             self.count, self.size = int(found["count"]), int(found["block"])
             if found["format"] != _FORMAT or self.size < 1:
                 raise ValueError
@@ -220,7 +220,7 @@ class ResultStore:
 def _content(path: Path) -> bytes:
     """Return the content of a file of the store; empty if it does not exist."""
     try:
-        return read_input(path, _LARGEST_FILE)
+        return read_input(path, _LARGEST_FILE, inside=path.parent.parent)
     except FileNotFoundError:
         return b""
     except (OSError, ValueError) as error:

@@ -126,7 +126,11 @@ class RowRunner:
         """
         self.close()
         result = RowResult(row)
-        spec = self._spec.row_spec(row)
+        try:
+            spec = self._spec.row_spec(row)
+        except InputError as error:  # it may not be run, so there is nothing to pack
+            result.fail(error)
+            return result
         try:
             sim = self._world(spec)
         except Exception as error:  # noqa: BLE001 - the bundle repeats the failure

@@ -40,6 +40,7 @@ from simkit.install_command import install_command
 from simkit.msgs.data_frames import DataFrame
 from simkit.run_spec import FilePath, RunSpec
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
+from simkit.testing.scenarios.code_permission import permit_code
 
 Parameters = Mapping[Any, Any] | Sequence[Mapping[str, Any]] | FilePath
 """Spaces by parameter, a list of values by parameter for each run, or a CSV file with such a list."""
@@ -64,6 +65,7 @@ def sweep(
     bag_topics: Sequence[str] = (),
     warm: bool = True,
     cluster: str | None = None,
+    allow_code: bool = False,
 ) -> DataFrame:
     """Run a world with every combination of parameters and seeds, and return a table with a row for each run.
 
@@ -87,6 +89,7 @@ def sweep(
         bag_topics: patterns of the topics in the bags of kept runs; empty for no bags.
         warm: keep the world loaded between runs with equal load arguments; the results are the same.
         cluster: address of a Ray cluster, "auto" for a running one; None for processes of this machine.
+        allow_code: allow the plugin folders that the file of a specification names.
 
     Returns:
         Table with the columns run, seed, the parameters, the metrics, exit_code, status, end, code, message, time [s],
@@ -100,7 +103,7 @@ def sweep(
     if find_spec("pandas") is None:
         hint = install_command("experiments")
         raise InputError(f"SK-INPUT-004 simkit.sweep needs pandas, which is missing\n    help: {hint}", "SK-INPUT-004")
-    run = spec_of_world(world, duration, until)
+    run = permit_code(spec_of_world(world, duration, until), allow_code)
     design = make_design(
         parameters, sequence_of_seeds(seeds, run.seed), samples=samples, sampling=sampling, design_seed=design_seed
     )

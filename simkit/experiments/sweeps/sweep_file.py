@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, cast
 
+from simkit.code_requests import CodeRequest
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 from simkit.experiments.sweeps.design import SAMPLINGS
 from simkit.experiments.sweeps.metrics import FileMetric
 from simkit.experiments.sweeps.sweep import make_design
 from simkit.experiments.sweeps.sweep_spec import Keep, Metric, SweepSpec, sequence_of_seeds
+from simkit.run_spec import FilePath, RunSpec
 from simkit.testing.conditions.parser import parse
+from simkit.testing.scenarios.code_permission import permit_code
 from simkit.testing.scenarios.scenario_file import parse_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader
 
@@ -31,33 +34,56 @@ SWEEP_KEYS: Final = (
 _CORRELATED_KEYS: Final = ("parameters", "mean", "deviation", "correlation")
 
 
-def read_sweep(path: str | Path) -> SweepSpec:
+def read_sweep(
+    path: str | Path,
+    folders: Sequence[FilePath] = (),
+    *,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+) -> SweepSpec:
     """Read a sweep file.
 
+    Args:
+        path: sweep file.
+        folders: folders in which the file may name files, beside its own folder and its project.
+        allow_code: allow the plugin folders and metric functions that the file names. Their code has the same rights
+            as the user.
+        plugin_paths: allow the code in these folders only.
+
     Raises:
-        LoadError: the file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SWEEP-001, SK-COND-001); the error lists all.
+        LoadError: the file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SWEEP-001, SK-COND-001, SK-URI-003), or
+            SK-SCEN-008 it names code that is not allowed; the error lists all.
     """
     diagnostics = Diagnostics()
-    document = Document(Path(path), diagnostics)
+    document = Document(Path(path), diagnostics, folders)
     if document.values is None:
         diagnostics.raise_if_errors()
     run = parse_scenario(document, also=SWEEP_KEYS)
     fields = document.values if isinstance(document.values, dict) else {}
     reader = _SweepReader(document, {key: one for key, one in fields.items() if key in SWEEP_KEYS})
-    spec = reader.sweep(run)
+    refused = [] if allow_code else [one for one in reader.code_requests(run) if not one.is_within(plugin_paths)]
+    diagnostics.extend(request.diagnostic() for request in refused)
+    spec = reader.sweep(permit_code(run, allow_code=True), runs_code=not refused)  # else, the refusal is raised below
     diagnostics.raise_if_errors()
     assert spec is not None
     return spec
 
 
+def _function_name(metric: object) -> str | None:
+    """Return the name of a metric's Python function; None for any other metric."""
+    name = metric["python"] if isinstance(metric, Mapping) and set(metric) == {"python"} else None
+    return name if isinstance(name, str) else None
+
+
 class _SweepReader(ValueReader):
     """Reader of the values of a sweep."""
 
-    def sweep(self, run: Any) -> SweepSpec | None:
-        metrics, keep = self._metrics(), self._keep()
+    def sweep(self, run: RunSpec, *, runs_code: bool) -> SweepSpec | None:
+        metrics, keep = self._metrics(runs_code=runs_code), self._keep()
         bags = self._texts("bags")
         design = self._design(run.seed)
-        return None if design is None else SweepSpec(run, design, metrics, keep, bags)
+        files = self._document.files
+        return None if design is None else SweepSpec(run, design, metrics, keep, bags, files=files)
 
     def _design(self, seed: int) -> Any:
         samples = self._whole("samples", 0, 1) if "samples" in self._fields else None
@@ -73,6 +99,8 @@ class _SweepReader(ValueReader):
         found: Any = self._fields.get("parameters", {})
         if isinstance(found, str):
             found = self._document.path.parent / found
+            if self._document.refuses(self._document.files.refusal(found), "parameters"):
+                return None
         elif isinstance(found, dict):
             found = {**found, **self._correlated()}
         elif not isinstance(found, list):
@@ -115,12 +143,25 @@ class _SweepReader(ValueReader):
             found[tuple(names)] = space
         return found
 
-    def _metrics(self) -> dict[str, Metric]:
+    def code_requests(self, run: RunSpec) -> list[CodeRequest]:
+        """Return the plugin folders and metric functions that the file names."""
+        found = list(run.code_requests)
+        for name, value in self._mapping("metrics").items():
+            if (text := _function_name(value)) is not None:
+                source = text.rpartition(":")[0]
+                file = self._document.path.parent / source if source.endswith(".py") else None
+                words = f"metric {name!r:.80} names the function {text!r:.200}"
+                found.append(CodeRequest(words, file, self._document.where("metrics", name)))
+        return found
+
+    def _metrics(self, *, runs_code: bool) -> dict[str, Metric]:
         found: dict[str, Metric] = {}
         for name, value in self._mapping("metrics").items():
-            if isinstance(value, Mapping) and set(value) == {"python"} and isinstance(value["python"], str):
+            if (text := _function_name(value)) is not None:
+                if not runs_code:
+                    continue
                 try:
-                    found[name] = FileMetric(value["python"], self._document.path.parent)
+                    found[name] = FileMetric(text, self._document.path.parent)
                 except InputError as error:
                     self._document.error(error.code, str(error).removeprefix(error.code).strip(), "metrics", name)
             elif isinstance(value, (str, int, float)):

@@ -18,6 +18,7 @@ from simkit.experiments.sweeps.design import Design, SweepRow
 from simkit.input_file import read_input
 from simkit.run_spec import LoadOptions, RunSpec
 from simkit.scene.overrides import override_texts, value_text
+from simkit.testing.scenarios.readable_files import ReadableFiles
 
 Metric = str | Callable[[Any], Any]
 """Expression of the condition language, or a Python function of the simulation."""
@@ -47,6 +48,7 @@ class SweepSpec:
         metrics: measurements at the end of each run by name.
         keep: runs whose bundle and bag are kept.
         bag_topics: patterns of the topics in the bags of kept runs; empty for no bags.
+        files: check of the files that variables name, for the sweep of a file; None for a sweep made in Python.
         is_warm: True if a worker resets its world between runs instead of loading it again; the results are the same.
     """
 
@@ -56,6 +58,7 @@ class SweepSpec:
     keep: Keep = 10
     bag_topics: tuple[str, ...] = ()
     is_warm: bool = True
+    files: ReadableFiles | None = None
 
     def __post_init__(self) -> None:
         is_count = isinstance(self.keep, int) and not isinstance(self.keep, bool) and self.keep >= 0
@@ -72,7 +75,7 @@ class SweepSpec:
         """Return a hash of everything that decides the results, to recognise a stored sweep."""
         design = self.design
         content = {
-            "run": plain_description(self.run),
+            "run": plain_description(_with_relative_folders(self.run)),
             "world": _world_hash(self.run),
             "spaces": [[space.names, plain_description(space.description)] for space in design.spaces],
             "design": plain_description((design.seeds, design.samples, design.sampling, design.design_seed)),
@@ -87,6 +90,8 @@ class SweepSpec:
         spec = replace(self.run, seed=row.seed)
         if variables:
             spec = _substitute(spec, variables)
+            if self.files is not None:  # a variable can be the name of a model
+                self.files.check(spec)
         return replace(spec, overrides=(*spec.overrides, *override_texts(paths)))
 
     def row_metrics(self, row: SweepRow) -> Mapping[str, Metric]:
@@ -159,8 +164,8 @@ def used_variables(spec: SweepSpec) -> set[str]:
 # ---------------------------------------------------------------------- description
 
 
-_PLACES: Final = ("file", "folder", "where")
-"""Fields that say where a value stands; they differ between machines and working folders."""
+_PLACES: Final = ("file", "folder", "where", "code_requests")
+"""Fields that say where a value stands, which differs between machines and working folders, or what is allowed."""
 
 
 def plain_description(value: Any, seen: dict[int, tuple[int, Any]] | None = None) -> Any:
@@ -230,6 +235,14 @@ def _code_hash(code: CodeType) -> str:
     """Return a hash of a function's code that does not depend on its file and lines."""
     inner = [_code_hash(one) if isinstance(one, CodeType) else _constant_text(one) for one in code.co_consts]
     return hashlib.sha256(repr((code.co_code, inner, code.co_names)).encode()).hexdigest()[:16]
+
+
+def _with_relative_folders(run: RunSpec) -> RunSpec:
+    """Return a run whose plugin folders start from its own folder, so that `sweep replay` finds the same sweep."""
+    if run.file is None or "plugin_paths" not in run.options:
+        return run
+    folders = [os.path.relpath(folder, run.folder) for folder in run.options["plugin_paths"]]
+    return replace(run, options=cast(LoadOptions, {**run.options, "plugin_paths": folders}))
 
 
 def _world_hash(run: RunSpec) -> str:

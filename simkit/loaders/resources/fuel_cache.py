@@ -162,7 +162,7 @@ def read_lock(path: Path) -> dict[str, LockEntry]:
         LoadError: SK-FETCH-007 the file is not a lock file of simkit.
     """
     try:
-        content = json.loads(read_input_text(path, _LOCK_LIMIT))
+        content = json.loads(read_input_text(path, _LOCK_LIMIT, inside=path.parent))
     except FileNotFoundError:
         return {}
     except (OSError, UnicodeDecodeError) as error:

@@ -13,8 +13,8 @@ from typing import Final
 
 from simkit.input_file import read_input
 from simkit.loaders.resources.bundled_models import bundle_around
-from simkit.loaders.resources.project_folder import enclosing_project
-from simkit.loaders.resources.uris import is_file, is_folder, is_link, is_private, is_top_folder
+from simkit.loaders.resources.uris import is_file, is_folder, is_link, is_private
+from simkit.project_folder import enclosing_project, is_top_folder
 from simkit.trusted_folders import TrustedFolders, built_workspace, join_below
 
 _PARENT_LEVELS: Final = 6  # folders above a file that are searched for its package.xml

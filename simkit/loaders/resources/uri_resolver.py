@@ -13,6 +13,7 @@ from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
 from simkit.errors import InputError
+from simkit.linked_files import SEARCH_VARIABLES, choose_folders
 from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
 from simkit.loaders.resources.fuel_cache import parse_fuel_url
 from simkit.loaders.resources.uri_candidates import UriCandidates
@@ -33,15 +34,6 @@ from simkit.loaders.resources.uris import (
 from simkit.run_spec import PackagePaths, split_package_paths
 from simkit.trusted_folders import OutsideError, join_below, join_within
 
-_SEARCH_VARIABLES = (
-    "SIMKIT_RESOURCE_PATH",
-    "GZ_SIM_RESOURCE_PATH",
-    "IGN_GAZEBO_RESOURCE_PATH",
-    "SDF_PATH",
-    "GAZEBO_MODEL_PATH",
-    "GAZEBO_RESOURCE_PATH",
-    "ROS_PACKAGE_PATH",
-)
 _SCHEMES = ("model", "package", "file")
 NOT_FOUND_CODES = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
 _PATH_HINT = "add its folder with --resource-path or SIMKIT_RESOURCE_PATH"
@@ -70,7 +62,7 @@ class Resolver(UriCandidates):
         package_paths: PackagePaths | None = None,
     ) -> None:
         found = [Path(p).expanduser() for p in paths]
-        for variable in _SEARCH_VARIABLES:
+        for variable in SEARCH_VARIABLES:
             found += [Path(p) for p in os.environ.get(variable, "").split(os.pathsep) if p]
         found += [Path(p) / "share" for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
         named, workspaces = split_package_paths(package_paths)
@@ -80,6 +72,7 @@ class Resolver(UriCandidates):
                 raise InputError(message, "SK-CLI-018")
         folders = {name: absolute_path(p) for name, p in named.items()}
         searched = tuple(dict.fromkeys(absolute_path(p) for p in found))
+        choose_folders((*searched, *folders.values(), *map(absolute_path, workspaces)))
         super().__init__(searched, folders, [absolute_path(p) for p in workspaces], base)
         self.missing_meshes = missing_meshes
         self._reported: set[str] = set()

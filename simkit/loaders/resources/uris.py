@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 from urllib.parse import unquote
 
-from simkit.home_folder import home_folder
+from simkit.project_folder import is_top_folder
 from simkit.trusted_folders import OutsideError, join_below
 
 _MOST_LISTED = 1000  # searched paths, and names of a folder, that are compared for a hint
@@ -60,12 +60,6 @@ def split_rest(rest: str) -> tuple[str, str]:
     if len(join_below(Path(), name).parts) != 1 and name:
         raise OutsideError(f"{rest!r} has no name")
     return name, join_below(Path(), inside, in_uri=True).as_posix()
-
-
-def is_top_folder(folder: Path) -> bool:
-    """Check for the home folder and the two highest levels of the file system, which are never searched."""
-    home = home_folder()
-    return len(folder.parts) < 3 or folder in (home, home.resolve())
 
 
 def is_private(folder: Path) -> bool:

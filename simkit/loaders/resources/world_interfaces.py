@@ -8,10 +8,10 @@ from pathlib import Path
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InterfaceError
-from simkit.loaders.resources.project_folder import enclosing_project
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.uris import is_file
 from simkit.msgs import own_interfaces
+from simkit.project_folder import enclosing_project
 from simkit.trusted_folders import join_below
 
 

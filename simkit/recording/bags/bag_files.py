@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from simkit import hidden_text
 from simkit.input_file import open_input, read_failure, read_input_text
 from simkit.recording.bags.bag_contents import BagFile, unreadable
 from simkit.recording.bags.mcap_file import McapFile
@@ -32,6 +33,7 @@ class BagLayout:
         distro: ROS distribution of the recorder, or `unknown`.
         problem: reason why the metadata of a folder is not used; empty otherwise.
         has_compressed_messages: True if each message is compressed with zstd.
+        inside: folder out of which no link may lead; None for a file that the user names.
     """
 
     folder: Path
@@ -39,6 +41,7 @@ class BagLayout:
     distro: str = "unknown"
     problem: str = ""
     has_compressed_messages: bool = field(default=False)
+    inside: Path | None = None
 
 
 def bag_layout(path: Path) -> BagLayout:
@@ -73,8 +76,8 @@ def _folder_layout(path: Path) -> BagLayout:
         raise unreadable(path, "it is not a bag: it has neither metadata.yaml nor an MCAP file")
     try:
         if not exists:
-            return BagLayout(path, found, problem="it has no metadata.yaml")
-        information = read_yaml(read_input_text(metadata))["rosbag2_bagfile_information"]
+            return BagLayout(path, found, problem="it has no metadata.yaml", inside=path)
+        information = read_yaml(read_input_text(metadata, inside=path))["rosbag2_bagfile_information"]
         # older versions wrote paths that begin with the name of the folder
         names = [Path(name).name for name in information["relative_file_paths"]]
         distro = information.get("ros_distro")
@@ -84,11 +87,13 @@ def _folder_layout(path: Path) -> BagLayout:
             list(dict.fromkeys(names)),
             distro if isinstance(distro, str) and distro else "unknown",
             has_compressed_messages=mode == "message",
+            inside=path,
         )
     except (NotYaml, KeyError, TypeError, AttributeError, ValueError) as error:
         if not found:
             raise unreadable(path, f"its metadata.yaml is invalid ({error}), and it has no other files") from None
-        return BagLayout(path, found, problem=f"its metadata.yaml is invalid ({error})")
+        problem = "its metadata.yaml is invalid" + ("" if hidden_text.is_hiding() else f" ({error})")
+        return BagLayout(path, found, problem=problem, inside=path)
     except OSError as error:
         raise unreadable(metadata, read_failure(error)) from None
 
@@ -102,7 +107,7 @@ def open_files(layout: BagLayout, stack: ExitStack) -> list[BagFile]:
     found: list[BagFile] = []
     for name in layout.names:
         path = layout.folder / name
-        if _first_bytes(path).startswith(_ZSTD):
+        if _first_bytes(path, layout.inside).startswith(_ZSTD):
             path = _extract(path, Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simkit_bag_"))))
         is_database = _first_bytes(path).startswith(_SQLITE)
         if not is_database and name.removesuffix(".zstd").endswith(".db3"):
@@ -113,9 +118,9 @@ def open_files(layout: BagLayout, stack: ExitStack) -> list[BagFile]:
     return found
 
 
-def _first_bytes(path: Path) -> bytes:
+def _first_bytes(path: Path, inside: Path | None = None) -> bytes:
     try:
-        with open_input(path) as file:
+        with open_input(path, inside=inside) as file:
             return file.read(len(_SQLITE))
     except OSError as error:
         raise unreadable(path, read_failure(error)) from None

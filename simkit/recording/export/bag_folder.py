@@ -56,7 +56,7 @@ def check_folder(path: Path, *, overwrite: bool) -> None:
 
 def _is_export(path: Path) -> bool:
     try:
-        return bool(json.loads(read_input_text(path / INDEX))["made_by"] == _MARK)
+        return bool(json.loads(read_input_text(path / INDEX, inside=path))["made_by"] == _MARK)
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
 

@@ -23,6 +23,7 @@ from simkit.testing.certify.code_hints import hints_in
 from simkit.testing.certify.outcome import STACK_FILE, CodePosition, RunOutcome, read_pickle, write_pickle
 from simkit.testing.certify.outcome_comparison import Culprit, differences, find_culprit, first_tick
 from simkit.testing.certify.variations import Variation, choose_variations
+from simkit.testing.scenarios.code_permission import permit_code
 
 _FOLDERS: Final = ("resource_paths", "plugin_paths", "interfaces")
 _LEAST_LIMIT, _TIMES = 60.0, 10.0  # wall-clock limit of a run: ten times as long as the first run, at least 60 s
@@ -190,6 +191,7 @@ def certify(
     apart: bool = True,
     wall_timeout: float | None = None,
     on_row: ProgressCallback | None = None,
+    allow_code: bool = False,
 ) -> Certificate:
     """Run a scenario several times, each in a fresh process with another environment, and compare the results.
 
@@ -203,6 +205,7 @@ def certify(
         wall_timeout: Wall-clock limit of each run [s]. If None, the first run has no limit, and the others have ten
             times its duration, at least one minute.
         on_row: Function that is called with the result of each run when the run is complete.
+        allow_code: Allow the plugin folders that the scenario's file names.
 
     Returns:
         Certificate of all runs.
@@ -210,13 +213,14 @@ def certify(
     Raises:
         InputError: SK-CERT-001 fewer than two runs; SK-CERT-002 plugins that cannot be transferred to another process;
             SK-CERT-004 the first process ended early or timed out.
-        LoadError: The world has errors.
+        LoadError: The world has errors, or SK-SCEN-008 the scenario needs code that is not allowed.
         PluginError: A plugin raised an exception during loading.
     """
     chosen = choose_variations(runs) if variations is None else list(variations)
     if len(chosen) < 2:
         message = f"SK-CERT-001 cannot certify with {len(chosen)} runs\n    help: use --runs 2 or more"
         raise InputError(message, "SK-CERT-001")
+    scenario = permit_code(scenario, allow_code)
     runner = ProcessRunner(scenario, apart=apart, limit=wall_timeout)
     first = _run_reference(runner, chosen[0])
     # if an error stopped the first run, the other runs need one more step to reach the same error

@@ -16,7 +16,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from simkit.elementary_functions import log2
-from simkit.run_spec import JsonObject
+from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.run_record.record import Array
 
 _MAGIC: Final = b"SKGOLD\x01\n"
@@ -297,3 +297,22 @@ def _join_byte_planes(data: bytes, dtype: np.dtype[Any], count: int) -> Array:
     planes = np.frombuffer(data, np.uint8).reshape(dtype.itemsize, count)
     little = np.ascontiguousarray(planes.T).view(dtype.newbyteorder("<")).reshape(-1)
     return little.astype(dtype)
+
+
+def pack_words(packer: Packer, texts: list[str]) -> dict[str, object]:
+    """Return texts as a list without repetitions, and the number of each text in this list."""
+    known = {text: number for number, text in enumerate(dict.fromkeys(texts))}
+    return {"texts": list(known), "which": packer.add(np.array([known[text] for text in texts], dtype=np.int64))}
+
+
+def unpack_words(unpacker: Unpacker, stored: JsonMapping, count: int) -> list[str]:
+    """Return the texts from `pack_words`.
+
+    Raises:
+        PackingError: The data are damaged.
+    """
+    texts = [str(text) for text in stored["texts"]]
+    which = unpacker.array(stored["which"]).tolist()
+    if len(which) != count or any(type(i) is not int or not 0 <= i < len(texts) for i in which):
+        raise PackingError("the texts do not match the messages")
+    return [texts[i] for i in which]

@@ -5,22 +5,32 @@ from __future__ import annotations
 import os
 import shlex
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, SimkitError
-from simkit.run_spec import JsonMapping, RunSpec
+from simkit.run_spec import FilePath, JsonMapping, RunSpec
 from simkit.testing.golden.cause import explain, world_changes
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
-from simkit.testing.golden.store import golden_folder, read_golden, read_history, write_golden
+from simkit.testing.golden.store import (
+    MAIN_FILE,
+    golden_folder,
+    line_of_key,
+    read_golden,
+    read_history,
+    write_golden,
+)
 from simkit.testing.golden.world_pictures import draw_worlds
 from simkit.testing.run_record.fingerprint import RENDERER
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES, run_record
+from simkit.testing.scenarios.code_permission import check_requests, permit_code
+from simkit.testing.scenarios.readable_files import OUTSIDE, ReadableFiles, Refusal, label
 from simkit.testing.scenarios.scenario_file import read_scenario
 
 CAUSE_BUDGET_SECONDS: Final = 60.0
@@ -38,6 +48,9 @@ def check_golden(
     causes: bool = True,
     budget_s: float = CAUSE_BUDGET_SECONDS,
     pictures: bool = False,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+    folders: Sequence[FilePath] = (),
 ) -> Verdict:
     """Run the scenario of a golden run again and compare the results.
 
@@ -51,13 +64,19 @@ def check_golden(
         causes: Search for the causes of differences.
         budget_s: Wall-clock limit of the search for causes [s].
         pictures: Draw the worlds of both runs if their results differ.
+        folders: Folders in which the golden run may name files, beside its own folder, the folder that contains it, and
+            its project.
+        allow_code: Allow the code that the golden run and its scenario name: plugin folders, or a scenario in Python.
+            The code has the same rights as the user.
+        plugin_paths: Allow the code in these folders only.
 
     Returns:
         Verdict. After a blessing, the verdict lists the differences from the previous golden run.
 
     Raises:
         InputError: SK-GOLDEN-002 to SK-GOLDEN-004 the golden run cannot be read; SK-GOLDEN-006 its scenario cannot be
-            run here; SK-GOLDEN-007 the run must not be blessed; or the world cannot be loaded.
+            run here; SK-GOLDEN-007 the run must not be blessed; SK-SCEN-008 it needs code that is not allowed;
+            SK-URI-003 it names a file elsewhere; or the world cannot be loaded.
         RenderError: The scenario has pictures, and no renderer is available.
     """
     if bless is not None and not bless.strip():
@@ -67,7 +86,8 @@ def check_golden(
         )
     place = golden_folder(folder)
     golden = read_golden(place)
-    current_scenario = _current_scenario(place, golden, scenario)
+    current_scenario = scenario or _current_scenario(place, golden, folders, allow_code, plugin_paths)
+    current_scenario = permit_code(current_scenario, allow_code, plugin_paths)
     with _recorded_environment(golden.environment), _run_today(golden, current_scenario) as (run, elapsed):
         comparison = compare(golden, run)
         verdict = Verdict(place.resolve().name, golden, run, comparison, None, run.checks, elapsed)
@@ -115,13 +135,21 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
     return InputError(f"{error}\n{text}", error.code)
 
 
-def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None) -> RunSpec:
+def _current_scenario(
+    place: Path,
+    golden: RunRecord,
+    folders: Sequence[FilePath],
+    allow_code: bool,
+    plugin_paths: Sequence[FilePath],
+) -> RunSpec:
     """Return the scenario to run. If the scenario has a file, read the file again, because it may have been changed."""
     stored = golden.scenario
-    if given is not None:
-        return given
+    if stored.file is not None or not (stored.test or stored.plugins):
+        refused_files(place, stored, folders).raise_if_errors()
     if stored.file is not None and stored.file.is_file():
-        return read_scenario(stored.file)
+        scripts = [request for request in stored.code_requests if not request.is_folder]
+        check_requests(scripts, allow_code, plugin_paths)
+        return read_scenario(stored.file, folders)
     if stored.file is not None:
         problem = f": its scenario {stored.file.resolve()} does not exist\n    help: restore the file, or record anew"
     elif stored.test:
@@ -136,6 +164,34 @@ def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None) -> 
     else:
         return stored
     raise InputError(f"SK-GOLDEN-006 {place}{problem}", "SK-GOLDEN-006")
+
+
+def refused_files(place: Path, scenario: RunSpec, folders: Sequence[FilePath] = ()) -> Diagnostics:
+    """Return an error for each file that a golden run names and may not name.
+
+    Args:
+        place: Folder of the golden run.
+        scenario: Scenario that the golden run stores.
+        folders: Folders of the user.
+    """
+    found = Diagnostics()
+    file = place / MAIN_FILE
+    refused: Iterator[tuple[tuple[object, ...], Refusal]]
+    files = ReadableFiles(file, folders, container=_container(place.absolute()))
+    if scenario.file is not None:  # it is read again, and names the other files
+        refusal = files.refusal(scenario.file)
+        refused = iter([] if refusal is None else [(("file",), refusal)])
+    else:
+        refused = files.refused(scenario)
+    for keys, (problem, hint) in refused:
+        found.error(OUTSIDE, f"{label(keys)}: {problem}", Where(str(file), line_of_key(place, str(keys[0]))), hint)
+    return found
+
+
+def _container(place: Path) -> Path:
+    """Return the folder that contains a golden run; for `FOLDER/golden/NAME` and the layout of pytest, `FOLDER`."""
+    layout = next((folder for folder in (place.parent, place.parent.parent) if folder.name == "golden"), place)
+    return layout.parent
 
 
 @contextmanager

@@ -10,10 +10,13 @@ from collections.abc import Collection, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from simkit import progress
 from simkit.errors import SimkitError
+from simkit.run_spec import FilePath
+
+_SAFE_PATH: Final = "PYTHONSAFEPATH"
 
 if TYPE_CHECKING:
     from simkit.testing.golden.compare.difference import Verdict
@@ -28,6 +31,9 @@ class CheckOptions:
     causes: bool = True
     budget_s: float = 60.0
     pictures: bool = False
+    allow_code: bool = False
+    plugin_paths: tuple[Path, ...] = ()
+    folders: tuple[FilePath, ...] = ()
 
 
 @dataclass
@@ -98,7 +104,7 @@ def _check_in_parallel(folders: list[Path], options: CheckOptions, jobs: int) ->
     results: list[CheckResult] = []
     with ProcessPoolExecutor(jobs, context, _end_with_parent) as pool, _progress(folders) as task:
         try:
-            with _without_interrupts():
+            with _without_interrupts(), _safe_path():
                 found = pool.map(_check_in_process, folders, [options] * len(folders))
             for result in found:
                 results.append(result)
@@ -126,6 +132,20 @@ def _without_interrupts() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _safe_path() -> Iterator[None]:
+    """Start child processes that import no file of the working directory, which `python -c` would search first."""
+    before = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_SAFE_PATH]
+        else:
+            os.environ[_SAFE_PATH] = before
 
 
 def _end_with_parent() -> None:

@@ -22,6 +22,7 @@ from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.golden.report import text_report, write_html
 from simkit.testing.run_record.record import RunRecord
+from simkit.testing.scenarios.code_permission import add_options
 from simkit.testing.scenarios.scenario_file import TOLERANCE_MODES, absolute_topic, read_scenario
 
 if TYPE_CHECKING:
@@ -95,6 +96,7 @@ class SensorRegression:
         skip: str | Sequence[str] | None = None,
         tolerances: Mapping[str, object] | Sequence[Tolerance] = (),
         seed: int | None = None,
+        allow_code: bool = False,
         **options: object,
     ) -> Verdict:
         """Run a world or scenario, and fail the test if the result differs from the golden run.
@@ -111,6 +113,7 @@ class SensorRegression:
                 scenario. Numeric tolerances also apply on the machine that recorded the golden run; then only topics
                 are compared.
             seed: Seed of the sensor noise.
+            allow_code: Allow the plugin folders that a scenario file names; `plugin_paths` allows single ones.
             options: Further arguments of `simkit.load`: `plugins`, `overrides`, `resource_paths`, …
 
         Returns:
@@ -125,7 +128,8 @@ class SensorRegression:
         scenario, sim = self._scenario(what)
         named = {"duration": duration, "seed": seed, "topics": _topic_patterns(topics), "skip": _topic_patterns(skip)}
         given = {key: value for key, value in {**named, **options}.items() if value is not None}
-        scenario = _with_tolerances(_with_arguments(scenario, given, sim is not None), tolerances)
+        scenario = _with_arguments(scenario, given, is_open=sim is not None, allow_code=allow_code)
+        scenario = _with_tolerances(scenario, tolerances)
         if sim is not None or scenario.plugins:
             scenario = replace(scenario, test=self._place.short_test)
         place = self._place_for(name)
@@ -284,7 +288,7 @@ def safe_name(text: str) -> str:
     return f"{plain[:_LONGEST]}-{hashlib.sha256(text.encode('utf-8', 'surrogatepass')).hexdigest()[:8]}"
 
 
-def _with_arguments(scenario: RunSpec, arguments: JsonObject, is_open: bool) -> RunSpec:
+def _with_arguments(scenario: RunSpec, arguments: JsonObject, *, is_open: bool, allow_code: bool) -> RunSpec:
     """Return a scenario whose fields are replaced by a test's arguments."""
     own = {
         key: arguments.pop(key)
@@ -300,7 +304,7 @@ def _with_arguments(scenario: RunSpec, arguments: JsonObject, is_open: bool) -> 
     for key in _SCENARIO_ARGUMENTS:
         if key in own:
             own[key] = (own[key],) if isinstance(own[key], str) else tuple(own[key])
-    return replace(scenario, **own, options=cast(LoadOptions, {**scenario.options, **arguments}))
+    return replace(add_options(scenario, cast(LoadOptions, arguments), allow_code), **own)
 
 
 def _topic_patterns(patterns: str | Sequence[str] | None) -> tuple[str, ...] | None:

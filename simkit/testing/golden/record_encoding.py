@@ -5,12 +5,14 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, Final, cast
 
 import numpy as np
 
+from simkit.code_requests import CodeRequest, folder_request
+from simkit.diagnostic_record import NOWHERE, Where
 from simkit.run_spec import (
     EMPTY_SPACE,
     GROUND,
@@ -22,7 +24,7 @@ from simkit.run_spec import (
     Tolerance,
     change_package_paths,
 )
-from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
+from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker, pack_words, unpack_words
 from simkit.testing.golden.compare.tolerances import storage_step
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Array, Column, Pictures, RunRecord, States, Stream
@@ -52,10 +54,9 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
     if is_long_text(scenario.world):
         text = scenario.world.encode("utf-8", "surrogatepass")
         found["world"] = {"sha256": hashlib.sha256(text).hexdigest(), "bytes": len(text)}
-    defaults = RunSpec("")
     for name in _PLAIN:
         value = getattr(scenario, name)
-        if value != getattr(defaults, name):
+        if value != getattr(RunSpec(""), name):
             found[name] = list(value) if isinstance(value, tuple) else value
     if scenario.spawn:
         found["spawn"] = [_move_spawn(str(text), lambda p: place(p) if Path(scenario.folder, p).exists() else p)
@@ -80,13 +81,14 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
     return found
 
 
-def decode_scenario(plain: JsonMapping, folder: Path) -> RunSpec:
+def decode_scenario(plain: JsonMapping, folder: Path, where: Callable[[str], Where] = lambda _: NOWHERE) -> RunSpec:
     """Decode a scenario; plugins created in Python are represented by the names of their classes.
 
     Args:
         plain: Data from `encode_scenario`. A world that is a long XML text is not included; the decoded world is then
             empty.
         folder: Folder of the golden run.
+        where: Function that returns the position of a key in the file.
 
     Raises:
         ValueError, TypeError, KeyError: The data are not a scenario.
@@ -111,11 +113,17 @@ def decode_scenario(plain: JsonMapping, folder: Path) -> RunSpec:
     given["tolerances"] = tuple(Tolerance(**_known_fields(one, Tolerance)) for one in plain.get("tolerances", ()))
     checks = (_known_fields(one, Check) for one in plain.get("checks", ()))
     given["checks"] = tuple(Check(**{**one, "models": tuple(one.get("models", ()))}) for one in checks)
-    options = {name: _move_option(name, value, place) for name, value in dict(plain.get("options", {})).items()}
+    stored = _known_fields(plain.get("options", {}), LoadOptions)
+    options = {name: _move_option(name, value, place) for name, value in stored.items()}
+    folders = map(str, cast(list[str], options.pop("plugin_paths", ())))
+    requests = [folder_request(os.path.relpath(one, folder), Path(one), where("plugin_paths")) for one in folders]
     given["plugins"] = tuple(map(str, plain.get("plugins", ())))
     file = Path(place(plain["file"])) if plain.get("file") else None
+    if file is not None and file.suffix.lower() == ".py":  # reading the file runs it
+        requests.append(CodeRequest(f"the golden run names the scenario {file.name!r:.200}", file, where("file")))
     world = "" if isinstance(plain["world"], Mapping) else str(plain["world"])
-    return RunSpec(world, options=cast(LoadOptions, options), folder=folder, file=file, **given)
+    given |= {"code_requests": tuple(requests), "options": options}
+    return RunSpec(world, folder=folder, file=file, **given)
 
 
 def is_long_text(world: str) -> bool:
@@ -181,7 +189,7 @@ def _non_default_fields(value: Any, default: Any) -> dict[str, object]:
 
 
 def _known_fields(plain: Mapping[str, object], kind: type) -> JsonObject:
-    names = {field.name for field in fields(kind)}
+    names = {field.name for field in fields(kind)} if is_dataclass(kind) else kind.__annotations__.keys()
     return {str(name): value for name, value in plain.items() if name in names}
 
 
@@ -269,7 +277,7 @@ def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str,
         "type": stream.type_name,
         "times": packer.add(stream.times_ns),
         "columns": columns,
-        "words": {path: _pack_words(packer, texts) for path, texts in stream.words.items()},
+        "words": {path: pack_words(packer, texts) for path, texts in stream.words.items()},
         "statistics": {path: _pack_statistics(packer, one) for path, one in stream.statistics.items()},
         "chunks": list(stream.chunks),
         "digest": stream.digest,
@@ -301,7 +309,7 @@ def _unpack_stream(unpacker: Unpacker, topic: str, stored: JsonMapping) -> Strea
         ):
             raise PackingError(f"{topic}.{path} has values of {rows} messages, but the topic has {count}")
         stream.columns[str(path)] = column
-    stream.words = {str(path): _unpack_words(unpacker, one, count) for path, one in stored["words"].items()}
+    stream.words = {str(path): unpack_words(unpacker, one, count) for path, one in stored["words"].items()}
     stream.statistics = {
         str(path): NoiseStatistics(int(one["count"]), *(unpacker.array(one[name]) for name in _STATISTICS))
         for path, one in stored["statistics"].items()
@@ -322,19 +330,6 @@ def _unpack_pictures(unpacker: Unpacker, stored: JsonMapping, count: int) -> Pic
         raise PackingError("the pictures refer to messages that do not exist")
     height, width = (int(one) for one in stored["shape"])
     return Pictures(small, (height, width), str(stored["encoding"]), tiles, kept, hashes)
-
-
-def _pack_words(packer: Packer, texts: list[str]) -> dict[str, object]:
-    known = {text: number for number, text in enumerate(dict.fromkeys(texts))}
-    return {"texts": list(known), "which": packer.add(np.array([known[text] for text in texts], dtype=np.int64))}
-
-
-def _unpack_words(unpacker: Unpacker, stored: JsonMapping, count: int) -> list[str]:
-    texts = [str(text) for text in stored["texts"]]
-    which = unpacker.array(stored["which"]).tolist()
-    if len(which) != count or any(type(i) is not int or not 0 <= i < len(texts) for i in which):
-        raise PackingError("the texts do not match the messages")
-    return [texts[i] for i in which]
 
 
 def _pack_statistics(packer: Packer, statistics: NoiseStatistics) -> dict[str, object]:

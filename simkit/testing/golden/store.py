@@ -12,17 +12,20 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Final
 
 from simkit import file_lock
+from simkit.diagnostic_record import Where
 from simkit.errors import InputError
-from simkit.input_file import read_input
+from simkit.input_file import read_input, read_input_text
 from simkit.install_command import install_command
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
 from simkit.testing.golden.record_encoding import decode_record, decode_scenario, encode_record, encode_scenario
 from simkit.testing.run_record.record import RunRecord
+from simkit.testing.scenarios.code_permission import permit_code
 
 FORMAT: Final = 1
 MAIN_FILE: Final = "golden.json"
@@ -66,7 +69,7 @@ def write_golden(
     text = json.dumps(
         {
             "format": FORMAT,
-            "scenario": encode_scenario(record.scenario, place),
+            "scenario": encode_scenario(permit_code(record.scenario, allow_code=True), place),  # stored, not run
             **about,
             "data": {"file": name, "sha256": digest, "bytes": len(data)},
             "history": [*history, entry][-_MAX_HISTORY:],
@@ -99,7 +102,7 @@ def read_golden(folder: str | os.PathLike[str]) -> RunRecord:
     if hashlib.sha256(data).hexdigest() != digest:
         raise _damaged_error(place / name, f"does not have the hash that {MAIN_FILE} lists")
     try:
-        return decode_record(main, data, decode_scenario(main["scenario"], place))
+        return decode_record(main, data, decode_scenario(main["scenario"], place, partial(_where, place)))
     except PackingError as error:
         raise _damaged_error(place / name, f"is damaged: {error}") from None
     except (ValueError, TypeError, KeyError, AttributeError, IndexError, OverflowError, RecursionError) as error:
@@ -112,7 +115,7 @@ def _read_main_and_data(place: Path) -> tuple[JsonObject, str, str, bytes]:
         main = read_main(place)
         name, digest = _read_data(place, main)
         try:
-            return main, name, digest, read_input(place / name, _MAX_DATA_BYTES)
+            return main, name, digest, read_input(place / name, _MAX_DATA_BYTES, inside=place)
         except FileNotFoundError as error:  # another process may have replaced the golden run just now
             if trial == _READ_ATTEMPTS - 1 or read_main(place) == main:
                 raise _damaged_error(place / name, f"cannot be read: {error.strerror}") from None
@@ -129,7 +132,7 @@ def read_main(folder: Path) -> JsonObject:
     """
     path = folder / MAIN_FILE
     try:
-        text = read_input(path, _MAX_TEXT_BYTES)
+        text = read_input(path, _MAX_TEXT_BYTES, inside=folder)
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(
             f"SK-GOLDEN-002 {folder}: there is no golden run (no {MAIN_FILE})\n"
@@ -157,10 +160,23 @@ def read_main(folder: Path) -> JsonObject:
     return main
 
 
+def _where(folder: Path, key: str) -> Where:
+    """Return the position of a key in `golden.json`; its first line if the key is not written plainly."""
+    text = read_input(folder / MAIN_FILE, _MAX_TEXT_BYTES)
+    before = text.partition(f'"{key}"'.encode())[0]
+    return Where(str(folder / MAIN_FILE), 1 if before == text else before.count(b"\n") + 1)
+
+
 def read_history(folder: str | os.PathLike[str]) -> list[JsonMapping]:
     """Return the history of a golden run, oldest entry first."""
     found = read_main(golden_folder(folder)).get("history", [])
     return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
+
+
+def line_of_key(folder: Path, key: str) -> int | None:
+    """Return the line of `golden.json` in which a key of the scenario is; None without such a line."""
+    lines = read_input_text(folder / MAIN_FILE, _MAX_TEXT_BYTES, inside=folder).split("\n")
+    return next((number for number, line in enumerate(lines, 1) if line.lstrip().startswith(f'"{key}":')), None)
 
 
 def golden_folder(path: str | os.PathLike[str]) -> Path:

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
+from simkit.code_requests import CodeRequest
 from simkit.diagnostics import Diagnostics
-from simkit.run_spec import JsonMapping, RunSpec
-from simkit.testing.scenarios.scenario_file import is_scalar_text, parse_scenario, yaml_value_text
-from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
+from simkit.run_spec import FilePath, JsonMapping, RunSpec
+from simkit.testing.scenarios.code_permission import check_requests, permit_code
+from simkit.testing.scenarios.scenario_file import parse_scenario
+from simkit.testing.scenarios.yaml_document import (
+    Document,
+    ValueReader,
+    is_scalar_text,
+    resolve_spawn_file,
+    yaml_value_text,
+)
 from simkit.yaml_reader import finite_number
 
 _KEYS: Final = ("title", "text", "hand_in", "robot", "parameters", "pass", "runs")
@@ -40,11 +49,13 @@ class Exercise:
         title: Title in one line.
         text: Description of the task.
         hand_in: Name of the file to submit.
+        own_code: Request to run the file of that name in the folder of the exercise; None without a file to submit.
         robot: Scoped name of the entity that the plugin is attached to; empty if the world file names the plugin
             itself.
         pass_mark: Share of the points needed to pass, 0 to 1.
         runs: Runs in which the plugin is tested.
         file: File of the exercise.
+        folders: Folders of the user in which the file may name files.
     """
 
     title: str
@@ -54,16 +65,38 @@ class Exercise:
     pass_mark: float
     runs: tuple[ExerciseRun, ...]
     file: Path
+    own_code: CodeRequest | None = None
+    folders: tuple[FilePath, ...] = ()
+
+    @property
+    def code_requests(self) -> tuple[CodeRequest, ...]:
+        """Plugin folders that the file names and the user has not allowed."""
+        return tuple(dict.fromkeys(request for run in self.runs for request in run.scenario.code_requests))
 
 
-def read_exercise(path: str | Path) -> Exercise:
+def read_exercise(
+    path: str | Path,
+    folders: Sequence[FilePath] = (),
+    *,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+) -> Exercise:
     """Read an exercise from a YAML file.
 
+    Without a permission, an exercise with plugin folders can be read, but not run.
+
+    Args:
+        path: File.
+        folders: Folders in which the file may name files, beside its own folder and its project.
+        allow_code: Allow the plugin folders that the file names. Their code has the same rights as the user.
+        plugin_paths: Allow these folders only.
+
     Raises:
-        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006); the error lists all of them.
+        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006, SK-URI-003); the error lists all of
+            them. SK-SCEN-008: it names other folders than `plugin_paths`.
     """
     diagnostics = Diagnostics()
-    document = Document(Path(path), diagnostics)
+    document = Document(Path(path), diagnostics, folders)
     if document.values is None:
         diagnostics.raise_if_errors()
     scenario = parse_scenario(document, also=("exercise",))
@@ -74,7 +107,14 @@ def read_exercise(path: str | Path) -> Exercise:
     fields = {} if block is None else document.only(block, _KEYS, "an exercise", "exercise")
     exercise = _ExerciseReader(document, fields, ("exercise",)).exercise(scenario)
     diagnostics.raise_if_errors()
-    return exercise
+    return permit_exercise(exercise, allow_code, plugin_paths) if allow_code or plugin_paths else exercise
+
+
+def permit_exercise(exercise: Exercise, allow_code: bool = False, plugin_paths: Sequence[FilePath] = ()) -> Exercise:
+    """Return an exercise whose plugin folders are allowed; see `permit_code`."""
+    check_requests(exercise.code_requests, allow_code, plugin_paths)
+    runs = (replace(one, scenario=permit_code(one.scenario, allow_code, plugin_paths)) for one in exercise.runs)
+    return replace(exercise, runs=tuple(runs))
 
 
 class _ExerciseReader(ValueReader):
@@ -90,7 +130,12 @@ class _ExerciseReader(ValueReader):
         runs = self._runs(scenario, parameters)
         title, text, hand_in, robot = (self._stripped(key) for key in ("title", "text", "hand_in", "robot"))
         file = self._document.path
-        return Exercise(title or scenario.title, text, hand_in, robot, self._pass_mark(), runs, file)
+        words = f"the exercise names the plugin {hand_in!r:.200}"
+        own = (
+            CodeRequest(words, file.parent / hand_in, self._document.where("exercise", "hand_in")) if hand_in else None
+        )
+        title, mark = title or scenario.title, self._pass_mark()
+        return Exercise(title, text, hand_in, robot, mark, runs, file, own, self._document.files.folders)
 
     def _runs(self, scenario: RunSpec, parameters: JsonMapping) -> tuple[ExerciseRun, ...]:
         listed = self._fields.get("runs", [{}])
@@ -107,7 +152,10 @@ class _ExerciseReader(ValueReader):
     def run(self, number: int, scenario: RunSpec, parameters: JsonMapping) -> ExerciseRun:
         duration = self._number("duration", scenario.duration, above=0.0)
         folder = self._document.path.parent
-        spawn = (resolve_spawn_file(folder, one) for one in self._texts_of(self._fields.get("spawn", []), "spawn"))
+        listed = self._texts_of(self._fields.get("spawn", []), "spawn")
+        spawn = tuple(resolve_spawn_file(folder, one) for one in listed)
+        for place, one in enumerate(spawn):
+            self._document.refuses(self._document.files.spawn_refusal(one, folder), *self._at, "spawn", place)
         changed = replace(
             scenario,
             seed=self._whole("seed", scenario.seed, 0),

@@ -17,9 +17,9 @@ from simkit.errors import InputError
 from simkit.float_sum import float_sum
 from simkit.input_file import read_input
 from simkit.progress import report_each
-from simkit.run_spec import JsonObject
+from simkit.run_spec import FilePath, JsonObject
 from simkit.testing.junit import JunitCase
-from simkit.testing.scenarios.exercise import Exercise, ExerciseRun
+from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, permit_exercise
 
 _SPARE_SECONDS: Final = 20.0  # additional wall time for starting and ending the process of a run [s]
 _MAX_RESULT_BYTES: Final = 64 << 20
@@ -102,23 +102,39 @@ class Grade:
         return self.points >= self.exercise.pass_mark * self.worth - 1e-9
 
 
-def grade(exercise: Exercise, hand_in: Path | None = None, pictures: Path | None = None) -> Grade:
+def grade(
+    exercise: Exercise,
+    hand_in: Path | None = None,
+    pictures: Path | None = None,
+    *,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+) -> Grade:
     """Run an exercise with a submitted plugin, each run in its own process.
 
     Args:
         exercise: Exercise.
         hand_in: File of the plugin; None if the exercise needs no submission.
         pictures: Folder for a picture of each run's path.
+        allow_code: Allow the plugin folders that the exercise names. Their code has the same rights as the user.
+        plugin_paths: Allow these folders only.
 
     Raises:
-        InputError: The exercise itself has an error: its world, its commands or its checks.
+        InputError: The exercise itself has an error: its world, its commands or its checks; or SK-SCEN-008 it needs
+            code that is not allowed.
     """
-    (graded,) = grade_all(exercise, [hand_in], pictures)
+    (graded,) = grade_all(exercise, [hand_in], pictures, allow_code=allow_code, plugin_paths=plugin_paths)
     return graded
 
 
 def grade_all(
-    exercise: Exercise, hand_ins: Sequence[Path | None], pictures: Path | None = None, jobs: int = 1
+    exercise: Exercise,
+    hand_ins: Sequence[Path | None],
+    pictures: Path | None = None,
+    jobs: int = 1,
+    *,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
 ) -> Iterator[Grade]:
     """Run an exercise with several plugins; yield the grades in the order of the plugins, each as soon as possible.
 
@@ -127,10 +143,13 @@ def grade_all(
         hand_ins: Files of plugins; None for a run without a submission.
         pictures: Folder for a picture of each run's path.
         jobs: Number of parallel processes.
+        allow_code: Allow the plugin folders that the exercise names. Their code has the same rights as the user.
+        plugin_paths: Allow these folders only.
 
     Raises:
-        InputError: The exercise itself has an error.
+        InputError: The exercise itself has an error, or SK-SCEN-008 it needs code that is not allowed.
     """
+    exercise = permit_exercise(exercise, allow_code, plugin_paths)
     names = short_labels(hand_ins)
     processes = ChildProcesses()
     with ThreadPoolExecutor(jobs) as pool:
@@ -199,11 +218,13 @@ def _run_in_process(
         token = secrets.token_hex()
         job = {
             "exercise": str(exercise.file.absolute()),
+            "folders": [os.path.abspath(folder) for folder in exercise.folders],  # noqa: PTH100 (links stay)
             "hand_in": "" if hand_in is None else str(hand_in.absolute()),
             "number": number,
             "target": str(target),
             "picture": picture,
             "token": token,
+            "plugin_paths": [str(Path(one).absolute()) for one in variation.scenario.options.get("plugin_paths", ())],
         }
         job_file = Path(folder) / "job.json"
         job_file.write_text(json.dumps(job), encoding="utf-8")

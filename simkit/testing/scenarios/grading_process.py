@@ -20,13 +20,14 @@ def main(job_file: str) -> None:
     """Run one variation of an exercise and write the result to a JSON file.
 
     Args:
-        job_file: JSON file with the job: `exercise` and `hand_in` (files; empty for none), `number` of the run,
-            `target` (file for the result), `picture` (file for a picture of the path; empty for none), and `token`,
-            which is copied to the result. The file is removed at once, so that the plugin cannot read the token.
+        job_file: JSON file with the job: `exercise` and `hand_in` (files; empty for none), `folders` (in which the
+            exercise may name files), `number` of the run, `target` (file for the result), `picture` (file for a picture
+            of the path; empty for none), `plugin_paths` (folders of the exercise that are allowed), and `token`, which
+            is copied to the result. The file is removed at once, so that the plugin cannot read the token.
     """
     job = json.loads(Path(job_file).read_text(encoding="utf-8"))
     Path(job_file).unlink()
-    exercise = read_exercise(job["exercise"])
+    exercise = read_exercise(job["exercise"], job["folders"], plugin_paths=job["plugin_paths"])
     hand_in = Path(job["hand_in"]) if job["hand_in"] else None
     found = _run_exercise(exercise, exercise.runs[job["number"]], hand_in, job["picture"])
     try:

@@ -5,11 +5,12 @@ All problems of a file are reported at once, with file and line.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Final, cast
 
+from simkit.code_requests import CodeRequest, folder_request
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
 from simkit.recording.bags.reader import open_bag_to_read
@@ -19,6 +20,7 @@ from simkit.run_spec import (
     RENDERERS,
     Check,
     CheckKind,
+    FilePath,
     JsonObject,
     LoadOptions,
     RunSpec,
@@ -26,8 +28,16 @@ from simkit.run_spec import (
     change_package_paths,
     named_values,
 )
+from simkit.testing.scenarios.code_permission import permit_code
 from simkit.testing.scenarios.python_file import load_python_scenario
-from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
+from simkit.testing.scenarios.yaml_document import (
+    Document,
+    ValueReader,
+    is_scalar_text,
+    resolve_params_file,
+    resolve_spawn_file,
+    yaml_value_text,
+)
 
 _SCENARIO_SUFFIXES: Final = (".yaml", ".yml", ".py")
 _CHECKS: Final[dict[str, CheckKind]] = {
@@ -62,27 +72,39 @@ def is_scenario_file(source: str | Path) -> bool:
     return Path(source).suffix.lower() in _SCENARIO_SUFFIXES
 
 
-def read_scenario(path: str | Path) -> RunSpec:
+def read_scenario(
+    path: str | Path,
+    folders: Sequence[FilePath] = (),
+    *,
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+) -> RunSpec:
     """Read a scenario file.
+
+    Without a permission, the plugin folders of a YAML file are in `code_requests`, and the result cannot be run.
 
     Args:
         path: YAML file, or Python file with `scenario = RunSpec(...)`, which is run.
+        folders: Folders in which a YAML file may name files, beside its own folder and its project.
+        allow_code: Allow the plugin folders that a YAML file names. Their code has the same rights as the user.
+        plugin_paths: Allow these folders only; the file must not name others.
 
     Raises:
-        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-005); the error lists all of them.
+        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-005, SK-URI-003); the error lists all of them.
+            SK-SCEN-008: it names other folders than `plugin_paths`.
     """
     file = Path(path)
     diagnostics = Diagnostics()
     if file.suffix.lower() == ".py":
         return load_python_scenario(file, diagnostics)
-    document = Document(file, diagnostics)
+    document = Document(file, diagnostics, folders)
     if document.values is None:
         diagnostics.raise_if_errors()
     scenario = parse_scenario(document)
     if diagnostics.has_errors:
         _check_world(scenario, diagnostics)
     diagnostics.raise_if_errors()
-    return scenario
+    return permit_code(scenario, allow_code, plugin_paths) if allow_code or plugin_paths else scenario
 
 
 def _check_world(scenario: RunSpec, diagnostics: Diagnostics) -> None:
@@ -125,7 +147,7 @@ class ScenarioReader(ValueReader):
         if "timeout" in self._fields and "duration" in self._fields:
             message = "'timeout' and 'duration' both define the end of the run"
             self._document.error("SK-SCEN-003", message, "timeout", hint="with 'until', keep only 'timeout'")
-        return RunSpec(
+        found = RunSpec(
             world=self._text("world", ""),
             duration=self._number("duration", self._bag_duration(), least=0.0) or 0.0,
             seed=self._whole("seed", 0, 0),
@@ -147,9 +169,12 @@ class ScenarioReader(ValueReader):
             wall_timeout=wall,
             checks=tuple(check for key, kind in _CHECKS.items() for check in self._checks(key, kind)),
             options=cast(LoadOptions, self._options()),
+            code_requests=self._code_requests(),
             folder=self._document.path.parent,
             file=self._document.path,
         )
+        refused = [self._document.refuses(one, *keys) for keys, one in self._document.files.refused(found)]
+        return replace(found, world="") if refused else found  # nobody reads the world of such a file
 
     # ------------------------------------------------------------------ world and inputs
 
@@ -188,7 +213,9 @@ class ScenarioReader(ValueReader):
         value = self._fields.get("commands", ())
         try:
             if isinstance(value, str):
-                return tuple(script_items(self._document.path.parent / value))
+                script = self._document.path.parent / value
+                is_refused = self._document.refuses(self._document.files.refusal(script), "commands")
+                return () if is_refused else tuple(script_items(script))
             if isinstance(value, (list, tuple)):
                 places = [str(self._document.where("commands", number)) for number in range(len(value))]
                 return tuple(validate_items(zip(value, places, strict=True)))
@@ -212,8 +239,11 @@ class ScenarioReader(ValueReader):
             if "play" in self._fields:
                 self._wrong(bag_name, "the name of a bag", "play")
             return 10.0
+        file = self._document.path.parent / bag_name
+        if not self._document.files.allows(file):  # reported with the other files
+            return 10.0
         try:
-            with open_bag_to_read(self._document.path.parent / bag_name) as bag:
+            with open_bag_to_read(file) as bag:
                 return bag.duration
         except InputError as error:
             self._document.error(error.code, f"play: {str(error).removeprefix(error.code).strip()}", "play")
@@ -222,11 +252,11 @@ class ScenarioReader(ValueReader):
     def _options(self) -> dict[str, object]:
         folder = self._document.path.parent
         found: dict[str, object] = {}
-        for key in ("resource_paths", "plugin_paths", "interfaces"):
+        for key in ("resource_paths", "interfaces"):
             if key in self._fields:
                 found[key] = tuple(folder / one for one in self._texts(key))
         if "params_files" in self._fields:
-            found["params_files"] = tuple(_resolve_params_file(folder, one) for one in self._texts("params_files"))
+            found["params_files"] = tuple(resolve_params_file(folder, one) for one in self._texts("params_files"))
         if "package_paths" in self._fields:
             found["package_paths"] = change_package_paths(
                 self._named_or_listed("package_paths"), lambda one: folder / one
@@ -242,6 +272,11 @@ class ScenarioReader(ValueReader):
             if found["renderer"] not in RENDERERS:
                 self._wrong(found.pop("renderer"), "auto, gl or software", "renderer")
         return found
+
+    def _code_requests(self) -> tuple[CodeRequest, ...]:
+        folder, found = self._document.path.parent, self._texts("plugin_paths")
+        places = [self._document.where("plugin_paths", number) for number in range(len(found))]
+        return tuple(folder_request(one, folder / one, where) for one, where in zip(found, places, strict=True))
 
     # ------------------------------------------------------------------ comparison
 
@@ -359,23 +394,3 @@ class ScenarioReader(ValueReader):
 def absolute_topic(topic: str) -> str:
     """Return a topic or topic pattern with a leading slash."""
     return topic if topic.startswith(("/", "*")) or not topic else "/" + topic
-
-
-def is_scalar_text(value: object) -> bool:
-    """Check whether `yaml_value_text` can convert a YAML value."""
-    if isinstance(value, list):
-        return all(is_scalar_text(one) and not isinstance(one, list) for one in value)
-    return isinstance(value, (str, int, float))
-
-
-def yaml_value_text(value: object) -> str:
-    """Convert a YAML value to text: `true` or `false` for a bool, numbers of a list separated by spaces."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    return " ".join(map(yaml_value_text, value)) if isinstance(value, list) else str(value)
-
-
-def _resolve_params_file(folder: Path, text: str) -> str:
-    """Resolve the file in `[MODEL=]FILE` relative to the scenario's folder."""
-    model, equals, file = text.rpartition("=")
-    return f"{model}{equals}{folder / file}"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from simkit import progress
 from simkit.recording.command_script import Commands, commands_of, read_script, steady_velocity
 from simkit.run_spec import RunSpec
+from simkit.testing.scenarios.code_permission import permit_code
 
 if TYPE_CHECKING:
     from simkit.recording.bags.playback import Playback
@@ -39,18 +40,21 @@ class ScenarioResult:
         return self.reason != "wall_timeout" and all(result.passed for result in self.results)
 
 
-def open_scenario(scenario: RunSpec, **more: Any) -> Simulation:
+def open_scenario(scenario: RunSpec, *, allow_code: bool = False, **more: Any) -> Simulation:
     """Load the world of a scenario at t = 0.
 
     Args:
         scenario: Scenario.
-        more: Further keyword arguments of `simkit.load`; they override the arguments in the scenario.
+        allow_code: Allow the plugin folders that the scenario's file names. Their code has the same rights as the user.
+        more: Further keyword arguments of `simkit.load`; they override the arguments in the scenario. `plugin_paths`
+            allow the folders in them.
 
     Raises:
-        LoadError: The world has errors.
+        LoadError: The world has errors, or SK-SCEN-008 the scenario needs code that is not allowed.
     """
     from simkit.build import load
 
+    scenario = permit_code(scenario, allow_code, more.get("plugin_paths", ()))
     return load(scenario.source, **{**scenario.load_arguments(), **more})
 
 
@@ -60,6 +64,7 @@ def run_scenario(
     on_slice: Callable[[], None] | None = None,
     *,
     absent: Literal["error", "wait"] = "error",
+    allow_code: bool = False,
 ) -> ScenarioResult:
     """Run a scenario to its end with its commands and checks.
 
@@ -69,14 +74,17 @@ def run_scenario(
         on_slice: Function that is called between two steps, every 0.25 s of simulated time or more often.
         absent: Behaviour of a condition on a topic without a publisher. "error" raises an error. "wait" waits for a
             publisher, and the check fails if there is none until the end of the run.
+        allow_code: Allow the plugin folders that the scenario's file names, as in `open_scenario`.
 
     Raises:
-        InputError: A command or a check does not fit the world.
+        InputError: A command or a check does not fit the world, or SK-SCEN-008 the scenario needs code that is not
+            allowed.
         SimulationDiverged: The state became NaN or infinite.
         PluginError: A plugin raised an exception.
     """
     from simkit.testing.conditions import Watch
 
+    scenario = permit_code(scenario, allow_code)
     wall_deadline = None if scenario.wall_timeout is None else time.perf_counter() + scenario.wall_timeout
     with (
         ScenarioCommands(scenario, sim) as commands,

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean, shorten
 from simkit.input_file import read_failure, read_input_text
+from simkit.run_spec import FilePath
+from simkit.testing.scenarios.readable_files import OUTSIDE, ReadableFiles, Refusal, label
 from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 
 MAX_BYTES = 1 << 20  # size limit of a scenario file [bytes]; people write these files by hand
@@ -23,13 +25,16 @@ class Document:
     Args:
         path: File.
         diagnostics: Diagnostics for problems in the file.
+        folders: Folders of the user in which the file may name files, beside its own folders.
 
     Attributes:
         values: Plain values; None if the file is not YAML.
+        files: Check of the files that the document names.
     """
 
-    def __init__(self, path: Path, diagnostics: Diagnostics) -> None:
+    def __init__(self, path: Path, diagnostics: Diagnostics, folders: Sequence[FilePath] = ()) -> None:
         self.path, self.diagnostics = path, diagnostics
+        self.files = ReadableFiles(path, folders)
         self.values: object = None
         self._lines: dict[tuple[object, ...], int] = {}
         text = self._text()
@@ -45,6 +50,12 @@ class Document:
     def error(self, code: str, message: str, *keys: object, hint: str = "") -> None:
         """Report an error of a value."""
         self.diagnostics.error(code, message, self.where(*keys), hint)
+
+    def refuses(self, refusal: Refusal | None, *keys: object) -> bool:
+        """Report the refusal of a file that the document names; return False for a file that it may name."""
+        if refusal is not None:
+            self.error(OUTSIDE, f"{label(keys)}: {refusal[0]}", *keys, hint=refusal[1])
+        return refusal is not None
 
     def only(self, value: object, allowed: tuple[str, ...], what: str, *keys: object) -> dict[str, object]:
         """Return the allowed keys of a mapping; report other keys and suggest the closest name."""
@@ -109,6 +120,26 @@ def resolve_spawn_file(folder: Path, spawn: str) -> str:
     model, colon, rest = spawn.partition(":")
     is_here = model and os.path.exists(folder / model)  # noqa: PTH110 (a long name is no error)
     return f"{folder / model}{colon}{rest}" if is_here else spawn
+
+
+def resolve_params_file(folder: Path, text: str) -> str:
+    """Resolve the file in `[MODEL=]FILE` relative to a folder."""
+    model, equals, file = text.rpartition("=")
+    return f"{model}{equals}{folder / file}"
+
+
+def is_scalar_text(value: object) -> bool:
+    """Check whether `yaml_value_text` can convert a YAML value."""
+    if isinstance(value, list):
+        return all(is_scalar_text(one) and not isinstance(one, list) for one in value)
+    return isinstance(value, (str, int, float))
+
+
+def yaml_value_text(value: object) -> str:
+    """Convert a YAML value to text: `true` or `false` for a bool, numbers of a list separated by spaces."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return " ".join(map(yaml_value_text, value)) if isinstance(value, list) else str(value)
 
 
 def short_repr(value: object) -> str:

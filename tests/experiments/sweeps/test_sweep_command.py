@@ -88,7 +88,7 @@ def test_a_change_of_the_world_is_another_sweep(folder: Path) -> None:
 )
 def test_problems_of_a_file_name_its_lines(folder: Path, change: Any, messages: list[str]) -> None:
     (folder / "sweep.yaml").write_text(SWEEP.replace(*change), encoding="utf-8")
-    found = command("sweep.yaml", code=2)
+    found = command("sweep.yaml", "--allow-code", code=2)
     for message in messages:
         assert message in found
 
@@ -100,7 +100,7 @@ def test_correlated_parameters_and_python_metrics_come_from_the_file(folder: Pat
         " correlation: [[1, 0.9], [0.9, 1]]}\nseeds: [4, 5]\nsamples: 2\nmetrics: {c: {python: cost.py:cost}}\n"
     )
     (folder / "sweep.yaml").write_text(text, encoding="utf-8")
-    command("sweep.yaml", "--jobs", "2")
+    command("sweep.yaml", "--jobs", "2", "--plugin-path", ".")
     lines = (folder / "sweep_sweep" / "results.csv").read_text().splitlines()
     assert lines[0].startswith("run,seed,side,g,c,") and [line.split(",")[4] for line in lines[1:]] == ["8", "10"] * 2
 

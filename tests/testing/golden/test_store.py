@@ -23,6 +23,7 @@ from simkit.testing.golden.record_encoding import decode_scenario, encode_scenar
 from simkit.testing.golden.store import find_goldens, read_golden, read_history, write_golden
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.scenarios.code_permission import permit_code
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +88,8 @@ def test_a_scenario_is_decoded_as_it_was_encoded(tmp_path: Path) -> None:
     )  # fmt: skip
     plain = encode_scenario(scenario, tmp_path / "golden" / "g")
     back = decode_scenario(json.loads(json.dumps(plain)), tmp_path / "golden" / "g")
+    assert back.code_requests and "plugin_paths" not in back.options
+    back = permit_code(back, allow_code=True)
     assert encode_scenario(back, tmp_path / "golden" / "g") == plain
     assert plain["world"] == "../../ball.sdf"
     assert back.tolerances == scenario.tolerances and back.checks == scenario.checks

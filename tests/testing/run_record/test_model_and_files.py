@@ -97,8 +97,8 @@ def test_a_plugin_that_prints_forks_or_changes_the_folder_is_recorded(
     )
     (folder / "s c.yaml").write_text("world: w.sdf\nduration: 0.05\nplugin_paths: [.]\n")
     monkeypatch.chdir(folder)
-    done = CliRunner().invoke(app, ["golden", "record", "s c.yaml", "--out", "gold en"])
+    done = CliRunner().invoke(app, ["golden", "record", "s c.yaml", "--out", "gold en", "--plugin-path", "."])
     assert done.exit_code == 0, done.output
     assert (folder / "gold en" / "golden.json").is_file() and Path.cwd() == folder
-    done = CliRunner().invoke(app, ["golden", "check", "gold en", "--json"])
+    done = CliRunner().invoke(app, ["golden", "check", "gold en", "--json", "--plugin-path", "."])
     assert done.exit_code == 0 and json.loads(done.stdout)["passed"] and "stepping" in done.stderr

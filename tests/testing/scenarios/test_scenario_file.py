@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -16,11 +17,11 @@ BALL = """<sdf version="1.9"><world name="default"><model name="ball"><pose>0 0 
 <sensor name="imu" type="imu"><update_rate>100</update_rate><topic>imu</topic></sensor></link></model></world></sdf>"""
 
 
-def scenario(tmp_path: Path, text: str, name: str = "drop.yaml") -> RunSpec:
+def scenario(tmp_path: Path, text: str, name: str = "drop.yaml", folders: Sequence[Path] = ()) -> RunSpec:
     (tmp_path / "ball.sdf").write_text(BALL)
     file = tmp_path / name
     file.write_text(text)
-    return read_scenario(file)
+    return read_scenario(file, folders)
 
 
 def problems(tmp_path: Path, text: str, name: str = "drop.yaml") -> list[tuple[int | None, str]]:
@@ -57,6 +58,7 @@ def test_all_keys_of_a_scenario_are_read(tmp_path):
         commands:
           - {at: 1, topic: cmd_vel, message: {linear: {x: 1e-1}}}
         """,
+        folders=[tmp_path.parent],
     )
     assert (found.title, found.duration, found.seed) == ("fall", 1.0, 3)
     assert found.overrides == ("physics.max_step_size=0.002", "world.gravity=0 0 -1", "ball.static=false")
@@ -72,7 +74,7 @@ def test_package_paths_can_be_a_list_whose_folders_keep_their_place_in_golden_ru
     from simkit.testing.certify.certification import _with_absolute_paths
     from simkit.testing.golden.record_encoding import decode_scenario, encode_scenario
 
-    found = scenario(tmp_path, "world: ball.sdf\npackage_paths: [../ws, arm=robot]\n")
+    found = scenario(tmp_path, "world: ball.sdf\npackage_paths: [../ws, arm=robot]\n", folders=[tmp_path.parent])
     expected = [f"arm={tmp_path / 'robot'}", tmp_path / ".." / "ws"]
     assert found.options["package_paths"] == expected
     assert _with_absolute_paths(found).options["package_paths"] == [str(path) for path in expected]

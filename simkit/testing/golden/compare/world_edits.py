@@ -13,6 +13,7 @@ from simkit.run_spec import RunSpec
 from simkit.testing.golden.compare.difference import CauseKind
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.world_values import split_path
+from simkit.testing.scenarios.code_permission import permit_code
 
 _ENTITY_FIELDS = frozenset(
     ("models", "links", "joints", "collisions", "visuals", "sensors", "lights", "frames", "plugins", "actors", "files")
@@ -164,6 +165,7 @@ def _is_equal(a: object, b: object) -> bool:
 
 def _scenario(golden: RunSpec, run: RunSpec) -> dict[str, tuple[object, object]]:
     found: dict[str, tuple[object, object]] = {}
+    golden, run = permit_code(golden, allow_code=True), permit_code(run, allow_code=True)  # only compared, not run
     for one in fields(RunSpec):
         if one.name in _REPORT_FIELDS:
             continue
