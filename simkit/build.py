@@ -19,7 +19,7 @@ from simkit.loaders import Resolver, load_scene
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.model_world import add_model_world
 from simkit.loaders.resources.world_interfaces import read_interfaces
-from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, spawnable_models
+from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, client_models
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.make_instances import (
     InstanceMaker,
@@ -189,7 +189,7 @@ def load(
     with progress.task("loading plugins"):
         simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.control.write_sdf, simulation.control.resolve_world = _sdf_of, resolve_world
-    simulation.control.list_models = lambda: spawnable_models(resolver)
+    simulation.control.list_models, simulation.control.check_source = client_models(resolver, source)
     simulation.control.file_arguments = file_scene.arguments
     simulation.control.xacro_overrides = xacro_overrides(overrides)
     simulation._open_page = _open_page

@@ -13,8 +13,7 @@ import stat
 from io import BufferedReader
 from pathlib import Path
 
-from simkit import hidden_text
-from simkit.linked_files import is_below, leads_outside
+from simkit.linked_files import hide_linked_text, is_below
 
 TEXT_LIMIT = 8 << 20  # [bytes] of a text file that a person writes: YAML, a script, Python code
 PIPE_TIMEOUT = 10.0  # [s] without data from the writer of a pipe
@@ -42,7 +41,7 @@ def open_input(path: str | Path, *, inside: Path | None = None) -> BufferedReade
     handle = _open_handle(Path(path), inside)
     try:
         _check_kind(handle, Path(path), allow_pipe=False)
-        _hide_linked_text(Path(path), inside)
+        hide_linked_text(Path(path), inside)
     except OSError:
         os.close(handle)
         raise
@@ -72,7 +71,7 @@ def read_input(path: str | Path, limit: int, *, allow_pipe: bool = False, inside
     handle = _open_handle(path, inside)
     with os.fdopen(handle, "rb", buffering=0):
         is_pipe = _check_kind(handle, path, allow_pipe=allow_pipe or str(path).startswith(("/dev/fd/", "/proc/self/")))
-        _hide_linked_text(path, inside)
+        hide_linked_text(path, inside)
         if not is_pipe and os.fstat(handle).st_size > limit:
             raise FileTooLargeError(path, limit)
         content = _read_pieces(handle, limit + 1, is_pipe=is_pipe)
@@ -120,14 +119,6 @@ def _check_links(path: Path, inside: Path | None) -> None:
         target = os.path.dirname(os.path.realpath(path))  # noqa: PTH120
         reason = f"a symbolic link leads to {target}, outside the chosen folders; to allow it, set SIMKIT_RESOURCE_PATH"
         raise OSError(errno.EACCES, reason, str(path))
-
-
-def _hide_linked_text(path: Path, inside: Path | None) -> None:
-    """Hide the text of a file if a link on the way to the file or folder that the user names leads outside."""
-    if leads_outside(str(path if inside is None else inside)):
-        hidden_text.hide(str(path), os.path.dirname(os.path.realpath(path)))  # noqa: PTH120
-    elif hidden_text.is_hiding():
-        hidden_text.show(str(path))
 
 
 def _check_kind(handle: int, path: Path, *, allow_pipe: bool) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Final
 
+from simkit import hidden_text
 from simkit.project_folder import enclosing_project, is_top_folder
 from simkit.trusted_folders import TrustedFolders, built_workspace
 
@@ -47,6 +48,19 @@ def leads_outside(path: str) -> bool:
         if place.is_symlink() and _leaves(place):
             return True
     return False
+
+
+def hide_linked_text(path: str | Path, inside: Path | None = None) -> None:
+    """Hide the text of a file in messages, if a link on the way to what the user names leads outside.
+
+    Args:
+        path: file that is read.
+        inside: folder that the user names, in which the file is; None if the user names the file.
+    """
+    if leads_outside(str(path if inside is None else inside)):
+        hidden_text.hide(str(path), os.path.dirname(os.path.realpath(path)))  # noqa: PTH120
+    elif hidden_text.is_hiding():
+        hidden_text.show(str(path))
 
 
 def is_below(path: str | Path, folder: Path) -> bool:

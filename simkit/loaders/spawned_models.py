@@ -11,12 +11,12 @@ from typing import Any, Final
 
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, find_document
-from simkit.loaders.resources.model_list import spawnable_models
+from simkit.loaders.resources.model_list import client_models
 from simkit.pose import Pose
 from simkit.run_spec import NamedValues
 from simkit.scene import Scene, SceneModel
 
-__all__ = ["SpawnedModel", "add_spawned_models", "parse_spawn", "spawnable_models"]
+__all__ = ["SpawnedModel", "add_spawned_models", "client_models", "parse_spawn"]
 
 _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBERS: Final = rf"\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)*"

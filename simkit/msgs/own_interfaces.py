@@ -284,8 +284,10 @@ class _Batch:
             self._report(file, wrong.code, 0, wrong.message, wrong.hint)
             return
         try:
-            is_text = isinstance(source, str)
-            text = source if is_text else read_input_text(source, _LARGEST_FILE, inside=source.parent)
+            if isinstance(source, Path):
+                text = read_input_text(source, _LARGEST_FILE, inside=source.parent)
+            else:
+                text = source
         except (OSError, UnicodeDecodeError) as error:
             self._report(file, _UNREADABLE, 0, f"the definition cannot be read: {read_failure(error)}")
             return

@@ -208,6 +208,7 @@ class WorldControl:
         write_sdf: function that writes a world as SDF text; set from outside, because this package knows no file
             format.
         list_models: function that returns the sources of the models that can be spawned, by name; set from outside.
+        check_source: function that raises InputError for a source that a client may not spawn; set from outside.
         resolve_world: function that returns the world of the file with other overrides; set from outside.
         file_arguments: arguments of the xacro file of the world, with their values.
         xacro_overrides: those of the arguments that overrides gave.
@@ -217,6 +218,7 @@ class WorldControl:
     write_sdf: Callable[[SceneWorld], str] | None = None
     resolve_world: Callable[[Sequence[str], Diagnostics], SceneWorld] | None = None
     list_models: Callable[[], dict[str, str]] | None = None
+    check_source: Callable[[str], None] | None = None
 
     def __init__(
         self, engine: Engine, bus: TopicBus, handles: EntityHandles, advance: Advance, loaded: Callable[[], Snapshot]
@@ -228,6 +230,16 @@ class WorldControl:
         self.loaded_world = engine.world
         self.file_arguments: Mapping[str, str] = {}
         self.xacro_overrides: Mapping[str, str] = {}
+
+    def client_source(self, source: str) -> str:
+        """Return the source of a model that a client wants to spawn: a text, URI, bundled name or path.
+
+        Raises:
+            InputError: SK-URI-003 it is a path outside the folders of the run.
+        """
+        if self.check_source is not None:
+            self.check_source(source)
+        return source
 
     # ------------------------------------------------------------------ running
 

@@ -116,7 +116,7 @@ def _spawn(call: Call) -> object:
     Without `z`, the model stands on what is below it; without `x`, it has the pose of its file.
     """
     name = call.text("name") if call.value("name") else None
-    source, pose = call.text("source"), None
+    source, pose = call.sim.control.client_source(call.text("source")), None
     if call.value("x") is not None:
         x, y, yaw = call.number("x"), call.number("y"), call.number("yaw", 0.0)
         if call.value("z") is None:

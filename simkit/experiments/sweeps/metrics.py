@@ -16,6 +16,7 @@ from simkit.diagnostics import did_you_mean, shorten
 from simkit.errors import InputError, SimkitError
 from simkit.experiments.sweeps.sweep_spec import Metric
 from simkit.input_file import read_input
+from simkit.linked_files import hide_linked_text
 from simkit.runtime import Simulation
 from simkit.testing.conditions.binder import bind, number_hint
 from simkit.testing.conditions.bound_expression import BoundNode, is_scalar
@@ -170,6 +171,7 @@ def _file_module(path: Path) -> Any:
     found = util.spec_from_file_location(f"simkit_sweep_{path.stem}", path)
     if found is None or found.loader is None or not path.is_file():
         raise ImportError(f"there is no file {path}")
+    hide_linked_text(path)
     module = util.module_from_spec(found)
     found.loader.exec_module(module)
     return module

@@ -1,15 +1,18 @@
-"""List of the models that can be spawned by name."""
+"""List of the models that can be spawned by name, and check of the sources that a client may spawn."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import os
+from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 from pathlib import Path
 from typing import Final
+from urllib.parse import unquote
 
-from simkit.loaders.resources.bundled_models import bundled_folders
+from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
 from simkit.loaders.resources.uri_resolver import Resolver
-from simkit.loaders.resources.uris import is_file
+from simkit.loaders.resources.uris import absolute_path, is_existing, is_file
+from simkit.trusted_folders import OutsideError
 
 _MOST_MODELS: Final = 1000
 _MOST_FOLDERS: Final = 5000  # folders that are looked into
@@ -32,6 +35,31 @@ def spawnable_models(resolver: Resolver) -> dict[str, str]:
         for folder in _model_folders((bundle, *sorted(bundle.glob("*/")), *sorted(bundle.glob("*/models/")))):
             found.setdefault(folder.name, folder.name)
     return dict(sorted(found.items()))
+
+
+def client_models(
+    resolver: Resolver, world: str | os.PathLike[str]
+) -> tuple[Callable[[], dict[str, str]], Callable[[str], None]]:
+    """Return the functions behind the services that spawn models: the list of the models, and the check of a source.
+
+    Args:
+        resolver: finder of the files of a simulation.
+        world: source of its world, as for `simkit.load`.
+    """
+    is_in_file = "<" not in str(world) and os.path.exists(world)  # noqa: PTH110 (a long name is no error)
+    folder = absolute_path(Path(world)).parent if is_in_file else None
+
+    def check_source(source: str) -> None:
+        if "<" in source or ("://" in source and not source.startswith("file://")):
+            return  # XML text, or a URI that the resolver checks
+        path = Path(unquote(source.removeprefix("file://")))
+        is_name = is_bare_name(source) and not is_existing(path)
+        if not is_name and not resolver.allows(absolute_path(path), folder):
+            message = f"{OutsideError.code} a client may not spawn {source[:200]}: it is outside the folders of the run"
+            hint = "start the run with --resource-path FOLDER, or send the model as text"
+            raise OutsideError(f"{message}\n    help: {hint}")
+
+    return lambda: spawnable_models(resolver), check_source
 
 
 def _model_folders(roots: Iterable[Path]) -> Iterator[Path]:

@@ -51,7 +51,7 @@ def spawn_model(sim: Simulation, xml: str, name: str, namespace: str, pose_messa
         raise RequestRefused("the XML of the entity is empty")
     if name and name in sim.models:
         raise RequestRefused(f"Entity [{name}] already exists.")
-    source = add_namespace(xml, namespace) if namespace else xml
+    source = sim.control.client_source(add_namespace(xml, namespace) if namespace else xml)
     initial = frame_of(sim, frame) @ pose_of(pose_message, "initial_pose")
     pose = None if initial == IDENTITY else initial @ sim.contents.pose_in_file(source)
     if not name:

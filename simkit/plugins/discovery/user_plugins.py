@@ -14,6 +14,7 @@ from types import ModuleType
 
 from simkit.diagnostics import Diagnostics, closest, did_you_mean
 from simkit.input_file import TEXT_LIMIT, read_input
+from simkit.linked_files import hide_linked_text
 from simkit.plugins.base import Plugin
 from simkit.plugins.discovery.python_plugins import as_class, describe_allowed_plugins, has_hooks
 from simkit.plugins.plugin_folders import find_module, folder_help, is_inside, split_python_name
@@ -157,6 +158,7 @@ def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagno
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[key] = module
+    hide_linked_text(file)
     try:
         with _sibling_modules(file.resolve().parent):
             spec.loader.exec_module(module)

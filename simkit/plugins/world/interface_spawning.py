@@ -16,6 +16,7 @@ from simkit.plugins.world.service_entities import (
     find_entity,
     spawn_entities,
 )
+from simkit.trusted_folders import OutsideError
 
 if TYPE_CHECKING:
     from simkit.pose import Pose
@@ -114,7 +115,7 @@ def _arguments(sim: Simulation, request: Any, waiting: Container[str] = ()) -> _
         request: request with the fields of `simulation_interfaces/msg/SpawnEntity`.
         waiting: names that models of the same list will have.
     """
-    source = _source(request)
+    source = sim.control.client_source(_source(request))
     pose = _pose(sim, request.initial_pose)
     name = request.name or sim.contents.name_in_file(source)
     if name in sim.models or name in waiting:
@@ -132,6 +133,8 @@ def _published_codes() -> Iterator[None]:
         yield
     except LoadError as error:
         raise Refusal(_load_code(error), str(error)) from error
+    except OutsideError as error:
+        raise Refusal(NO_RESOURCE, str(error)) from error
     except InputError as error:
         raise Refusal(NAME_INVALID if error.code == "SK-NAME-005" else ResultCode.FAILED, str(error)) from error
 

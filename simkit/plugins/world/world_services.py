@@ -169,7 +169,7 @@ class WorldServices(WorldPlugin):
     ) -> tuple[str, str | None, Pose | None]:
         """Return source, name and pose of a new model, as arguments of `sim.spawn`."""
         pose = self._requested_pose(factory)
-        source, name = factory.sdf or factory.sdf_filename, factory.name or None
+        source, name = self.sim.control.client_source(factory.sdf or factory.sdf_filename), factory.name or None
         if factory.allow_renaming:
             name = self._free_name(name or self.sim.contents.name_in_file(source), True, waiting)
         elif name is not None:

@@ -67,6 +67,7 @@ class Exercise:
     file: Path
     folders: tuple[FilePath, ...] = ()
     own_code: CodeRequest | None = None
+    folders: tuple[FilePath, ...] = ()
 
     @property
     def code_requests(self) -> tuple[CodeRequest, ...]:

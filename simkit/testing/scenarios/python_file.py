@@ -10,6 +10,7 @@ from typing import Any, Final, get_args
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
+from simkit.linked_files import hide_linked_text
 from simkit.recording.command_script import validate_items
 from simkit.run_spec import Check, CheckKind, RunSpec, Tolerance
 from simkit.testing.scenarios.yaml_document import resolve_spawn_file, short_repr
@@ -99,6 +100,7 @@ def load_python_scenario(file: Path, diagnostics: Diagnostics) -> RunSpec:
     if spec is None or spec.loader is None or not file.is_file():
         problem("SK-SCEN-001", "cannot be read: the file does not exist", where)
         raise LoadError(tuple(diagnostics))
+    hide_linked_text(file)
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)

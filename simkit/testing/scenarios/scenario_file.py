@@ -254,7 +254,7 @@ class ScenarioReader(ValueReader):
             if key in self._fields:
                 found[key] = tuple(folder / one for one in self._texts(key))
         if "params_files" in self._fields:
-            found["params_files"] = tuple(_resolve_params_file(folder, one) for one in self._texts("params_files"))
+            found["params_files"] = tuple(resolve_params_file(folder, one) for one in self._texts("params_files"))
         if "package_paths" in self._fields:
             found["package_paths"] = change_package_paths(
                 self._named_or_listed("package_paths"), lambda one: folder / one

@@ -122,6 +122,26 @@ def resolve_spawn_file(folder: Path, spawn: str) -> str:
     return f"{folder / model}{colon}{rest}" if is_here else spawn
 
 
+def resolve_params_file(folder: Path, text: str) -> str:
+    """Resolve the file in `[MODEL=]FILE` relative to a folder."""
+    model, equals, file = text.rpartition("=")
+    return f"{model}{equals}{folder / file}"
+
+
+def is_scalar_text(value: object) -> bool:
+    """Check whether `yaml_value_text` can convert a YAML value."""
+    if isinstance(value, list):
+        return all(is_scalar_text(one) and not isinstance(one, list) for one in value)
+    return isinstance(value, (str, int, float))
+
+
+def yaml_value_text(value: object) -> str:
+    """Convert a YAML value to text: `true` or `false` for a bool, numbers of a list separated by spaces."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return " ".join(map(yaml_value_text, value)) if isinstance(value, list) else str(value)
+
+
 def short_repr(value: object) -> str:
     """Return a shortened representation of a value for messages."""
     return shorten(repr(value), 60)

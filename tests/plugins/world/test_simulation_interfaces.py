@@ -337,7 +337,8 @@ def test_a_listed_model_can_be_spawned() -> None:
         assert len(other.spawnables) == len(listed)
 
 
-def test_a_model_is_spawned_from_a_uri(tmp_path: Path) -> None:
+def test_a_model_is_spawned_from_a_uri(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)  # the folder of a world that is text
     file = tmp_path / "a box.sdf"
     file.write_text(model("one"), encoding="utf-8")
     with load() as sim:

@@ -59,7 +59,8 @@ def test_a_name_in_use_is_refused_unless_allow_renaming_is_set(caplog: pytest.Lo
         assert list(sim.models)[-2:] == ["box_0", "box_1"]  # gz's numbers
 
 
-def test_a_file_is_spawned_by_its_file_name(tmp_path: Any) -> None:
+def test_a_file_is_spawned_by_its_file_name(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)  # the folder of a world that is text
     (tmp_path / "one.sdf").write_text(model("one", "0 0 4 0 0 0"))
     with load() as sim:
         assert create(sim, sdf_filename=str(tmp_path / "one.sdf"))
