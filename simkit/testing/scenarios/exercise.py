@@ -67,7 +67,6 @@ class Exercise:
     file: Path
     folders: tuple[FilePath, ...] = ()
     own_code: CodeRequest | None = None
-    folders: tuple[FilePath, ...] = ()
 
     @property
     def code_requests(self) -> tuple[CodeRequest, ...]:

@@ -34,6 +34,7 @@ from simkit.testing.scenarios.yaml_document import (
     Document,
     ValueReader,
     is_scalar_text,
+    resolve_params_file,
     resolve_spawn_file,
     yaml_value_text,
 )
@@ -90,7 +91,7 @@ def read_scenario(
 
     Raises:
         LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-005, SK-URI-003); the error lists all of them.
-            SK-SCEN-008: it names other plugin folders than `plugin_paths`.
+            SK-SCEN-008: it names other folders than `plugin_paths`.
     """
     file = Path(path)
     diagnostics = Diagnostics()
@@ -139,6 +140,7 @@ class ScenarioReader(ValueReader):
     """Reader of the values of a scenario."""
 
     def scenario(self) -> RunSpec:
+        wall = self._number("wall_timeout", None, above=0.0)
         if "timeout" in self._fields and "until" not in self._fields:
             hint = "add until: CONDITION, or use duration: S to end the run at a fixed time"
             self._document.error("SK-SCEN-004", "'timeout' needs 'until'", "timeout", hint=hint)
@@ -164,7 +166,7 @@ class ScenarioReader(ValueReader):
             picture=self._whole("picture", 64, 8),
             until=self._expression(self._text("until", ""), "until"),
             timeout=self._number("timeout", None, above=0.0),
-            wall_timeout=self._number("wall_timeout", None, above=0.0),
+            wall_timeout=wall,
             checks=tuple(check for key, kind in _CHECKS.items() for check in self._checks(key, kind)),
             options=cast(LoadOptions, self._options()),
             code_requests=self._code_requests(),
@@ -392,9 +394,3 @@ class ScenarioReader(ValueReader):
 def absolute_topic(topic: str) -> str:
     """Return a topic or topic pattern with a leading slash."""
     return topic if topic.startswith(("/", "*")) or not topic else "/" + topic
-
-
-def _resolve_params_file(folder: Path, text: str) -> str:
-    """Resolve the file in `[MODEL=]FILE` relative to the scenario's folder."""
-    model, equals, file = text.rpartition("=")
-    return f"{model}{equals}{folder / file}"
