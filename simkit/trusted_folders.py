@@ -115,15 +115,15 @@ class TrustedFolders:
 
     def __init__(self, folders: Iterable[Path], search_paths: Iterable[Path] = ()) -> None:
         self._search_paths = tuple(dict.fromkeys(search_paths))
+        self._added: dict[Path, None] = {}  # not yet in `_roots`: the first check looks up their real paths
         self._roots: dict[str, None] = {}
         self._real_folders: dict[str, str] = {}
         self._linked: dict[str, None] | None = None
-        for folder in (*folders, *self._search_paths):
-            self.add(folder)
+        self._added |= dict.fromkeys((*folders, *self._search_paths))
 
     def add(self, folder: Path) -> None:
         """Add a trusted folder."""
-        self._roots[_prefix(self._real_folder(str(folder)))] = None
+        self._added[folder] = None
 
     def allows(self, path: Path) -> bool:
         """Check whether the file or folder that a path leads to is in a trusted folder; it need not exist."""
@@ -133,6 +133,8 @@ class TrustedFolders:
             return False
         if "\0" in real:
             return False
+        while self._added:
+            self._roots[_prefix(self._real_folder(str(self._added.popitem()[0])))] = None
         return self._is_below(real, self._roots) or self._is_below(real, self._linked_packages())
 
     def refusal(self, path: Path) -> str:
@@ -197,7 +199,7 @@ def _links_below(search_path: Path) -> Iterator[str]:
                 continue
             left -= len(found)
             for entry in found:
-                if _is_link(entry):
+                if is_link_entry(entry):
                     if _has_manifest(entry.path):
                         yield os.path.realpath(entry.path)
                 elif entry.is_dir(follow_symlinks=False) and not _has_manifest(entry.path):
@@ -205,7 +207,8 @@ def _links_below(search_path: Path) -> Iterator[str]:
         level = below
 
 
-def _is_link(entry: os.DirEntry[str]) -> bool:
+def is_link_entry(entry: os.DirEntry[str]) -> bool:
+    """Check whether an entry of a folder is a symbolic link, or a junction of Windows."""
     is_junction = getattr(entry, "is_junction", None)  # a link to a folder on Windows; from Python 3.12
     return entry.is_symlink() or (is_junction is not None and is_junction())
 
