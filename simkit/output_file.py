@@ -58,6 +58,22 @@ def _reason(path: Path) -> str:
     return f"it is a {kind}, not a regular file"
 
 
+def open_target(path: Path, *, overwrite: bool = False) -> IO[bytes]:
+    """Open a file that the user has named for writing; a pipe and a device are opened as by `open_special`.
+
+    Args:
+        path: file.
+        overwrite: True to replace an existing file.
+
+    Raises:
+        FileExistsError: the file exists, and `overwrite` is not set.
+        OSError: the file is not writable.
+    """
+    if overwrite and path.exists() and not path.is_file():
+        return open_special(path)
+    return path.open("wb" if overwrite else "xb")
+
+
 def open_special(path: Path) -> IO[bytes]:
     """Open a pipe or a device for writing. The reader of a named pipe must open it within 10 s.
 
@@ -78,4 +94,4 @@ def open_special(path: Path) -> IO[bytes]:
         else:
             if os.name != "nt":
                 os.set_blocking(handle, True)
-            return os.fdopen(handle, "wb", buffering=0)
+            return os.fdopen(handle, "wb")

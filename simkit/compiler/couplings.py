@@ -13,6 +13,7 @@ from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.linear_algebra import dot
 from simkit.pose import Vector
 from simkit.scene import Mimic, SceneJoint
+from simkit.scene.model import MOST_LEADERS
 
 STIFF_SOLIMP: Final = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 """Impedance of equality constraints for mechanisms: the hardest that the solver supports."""
@@ -162,6 +163,11 @@ class Couplings:
                 self.diagnostics.error("SK-JOINT-001", message, joint.where)
                 return None
             seen.add(at)
+            if len(seen) > MOST_LEADERS:
+                message = f"joint {joint.scoped} follows a chain of more than {MOST_LEADERS} mimics"
+                hint = "let each follower mimic the first joint of the chain"
+                self.diagnostics.error("SK-JOINT-017", message, joint.where, hint)
+                return None
         if not (np.isfinite(ratio) and np.isfinite(offset)):
             message = f"joint {joint.scoped}: multiplier, offset or reference is NaN or infinite"
             self.diagnostics.error("SK-JOINT-003", message, joint.where)

@@ -36,6 +36,7 @@ LONGEST_STEP: Final = 100.0
 _MEMORY_BASE: Final = 32 << 20
 _MEMORY_PER_GEOM: Final = 64 << 10
 _MEMORY_MOST: Final = 4 << 30
+_MEMORY_PER_PAIR: Final = 4
 
 
 def contact_time_constant(timestep: float) -> float:
@@ -94,8 +95,14 @@ def has_engine_contacts(model: mujoco.MjModel) -> bool:
 
 
 def apply_size(spec: mujoco.MjSpec, colliding_geoms: int) -> None:
-    """Set the arena memory for contacts by the number of colliding geoms. Memory that is never used costs nothing."""
+    """Set the arena memory by the numbers of colliding geoms and of bodies. Memory that is never used costs nothing.
+
+    The geoms need memory for contacts. In each step, MuJoCo reserves 4 bytes for each pair of bodies, and ends the
+    process if they do not fit, for example with more than 4096 bodies in 32 MiB.
+    """
     memory = min(_MEMORY_MOST, _MEMORY_BASE + _MEMORY_PER_GEOM * colliding_geoms)
+    bodies = len(spec.bodies)
+    memory += _MEMORY_PER_PAIR * (bodies * (bodies - 1) // 2)
     if int(spec.memory) < memory:
         spec.memory = memory
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -159,3 +159,24 @@ def _carried_masses(tree: KinematicTree) -> None:
     for link in reversed(tree.order):
         below = float_sum(tree.carried[child] for child in tree.children.get(link.scoped, ()))
         tree.carried[link.scoped] = link.inertial.mass + below
+
+
+class JointIndex:
+    """Joints of a world file by their links.
+
+    A search in all joints of a world for each of its models would be quadratic: a minute for 4000 models.
+    """
+
+    def __init__(self, joints: Sequence[SceneJoint]) -> None:
+        self._joints = tuple(joints)
+        self._numbers: dict[str, list[int]] = {}
+        for number, joint in enumerate(joints):
+            for link in {joint.parent_link, joint.child_link} - {WORLD}:
+                self._numbers.setdefault(link, []).append(number)
+
+    def between(self, links: set[str]) -> list[SceneJoint]:
+        """Return the joints that connect two of the links, or one of them and the world, in the order of the file."""
+        numbers = sorted({number for link in links for number in self._numbers.get(link, ())})
+        ends = links | {WORLD}
+        found = (self._joints[number] for number in numbers)
+        return [joint for joint in found if {joint.parent_link, joint.child_link} <= ends]

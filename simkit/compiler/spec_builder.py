@@ -15,7 +15,7 @@ from simkit.compiler import mjcf_attachment
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import remove_split_body
 from simkit.compiler.engine_options import apply_options
-from simkit.compiler.kinematic_tree import WORLD
+from simkit.compiler.kinematic_tree import WORLD, JointIndex
 from simkit.compiler.lights import add_light, report_light, report_lights
 from simkit.compiler.meshes.parallel_conversion import convert_meshes
 from simkit.compiler.model_compilation import compile_spec, finish_model, place_followers, report_overlaps
@@ -72,6 +72,7 @@ class SpecBuilder:
         self.records: dict[str, ModelRecord] = {"": ModelRecord(SceneModel(name="", scoped="", pose_world=Pose()))}
         self._names: NameMap | None = None
         self._cut: list[tuple[SceneJoint, bool]] = []
+        self._world_joints = JointIndex(world.joints)
         apply_options(spec, world, diagnostics)
         own = mjcf_attachment.models_of_own_file(world)
         mjcf_attachment.adopt_settings(spec, world)
@@ -170,9 +171,8 @@ class SpecBuilder:
 
     def _joints_of(self, model: SceneModel) -> list[SceneJoint]:
         """Return the joints of a model, and the joints of the world file that connect the model to the world."""
-        own = {link.scoped for link in model.all_links()} | {WORLD}
-        ends = ((joint, {joint.parent_link, joint.child_link}) for joint in self.world.joints)
-        return [*model.all_joints(), *(joint for joint, links in ends if links <= own and links != {WORLD})]
+        own = {link.scoped for link in model.all_links()}
+        return [*model.all_joints(), *self._world_joints.between(own)]
 
     def _join_models(self, only: set[str] | None = None) -> None:
         """Add the joints of the world file that connect two models as constraints; `only` limits them to some names."""
@@ -396,5 +396,5 @@ class SpecBuilder:
         spec = self.spec.copy()
         other._world_geoms, other.assets = self._world_geoms.copy_to(spec), Assets(spec, self.assets.known)
         other.records = {name: record.copy() for name, record in self.records.items()}
-        other._names, other._cut = None, list(self._cut)
+        other._names, other._cut, other._world_joints = None, list(self._cut), self._world_joints
         return other

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Final
 
 from simkit.diagnostics import NOWHERE, Where
 from simkit.params import Params
@@ -195,6 +196,10 @@ class SceneLink:
     velocity_decay: tuple[float, float] = (0.0, 0.0)
     enable_wind: bool = False
     fluid_added_mass: tuple[float, ...] = ()
+
+
+MOST_LEADERS: Final = 100
+"""Largest number of joints in a chain of joints that mimic each other."""
 
 
 @dataclass(frozen=True, slots=True)

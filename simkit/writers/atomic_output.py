@@ -207,9 +207,7 @@ def write_atomically(path: str | os.PathLike[str], data: bytes, *, follow_link: 
     try:
         if follow_link and target.exists() and not target.is_file() and not target.is_dir():
             with open_special(target) as pipe:
-                rest = memoryview(data)
-                while rest:
-                    rest = rest[pipe.write(rest) :]
+                pipe.write(data)
             return
         target = target.resolve() if follow_link and target.is_symlink() else target
         target.parent.mkdir(parents=True, exist_ok=True)

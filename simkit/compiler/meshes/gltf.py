@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import base64
 import binascii
-import json
 from typing import Any, Final
 
 import numpy as np
@@ -26,6 +25,7 @@ from simkit.compiler.meshes.mesh_part import (
     MeshPart,
     fan_triangles,
 )
+from simkit.json_reader import parse_json
 from simkit.linear_algebra import det, matmul
 
 _TYPES: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
@@ -41,8 +41,8 @@ def read_gltf(content: bytes, companions: Companions) -> list[MeshPart]:
     """
     document, binary = _chunks(content) if content[:4] == b"glTF" else (content, None)
     try:
-        tree = json.loads(document.decode("utf-8-sig"))
-    except (ValueError, RecursionError) as problem:
+        tree = parse_json(document.decode("utf-8-sig"))
+    except ValueError as problem:
         raise MeshFileError(f"is not readable JSON: {problem}") from None
     if not isinstance(tree, dict):
         raise MeshFileError("is not a glTF document")

@@ -21,6 +21,7 @@ from typing import Any, Final
 
 from simkit.errors import InputError
 from simkit.input_file import read_failure, read_input, read_input_text
+from simkit.json_reader import parse_json
 from simkit.output_file import open_regular
 from simkit.run_spec import JsonObject
 from simkit.writers.atomic_output import write_atomically
@@ -67,7 +68,7 @@ class ResultStore:
             InputError: SK-SWEEP-008 the folder has no sweep.
         """
         try:
-            found = json.loads(read_input_text(self.folder / _DESCRIPTION, _LARGEST_FILE, inside=self.folder))
+            found = parse_json(read_input_text(self.folder / _DESCRIPTION, _LARGEST_FILE, inside=self.folder))
             self.count, self.size = int(found["count"]), int(found["block"])
             if found["format"] != _FORMAT or self.size < 1:
                 raise ValueError
@@ -243,7 +244,7 @@ def _whole_lines(path: Path) -> list[bytes]:
 def _row_of(line: bytes) -> Any:
     """Return the row of a line; None for a damaged line, whose run is then repeated."""
     try:
-        row = json.loads(line)
+        row = parse_json(line)
     except ValueError:
         return None
     return row if isinstance(row, dict) and isinstance(row.get("run"), int) else None

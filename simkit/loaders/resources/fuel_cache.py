@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from collections.abc import Iterator, Mapping
@@ -14,6 +13,7 @@ from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
 from simkit.home_folder import home_folder
 from simkit.input_file import read_failure, read_input_text
+from simkit.json_reader import parse_json
 from simkit.loaders.resources.uris import is_small_integer
 
 TIP = "tip"
@@ -162,12 +162,12 @@ def read_lock(path: Path) -> dict[str, LockEntry]:
         LoadError: SK-FETCH-007 the file is not a lock file of simkit.
     """
     try:
-        content = json.loads(read_input_text(path, _LOCK_LIMIT, inside=path.parent))
+        content = parse_json(read_input_text(path, _LOCK_LIMIT, inside=path.parent))
     except FileNotFoundError:
         return {}
     except (OSError, UnicodeDecodeError) as error:
         raise _invalid_lock(path, f"it cannot be read: {read_failure(error)}") from None
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise _invalid_lock(path, f"it is not JSON: {error}") from None
     if not isinstance(content, Mapping) or content.get("format") != 1 or not isinstance(content.get("entries"), list):
         raise _invalid_lock(path, 'it has no {"format": 1, "entries": [...]}')

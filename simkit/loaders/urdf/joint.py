@@ -21,6 +21,7 @@ from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Axis, Calibration, Mimic, Safety, SceneJoint
 from simkit.scene.geometry import Vec3, vec3
+from simkit.scene.model import MOST_LEADERS
 
 _NO_LIMIT = 1e15
 _NO_MIMIC = ("fixed", "floating", "planar", "ball")
@@ -206,7 +207,7 @@ def _mimic(draft: RobotDraft, joint: JointDraft) -> Mimic | None:
 
 def _is_in_mimic_ring(draft: RobotDraft, start: str) -> bool:
     name, steps = start, 0
-    while steps <= len(draft.joints):
+    while steps <= min(len(draft.joints), MOST_LEADERS):  # longer chains are refused later
         joint = draft.joints.get(name)
         element = None if joint is None else joint.element.child("mimic")
         if element is None:

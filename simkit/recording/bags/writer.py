@@ -10,6 +10,7 @@ from typing import IO, TYPE_CHECKING
 
 from simkit import msgs
 from simkit.errors import InputError
+from simkit.output_file import open_target
 from simkit.recording.bags.mcap_writer import McapWriter, Row
 from simkit.writers.atomic_output import write_obstacle
 
@@ -93,7 +94,7 @@ class McapBag:
         self.channels: dict[tuple[str, str], Channel] = {}
         self._schemas: dict[tuple[str, str, bytes], int] = {}
         self._second = -1
-        self._file: IO[bytes] = path.open("wb" if overwrite else "xb")
+        self._file: IO[bytes] = open_target(path, overwrite=overwrite)
         # Half a minute of an RGB-D camera is 2 GB; compression reduces images without noise to a tenth.
         self._writer = McapWriter(self._file, "ros2", "simkit", _CHUNK_BYTES)
         self._file.flush()

@@ -16,6 +16,7 @@ from simkit import progress
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.input_file import read_input_text
+from simkit.json_reader import parse_json
 from simkit.msgs.message_columns import TEXT, Column, columns_of
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.reader import BagTopic, open_bag_to_read
@@ -56,7 +57,7 @@ def check_folder(path: Path, *, overwrite: bool) -> None:
 
 def _is_export(path: Path) -> bool:
     try:
-        return bool(json.loads(read_input_text(path / INDEX, inside=path))["made_by"] == _MARK)
+        return bool(parse_json(read_input_text(path / INDEX, inside=path))["made_by"] == _MARK)
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
 

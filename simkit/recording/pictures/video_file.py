@@ -56,6 +56,8 @@ def check_video_target(path: Path, option: str, suffixes: tuple[str, ...]) -> No
         raise InputError(f"SK-CLI-053 {option} {path}: found {found}; expected {expected}", "SK-CLI-053")
     if not path.absolute().parent.is_dir():
         raise InputError(f"SK-CLI-053 {option} {path}: folder {path.absolute().parent} does not exist", "SK-CLI-053")
+    if path.exists() and not path.is_file():
+        raise InputError(f"SK-CLI-053 {option} {path}: it is not a regular file", "SK-CLI-053")
     if path.suffix.lower() != ".gif":
         _import_av()
 

@@ -6,7 +6,6 @@ Opening a bundle runs none of its code. Files are written only by `Bundle.extrac
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 import zipfile
 import zlib
@@ -16,6 +15,7 @@ from typing import IO, Final
 
 from simkit.errors import InputError
 from simkit.input_file import open_input, read_failure
+from simkit.json_reader import parse_json
 from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject
 from simkit.testing.bundles.manifest import BAG, BROKEN, COMMANDS, PAGE, Manifest, read_manifest
 from simkit.writers import zip_archive
@@ -191,8 +191,8 @@ class Bundle:
 
     def _entry(self, line: bytes) -> JsonObject:
         try:
-            entry = json.loads(line)
-        except (ValueError, RecursionError) as error:
+            entry = parse_json(line)
+        except ValueError as error:
             raise self._broken(f"{COMMANDS}: {error}") from None
         is_entry = isinstance(entry, dict) and isinstance(entry.get("do"), str)
         if not is_entry or type(entry.get("steps")) is not int or not 0 <= entry["steps"] < 1 << 62:

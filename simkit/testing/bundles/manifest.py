@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from simkit.errors import InputError, SimkitError
+from simkit.json_reader import parse_json
 from simkit.run_spec import (
     EMPTY_SPACE,
     RENDERERS,
@@ -184,8 +185,8 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         InputError: SK-BUNDLE-001 the content is not a manifest; SK-BUNDLE-002 a newer simkit wrote the bundle.
     """
     try:
-        fields = json.loads(data)
-    except (ValueError, RecursionError) as error:
+        fields = parse_json(data)
+    except ValueError as error:
         raise InputError(f"{BROKEN} {path}: {PAGE} is not JSON: {error!s:.80}", BROKEN) from None
     if not isinstance(fields, dict) or not isinstance(fields.get("format"), int):
         raise InputError(f"{BROKEN} {path} is not a simkit bundle: {PAGE} has no 'format'", BROKEN)

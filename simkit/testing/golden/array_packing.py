@@ -16,6 +16,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from simkit.elementary_functions import log2
+from simkit.json_reader import parse_json
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.run_record.record import Array
 
@@ -118,10 +119,10 @@ class Unpacker:
         start = len(_MAGIC) + 4
         (length,) = struct.unpack("<I", whole[len(_MAGIC) : start])
         try:
-            head = json.loads(whole[start : start + length].decode())
+            head = parse_json(whole[start : start + length].decode())
             self.about: Any = head["about"]
             self._entries = [_validate_entry(entry) for entry in head["arrays"]]
-        except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
+        except (ValueError, KeyError, TypeError, OverflowError) as error:
             raise PackingError(f"the table of the block cannot be read: {error}") from None
         if sum(_size(entry) for entry in self._entries) > MAX_BLOCK_BYTES:
             raise PackingError("the arrays of the block are too large")

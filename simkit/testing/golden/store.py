@@ -21,6 +21,7 @@ from simkit.diagnostic_record import Where
 from simkit.errors import InputError
 from simkit.input_file import read_input, read_input_text
 from simkit.install_command import install_command
+from simkit.json_reader import parse_json
 from simkit.output_file import open_regular
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
@@ -143,9 +144,7 @@ def read_main(folder: Path) -> JsonObject:
     except OSError as error:
         raise _damaged_error(path, f"cannot be read: {error.strerror or error}") from None
     try:
-        main = json.loads(text.decode())
-    except RecursionError:
-        raise _damaged_error(path, "has too many nested levels") from None
+        main = parse_json(text.decode())
     except ValueError as error:
         raise _damaged_error(path, f"is not JSON: {error}") from None
     if not isinstance(main, dict) or type(main.get("format")) is not int:

@@ -19,6 +19,7 @@ from pathlib import Path, PurePosixPath
 from simkit import file_lock, progress
 from simkit.diagnostics import Diagnostics
 from simkit.input_file import open_input, read_input_text
+from simkit.json_reader import parse_json
 from simkit.loaders.resources.bundled_models import builtin_model
 from simkit.loaders.resources.fuel_cache import TIP, FuelUrl
 from simkit.loaders.resources.uris import split_rest
@@ -124,7 +125,7 @@ def store(file: BufferedRandom, record: Record, url: FuelUrl, cache: Path, most:
 def read_record(folder: Path) -> Record | None:
     """Return the record of a folder in the cache; None if Gazebo stored the folder, or if its files have changed."""
     try:
-        found = json.loads(read_input_text(folder / _RECORD, 1 << 16))
+        found = parse_json(read_input_text(folder / _RECORD, 1 << 16))
         record = Record(str(found["sha256"]), int(found["size"]))
         return record if found["content"] == _content_hash(folder) else None
     except (OSError, ValueError, KeyError, TypeError):

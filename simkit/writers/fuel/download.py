@@ -19,6 +19,7 @@ from urllib.parse import urlsplit
 from urllib.request import HTTPRedirectHandler, OpenerDirector, ProxyHandler, Request, build_opener
 
 from simkit.input_file import read_input_text
+from simkit.json_reader import parse_json
 from simkit.progress import Task
 from simkit.version import __version__
 from simkit.writers.fuel.timed_request import RequestLimits, timed_handlers
@@ -245,7 +246,7 @@ class Download:
 
     def _read_notes(self) -> dict[str, Any]:
         with suppress(OSError, ValueError):
-            found = json.loads(read_input_text(self.notes, 1 << 16))
+            found = parse_json(read_input_text(self.notes, 1 << 16))
             if isinstance(found, dict):
                 return found
         return {}

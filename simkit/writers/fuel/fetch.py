@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from io import BufferedRandom
+from itertools import islice
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -29,6 +30,7 @@ from simkit.loaders.resources.fuel_cache import (
     parse_fuel_url,
     read_lock,
 )
+from simkit.loaders.sdf.load_context import MAX_INCLUDE_DEPTH
 from simkit.run_spec import NamedValues
 from simkit.writers.atomic_output import write_atomically
 from simkit.writers.fuel.cache_entry import STAGE, Record, archive_record, exclusive_file, read_record, store
@@ -46,6 +48,7 @@ from simkit.writers.fuel.references import Reference, ReferenceSearch
 OTHER_CONTENT, NO_LOCK = "SK-FETCH-005", "SK-FETCH-009"
 _UNPACKED_RATIO = 4  # the files of an archive may have this many times the limit of the archive
 _MOST_RESOURCES = 2000
+_MOST_REFERENCES = 100_000  # places in files that name a resource
 _MOST_LISTED = 30
 
 
@@ -142,7 +145,7 @@ def fetch(
     lock_folder = Path.cwd()
     url = parse_fuel_url(source)
     if url is not None:
-        first = [Reference(url.resource, Where(source))]
+        first: Iterable[Reference] = [Reference(url.resource, Where(source))]
     else:
         document, _ = find_document(source, resolver, report.diagnostics, xacro_args)
         report.diagnostics.raise_if_errors()
@@ -150,7 +153,7 @@ def fetch(
         if document.folder is not None and not _is_bundled(document.folder):
             lock_folder = document.folder
         search.resolver = resolver.around(document.folder)
-        first = list(search.of_document(document))
+        first = search.of_document(document)
     fetcher = _Fetcher(options, search, report, read_lock(lock_folder / LOCK_NAME))
     try:
         fetcher.run(first)
@@ -175,23 +178,32 @@ class _Fetcher:
         self.options, self.search, self.report, self.lock = options, search, report, lock
         self.cache = fuel_caches()[0]
         self._found: dict[str, FetchedResource | None] = {}
+        self._asked = 0
         self._left = options.max_total
         self._unreachable: dict[str, tuple[DownloadError, list[Reference]]] = {}
 
     def run(self, references: Iterable[Reference]) -> None:
         """Fetch the references, and what the fetched files name."""
-        waiting = deque(references)
-        with progress.task("fetching models", len(waiting)) as task:
+        waiting = deque((reference, 0) for reference in islice(references, _MOST_REFERENCES + 1))
+        count = len(waiting)
+        with progress.task("fetching models", count) as task:
             while waiting:
-                reference = waiting.popleft()
+                reference, depth = waiting.popleft()
                 key = reference.url.resource.key
+                if problem := self._limit_problem(depth, count, is_new=key not in self._found):
+                    self._error(reference, DownloadError(TOO_LARGE, problem))
+                    break
                 if key not in self._found:
+                    self._asked += 1
                     task.item = reference.url.title
                     found = self._found[key] = self._resource(reference)
                     if found is not None:
                         self.report.resources.append(found)
                         self._found.setdefault(replace(found.url, version=str(found.version)).key, found)
-                        waiting.extend(() if found.folder is None else self.search.of_folder(found.folder))
+                        named = () if found.folder is None else self.search.of_folder(found.folder)
+                        added = [(one, depth + 1) for one in islice(named, _MOST_REFERENCES + 1 - count)]
+                        waiting.extend(added)
+                        count += len(added)
                 self._check_file(reference, self._found[key])
                 task.advance()
                 task.total = task.done + len(waiting)
@@ -219,12 +231,19 @@ class _Fetcher:
             return None
         return path
 
+    def _limit_problem(self, depth: int, count: int, *, is_new: bool) -> str:
+        """Return the limit that a reference exceeds, or an empty text; a server could name models without end."""
+        if depth > MAX_INCLUDE_DEPTH:
+            return f"models that name one another are nested deeper than {MAX_INCLUDE_DEPTH}"
+        if is_new and self._asked >= _MOST_RESOURCES:
+            return f"the world names more than {_MOST_RESOURCES} resources"
+        if count > _MOST_REFERENCES:
+            return f"the world and its models name resources in more than {_MOST_REFERENCES} places"
+        return ""
+
     def _resource(self, reference: Reference) -> FetchedResource | None:
         """Find or download one resource; return None, with an error recorded, if this is not possible."""
         url = reference.url.resource
-        if len(self.report.resources) >= _MOST_RESOURCES:
-            self._error(reference, DownloadError(TOO_LARGE, f"the world names more than {_MOST_RESOURCES} resources"))
-            return None
         entry = None if self.options.update else self.lock.get(url.key)
         found = (None if self.options.update else self._cached(url, entry)) or self._local(url)
         if found is not None:

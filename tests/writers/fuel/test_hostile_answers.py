@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from tests.limited_memory import run_limited
-from tests.writers.fuel.fuel_server import model, run, served
+from tests.writers.fuel.fuel_server import Fuel, archive, model, run, served, write_world
 
 Answer = Callable[[socket.socket, bytes, int], None]
 WHOLE = model(**{"data.bin": bytes(range(256)) * 400})
@@ -274,3 +274,48 @@ def test_a_download_of_another_process_is_not_waited_for_without_end(fuel: objec
             other.kill()
             other.wait()
     assert result.exit_code == 1 and "another simkit fetch" in result.output, result.output
+
+
+def including(*uris: str) -> bytes:
+    """Return the archive of a model that includes others, outside of its element that a resolver would replace."""
+    includes = "".join(f"<include><uri>{uri}</uri><name>n{i}</name></include>" for i, uri in enumerate(uris))
+    text = f'<sdf version="1.9"><model name="box"><link name="l"/>{includes}</model></sdf>'
+    return archive({"model.config": "<model><name>box</name><sdf>model.sdf</sdf></model>", "model.sdf": text})
+
+
+def chained(connection: socket.socket, request: bytes, length: int) -> None:
+    """Answer with model `m<N>`, which includes model `m<N + 1>`, up to a length of the chain."""
+    host = request.split(b"Host: ")[1].split(b"\r\n")[0].decode()
+    number = int(request.split(b"/models/m")[1].split(b"/")[0])
+    names = [f"http://{host}/1.0/o/models/m{number + 1}"] if number + 1 < length else []
+    content = including(*names)
+    connection.sendall(sized(content, len(content)))
+
+
+@pytest.mark.parametrize(("length", "code"), [(33, 0), (34, 2), (1 << 30, 2)])
+def test_models_that_name_one_another_end_at_the_depth_that_can_be_loaded(fuel: object, length: int, code: int) -> None:
+    with answering(lambda c, r, _n: chained(c, r, length)) as server:
+        result = run("fetch", f"{server}/1.0/o/models/m0")
+    assert result.exit_code == code, result.output
+    assert result.output.count("nested deeper than 32") == (1 if code else 0)
+
+
+def test_the_models_of_a_world_are_counted_with_those_that_fail(fuel: Fuel, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("simkit.writers.fuel.fetch._MOST_RESOURCES", 5)
+    write_world(*(f"{fuel.url}/1.0/o/models/m{i}" for i in range(5)))
+    assert "more than 5 resources" not in run("fetch", "w.sdf").output
+    write_world(*(f"{fuel.url}/1.0/o/models/m{i}" for i in range(20)))
+    fuel.requests.clear()
+    result = run("fetch", "w.sdf")
+    assert result.output.count("more than 5 resources") == 1 and len(fuel.requests) == 5
+
+
+def test_a_model_that_names_a_million_resources_is_read_up_to_the_limit(
+    fuel: Fuel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("simkit.writers.fuel.fetch._MOST_REFERENCES", 50)
+    fuel.archives["o/models/box"] = [including(*([f"{fuel.url}/1.0/o/models/box"] * 49))]
+    assert run("fetch", f"{fuel.url}/1.0/o/models/box").exit_code == 0
+    fuel.archives["o/models/big"] = [including(*([f"{fuel.url}/1.0/o/models/big"] * 50))]
+    result = run("fetch", f"{fuel.url}/1.0/o/models/big")
+    assert result.exit_code == 2 and result.output.count("more than 50 places") == 1, result.output
