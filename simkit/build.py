@@ -20,6 +20,7 @@ from simkit.loaders.load_arguments import check_load_arguments, check_source, ch
 from simkit.loaders.model_world import add_model_world
 from simkit.loaders.resources.world_interfaces import read_interfaces
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, spawnable_models
+from simkit.memory_error import memory_errors
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.make_instances import (
     InstanceMaker,
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
 Source = str | os.PathLike[str]
 
 
+@memory_errors()
 @no_collection()
 def load(
     source: Source,
@@ -223,6 +225,7 @@ def _open_page(simulation: Simulation, port: int) -> Page:
     return ScriptView(simulation, port)
 
 
+@memory_errors()
 def describe(
     source: Source,
     *,
@@ -258,6 +261,7 @@ def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tupl
     return sensor, None if kind is None else kind(sensor, diagnostics).describe()
 
 
+@memory_errors()
 def check(
     source: Source,
     *,
