@@ -19,7 +19,12 @@ from simkit.loaders import Resolver, load_scene
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.model_world import add_model_world
 from simkit.loaders.resources.world_interfaces import read_interfaces
+<<<<<<< HEAD
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, client_models
+=======
+from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, spawnable_models
+from simkit.memory_error import memory_errors
+>>>>>>> texts
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.make_instances import (
     InstanceMaker,
@@ -59,6 +64,7 @@ if TYPE_CHECKING:
 Source = str | os.PathLike[str]
 
 
+@memory_errors()
 @no_collection()
 def load(
     source: Source,
@@ -223,6 +229,7 @@ def _open_page(simulation: Simulation, port: int) -> Page:
     return ScriptView(simulation, port)
 
 
+@memory_errors()
 def describe(
     source: Source,
     *,
@@ -258,6 +265,7 @@ def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tupl
     return sensor, None if kind is None else kind(sensor, diagnostics).describe()
 
 
+@memory_errors()
 def check(
     source: Source,
     *,

@@ -39,6 +39,7 @@ SMALL_MODULES = frozenset(
         "linear_algebra",
         "matrix_decompositions",
         "msgs",
+        "memory_error",
         "mujoco_import",
         "name_conflict",
         "number_text",

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit.argument_checks import check_function, checked_seed
 from simkit.errors import InputError, SimulationDiverged
 from simkit.in_process import InProcess
+from simkit.memory_error import find_memory_error
 from simkit.pose import Pose, Vector
 from simkit.run_spec import PluginErrorPolicy, RunSpec
 from simkit.runtime.communication.communication import Communication
@@ -160,6 +161,10 @@ class Simulation(ScriptGraph, InProcess):
                 self._page.advance(target, advance)
         except SimulationDiverged as error:
             add_driver_hints(self.engine.structure.all_plugins(), error, large_commands(self._bus))
+            raise
+        except Exception as error:
+            if too_little := find_memory_error(error):
+                raise too_little from error
             raise
         finally:
             if journal is not None:

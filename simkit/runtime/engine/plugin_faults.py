@@ -14,6 +14,7 @@ from types import CodeType, FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 from simkit.errors import InputError, InterfaceError, PluginError, SimkitError, SimulationDiverged, cause_text
+from simkit.memory_error import find_memory_error
 from simkit.run_spec import PluginErrorPolicy
 
 if TYPE_CHECKING:
@@ -149,6 +150,8 @@ class PluginFaults:
             SimkitError: the exception itself, if the plugin did not cause it: the physics diverged, there is no
                 renderer, another plugin stopped the run, or the definition of a type has errors.
         """
+        if too_little := find_memory_error(error):
+            raise too_little from error
         if isinstance(error, InterfaceError) or (isinstance(error, SimkitError) and not isinstance(error, InputError)):
             raise error
         if self.policy(plugin) == "stop":
