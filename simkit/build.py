@@ -19,12 +19,8 @@ from simkit.loaders import Resolver, load_scene
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.model_world import add_model_world
 from simkit.loaders.resources.world_interfaces import read_interfaces
-<<<<<<< HEAD
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, client_models
-=======
-from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, spawnable_models
 from simkit.memory_error import memory_errors
->>>>>>> texts
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.make_instances import (
     InstanceMaker,
