@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -29,7 +30,13 @@ def enclosing_project(folder: Path) -> Path | None:
     return python_package
 
 
+@lru_cache(maxsize=4)
+def _real_folder(folder: Path) -> Path:
+    """Return a home folder with its links resolved; the home folder is asked for thousands of times in a load."""
+    return folder.resolve()
+
+
 def is_top_folder(folder: Path) -> bool:
     """Check for the home folder and the two highest levels of the file system, which are never searched."""
     home = home_folder()
-    return len(folder.parts) < 3 or folder in (home, home.resolve())
+    return len(folder.parts) < 3 or folder in (home, _real_folder(home))

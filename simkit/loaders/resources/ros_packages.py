@@ -15,7 +15,7 @@ from simkit.input_file import read_input
 from simkit.loaders.resources.bundled_models import bundle_around
 from simkit.loaders.resources.uris import is_file, is_folder, is_link, is_private
 from simkit.project_folder import enclosing_project, is_top_folder
-from simkit.trusted_folders import TrustedFolders, built_workspace, join_below
+from simkit.trusted_folders import TrustedFolders, built_workspace, is_link_entry, join_below
 
 _PARENT_LEVELS: Final = 6  # folders above a file that are searched for its package.xml
 _SEARCH_DEPTH: Final = 5  # levels of folders below a search path: workspace/src/repository/group/package
@@ -249,7 +249,8 @@ class PackageIndex:
                     for own, folders in self._areas[folder].by_name.items():
                         area.by_name.setdefault(own, []).extend(folders)
                     continue
-                children = [child for child in _subfolders(folder) if self._follows(folder / child, inside)]
+                found = _subfolders(folder)
+                children = [name for name, leads in found if not leads or self._follows(folder / name, inside)]
                 count += len(children)
                 area.is_complete = count <= _MAX_FOLDERS and time.monotonic() - begin <= _MAX_SECONDS
                 if not area.is_complete:
@@ -261,16 +262,15 @@ class PackageIndex:
             self._searched_count, self._searched_seconds = count, time.monotonic() - begin
         return area
 
-    def _follows(self, folder: Path, inside: TrustedFolders) -> bool:
-        """Check whether a folder is searched: it is no link, or the link leads to a trusted folder.
+    def _follows(self, link: Path, inside: TrustedFolders) -> bool:
+        """Check whether a link to a folder leads to a trusted folder.
 
-        After the call, the files of a package that a link leads to may also be read.
+        After the call, the files of a package that the link leads to may also be read.
         """
-        if is_link(folder):
-            if not self.trusted.allows(folder) and not inside.allows(folder):
-                return False
-            if _has_manifest(str(folder)):
-                self.trusted.add(folder)
+        if not self.trusted.allows(link) and not inside.allows(link):
+            return False
+        if _has_manifest(str(link)):
+            self.trusted.add(link)
         return True
 
     def _name_of(self, folder: Path, inside: TrustedFolders | None = None) -> str:
@@ -306,22 +306,22 @@ def _read_name(folder: Path, *, may_read: bool) -> str:
     return folder.name if found is None else found.group(1).decode()
 
 
-def _subfolders(folder: Path) -> list[str]:
-    """Return the names of the folders in a folder that can hold packages; `src` is first and `install` is last.
+def _subfolders(folder: Path) -> list[tuple[str, bool]]:
+    """Return the folders in a folder that can hold packages, by name, and whether each is a link.
 
-    Where packages are installed, they are in `share`: the headers of a distribution would be 1400 folders.
+    The name `src` is first and `install` is last. Where packages are installed, they are in `share`: the headers of a
+    distribution would be 1400 folders.
     """
+    found = {}
     try:
         with os.scandir(folder) as entries:
-            names = [
-                e.name for e in entries if not e.name.startswith(".") and e.name not in _OTHER_FOLDERS and e.is_dir()
-            ]
+            for entry in entries:
+                if not entry.name.startswith(".") and entry.name not in _OTHER_FOLDERS and entry.is_dir():
+                    found[entry.name] = is_link_entry(entry)
     except OSError:
         return []
-    if "share" in names:
-        names = [name for name in names if name not in _INSTALLED_FOLDERS]
-    names.sort(key=lambda name: (name == "install", name != "src", name))
-    return names
+    names = [name for name in found if "share" not in found or name not in _INSTALLED_FOLDERS]
+    return [(name, found[name]) for name in sorted(names, key=lambda name: (name == "install", name != "src", name))]
 
 
 def _own_folders(name: str, folder: Path) -> Iterator[Path]:

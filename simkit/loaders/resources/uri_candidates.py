@@ -46,7 +46,7 @@ class UriCandidates:
         self.packages = PackageIndex(named, workspaces, self.paths, self.trusted)
         self.refused: Path | None = None
         self._found: dict[str, Path] = {}
-        self._near: dict[Path, None] = {}  # folders of files, whose surroundings are trusted
+        self._projects: dict[Path, list[Path]] = {}  # folder of a file -> folder, project and package
         self._locks: dict[Path | None, dict[str, LockEntry]] = {}
         self._lock_problems: list[Diagnostic] = []
 
@@ -63,13 +63,14 @@ class UriCandidates:
             self._trust_around(folder)
         return self.trusted.allows(path)
 
-    def _trust_around(self, folder: Path) -> None:
-        """Trust the project and the workspace of a file in a folder."""
-        if folder not in self._near:
-            self._near[folder] = None
+    def _trust_around(self, folder: Path) -> list[Path]:
+        """Trust the project and the workspace of a file; return its folder, its project and its package."""
+        if folder not in self._projects:
             package = enclosing_package(folder)
-            for place in (folder, readable_folder(folder), *([package] if package else []), *built_workspace(folder)):
+            self._projects[folder] = [folder, readable_folder(folder), *([package] if package else [])]
+            for place in (*self._projects[folder], *built_workspace(folder)):
                 self.trusted.add(place)
+        return self._projects[folder]
 
     def _trust_plain(self, folder: Path) -> Path:
         """Trust a model or package near a file, unless it is a link, which can lead to any place."""
@@ -79,11 +80,9 @@ class UriCandidates:
 
     def limits(self, folders: Iterable[Path]) -> list[Path]:
         """Return the folders that a path in a file may name, for a file in certain folders."""
-        folders = [absolute_path(folder) for folder in folders]
-        packages = [package for folder in folders if (package := enclosing_package(folder)) is not None]
+        own = [place for folder in folders for place in self._trust_around(folder)]
         given = [*self.packages.named.values(), *self.packages.workspaces, *self._found.values()]
-        own = [readable_folder(folder) for folder in folders]
-        return [*folders, *self.paths, *bundled_folders("assets"), *packages, *own, *given]
+        return [*own, *self.paths, *bundled_folders("assets"), *given]
 
     def first_allowed(self, candidates: Iterable[Path], relative_to: Path | None) -> tuple[Path | None, list[Path]]:
         """Return the first candidate that exists and may be read, and all candidates up to it.
