@@ -31,7 +31,7 @@ def parse_json(data: bytes | str) -> Any:
     except ValueError:  # Python refuses to convert so many digits, in a text that names its own functions
         raise ValueError("it has an integer of more than 4300 digits") from None
     level = [found]
-    for _ in range(MAX_DEPTH + 1):
+    for _ in range(MAX_DEPTH):
         level = [
             value
             for container in level

@@ -163,7 +163,7 @@ class Couplings:
                 self.diagnostics.error("SK-JOINT-001", message, joint.where)
                 return None
             seen.add(at)
-            if len(seen) > MOST_LEADERS:
+            if len(seen) > MOST_LEADERS + 1:  # with the joint itself
                 message = f"joint {joint.scoped} follows a chain of more than {MOST_LEADERS} mimics"
                 hint = "let each follower mimic the first joint of the chain"
                 self.diagnostics.error("SK-JOINT-017", message, joint.where, hint)

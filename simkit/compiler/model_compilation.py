@@ -190,7 +190,7 @@ def compile_spec(
         LoadError: there are too many moving links, or MuJoCo refuses the model.
     """
     moving = sum(not link.static for r in records for link in r.links.values())
-    moving += sum(bool(joint.twin) for r in records for joint in r.joints.values())  # each has a body of its own
+    moving += len([joint for r in records for joint in r.joints.values() if joint.twin])  # each has an own body
     if moving > MOST_MOVING:
         text = f"the world has {moving} moving links; at most {MOST_MOVING} are supported (a minute of compile time)"
         diagnostics.error("SK-PHYS-029", text, world.where, "make models that never move <static>")
