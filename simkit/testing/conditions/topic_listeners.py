@@ -64,7 +64,7 @@ class MessageCounter(TopicListener):
     count = first = last = 0
 
     def _subscribe(self) -> Subscription:
-        return self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
+        return self._sim.communication.bus.tap(self.topic, lambda _: self.take(self._sim.time_ns), takes_later=True)
 
     def rate(self) -> float | None:
         """Return the rate from the first to the newest message [Hz]; None if no two messages have different times."""
@@ -72,8 +72,8 @@ class MessageCounter(TopicListener):
             return None
         return (self.count - 1) * 1e9 / (self.last - self.first)
 
-    def _take(self, _: object) -> None:
-        now = self._sim.time_ns
+    def take(self, now: int) -> None:
+        """Count a message that was published at a simulated time [ns]."""
         if now < self.last:  # the simulation was reset
             self.count = 0
         if not self.count:
