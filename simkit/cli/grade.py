@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from typer import Argument
 
@@ -13,7 +13,15 @@ from simkit.cli.terminal.output import print_json, report_errors, stdout_console
 from simkit.errors import InputError
 from simkit.writers.atomic_output import check_writable
 
+if TYPE_CHECKING:
+    from simkit.testing.scenarios.grading import LabHandIn
+
 _FAILED = 5
+DEFAULT_LIMIT = 5.0  # [s]
+
+CallbackLimit = Annotated[
+    float, option("Longest time of a callback without progress [s]; 0 for no limit.", "S", min=0.0, max=86400.0)
+]
 
 
 @report_errors
@@ -26,10 +34,11 @@ def grade(
     junit: Annotated[Path | None, option("JUnit XML report to write.", "OUT.xml")] = None,
     pictures: Annotated[Path | None, option("Folder for a picture of the path of each run.", "DIR")] = None,
     jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
+    limit: CallbackLimit = DEFAULT_LIMIT,
     json_: options.Json = False,
 ) -> int:
     """Run an exercise with submitted plugins and print the results."""
-    return grade_files([exercise], submissions, junit, pictures, jobs, json_=json_)
+    return grade_files([exercise], submissions, junit, pictures, jobs, limit=limit, json_=json_)
 
 
 def grade_files(
@@ -39,9 +48,13 @@ def grade_files(
     pictures: Path | None = None,
     jobs: int = 1,
     *,
+    limit: float = DEFAULT_LIMIT,
+    lab: LabHandIn | None = None,
     json_: bool = False,
 ) -> int:
     """Grade plugins, print the results, and return the exit code; the arguments are those of the command.
+
+    For the hand-in of a lab, `lab` has its files, and `exercises` are those of the lab.
 
     Raises:
         LoadError: an exercise has problems.
@@ -52,13 +65,16 @@ def grade_files(
 
     check_writable(junit)
     tasks = [read_exercise(exercise) for exercise in exercises]
-    files = [_files(submissions, task.file.parent / task.hand_in if task.hand_in else None) for task in tasks]
+    folders = [task.file.parent if lab is None else lab.folder for task in tasks]
+    own = [folder / task.hand_in if task.hand_in else None for task, folder in zip(tasks, folders, strict=True)]
+    files = [_files(submissions, file) for file in own]
     grades = []
+    stopped: set[Path] = set()
     for task, of_task in zip(tasks, files, strict=True):
         folder = pictures if pictures is None or len(tasks) == 1 else pictures / task.file.stem
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
-        for result in grade_all(task, of_task, folder, jobs):
+        for result in grade_all(task, of_task, folder, jobs, limit=limit, lab=lab, stopped=stopped):
             grades.append(result)
             if not json_:
                 for line in grade_text(result):

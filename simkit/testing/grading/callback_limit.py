@@ -22,7 +22,7 @@ from typing import Final, TextIO
 
 DEFAULT_LIMIT: Final = 5.0  # [s]
 _IMPORT_FACTOR: Final = 6.0  # an import may take so many times the limit
-_LONGEST_FACTOR: Final = 4.0  # a callback is stopped after so many times the limit, however busy the machine is
+_LONGEST_FACTOR: Final = 3.0  # a callback is stopped after so many times the limit, however busy the machine is
 _WAITING_SHARE: Final = 0.1  # a process that computes for a smaller share of the time waits
 _STACK_SIGNAL: Final = getattr(signal, "SIGUSR2", None)
 _ANSWER_WAIT: Final = 0.5  # [s] longest wait for a stack
@@ -60,7 +60,7 @@ class CallbackPosition:
     """Position of a hand-in on a stack.
 
     Attributes:
-        callback: Function of the hand-in that simkit called.
+        callback: Function of the hand-in that simkit called; `<module>` while a file is imported.
         file: File of the line that runs.
         line: Number of the line.
         imports: True if the line imports a module.
@@ -70,6 +70,11 @@ class CallbackPosition:
     file: str
     line: int
     imports: bool
+
+    @property
+    def callback_text(self) -> str:
+        """Name of the callback for a message."""
+        return "the import of the hand-in" if self.callback == "<module>" else f"the callback {self.callback}"
 
     @property
     def text(self) -> str:
@@ -92,7 +97,7 @@ def callback_position(stack: str, is_of_hand_in: Callable[[str], bool]) -> Callb
     file, line, _ = frames[own[0]]
     name = frames[own[-1]][2]
     imports = any(inner.startswith(_IMPORTER) for inner, _, _ in frames[: own[0]])
-    return CallbackPosition("the import" if name == "<module>" else name, file, int(line), imports)
+    return CallbackPosition(name, file, int(line), imports)
 
 
 class CallbackLimit:
@@ -112,14 +117,16 @@ class CallbackLimit:
 
     def note_progress(self) -> None:
         """Begin again, because the run has gone on."""
-        self._since, self._computed = time.monotonic(), _processor_time(self._process)
-        self._sampled = self._since
+        self._since = self._sampled = time.monotonic()
+        self._is_measured = False  # reading the processor time after every chunk would take too long
         self._callback, self._callback_since = "", 0.0
 
     def exceeded(self) -> CallbackPosition | None:
         """Return the position of a callback that is over the limit; None if there is none."""
         now = time.monotonic()
         elapsed = now - self._since
+        if not self._is_measured:
+            self._computed, self._is_measured = _processor_time(self._process), True
         if not self.limit or elapsed < 0.5 * self.limit or now - self._sampled < 0.2 * self.limit:
             return None
         self._sampled = now

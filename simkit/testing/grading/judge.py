@@ -42,7 +42,7 @@ class RunJudge:
 
     def is_over(self) -> bool:
         """Check whether the run has ended: later frames have no meaning."""
-        return self.end is not None or (self._checks is not None and self._checks.ended)
+        return self.end is not None
 
     def take(self, kind: int, content: bytes) -> None:
         """Take the next frame.
@@ -75,7 +75,8 @@ class RunJudge:
 
     def results(self) -> tuple[Sequence[CheckResult], str]:
         """Return the results of all checks after the end of the run, and the reason if the run has no valid end."""
-        assert self._checks is not None and self.end is not None
+        if self._checks is None or self.end is None:
+            raise DamagedStreamError("it has no steps")
         for topic, rate in dict(self.end.get("rates", {})).items():
             self._view.rates[str(topic)] = None if rate is None else float(rate)
         reason = str(self.end.get("reason", ""))
@@ -104,6 +105,8 @@ class RunJudge:
             )
             self._checks.begin()
             return
+        if self._checks.ended:
+            raise DamagedStreamError("the run goes on after its end")
         if self._checks.need_every_step and self._view.clock.tick > before + 1:
             raise DamagedStreamError(f"steps before t = {self.time:.6g} s are missing")
         self._view.observe("", None)

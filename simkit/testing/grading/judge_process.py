@@ -136,7 +136,9 @@ class _JudgedRun:
             code = process.wait()
             printed = "\n".join(last_lines(tail.text(), _MAX_LINES_SHOWN))
         if found is None:
-            found = self._ended_early(code) if self._judge.end is None and not self._judge.is_over() else self._verdict()
+            found = (
+                self._ended_early(code) if self._judge.end is None and not self._judge.is_over() else self._verdict()
+            )
         return {"time": self._judge.time, **found, "printed": printed}
 
     def _follow(
@@ -190,7 +192,7 @@ class _JudgedRun:
 
     def _verdict(self) -> JsonObject:
         """Return the results after the end of the run, or its error."""
-        end = self._judge.end or {"reason": "until"}
+        end = self._judge.end or {}
         codes = [str(code) for code in end.get("codes", ())]
         if "problem" in end:
             return self._attribute(str(end["problem"]), codes)
@@ -203,7 +205,7 @@ class _JudgedRun:
             return {"error": foreign}
         try:
             results, error = self._judge.results()
-        except (DamagedStreamError, ValueError, TypeError, AttributeError, AssertionError) as problem:
+        except (DamagedStreamError, ValueError, TypeError, AttributeError) as problem:
             return {"error": f"the recording of the run is damaged: {problem}"}
         if error:
             return {"error": error}
@@ -236,7 +238,7 @@ class _JudgedRun:
 
 def _stuck_text(stuck: Any, limit: float) -> str:
     return (
-        f"the callback {stuck.callback} made no progress for {limit:g} s, and was stopped at {stuck.text}\n"
+        f"{stuck.callback_text} made no progress for {limit:g} s, and was stopped at {stuck.text}\n"
         "help: end the loop; --limit S allows a longer time, and 0 any time"
     )
 

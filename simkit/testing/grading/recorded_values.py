@@ -97,7 +97,8 @@ def encode_contacts(contacts: Any) -> bytes:
     count = len(contacts.now())
     if not count:
         return _CONTACTS.pack(0, 0.0)
-    return _CONTACTS.pack(count, contacts.force()) + contacts.describe().encode()[:_MOST_TEXT]
+    text: bytes = contacts.describe().encode()
+    return _CONTACTS.pack(count, contacts.force()) + text[:_MOST_TEXT]
 
 
 def decode_contacts(content: bytes) -> tuple[int, float, str]:

@@ -37,7 +37,7 @@ _FRAME: Final = struct.Struct("<BI")
 _CHUNK: Final = struct.Struct("<I16s")
 _LARGEST: Final = 256 << 20  # bytes of a chunk
 _FULL: Final = 32 << 10  # bytes after which a chunk is sent
-_LATEST: Final = 0.1  # [s] wall time after which a chunk is sent
+_LATEST: Final = 0.005  # [s] wall time after which a chunk is sent
 
 
 class DamagedStreamError(SimkitError):
@@ -64,7 +64,7 @@ class FrameWriter:
         self._write, self._clock, self._pack, self._dumps = os.write, time.monotonic, _FRAME.pack, json.dumps
 
     def add(self, kind: int, content: bytes = b"") -> None:
-        """Add a frame; it is sent with later ones, at the latest by the first frame after 0.1 s."""
+        """Add a frame; it is sent with later ones, at the latest by the first frame after 5 ms."""
         self._frames += self._pack(kind, len(content))
         self._frames += content
         if len(self._frames) >= _FULL or self._clock() - self._sent >= _LATEST:
