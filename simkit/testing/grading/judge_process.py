@@ -26,7 +26,7 @@ from simkit.process_control import kill_process_tree
 from simkit.run_spec import JsonObject
 from simkit.testing.grading.callback_limit import CallbackLimit
 from simkit.testing.grading.judge import RunJudge
-from simkit.testing.grading.lab_files import copy_lab
+from simkit.testing.grading.lab_files import copy_lab, replaced_modules
 from simkit.testing.grading.run_stream import READY, DamagedStreamError, FrameReader, read_json
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, read_exercise
 
@@ -78,6 +78,12 @@ def _judge(job: JsonObject) -> JsonObject:
                 return {"error": str(error), "time": 0.0, "printed": ""}
             files = [str(file) for file in copied]
             staged, hand_in = lab / exercise.file.name, str(lab / exercise.hand_in) if exercise.hand_in else ""
+        elif hand_in:
+            folders = [Path(path) for path in variation.scenario.options.get("plugin_paths", ())]
+            replaced = replaced_modules(Path(hand_in), folders)
+            if replaced:
+                message = f"the folder of the hand-in has another {', '.join(replaced)} than the exercise"
+                return {"error": f"{message}\nhelp: remove it, or hand in a folder without it", "time": 0.0}
         task = {
             "exercise": str(staged.absolute()),
             "hand_in": hand_in,

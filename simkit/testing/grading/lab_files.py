@@ -43,6 +43,18 @@ def changed_files(lab: Path, folder: Path, hand_in: Sequence[str]) -> list[str]:
     return found
 
 
+def replaced_modules(hand_in: Path, folders: Sequence[Path]) -> list[str]:
+    """Return the modules beside a plugin that have the name of a module of the exercise, but another content.
+
+    Args:
+        hand_in: File of the plugin.
+        folders: Folders of the exercise's modules.
+    """
+    beside = [file for file in hand_in.parent.glob("*.py") if file.name != hand_in.name]
+    pairs = [(file, folder / file.name) for file in beside for folder in folders]
+    return [file.name for file, own in pairs if own.is_file() and not _are_equal(own, file)]
+
+
 def copy_lab(lab: Path, folder: Path, hand_in: Sequence[str], target: Path) -> list[Path]:
     """Copy a lab to a new folder with the files of a hand-in; return the files of the hand-in in the copy.
 

@@ -88,7 +88,10 @@ def _run_exercise(
     try:
         more: JsonObject = {}
         if hand_in is not None:
-            more["plugin_paths"] = (hand_in.parent, *scenario.options.get("plugin_paths", ()))
+            paths = [Path(path) for path in scenario.options.get("plugin_paths", ())]
+            is_shadowed = not exercise.robot and any((path / hand_in.name).is_file() for path in paths)
+            # the exercise's modules go first, unless one has the name of the hand-in
+            more["plugin_paths"] = (hand_in.parent, *paths) if is_shadowed else (*paths, hand_in.parent)
             if exercise.robot:
                 more["plugins"] = (*scenario.plugins, (exercise.robot, _make_plugin(hand_in, variation.parameters)))
         with open_scenario(scenario, **more) as sim:
