@@ -252,7 +252,7 @@ class _Grader:
             job_file.write_text(json.dumps(job), encoding="utf-8")
             environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
             done = self.processes.run(
-                "simkit.testing.grading.judge_process", [str(job_file)], environment=environment, limit=limit
+                "simkit.testing.scenarios.judge_process", [str(job_file)], environment=environment, limit=limit
             )
             if done.is_late:
                 return {"error": f"the run was stopped after {limit:g} s of wall time", "time": 0.0}

@@ -21,14 +21,19 @@ from pathlib import Path
 from typing import Any, Final
 
 from simkit.child_process import OutputTail, exit_immediately, exit_with_parent, last_lines
+from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
+from simkit.loaders import Resolver
+from simkit.loaders.resources.world_interfaces import read_interfaces
 from simkit.process_control import kill_process_tree
-from simkit.run_spec import JsonObject
+from simkit.run_spec import JsonObject, RunSpec
+from simkit.testing.conditions import Watch
 from simkit.testing.grading.callback_limit import CallbackLimit
 from simkit.testing.grading.judge import RunJudge
 from simkit.testing.grading.lab_files import copy_lab, replaced_modules
 from simkit.testing.grading.run_stream import READY, DamagedStreamError, FrameReader, read_json
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, read_exercise
+from simkit.testing.scenarios.scenario_run import open_scenario
 
 _SPARE_SECONDS: Final = 20.0  # additional wall time for starting and ending the process of a run [s]
 _MAX_LINES_SHOWN: Final = 20  # maximum number of printed lines in a grade; the last ones are stored
@@ -105,12 +110,8 @@ def _renamed(found: JsonObject, copy: str, folder: str) -> JsonObject:
     return {key: value.replace(copy, folder) if isinstance(value, str) else value for key, value in found.items()}
 
 
-def _register_interfaces(scenario: Any) -> None:
+def _register_interfaces(scenario: RunSpec) -> None:
     """Read the definitions of messages that the world uses; they are data, also those of a hand-in."""
-    from simkit.diagnostics import Diagnostics
-    from simkit.loaders import Resolver
-    from simkit.loaders.resources.world_interfaces import read_interfaces
-
     options = scenario.options
     resolver = Resolver(options.get("resource_paths", ()), package_paths=options.get("package_paths"))
     with suppress(SimkitError):  # the other process reports the same error
@@ -151,7 +152,7 @@ class _JudgedRun:
         self, process: subprocess.Popen[bytes], reader: FrameReader, chunks: queue.Queue[bytes]
     ) -> JsonObject | None:
         """Judge the stream until the end of the run; return an error if there is one."""
-        callback = CallbackLimit(process.pid, Path(self._task["stacks"]), self._limit, self._is_of_hand_in)
+        callback = CallbackLimit(process.pid, Path(self._task["stacks"]), 0.0, self._is_of_hand_in)
         deadline = time.monotonic() + self._wall_limit
         poll = max(_LEAST_POLL, 0.1 * self._limit) if self._limit else 1.0
         while not self._judge.is_over():
@@ -163,7 +164,7 @@ class _JudgedRun:
             except queue.Empty:
                 stuck = callback.exceeded()
                 if stuck is not None:
-                    return {"error": _stuck_text(stuck, callback.limit), "stuck": True}
+                    return {"error": _stuck_text(stuck, self._limit), "stuck": True}
                 continue
             if not content:
                 with suppress(subprocess.TimeoutExpired):
@@ -172,8 +173,8 @@ class _JudgedRun:
             callback.note_progress()
             try:
                 for kind, frame in reader.feed(content):
-                    if kind == READY and read_json(frame).get("debugged"):
-                        callback.limit = 0.0
+                    if kind == READY:  # from now on, the process can be asked for its stack
+                        callback.limit = 0.0 if read_json(frame).get("debugged") else self._limit
                     self._judge.take(kind, frame)
                     if self._judge.is_over():
                         break
@@ -227,9 +228,6 @@ class _JudgedRun:
 
     def _is_sound(self, codes: list[str]) -> bool:
         """Check whether the world and the checks of the exercise are valid without the hand-in."""
-        from simkit.testing.conditions import Watch
-        from simkit.testing.scenarios.scenario_run import open_scenario
-
         scenario = self._variation.scenario
         try:
             with open_scenario(scenario) as sim:
