@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Final
 
@@ -15,6 +16,7 @@ SOLUTION: Final = "solution"
 _CACHE: Final = "__pycache__"
 _MOST_MODULES: Final = 200  # further Python modules of a hand-in
 _LARGEST: Final = 16 << 20  # bytes of a file of a hand-in
+_MOST_FILES: Final = 2000  # files of a lab, and files of a student's folder that are looked at
 _DEEPEST: Final = 3  # levels of folders with further Python modules
 
 
@@ -67,9 +69,15 @@ def copy_lab(lab: Path, folder: Path, hand_in: Sequence[str], target: Path) -> l
         target: New folder.
 
     Raises:
-        InputError: SK-URI-003 a file of the hand-in is a symbolic link out of the folder; or a file is too large.
+        InputError: SK-URI-003 a file of the hand-in is a symbolic link out of the folder; SK-SCEN-007 the folder of the
+            lab has too many files; or a file is too large.
     """
-    shutil.copytree(lab, target, ignore=shutil.ignore_patterns(SOLUTION, _CACHE))
+    if sum(1 for _ in _files_below(lab)) >= _MOST_FILES:
+        raise InputError(
+            f"SK-SCEN-007 {lab} has more than {_MOST_FILES} files\n    help: give the lab a folder of its own",
+            "SK-SCEN-007",
+        )
+    shutil.copytree(lab, target, ignore=shutil.ignore_patterns(SOLUTION, _CACHE, ".*"))
     names = [name for name in hand_in if (folder / name).is_file()]
     copied = []
     for name in dict.fromkeys((*names, *_further_modules(lab, folder))):
@@ -111,12 +119,16 @@ def _module(name: str) -> str:
 
 
 def _files_below(folder: Path, depth: int = 10) -> Iterator[Path]:
-    """Yield the files below a folder, sorted; links to folders are not followed."""
+    """Yield the files below a folder, sorted, at most 2000; hidden folders and links to folders are left out."""
+    return islice(_all_files_below(folder, depth), _MOST_FILES)
+
+
+def _all_files_below(folder: Path, depth: int) -> Iterator[Path]:
     entries = sorted(folder.iterdir()) if folder.is_dir() else []
     for entry in entries:
         if entry.is_dir():
-            if depth > 0 and not entry.is_symlink() and entry.name != _CACHE:
-                yield from _files_below(entry, depth - 1)
+            if depth > 0 and not entry.is_symlink() and not entry.name.startswith((".", _CACHE)):
+                yield from _all_files_below(entry, depth - 1)
         else:
             yield entry
 

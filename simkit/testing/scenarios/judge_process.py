@@ -178,7 +178,7 @@ class _JudgedRun:
                     self._judge.take(kind, frame)
                     if self._judge.is_over():
                         break
-            except DamagedStreamError as error:
+            except (DamagedStreamError, ValueError, TypeError, LookupError, ArithmeticError) as error:
                 return {"error": f"the recording of the run is damaged: {error}"}
             except InputError as error:
                 return self._attribute(str(error), [error.code])
