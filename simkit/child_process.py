@@ -38,7 +38,12 @@ class ProcessResult:
 
     def last_lines(self, most: int) -> list[str]:
         """Return the last lines of the output, each cut to 500 characters."""
-        return [line[:_MAX_LINE_LENGTH] for line in self.output.splitlines()[-most:]]
+        return last_lines(self.output, most)
+
+
+def last_lines(output: str, most: int) -> list[str]:
+    """Return the last lines of an output, each cut to 500 characters."""
+    return [line[:_MAX_LINE_LENGTH] for line in output.splitlines()[-most:]]
 
 
 class ChildProcesses:
@@ -85,7 +90,7 @@ class ChildProcesses:
                 start_new_session=True,
             )
             self._alive.add(process)
-        tail = _OutputTail(process.stdout, on_line)
+        tail = OutputTail(process.stdout, on_line)
         try:
             process.wait(limit)
             is_late = False
@@ -112,15 +117,16 @@ class ChildProcesses:
             self._alive.discard(process)
 
 
-class _OutputTail:
+class OutputTail:
     """Thread that stores the end of a process's output; it reads all output, so that the process never blocks."""
 
-    def __init__(self, pipe: IO[bytes] | None, on_line: Callable[[str], None] | None) -> None:
+    def __init__(self, pipe: IO[bytes] | None, on_line: Callable[[str], None] | None = None) -> None:
         self._pipe, self._kept, self._on_line = pipe, bytearray(), on_line
         self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
 
     def text(self) -> str:
+        """Return the end of the output when the process has ended."""
         self._thread.join(_OUTPUT_WAIT)
         return bytes(self._kept).decode("utf-8", "replace")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from typer import Argument
 
@@ -15,7 +15,15 @@ from simkit.errors import InputError
 from simkit.run_spec import FilePath
 from simkit.writers.atomic_output import check_writable
 
+if TYPE_CHECKING:
+    from simkit.testing.scenarios.grading import LabHandIn
+
 _FAILED = 5
+DEFAULT_LIMIT = 5.0  # [s]
+
+CallbackLimit = Annotated[
+    float, option("Longest time of a callback without progress [s]; 0 for no limit.", "S", min=0.0, max=86400.0)
+]
 
 
 @report_errors
@@ -28,6 +36,7 @@ def grade(
     junit: Annotated[Path | None, option("JUnit XML report to write.", "OUT.xml")] = None,
     pictures: Annotated[Path | None, option("Folder for a picture of the path of each run.", "DIR")] = None,
     jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
+    limit: CallbackLimit = DEFAULT_LIMIT,
     plugin_path: options.CodePaths = [],
     allow_code: options.AllowCode = False,
     resource_path: options.ReadableFolders = [],
@@ -35,7 +44,7 @@ def grade(
 ) -> int:
     """Run an exercise with submitted plugins and print the results."""
     return grade_files(
-        [exercise], submissions, junit, pictures, jobs, json_=json_,
+        [exercise], submissions, junit, pictures, jobs, limit=limit, json_=json_,
         allow_code=allow_code, plugin_paths=plugin_path, folders=resource_path,
     )  # fmt: skip
 
@@ -47,12 +56,16 @@ def grade_files(
     pictures: Path | None = None,
     jobs: int = 1,
     *,
+    limit: float = DEFAULT_LIMIT,
+    lab: LabHandIn | None = None,
     json_: bool = False,
     allow_code: bool = False,
     plugin_paths: Sequence[Path] = (),
     folders: Sequence[FilePath] = (),
 ) -> int:
     """Grade plugins, print the results, and return the exit code; the arguments are those of the command.
+
+    For the hand-in of a lab, `lab` has its files, and `exercises` are those of the lab.
 
     Raises:
         LoadError: an exercise has problems, or SK-SCEN-008 it names code that is not allowed.
@@ -66,16 +79,19 @@ def grade_files(
     tasks = [
         read_exercise(exercise, folders, allow_code=allow_code, plugin_paths=plugin_paths) for exercise in exercises
     ]
-    files = [_files(submissions, task.file.parent / task.hand_in if task.hand_in else None) for task in tasks]
+    places = [task.file.parent if lab is None else lab.folder for task in tasks]
+    own = [place / task.hand_in if task.hand_in else None for task, place in zip(tasks, places, strict=True)]
+    files = [_files(submissions, file) for file in own]
     for task in tasks:
-        named = task.own_code if not submissions else None
+        named = task.own_code if not submissions and lab is None else None  # grading a folder means running its file
         check_requests((*task.code_requests, *([named] if named else [])), allow_code, plugin_paths)
     grades = []
+    stopped: set[Path] = set()
     for task, of_task in zip(tasks, files, strict=True):
         folder = pictures if pictures is None or len(tasks) == 1 else pictures / task.file.stem
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
-        for result in grade_all(task, of_task, folder, jobs):
+        for result in grade_all(task, of_task, folder, jobs, limit=limit, lab=lab, stopped=stopped):
             grades.append(result)
             if not json_:
                 for line in grade_text(result):

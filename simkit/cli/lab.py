@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from importlib import metadata
@@ -11,10 +12,17 @@ from typing import Annotated
 import typer
 from typer import Option
 
-from simkit.cli.grade import grade_files
+from simkit.cli.grade import DEFAULT_LIMIT, CallbackLimit, grade_files
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument, option
-from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors, report_errors_quietly
+from simkit.cli.terminal.output import (
+    not_found_error,
+    print_json,
+    print_line,
+    print_status,
+    report_errors,
+    report_errors_quietly,
+)
 from simkit.errors import InputError
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.install_command import install_command
@@ -24,6 +32,8 @@ from simkit.writers.atomic_output import remove_abandoned, unfinished_folder
 lab = typer.Typer(help="List, start and grade the labs of the course.", no_args_is_help=True)
 
 _EXERCISE = "exercise.yaml"
+_MARKER = ".simkit-lab"  # file with the name of the lab in a folder that `start` made
+_NAME_LIMIT = 1000  # bytes of this file
 _SOLUTION = "solution"
 _REQUIREMENTS = "requirements.txt"  # packages that a lab needs beside simkit, one in a line
 
@@ -34,6 +44,19 @@ def _labs() -> dict[str, Path]:
         file.parent.name: file.parent for folder in bundled_folders("labs") for file in folder.glob(f"*/{_EXERCISE}")
     }
     return dict(sorted(found.items()))
+
+
+def _named_lab(name: str) -> Path:
+    """Return the folder of a lab by its name or number.
+
+    Raises:
+        InputError: SK-CLI-055 there is no such lab.
+    """
+    labs = _labs()
+    matching = [one for one in labs if one == name or one.split("_")[0] == name.zfill(2)]
+    if len(matching) != 1:
+        raise not_found_error("lab", name, labs, "SK-CLI-055", "simkit")
+    return labs[matching[0]]
 
 
 def _complete(incomplete: str) -> list[str]:
@@ -61,11 +84,7 @@ def start(
     solution: Annotated[bool, Option("--solution", help="Write a solution instead of the student's file.")] = False,
 ) -> None:
     """Copy a lab into a new folder."""
-    labs = _labs()
-    matching = [one for one in labs if one == name or one.split("_")[0] == name.zfill(2)]
-    if len(matching) != 1:
-        raise not_found_error("lab", name, labs, "SK-CLI-055", "simkit")
-    source = labs[matching[0]]
+    source = _named_lab(name)
     target = folder.absolute()
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
         raise _not_writable(folder, "it exists and is not an empty folder")
@@ -77,6 +96,7 @@ def start(
         if solution:
             ignored = shutil.ignore_patterns("__pycache__")
             shutil.copytree(source / _SOLUTION, stage, dirs_exist_ok=True, ignore=ignored)
+        (stage / _MARKER).write_text(f"{source.name}\n", encoding="utf-8")
         stage.chmod(0o755)
         if target.exists():  # it may be the folder of the user's shell, so it stays
             for item in sorted(stage.iterdir()):
@@ -86,7 +106,7 @@ def start(
             stage.rename(target)
     except OSError as error:
         raise _not_writable(folder, error.strerror or str(error)) from None
-    print_line(f"{folder}: {', '.join(sorted(path.name for path in target.iterdir()))}")
+    print_line(f"{folder}: {', '.join(sorted(path.name for path in target.iterdir() if path.name != _MARKER))}")
     missing = _missing_packages(target)
     if missing:
         print_line(f"this lab needs {' and '.join(missing)}: {_remedy(missing)}")
@@ -123,19 +143,83 @@ def _not_writable(folder: Path, reason: str) -> InputError:
 @report_errors
 def grade(
     folder: Annotated[Path, argument("Folder of the lab.", "DIR")] = Path(),
+    name: Annotated[str, option("Name of the lab, if the folder does not tell it.", "NAME", "--lab")] = "",
+    exercise: Annotated[
+        Path | None, option("Exercise, or folder of a lab, to use instead of the installed lab.", "FILE|DIR")
+    ] = None,
     pictures: Annotated[Path | None, option("Folder for a picture of the path of each run.", "DIR")] = None,
     jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
+    limit: CallbackLimit = DEFAULT_LIMIT,
+    allow_code: options.AllowCode = False,
     json_: options.Json = False,
 ) -> int:
     """Grade the exercises of the lab in a folder: exit code 0 for full points, 5 otherwise."""
-    exercise = folder / _EXERCISE
-    exercises = sorted(folder.glob("exercise*.yaml"))
-    if exercise not in exercises:
-        hint = f"simkit lab start NAME {folder}; the labs are: {', '.join(_labs())}"
-        raise InputError(f"SK-SCEN-007 no file {exercise}\n    help: {hint}", "SK-SCEN-007")
-    missing = _missing_packages(folder)
+    from simkit.testing.grading.lab_files import changed_files, hand_in_files
+    from simkit.testing.scenarios.exercise import read_exercise
+    from simkit.testing.scenarios.grading import LabHandIn
+
+    source, exercises = _graded_lab(folder, name, exercise)
+    missing = _missing_packages(source)
     if missing:
-        message = f"SK-CLI-056 {folder}: the lab needs {' and '.join(missing)}\n    help: {_remedy(missing)}"
+        message = f"SK-CLI-056 {source.name}: the lab needs {' and '.join(missing)}\n    help: {_remedy(missing)}"
         raise InputError(message, "SK-CLI-056")
-    # grading a folder means running its file
-    return grade_files(exercises, pictures=pictures, jobs=jobs, json_=json_, allow_code=True)
+    files = hand_in_files(source, [read_exercise(file).hand_in for file in exercises])
+    tell = print_status if json_ else print_line
+    tell(f"lab {source.name}: {', '.join(files)} of {folder}")
+    changed = changed_files(source, folder, files)
+    if changed:
+        tell(f"note: not used, because the lab has its own: {', '.join(changed)}")
+    return grade_files(
+        exercises, pictures=pictures, jobs=jobs, limit=limit, lab=LabHandIn(folder, tuple(files)), json_=json_,
+        allow_code=allow_code or exercise is None,  # the code of the installed lab is simkit's own
+    )  # fmt: skip
+
+
+def _graded_lab(folder: Path, name: str, exercise: Path | None) -> tuple[Path, list[Path]]:
+    """Return the folder with the true files of a lab, and its exercises.
+
+    Raises:
+        InputError: SK-SCEN-007 the folder tells no lab, or there is no exercise; SK-CLI-055 the lab is unknown.
+    """
+    if exercise is not None and exercise.is_file():
+        return exercise.absolute().parent, [exercise.absolute()]
+    if exercise is not None:
+        source = exercise.absolute()
+    elif name:
+        source = _named_lab(name)
+    else:
+        source = _lab_of(folder)
+    found = sorted(source.glob("exercise*.yaml"))
+    if not found:
+        hint = "simkit lab grade DIR --exercise FILE"
+        raise InputError(f"SK-SCEN-007 no file {source / _EXERCISE}\n    help: {hint}", "SK-SCEN-007")
+    return source, found
+
+
+def _lab_of(folder: Path) -> Path:
+    """Return the folder of the installed lab from which a student's folder was started.
+
+    Raises:
+        InputError: SK-SCEN-007 the folder does not tell the lab.
+    """
+    labs = _labs()
+    marker, exercise = folder / _MARKER, folder / _EXERCISE
+    if marker.is_file():
+        name = read_input(marker, _NAME_LIMIT).decode("utf-8", "replace").strip()
+        if name in labs:
+            return labs[name]
+    elif exercise.is_file():  # a folder from before simkit wrote the marker
+        title = _title(exercise)
+        same = [lab for lab in labs.values() if title and _title(lab / _EXERCISE) == title]
+        if len(same) == 1:
+            return same[0]
+    start = f"simkit lab start NAME {folder}"
+    hint = f"{start}, or simkit lab grade {folder} --lab NAME; the labs are: {', '.join(labs)}"
+    raise InputError(f"SK-SCEN-007 {folder} does not tell its lab\n    help: {hint}", "SK-SCEN-007")
+
+
+def _title(exercise: Path) -> str:
+    """Return the title of an exercise; the file need not be valid."""
+    text = read_input(exercise, TEXT_LIMIT).decode("utf-8", "replace")
+    found = re.search(r"^  title:(.*)$", text, re.MULTILINE)
+    return found[1].strip() if found else ""

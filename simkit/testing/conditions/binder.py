@@ -108,11 +108,11 @@ class Binder:
         if node.name in _CONSTANTS:
             kind, value = _CONSTANTS[node.name]
             return BoundNode(node, kind, lambda: value)
-        sim = self.view.sim
+        clock = self.view.clock
         if node.name == "time":
-            return BoundNode(node, NUMBER, lambda: sim.time)
+            return BoundNode(node, NUMBER, lambda: clock.time)
         if node.name == "tick":
-            return BoundNode(node, NUMBER, lambda: float(sim.tick))
+            return BoundNode(node, NUMBER, lambda: float(clock.tick))
         if node.name in FUNCTIONS:
             message = f"{node.name} is a function"
             raise self.fault("SK-COND-002", message, node.span, f"write {FUNCTIONS[node.name].usage}")

@@ -19,7 +19,8 @@ from simkit.testing.conditions.value_types import NUMBER, POSE, SCAN, TEXT, TRUT
 
 if TYPE_CHECKING:
     from simkit.runtime import Joint
-    from simkit.testing.conditions.world_view import LatestMessage, WorldView
+    from simkit.testing.conditions.topic_listeners import LatestMessage
+    from simkit.testing.conditions.world_view import WorldView
 
 
 _MAX_SHOWN = 6  # number of list items in a report; a longer list is described by its length

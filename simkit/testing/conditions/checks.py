@@ -10,13 +10,10 @@ from typing import Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.float_sum import float_sum
 from simkit.msgs.topic_names import absolute_name
 from simkit.run_spec import Check
-from simkit.runtime import Simulation
 from simkit.testing.conditions.binder import bind
 from simkit.testing.conditions.bound_expression import BoundNode, findings, value_text
-from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.parser import parse
 from simkit.testing.conditions.syntax_tree import Comparison, Span, UndecidedValue, expression_error
 from simkit.testing.conditions.value_types import TRUTH
@@ -81,7 +78,7 @@ class Condition:
             UndecidedValue: The value is unknown.
         """
         if self._part is None:
-            self._bind_late()
+            self.bind_late()
         if self._part is None:
             raise UndecidedValue(self._fault or self._waiting_reason)
         return bool(self._part.get())
@@ -124,13 +121,13 @@ class Condition:
             raise expression_error("SK-COND-004", message, self.source, span, "compare it with < <= > >= == !=")
         self._part = part
 
-    def _bind_late(self) -> None:
+    def bind_late(self) -> None:
         """Bind the expression when its topic exists. An error in the expression then fails the check, not the run."""
-        bus = self._view.sim.communication.bus
-        if self._fault or bus.revision == self._revision:
+        view = self._view
+        if self._part is not None or self._fault or view.topics_revision == self._revision:
             return
-        self._revision = bus.revision
-        if self._topic not in bus.all_topics():
+        self._revision = view.topics_revision
+        if self._topic not in view.all_topics():
             return
         try:
             self._bind()
@@ -147,7 +144,7 @@ class RunningCheck(ABC):
     """
 
     def __init__(self, check: Check, view: WorldView) -> None:
-        self.check, self._sim = check, view.sim
+        self.check, self._clock = check, view.clock
         self.is_decided = False
         self._result: CheckResult | None = None
 
@@ -170,16 +167,20 @@ class RunningCheck(ABC):
 
     def _decide(self, passed: bool, message: str, time: float | None = None) -> CheckResult:
         self.is_decided = True
-        self._result = CheckResult(self.check, passed, message, self._sim.time if time is None else time)
+        self._result = CheckResult(self.check, passed, message, self._clock.time if time is None else time)
         return self._result
 
 
 class ConditionCheck(RunningCheck):
-    """Check that evaluates a condition."""
+    """Check that evaluates a condition.
+
+    Attributes:
+        condition: Condition.
+    """
 
     def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
-        self._condition = Condition(check.expression, view)
+        self.condition = Condition(check.expression, view)
 
 
 class ReachedCheck(ConditionCheck):
@@ -198,23 +199,23 @@ class ReachedCheck(ConditionCheck):
             self._decide(False, f"was not reached by {time_text(by)}: {self._nearest_values()}", by)
             return
         try:
-            holds, gap, text = self._condition.gap()
+            holds, gap, text = self.condition.gap()
         except UndecidedValue:
             return
         if holds:
-            self._decide(True, f"was reached at {time_text(time)}: {self._condition.findings(expected=False)}", time)
+            self._decide(True, f"was reached at {time_text(time)}: {self.condition.findings(expected=False)}", time)
         elif gap < self._nearest:
             self._nearest, self._nearest_text, self._nearest_time = gap, text, time
 
     def _nearest_values(self) -> str:
         """Return the present values, and earlier values if these were nearer to the goal."""
-        found = self._condition.findings()
+        found = self.condition.findings()
         if not self._nearest_text or self._nearest_text in found:
             return found
         return f"{found}; nearest at {time_text(self._nearest_time)}: {self._nearest_text}"
 
     def _at_end(self, early_end: str) -> CheckResult:
-        end = f"was not reached by {time_text(self._sim.time)}" + (f", when {early_end}" if early_end else "")
+        end = f"was not reached by {time_text(self._clock.time)}" + (f", when {early_end}" if early_end else "")
         return self._decide(False, f"{end}: {self._nearest_values()}")
 
 
@@ -228,26 +229,26 @@ class AlwaysCheck(ConditionCheck):
         if time < self.check.after - 1e-9:
             return
         try:
-            holds = self._condition.holds()
+            holds = self.condition.holds()
         except UndecidedValue:
             return
         if self._since is None:
             self._since = time
         self._last = time
         if not holds:
-            self._decide(False, f"did not hold at {time_text(time)}: {self._condition.findings()}", time)
+            self._decide(False, f"did not hold at {time_text(time)}: {self.condition.findings()}", time)
 
     def _at_end(self, early_end: str) -> CheckResult:
-        now = time_text(self._sim.time)
+        now = time_text(self._clock.time)
         if self._since is None:
-            reason = self._condition.findings()
-            if self._sim.time < self.check.after:
+            reason = self.condition.findings()
+            if self._clock.time < self.check.after:
                 reason = f"the run ended at {now}, before {time_text(self.check.after)}"
             return self._decide(False, f"was never evaluated: {reason}")
         if early_end:
             return self._decide(False, f"held until {now}, when {early_end}")
-        found = self._condition.findings(expected=False)
-        if self._last < self._sim.time - 0.5 * self._sim.timestep:
+        found = self.condition.findings(expected=False)
+        if self._last < self._clock.time - 0.5 * self._clock.timestep:
             return self._decide(True, f"held from {time_text(self._since)} to {time_text(self._last)}, then: {found}")
         return self._decide(True, f"held from {time_text(self._since)} to {now}: {found}")
 
@@ -256,14 +257,14 @@ class FinalCheck(ConditionCheck):
     """Condition that must be true at the end."""
 
     def _at_end(self, early_end: str) -> CheckResult:
-        now = time_text(self._sim.time)
+        now = time_text(self._clock.time)
         if early_end:
             return self._decide(False, f"was not evaluated: at {now} {early_end}")
         try:
-            holds = self._condition.holds()
+            holds = self.condition.holds()
         except UndecidedValue:
             holds = False
-        return self._decide(holds, f"{self._condition.findings(expected=not holds)} at {now}")
+        return self._decide(holds, f"{self.condition.findings(expected=not holds)} at {now}")
 
 
 class SeparationCheck(RunningCheck):
@@ -279,8 +280,8 @@ class SeparationCheck(RunningCheck):
         for name in names:
             spans.append(Span(at, at + len(repr(name))))
             at = spans[-1].end + 1
-        self._touching = ContactQuery(
-            view.sim, *(view.scoped_name(name, source, span) for name, span in zip(names, spans, strict=True))
+        self._touching = view.contacts(
+            *(view.scoped_name(name, source, span) for name, span in zip(names, spans, strict=True))
         )
 
     def look(self, time: float) -> None:
@@ -288,38 +289,15 @@ class SeparationCheck(RunningCheck):
             self._decide(False, f"{self._touching.describe()} at {time_text(time)}", time)
 
     def _at_end(self, early_end: str) -> CheckResult:
-        now = time_text(self._sim.time)
+        now = time_text(self._clock.time)
         if early_end:
             return self._decide(False, f"no contact until {now}, when {early_end}")
-        if self._sim.time < self.check.after:
+        if self._clock.time < self.check.after:
             return self._decide(False, f"was never evaluated: the run ended at {now}")
         return self._decide(True, f"no contact until {now}")
 
 
 _MAX_LATENESS = 2.5  # a topic counts as stopped after this number of periods without a message
-
-
-def configured_rate(sim: Simulation, topic: str) -> float | None:
-    """Return the sum of the configured rates of a topic's publishers [Hz]; None if a rate is unknown."""
-    owners: list[object] = [sensor for sensor in sim.engine.structure.all_sensors() if topic in sensor._topics.values()]
-    if not owners:
-        for _, end, _, what in sim.communication.bus.endpoints(topic):
-            if what == "publishes" and end.active:
-                owners.append(None if getattr(end, "latched", False) else end.owner)
-    rates = [_publisher_rate(owner, sim.timestep) for owner in owners]
-    return float_sum(rate for rate in rates if rate is not None) if rates and None not in rates else None
-
-
-def _publisher_rate(owner: object, timestep: float) -> float | None:
-    """Return the rate of a sensor or of a plugin's hook `after_step` [Hz]; None if it is unknown.
-
-    A sensor with an update rate of 0 publishes after every step.
-    """
-    rate = getattr(owner, "update_rate", None)
-    if isinstance(rate, (int, float)) and hasattr(owner, "scoped") and hasattr(owner, "sample"):
-        return min(float(rate), 1.0 / timestep) if rate > 0 else 1.0 / timestep
-    rate = getattr(owner, "after_step_rate", None)
-    return float(rate) if isinstance(rate, (int, float)) and rate > 1e-3 else None
 
 
 class TopicRateCheck(RunningCheck):
@@ -330,20 +308,20 @@ class TopicRateCheck(RunningCheck):
         if not check.topic:
             raise InputError("SK-COND-009 a rate check has no topic", "SK-COND-009")
         self._topic = absolute_name(check.topic)
-        self._counter = view.message_counter(self._topic)
+        self._counter, self._view = view.message_counter(self._topic), view
 
     def _at_end(self, early_end: str) -> CheckResult:
-        sim, counter, check = self._sim, self._counter, self.check
-        now = time_text(sim.time)
+        clock, counter, check = self._clock, self._counter, self.check
+        now = time_text(clock.time)
         if early_end:
             return self._decide(False, f"{counter.count} messages received until {now}, when {early_end}")
         if not counter.count:
-            topics = sim.communication.bus.all_topics()
+            topics = self._view.all_topics()
             if self._topic in topics:
                 return self._decide(False, f"no message received on {self._topic} until {now}")
             near = did_you_mean(self._topic, topics)
             return self._decide(False, f"no publisher on {self._topic}" + (f"; {near}" if near else ""))
-        target = check.rate if check.rate is not None else configured_rate(sim, self._topic)
+        target = check.rate if check.rate is not None else self._view.configured_rate(self._topic)
         found = counter.rate()
         first, last = time_text(counter.first / 1e9), time_text(counter.last / 1e9)
         if found is None:
@@ -358,6 +336,6 @@ class TopicRateCheck(RunningCheck):
             expected = f", expected {target:.6g} Hz"
         if abs(found - target) > check.tolerance * target:
             return self._decide(False, f"{text}{expected} ± {check.tolerance * 100:.3g} %")
-        if sim.time - counter.last / 1e9 > _MAX_LATENESS / target + 1.5 * sim.timestep:
+        if clock.time - counter.last / 1e9 > _MAX_LATENESS / target + 1.5 * clock.timestep:
             return self._decide(False, f"{text}, and no further message until {now}")
         return self._decide(True, text + expected)

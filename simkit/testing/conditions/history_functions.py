@@ -16,12 +16,11 @@ from simkit.linear_algebra import dot
 from simkit.pose import Vector
 from simkit.testing.conditions import value_types as kinds
 from simkit.testing.conditions.bound_expression import BoundNode, ExpressionBinder, Function
-from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.syntax_tree import Call, UndecidedValue
 from simkit.testing.conditions.world_functions import contact_query, entity_argument
 
 if TYPE_CHECKING:
-    from simkit.testing.conditions.world_view import Entity, WorldView
+    from simkit.testing.conditions.world_view import Contacts, Entity, WorldView
 
 _PATH_RATE: Final = 100.0
 """Rate at which a path is sampled [Hz]. At 1 m/s, a piece of the path has 1 cm; noise of contacts is left out."""
@@ -43,7 +42,7 @@ class HistoryValue(ABC):
     rate: float | None = None
 
     def __init__(self, view: WorldView, part: BoundNode | None = None) -> None:
-        self._sim, self._part = view.sim, part
+        self._clock, self._part = view.clock, part
         self._time = math.nan
         self._seen: object = _NOTHING
         self._feed = None if part is None else part.feed
@@ -52,7 +51,7 @@ class HistoryValue(ABC):
 
     def observe(self) -> None:
         """Add the present state, once for each simulated time or message."""
-        now = self._sim.time
+        now = self._clock.time
         if not now >= self._time:  # the first observation, or the first one after a reset
             self._time, self._seen = now, _NOTHING
             self.begin()
@@ -208,7 +207,7 @@ class _PathLength(HistoryValue):
 class _Collisions(HistoryValue):
     """Number of contacts that began; a contact at the start counts."""
 
-    def __init__(self, view: WorldView, touching: ContactQuery) -> None:
+    def __init__(self, view: WorldView, touching: Contacts) -> None:
         super().__init__(view)
         self._touching = touching
 

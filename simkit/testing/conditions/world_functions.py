@@ -19,20 +19,20 @@ from simkit.testing.conditions.bound_expression import (
     as_vector,
     quoted_argument,
 )
-from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.syntax_tree import Call, Node, Text, UndecidedValue
 
 if TYPE_CHECKING:
-    from simkit.testing.conditions.world_view import Entity
+    from simkit.testing.conditions.world_view import Contacts, Entity
 
 
 _ENTITY_ARGUMENT = "the name of a model or a link"
+_VELOCITY_FUNCTIONS: Final = ("twist", "velocity")
 
 
 def entity_argument(binder: ExpressionBinder, call: Call, index: int) -> Entity:
     """Return the model or link that an argument names."""
     node = quoted_argument(binder, call, index, _ENTITY_ARGUMENT)
-    return binder.view.entity(node.value, binder.source, node.span)
+    return binder.view.entity(node.value, binder.source, node.span, moves=call.name in _VELOCITY_FUNCTIONS)
 
 
 def _bind_relative(
@@ -67,15 +67,13 @@ _velocity = _bind_relative(kinds.VECTOR, lambda one: one.twist()[0], lambda fram
 def _joint(binder: ExpressionBinder, call: Call) -> BoundNode:
     node = quoted_argument(binder, call, 0, "the name of a joint")
     joint = binder.view.joint(node.value, binder.source, node.span)
-    entities, name = binder.view.sim.contents.handles, joint.scoped
     # look up the name again, because a new joint may have it after the first one was removed
-    return BoundNode(call, kinds.JOINT, lambda: entities.tables["joint"].get(name, joint))
+    return BoundNode(call, kinds.JOINT, lambda: binder.view.current_joint(joint))
 
 
 def _exists(binder: ExpressionBinder, call: Call) -> BoundNode:
     name = quoted_argument(binder, call, 0, _ENTITY_ARGUMENT).value
-    entities = binder.view.sim.contents.handles
-    return BoundNode(call, kinds.TRUTH, lambda: any(name in entities.tables[kind] for kind in ("model", "link")))
+    return BoundNode(call, kinds.TRUTH, binder.view.existence(name))
 
 
 # ------------------------------------------------------------------ distances
@@ -159,21 +157,21 @@ def _rate(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 def _age(binder: ExpressionBinder, call: Call) -> BoundNode:
     topic = _topic_argument(binder, call)[0]
-    counter, sim = binder.view.message_counter(topic), binder.view.sim
+    counter, clock = binder.view.message_counter(topic), binder.view.clock
 
     def value() -> float:
         if not counter.count:
             raise UndecidedValue(f"no message received on {topic}")
-        return (sim.time_ns - counter.last) / 1e9
+        return (clock.time_ns - counter.last) / 1e9
 
     return BoundNode(call, kinds.NUMBER, value)
 
 
-def contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
+def contact_query(binder: ExpressionBinder, call: Call) -> Contacts:
     """Return the contacts of the models, links or collisions that the arguments name."""
     nodes = [quoted_argument(binder, call, index, _ENTITY_ARGUMENT) for index in range(len(call.arguments))]
     names = [binder.view.scoped_name(node.value, binder.source, node.span) for node in nodes]
-    return ContactQuery(binder.view.sim, *names)
+    return binder.view.contacts(*names)
 
 
 def _contact(binder: ExpressionBinder, call: Call) -> BoundNode:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -12,86 +11,47 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.msgs.topic_names import absolute_name
 from simkit.pose import Pose, Vector
-from simkit.runtime import Joint, Simulation, Subscription
+from simkit.runtime import Joint, Simulation
 from simkit.runtime.contact.collision_contacts import collision_table
+from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedValue, expression_error
-
-
-class _TopicListener(ABC):
-    """Subscriber of a topic between the calls of `open` and `close`.
-
-    Args:
-        sim: Simulation.
-        topic: Absolute name of the topic.
-    """
-
-    def __init__(self, sim: Simulation, topic: str) -> None:
-        self.topic, self._sim = topic, sim
-        self._subscription: Subscription | None = None
-
-    @abstractmethod
-    def _subscribe(self) -> Subscription:
-        """Subscribe to the topic."""
-
-    def open(self) -> None:
-        """Subscribe, if there is no subscription yet."""
-        if self._subscription is None:
-            self._subscription = self._subscribe()
-
-    def close(self) -> None:
-        """End the subscription; received data remain."""
-        if self._subscription is not None:
-            self._subscription.close()
-
-
-class LatestMessage(_TopicListener):
-    """Newest message of a topic; a lazy message is created only when it is read."""
-
-    def _subscribe(self) -> Subscription:
-        return self._sim.communication.bus.subscribe(self.topic, keep=1)
-
-    def latest(self) -> object:
-        """Return the newest message.
-
-        Raises:
-            UndecidedValue: No message was received.
-        """
-        message = self._subscription.latest if self._subscription is not None else None
-        if message is None:
-            raise UndecidedValue(f"no message received on {self.topic}")
-        return message
-
-
-class MessageCounter(_TopicListener):
-    """Number and times of the messages on a topic; the content of the messages is not read.
-
-    Attributes:
-        count: Number of messages since `open` or since the last reset of the simulation.
-        first, last: Simulated times of the first and the newest message [ns].
-    """
-
-    count = first = last = 0
-
-    def _subscribe(self) -> Subscription:
-        return self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
-
-    def rate(self) -> float | None:
-        """Return the rate from the first to the newest message [Hz]; None if no two messages have different times."""
-        if self.count < 2 or self.last <= self.first:
-            return None
-        return (self.count - 1) * 1e9 / (self.last - self.first)
-
-    def _take(self, _: object) -> None:
-        now = self._sim.time_ns
-        if now < self.last:  # the simulation was reset
-            self.count = 0
-        if not self.count:
-            self.first = now
-        self.last = now
-        self.count += 1
-
+from simkit.testing.conditions.topic_listeners import LatestMessage, MessageCounter, TopicListener
+from simkit.testing.conditions.topic_rates import configured_rate
 
 _MAX_LISTED = 12  # maximum number of names in an error message
+
+
+class RunClock(Protocol):
+    """Time of a run; a simulation is one.
+
+    Attributes:
+        tick: Number of the step.
+        time: Simulated time [s].
+        time_ns: Simulated time [ns].
+        timestep: Time step [s].
+    """
+
+    @property
+    def tick(self) -> int: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def time_ns(self) -> int: ...
+    @property
+    def timestep(self) -> float: ...
+
+
+class Contacts(Protocol):
+    """Contacts of one or two entities; `ContactQuery` reads them from a simulation."""
+
+    def now(self) -> Sequence[object]:
+        """Return the present contacts."""
+
+    def force(self) -> float:
+        """Return the sum of the normal forces [N]."""
+
+    def describe(self) -> str:
+        """Return the links that touch; empty without contacts."""
 
 
 class AbsentTopic(Exception):
@@ -182,10 +142,14 @@ class WorldView:
     Args:
         sim: Simulation.
         absent: Behaviour for a topic without a publisher: raise an "error", or "wait" for a publisher.
+
+    Attributes:
+        clock: Time of the run.
     """
 
     def __init__(self, sim: Simulation, absent: Literal["error", "wait"] = "error") -> None:
         self.sim, self.absent = sim, absent
+        self.clock: RunClock = sim
         self._latest_messages: dict[str, LatestMessage] = {}
         self._counters: dict[str, MessageCounter] = {}
         self._histories: list[History] = []
@@ -194,8 +158,14 @@ class WorldView:
 
     # ------------------------------------------------------------------ names
 
-    def entity(self, name: str, source: str, span: Span) -> Entity:
+    def entity(self, name: str, source: str, span: Span, *, moves: bool = False) -> Entity:
         """Return a model or link by its scoped name, or by its short name if that is unique.
+
+        Args:
+            name: Name of the model or link.
+            source: Text of the expression.
+            span: Position of the name in the expression.
+            moves: True if the expression may read the velocity too.
 
         Raises:
             InputError: SK-COND-005 no entity or several entities have the name; the message suggests the closest.
@@ -207,15 +177,36 @@ class WorldView:
         found: Joint = self._find(("joint",), name, source, span)
         return found
 
+    def current_joint(self, joint: Joint) -> Joint:
+        """Return the joint that has the name of a joint now, or the same joint if it was removed."""
+        found: Joint = self._tables["joint"].get(joint.scoped, joint)
+        return found
+
+    def existence(self, name: str) -> Callable[[], bool]:
+        """Return a function that checks whether a model or link of a name exists."""
+        return lambda: any(name in self._tables[kind] for kind in ("model", "link"))
+
+    def contacts(self, first: str, second: str | None = None) -> Contacts:
+        """Return the contacts of one or two models, links or collisions by their scoped names."""
+        return ContactQuery(self.sim, first, second)
+
+    @property
+    def _tables(self) -> Mapping[str, Mapping[str, Any]]:
+        """Models, links and joints by kind and scoped name."""
+        return self.sim.contents.handles.tables
+
+    def _collision_names(self) -> Container[str]:
+        return collision_table(self.sim.engine.structure.compiled).names
+
     def scoped_name(self, name: str, source: str, span: Span) -> str:
         """Return the scoped name of a model, a link or a collision."""
-        if name in collision_table(self.sim.engine.structure.compiled).names:
+        if name in self._collision_names():
             return name
         found: str = self._find(("model", "link"), name, source, span).scoped
         return found
 
     def _find(self, kinds: tuple[str, ...], name: str, source: str, span: Span) -> Any:
-        tables = self.sim.contents.handles.tables
+        tables = self._tables
         for kind in kinds:
             if name in tables[kind]:
                 return tables[kind][name]
@@ -234,6 +225,19 @@ class WorldView:
 
     # ------------------------------------------------------------------ topics
 
+    def all_topics(self) -> dict[str, str]:
+        """Return the types of all topics."""
+        return self.sim.communication.bus.all_topics()
+
+    @property
+    def topics_revision(self) -> int:
+        """Counter that changes with the topics."""
+        return self.sim.communication.bus.revision
+
+    def configured_rate(self, topic: str) -> float | None:
+        """Return the sum of the configured rates of a topic's publishers [Hz]; None if a rate is unknown."""
+        return configured_rate(self.sim, topic)
+
     def topic(self, name: str, source: str, span: Span) -> tuple[str, str]:
         """Return the absolute name and the type of a topic.
 
@@ -242,7 +246,7 @@ class WorldView:
             AbsentTopic: The topic does not exist yet, and the view waits for it.
         """
         topic = absolute_name(name)
-        topics = self.sim.communication.bus.all_topics()
+        topics = self.all_topics()
         if topic in topics:
             return topic, topics[topic]
         near = did_you_mean(topic, topics)
@@ -306,7 +310,7 @@ class WorldView:
             end()
         self._history_ends.clear()
 
-    def _listeners(self) -> list[_TopicListener]:
+    def _listeners(self) -> list[TopicListener]:
         return [*self._latest_messages.values(), *self._counters.values()]
 
 

@@ -18,12 +18,14 @@ from simkit.float_sum import float_sum
 from simkit.input_file import read_input
 from simkit.progress import report_each
 from simkit.run_spec import FilePath, JsonObject
+from simkit.testing.grading.callback_limit import DEFAULT_LIMIT, is_debugged
 from simkit.testing.junit import JunitCase
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, permit_exercise
 
-_SPARE_SECONDS: Final = 20.0  # additional wall time for starting and ending the process of a run [s]
+_SPARE_SECONDS: Final = 60.0  # additional wall time for starting and ending the processes of a run [s]
 _MAX_RESULT_BYTES: Final = 64 << 20
-_MAX_LINES_SHOWN: Final = 20  # maximum number of printed lines in a grade; the last ones are stored
+_MAX_LINES_SHOWN: Final = 20  # maximum number of lines of a process that failed
+_NOT_STARTED: Final = "the run was not started, because a callback was stopped in an earlier run"
 
 
 @dataclass(frozen=True)
@@ -102,10 +104,24 @@ class Grade:
         return self.points >= self.exercise.pass_mark * self.worth - 1e-9
 
 
+@dataclass(frozen=True)
+class LabHandIn:
+    """Files of a student's folder that are graded in a copy of the lab.
+
+    Attributes:
+        folder: Folder of the student.
+        files: Files of the hand-in, relative to the folder.
+    """
+
+    folder: Path
+    files: tuple[str, ...]
+
+
 def grade(
     exercise: Exercise,
     hand_in: Path | None = None,
     pictures: Path | None = None,
+    limit: float = DEFAULT_LIMIT,
     *,
     allow_code: bool = False,
     plugin_paths: Sequence[FilePath] = (),
@@ -116,6 +132,7 @@ def grade(
         exercise: Exercise.
         hand_in: File of the plugin; None if the exercise needs no submission.
         pictures: Folder for a picture of each run's path.
+        limit: Wall and processor time after which a callback without progress is stopped [s]; 0 for none.
         allow_code: Allow the plugin folders that the exercise names. Their code has the same rights as the user.
         plugin_paths: Allow these folders only.
 
@@ -123,7 +140,7 @@ def grade(
         InputError: The exercise itself has an error: its world, its commands or its checks; or SK-SCEN-008 it needs
             code that is not allowed.
     """
-    (graded,) = grade_all(exercise, [hand_in], pictures, allow_code=allow_code, plugin_paths=plugin_paths)
+    (graded,) = grade_all(exercise, [hand_in], pictures, limit=limit, allow_code=allow_code, plugin_paths=plugin_paths)
     return graded
 
 
@@ -133,6 +150,9 @@ def grade_all(
     pictures: Path | None = None,
     jobs: int = 1,
     *,
+    limit: float = DEFAULT_LIMIT,
+    lab: LabHandIn | None = None,
+    stopped: set[Path] | None = None,
     allow_code: bool = False,
     plugin_paths: Sequence[FilePath] = (),
 ) -> Iterator[Grade]:
@@ -143,6 +163,9 @@ def grade_all(
         hand_ins: Files of plugins; None for a run without a submission.
         pictures: Folder for a picture of each run's path.
         jobs: Number of parallel processes.
+        limit: Wall and processor time after which a callback without progress is stopped [s]; 0 for none.
+        lab: Hand-in of a lab, whose files replace those of a copy of the exercise's folder.
+        stopped: Plugins with a callback that was stopped; no further run of them is started. New ones are added.
         allow_code: Allow the plugin folders that the exercise names. Their code has the same rights as the user.
         plugin_paths: Allow these folders only.
 
@@ -151,12 +174,13 @@ def grade_all(
     """
     exercise = permit_exercise(exercise, allow_code, plugin_paths)
     names = short_labels(hand_ins)
-    processes = ChildProcesses()
+    stopped = set() if stopped is None else stopped
+    grader = _Grader(exercise, 0.0 if is_debugged() else limit, lab, stopped)
     with ThreadPoolExecutor(jobs) as pool:
 
         def outcome(hand_in: Path | None, name: str, number: int) -> RunGrade:
             picture = "" if pictures is None else str((pictures / f"{name or 'exercise'}_{number + 1}.png").absolute())
-            return _run_grade(processes, exercise, number, hand_in, picture)
+            return grader.grade(number, hand_in, picture)
 
         runs = range(len(exercise.runs))
         submissions = [
@@ -169,7 +193,7 @@ def grade_all(
                 yield Grade(exercise, file, tuple(one.result() for one in outcomes), name)
         finally:  # cancel waiting runs and end running processes, even if the caller does not read all grades
             pool.shutdown(wait=False, cancel_futures=True)
-            processes.end()
+            grader.processes.end()
 
 
 def short_labels(hand_ins: Sequence[Path | None]) -> list[str]:
@@ -185,19 +209,77 @@ def short_labels(hand_ins: Sequence[Path | None]) -> list[str]:
     ]
 
 
-def _run_grade(
-    processes: ChildProcesses, exercise: Exercise, number: int, hand_in: Path | None, picture: str
-) -> RunGrade:
-    variation = exercise.runs[number]
-    checks = _required_checks(variation)
-    found, printed = _run_in_process(processes, exercise, number, hand_in, picture)
-    error = found.get("error", "")
-    results = found.get("results") or [(False, "the run ended early", found["time"])] * len(checks)
-    marks = [
-        CheckGrade(title, passed, message, worth if passed else 0.0, worth, "" if passed else hint, time)
-        for (title, worth, hint), (passed, message, time) in zip(checks, results, strict=True)
-    ]
-    return RunGrade(variation.name, variation.scenario.seed, found["time"], tuple(marks), error, printed)
+class _Grader:
+    """Grader of the runs of one exercise.
+
+    Args:
+        exercise: Exercise.
+        limit: Limit of a callback [s]; 0 for none.
+        lab: Hand-in of a lab; None for a plugin that stays where it is.
+        stopped: Plugins with a callback that was stopped.
+    """
+
+    def __init__(self, exercise: Exercise, limit: float, lab: LabHandIn | None, stopped: set[Path]) -> None:
+        self._exercise, self._limit, self._lab, self._stopped = exercise, limit, lab, stopped
+        self.processes = ChildProcesses()
+
+    def grade(self, number: int, hand_in: Path | None, picture: str) -> RunGrade:
+        """Run the exercise once and grade the run."""
+        variation = self._exercise.runs[number]
+        checks = _required_checks(variation)
+        if hand_in in self._stopped:
+            found: JsonObject = {"error": _NOT_STARTED, "time": 0.0}
+        else:
+            found = self._run_in_process(number, hand_in, picture)
+        if found.get("stuck") and hand_in is not None:
+            if hand_in in self._stopped:  # told once, also by runs at the same time
+                found["error"] = _NOT_STARTED
+            self._stopped.add(hand_in)
+        results = found.get("results") or [(False, "the run ended early", found["time"])] * len(checks)
+        marks = [
+            CheckGrade(title, passed, message, worth if passed else 0.0, worth, "" if passed else hint, time)
+            for (title, worth, hint), (passed, message, time) in zip(checks, results, strict=True)
+        ]
+        printed = found.get("printed", "")
+        seed = variation.scenario.seed
+        return RunGrade(variation.name, seed, found["time"], tuple(marks), found.get("error", ""), printed)
+
+    def _run_in_process(self, number: int, hand_in: Path | None, picture: str) -> JsonObject:
+        """Run an exercise in the process of a judge, which starts the one of the hand-in; return the result."""
+        variation = self._exercise.runs[number]
+        limit = (variation.scenario.wall_timeout or 0.0) + _SPARE_SECONDS
+        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+            target = Path(folder) / "result.json"
+            token = secrets.token_hex()
+            job = {
+                "exercise": str(self._exercise.file.absolute()),
+                "folders": [os.path.abspath(one) for one in self._exercise.folders],  # noqa: PTH100 (links stay)
+                "allow_code": not self._exercise.code_requests,
+                "hand_in": "" if hand_in is None else str(hand_in.absolute()),
+                "folder": "" if self._lab is None else str(self._lab.folder.absolute()),
+                "files": () if self._lab is None else self._lab.files,
+                "number": number,
+                "target": str(target),
+                "picture": picture,
+                "limit": self._limit,
+                "token": token,
+            }
+            job_file = Path(folder) / "job.json"
+            job_file.write_text(json.dumps(job), encoding="utf-8")
+            environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
+            done = self.processes.run(
+                "simkit.testing.scenarios.judge_process", [str(job_file)], environment=environment, limit=limit
+            )
+            if done.is_late:
+                return {"error": f"the run was stopped after {limit:g} s of wall time", "time": 0.0}
+            found = _read_process_result(target, token, len(_required_checks(variation)))
+        if found is None:
+            how = f"with {done.code}" if done.code >= 0 else f"by signal {-done.code}"
+            lines = "\n".join(done.last_lines(_MAX_LINES_SHOWN))
+            return {"error": f"the process of the judge ended {how}", "time": 0.0, "printed": lines}
+        if "fault" in found:
+            raise InputError(f"{self._exercise.file}: {variation.name}: {found['fault']}", found["code"])
+        return found
 
 
 def _required_checks(variation: ExerciseRun) -> list[tuple[str, float, str]]:
@@ -205,44 +287,6 @@ def _required_checks(variation: ExerciseRun) -> list[tuple[str, float, str]]:
     scenario = variation.scenario
     until = [(f"until {scenario.until}", 1.0, "")] if scenario.until else []
     return until + [(check.title, check.points, check.hint) for check in scenario.checks]
-
-
-def _run_in_process(
-    processes: ChildProcesses, exercise: Exercise, number: int, hand_in: Path | None, picture: str
-) -> tuple[JsonObject, str]:
-    """Run an exercise in a child process; return its result and its printed output."""
-    variation = exercise.runs[number]
-    limit = (variation.scenario.wall_timeout or 0.0) + _SPARE_SECONDS
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        target = Path(folder) / "result.json"
-        token = secrets.token_hex()
-        job = {
-            "exercise": str(exercise.file.absolute()),
-            "folders": [os.path.abspath(folder) for folder in exercise.folders],  # noqa: PTH100 (links stay)
-            "hand_in": "" if hand_in is None else str(hand_in.absolute()),
-            "number": number,
-            "target": str(target),
-            "picture": picture,
-            "token": token,
-            "plugin_paths": [str(Path(one).absolute()) for one in variation.scenario.options.get("plugin_paths", ())],
-        }
-        job_file = Path(folder) / "job.json"
-        job_file.write_text(json.dumps(job), encoding="utf-8")
-        environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
-        done = processes.run(
-            "simkit.testing.scenarios.grading_process", [str(job_file)], environment=environment, limit=limit
-        )
-        printed = "\n".join(done.last_lines(_MAX_LINES_SHOWN))
-        if done.is_late:
-            message = f"the run was stopped after {limit:g} s of wall time; the plugin may have an endless loop"
-            return {"error": message, "time": 0.0}, printed
-        found = _read_process_result(target, token, len(_required_checks(variation)))
-    if found is None:
-        how = f"with {done.code}" if done.code >= 0 else f"by signal {-done.code}"
-        return {"error": f"the process ended {how} before the run was complete", "time": 0.0}, printed
-    if "fault" in found:
-        raise InputError(f"{exercise.file}: {variation.name}: {found['fault']}", found["code"])
-    return found, printed
 
 
 def _read_process_result(target: Path, token: str, count: int) -> JsonObject | None:

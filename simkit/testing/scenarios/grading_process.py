@@ -1,102 +1,138 @@
-"""Child process for one run of an exercise, because a submitted plugin may exit, hang or print anything."""
+"""Process that runs an exercise with a hand-in and streams the run to its judge; it computes no verdict.
+
+A hand-in may exit, hang, print anything, and change everything in this process.
+"""
 
 from __future__ import annotations
 
 import json
+import os
 import sys
 import traceback
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from simkit.child_process import exit_immediately, exit_with_parent
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError, PluginError, RenderError, SimkitError
 from simkit.run_spec import JsonMapping, JsonObject
+from simkit.testing.grading.callback_limit import is_debugged, write_stacks_to
+from simkit.testing.grading.run_stream import END, READY, FrameWriter
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, read_exercise
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
+_PROGRESS_SECONDS: Final = 0.02  # simulated time between two signs of progress [s]
 
-def main(job_file: str) -> None:
-    """Run one variation of an exercise and write the result to a JSON file.
 
-    Args:
-        job_file: JSON file with the job: `exercise` and `hand_in` (files; empty for none), `folders` (in which the
-            exercise may name files), `plugin_paths` (folders of the exercise whose code is allowed), `number` of the
-            run, `target` (file for the result), `picture` (file for a picture of the path; empty for none), and
-            `token`, which is copied to the result. The file is removed at once, so that the plugin cannot read the
-            token.
+def main() -> None:
+    """Read the job from standard input, run it, and write the stream to the pipe that standard output was.
+
+    The job is one line of JSON: `exercise` and `hand_in` (files; the second is empty for none), `folders` in which the
+    exercise may name files, `allow_code` for its plugin folders, `files` of the hand-in, `number` of the run, `picture` (file for a picture of the path; empty for none), `stacks` (file for the stack of
+    this process) and `key` of the stream.
     """
-    job = json.loads(Path(job_file).read_text(encoding="utf-8"))
-    Path(job_file).unlink()
-    exercise = read_exercise(job["exercise"], job["folders"], plugin_paths=job["plugin_paths"])
-    hand_in = Path(job["hand_in"]) if job["hand_in"] else None
-    found = _run_exercise(exercise, exercise.runs[job["number"]], hand_in, job["picture"])
-    try:
-        Path(job["target"]).write_text(json.dumps({**found, "token": job["token"]}), encoding="utf-8")
-    except OSError as error:  # the plugin removed the folder
-        sys.exit(f"the result cannot be written: {error.strerror}")
+    job = json.loads(_first_line())
+    exit_with_parent()
+    writer = FrameWriter(_take_standard_output(), bytes.fromhex(job.pop("key")))
+    with open(job["stacks"], "a", encoding="utf-8") as stacks:
+        write_stacks_to(stacks)
+        writer.add_json(READY, {"debugged": is_debugged()})
+        writer.flush()
+        exercise = read_exercise(job["exercise"], job["folders"], allow_code=job["allow_code"])
+        hand_in = Path(job["hand_in"]) if job["hand_in"] else None
+        files = [Path(file) for file in job["files"]]
+        try:
+            found = _run_exercise(exercise, exercise.runs[job["number"]], hand_in, files, job["picture"], writer)
+            if found is not None:
+                writer.add_json(END, found)
+                writer.flush()
+        except OSError as error:  # the judge has all it needs, or the hand-in closed the pipe
+            sys.exit(f"the recording cannot be written: {error.strerror}")
+        sys.stdout.flush()
+        exit_immediately(0)
 
 
-def _run_exercise(exercise: Exercise, variation: ExerciseRun, hand_in: Path | None, picture: str) -> JsonObject:
-    """Run a variation and return the results of its checks, or an error."""
+def _first_line() -> bytes:
+    """Return the first line of standard input, and leave the rest in the pipe."""
+    line = bytearray()
+    while not line.endswith(b"\n"):
+        content = os.read(0, 1)
+        if not content:
+            break
+        line += content
+    return bytes(line)
+
+
+def _take_standard_output() -> int:
+    """Return a new descriptor for the pipe of standard output; what is printed goes to standard error."""
+    pipe = os.dup(1)
+    os.dup2(2, 1)
+    return pipe
+
+
+def _run_exercise(
+    exercise: Exercise,
+    variation: ExerciseRun,
+    hand_in: Path | None,
+    files: list[Path],
+    picture: str,
+    writer: FrameWriter,
+) -> JsonObject | None:
+    """Run a variation and stream it; return the reason if the run did not reach its end."""
     from simkit.recording.run_picture import DrivenPath, save_picture
-    from simkit.runtime.engine.snapshot import state_hash
+    from simkit.testing.grading.run_recorder import RunRecorder
 
     sim: Any = None
+    scenario = variation.scenario
     try:
         more: JsonObject = {}
         if hand_in is not None:
-            paths = (hand_in.parent, *variation.scenario.options.get("plugin_paths", ()))
-            more["plugin_paths"] = paths
+            paths = [Path(path) for path in scenario.options.get("plugin_paths", ())]
+            is_shadowed = not exercise.robot and any((path / hand_in.name).is_file() for path in paths)
+            # the exercise's modules go first, unless one has the name of the hand-in
+            more["plugin_paths"] = (hand_in.parent, *paths) if is_shadowed else (*paths, hand_in.parent)
             if exercise.robot:
-                more["plugins"] = (
-                    *variation.scenario.plugins,
-                    (exercise.robot, _make_plugin(hand_in, variation.parameters)),
-                )
-        with open_scenario(variation.scenario, **more) as sim:
+                more["plugins"] = (*scenario.plugins, (exercise.robot, _make_plugin(hand_in, variation.parameters)))
+        with open_scenario(scenario, **more) as sim:
             driven = DrivenPath(sim) if picture else None
-            on_slice = None if driven is None else driven.sample
-            ended = run_scenario(variation.scenario, sim, on_slice, absent="wait")
-            if driven is not None:
-                from simkit.sensors.cameras.overview_image import render_view
+            with RunRecorder(sim, scenario, writer, files) as recorder:
+                on_slice = _on_slice(recorder.show_progress, driven)
+                ended = run_scenario(
+                    scenario, sim, on_slice, absent="wait", judged=False, slice_seconds=_PROGRESS_SECONDS
+                )
+                if driven is not None:
+                    from simkit.sensors.cameras.overview_image import render_view
 
-                save_picture(sim, Path(picture), render_view, driven)
-            results = [(result.passed, result.message, result.time) for result in ended.results]
-            return {"end": ended.reason, "time": sim.time, "results": results, "state": state_hash(sim)}
+                    save_picture(sim, Path(picture), render_view, driven)
+                recorder.finish({"reason": ended.reason})
+        return None
     except (LoadError, InputError) as error:  # either the exercise or the plugin has an error
-        is_of_plugin = not exercise.robot and _is_import_failure(error)  # the world itself names the plugin
-        if hand_in is None or not (is_of_plugin or _is_sound_without_plugin(variation)):
-            return {"fault": str(error), "code": error.code}
-        return {"error": str(error), "time": 0.0 if sim is None else sim.time}
+        codes = (
+            [one.code for one in error.diagnostics if one.severity == "error"] if isinstance(error, LoadError) else []
+        )
+        return {"problem": str(error), "codes": codes or [error.code]}
     except (KeyboardInterrupt, SystemExit) as error:
-        place = _error_position(error, hand_in)
-        return {"error": f"{type(error).__name__} ended the run{place}", "time": 0.0 if sim is None else sim.time}
+        return {"error": f"{type(error).__name__} ended the run{_error_position(error, hand_in)}"}
     except PluginError as error:
         place = "" if error.__cause__ is None else _error_position(error.__cause__, hand_in)
-        return {"error": f"{error}{place}", "time": error.time}
+        return {"error": f"{error}{place}"}
     except RenderError as error:  # the submission is not the cause: this machine cannot run the exercise
-        return {"fault": str(error), "code": error.code}
+        return {"fault": str(error), "codes": [error.code]}
     except SimkitError as error:
-        return {"error": str(error), "time": 0.0 if sim is None else sim.time}
+        return {"error": str(error)}
 
 
-def _is_import_failure(error: InputError) -> bool:
-    """Check whether a world cannot be loaded only because Python plugins cannot be imported."""
-    found = [one.code for one in error.diagnostics if one.severity == "error"] if isinstance(error, LoadError) else []
-    return bool(found) and set(found) == {"SK-PLUGIN-008"}
+def _on_slice(show_progress: Callable[[], None], driven: Any) -> Callable[[], None]:
+    """Return the function that is called between two steps."""
+    if driven is None:
+        return show_progress
 
+    def on_slice() -> None:
+        driven.sample()
+        show_progress()
 
-def _is_sound_without_plugin(variation: ExerciseRun) -> bool:
-    """Check whether the world and the checks of an exercise are valid without a submission."""
-    from simkit.testing.conditions import Watch
-
-    scenario = variation.scenario
-    try:
-        with open_scenario(scenario) as sim:
-            Watch(sim, scenario.checks, until=scenario.until, absent="wait")
-    except SimkitError:
-        return False
-    return True
+    return on_slice
 
 
 def _make_plugin(file: Path, parameters: JsonMapping) -> object:
@@ -135,7 +171,4 @@ def _error_position(error: BaseException, file: Path | None) -> str:
 
 
 if __name__ == "__main__":
-    exit_with_parent()
-    main(*sys.argv[1:])
-    sys.stdout.flush()
-    exit_immediately(0)
+    main()

@@ -65,16 +65,20 @@ def run_scenario(
     *,
     absent: Literal["error", "wait"] = "error",
     allow_code: bool = False,
+    judged: bool = True,
+    slice_seconds: float = _SLICE_SECONDS,
 ) -> ScenarioResult:
     """Run a scenario to its end with its commands and checks.
 
     Args:
         scenario: Scenario.
         sim: Simulation from `open_scenario`.
-        on_slice: Function that is called between two steps, every 0.25 s of simulated time or more often.
+        on_slice: Function that is called between two steps, every `slice_seconds` or more often.
         absent: Behaviour of a condition on a topic without a publisher. "error" raises an error. "wait" waits for a
             publisher, and the check fails if there is none until the end of the run.
         allow_code: Allow the plugin folders that the scenario's file names, as in `open_scenario`.
+        judged: False to evaluate only `until`, which ends the run.
+        slice_seconds: Longest simulated time between two calls of `on_slice` [s].
 
     Raises:
         InputError: A command or a check does not fit the world, or SK-SCEN-008 the scenario needs code that is not
@@ -85,16 +89,17 @@ def run_scenario(
     from simkit.testing.conditions import Watch
 
     scenario = permit_code(scenario, allow_code)
+    checks = scenario.checks if judged else ()
     wall_deadline = None if scenario.wall_timeout is None else time.perf_counter() + scenario.wall_timeout
     with (
         ScenarioCommands(scenario, sim) as commands,
-        Watch(sim, scenario.checks, until=scenario.until, timeout=scenario.longest, absent=absent) as watch,
+        Watch(sim, checks, until=scenario.until, timeout=scenario.longest, absent=absent) as watch,
         sim.control.pausing.served(),
         progress.task(f"running {scenario.title}", scenario.longest, unit="s") as task,
     ):
         begun = sim.engine.steps
         end = sim.engine.steps + sim.engine.clock.ticks(scenario.longest)
-        slice_ = max(1, sim.engine.clock.ticks(_SLICE_SECONDS))
+        slice_ = max(1, sim.engine.clock.ticks(slice_seconds))
         reason = "timeout" if scenario.until else "duration"
         while sim.engine.steps < end and not watch.ended:
             commands.send_due()

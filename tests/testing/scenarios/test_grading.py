@@ -151,8 +151,8 @@ HOSTILE = {
     "raise KeyboardInterrupt": "KeyboardInterrupt ended the run\npush.py:",
     "raise simkit.InputError('mine', 'SK-X-001')": "push.py:",
     "self.advertise('/out', 'std_msgs/msg/String')": "cannot compare a text with a number",
-    "import json; json.dumps = lambda found: '{}'": "the process ended with 0 before the run was complete",
-    "from simkit.testing.conditions import Watch; Watch.results = lambda self, reason: ()": "the process ended with 0",
+    "import json; json.dumps = lambda found: '{}'": "",
+    "from simkit.testing.conditions import Watch; Watch.results = lambda self, reason: ()": "",
 }
 
 
