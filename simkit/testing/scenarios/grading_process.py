@@ -28,9 +28,9 @@ _PROGRESS_SECONDS: Final = 0.02  # simulated time between two signs of progress 
 def main() -> None:
     """Read the job from standard input, run it, and write the stream to the pipe that standard output was.
 
-    The job is one line of JSON: `exercise` and `hand_in` (files; the second is empty for none), `folders` in which the
-    exercise may name files, `allow_code` for its plugin folders, `files` of the hand-in, `number` of the run, `picture` (file for a picture of the path; empty for none), `stacks` (file for the stack of
-    this process) and `key` of the stream.
+    The job is one line of JSON: `exercise` (file), `folders` in which it may name files, `allow_code` for its plugin
+    folders, `hand_in` (file; empty for none), `files` of the hand-in, `number` of the run, `picture` (file for a
+    picture of the path; empty for none), `stacks` (file for the stack of this process) and `key` of the stream.
     """
     job = json.loads(_first_line())
     exit_with_parent()

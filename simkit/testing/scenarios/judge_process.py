@@ -49,9 +49,10 @@ def main(job_file: str) -> None:
 
     Args:
         job_file: JSON file with the job: `exercise` (file), `folders` in which it may name files, `allow_code` for its
-            plugin folders, `hand_in` (file; empty for none), `folder` and `files` of the hand-in of a lab (`folder` is empty if the hand-in stays where it is), `number` of the run, `target`
-            (file for the result), `picture` (file for a picture of the path; empty for none), `limit` of a callback,
-            and `token`, which is copied to the result. The file is removed before the hand-in runs.
+            plugin folders, `hand_in` (file; empty for none), `folder` and `files` of the hand-in of a lab (`folder` is
+            empty if the hand-in stays where it is), `number` of the run, `target` (file for the result), `picture`
+            (file for a picture of the path; empty for none), `limit` of a callback, and `token`, which is copied to the
+            result. The file is removed before the hand-in runs.
     """
     job = json.loads(Path(job_file).read_text(encoding="utf-8"))
     Path(job_file).unlink()
