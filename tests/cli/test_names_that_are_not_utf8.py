@@ -14,9 +14,10 @@ pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="names of Linux are bytes"),
 ]
 WORLD = """<sdf version="1.9"><world name="w"><model name="ground"><static>true</static><link name="l">
-<collision name="c"><geometry><plane/></geometry></collision><collision name="d"><geometry><box><size>1 1 1</size></box></geometry></collision>
-</link></model><model name="b"><pose>0 0 1 0 0 0</pose><link name="l"><sensor
-name="imu" type="imu"><topic>imu</topic><update_rate>50</update_rate></sensor></link></model></world></sdf>"""
+<collision name="c"><geometry><plane/></geometry></collision>
+<collision name="d"><geometry><box><size>1 1 1</size></box></geometry></collision></link></model>
+<model name="b"><pose>0 0 1 0 0 0</pose><link name="l"><sensor name="imu" type="imu"><topic>imu</topic>
+<update_rate>50</update_rate></sensor></link></model></world></sdf>"""
 SWEEP = "world: w.sdf\nduration: 0.05\nparameters:\n  physics.max_step_size: [0.001, 0.002]\n"
 NAME = os.fsdecode(b"\xff")
 CODE = "SK-CLI-057"
