@@ -220,8 +220,8 @@ def _converted(dtype: np.dtype[np.generic], value: FieldValue) -> npt.NDArray[np
     if array.size and (array.dtype.kind not in "biuf" or (dtype.kind in "iu" and array.dtype.kind == "f")):
         raise TypeError
     if array.size and array.dtype != dtype and dtype.kind in "iu":
-        limits = np.iinfo(dtype)
-        if int(array.min()) < limits.min or int(array.max()) > limits.max:  # NumPy would wrap the numbers around
+        low, high = INTEGER_RANGES[dtype.name]
+        if int(array.min()) < low or int(array.max()) > high:  # NumPy would wrap the numbers around
             raise OverflowError
     with np.errstate(over="raise"):
         return array.astype(dtype).reshape(-1)

@@ -289,7 +289,7 @@ class Simulation(ScriptGraph, InProcess):
 
     def contacts(self, model: Model | str | None = None) -> list[Contact]:
         """Return the contacts of a model, also with itself, or of all; a KeyError suggests the closest name."""
-        given = model if model is None or isinstance(model, str) else getattr(model, "scoped", model)
+        given: Any = getattr(model, "scoped", model)
         name = None if given is None else self.model(given).scoped
         return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), name)
 

@@ -31,7 +31,7 @@ COMMANDS = {
     "plot": "plot b.mcap /odom.pose.pose.position.x -o out.svg",
 }
 SWEEP = "world: w.sdf\nduration: 0.05\nparameters:\n  physics.max_step_size: [0.001, 0.002]\nmetrics: {t: time}\n"
-LIMITS = (40, 90, 150, 220, 270, 300, 330, 360, 400, 450, 500, 560, 650, 800, 1100, 1600)  # [MiB]
+LIMITS = (90, 290, 330, 400, 550)  # [MiB]
 PYTHON = """
 import resource, sys
 import simkit.build, mujoco, numpy
@@ -104,7 +104,7 @@ def test_a_command_with_too_little_memory_ends_with_one_line(name: str, tmp_path
     assert not wrong, "\n".join(wrong)
 
 
-@pytest.mark.parametrize("limit", [1, 4, 8, 16, 24, 32, 48, 64, 96, 128, 256])
+@pytest.mark.parametrize("limit", [1, 8, 24, 48, 96, 200])
 def test_python_calls_raise_an_error_of_simkit(limit: int, tmp_path: Path) -> None:
     done = _limited(["-c", PYTHON, str(limit)], _folder(tmp_path))
     assert done.returncode == 0 and done.stdout.strip() in ("", "SK-CORE-008"), done.stdout + done.stderr[-1500:]

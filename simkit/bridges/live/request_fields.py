@@ -65,10 +65,10 @@ def checked_value(value: Any, name: str, kind: type[T]) -> T:
     """
     if kind is float and type(value) is int and abs(value) <= sys.float_info.max:
         value = float(value)  # JSON has integers that no float can hold
-    if type(value) is not kind or (kind is float and not abs(value) <= sys.float_info.max):
+    found: Any = value
+    if type(found) is not kind or (kind is float and not abs(found) <= sys.float_info.max):
         raise RequestRefused(f"{name} must be {_KINDS[kind]}, got {shown(value)}")
-    found: T = value
-    return found
+    return found  # type: ignore[no-any-return]
 
 
 def read_items(fields: Mapping[str, Any], name: str, kind: type[T]) -> list[T]:

@@ -93,4 +93,4 @@ def split_address(text: str) -> SplitResult | None:
         found.hostname, found.port  # noqa: B018 (both raise for a malformed address)
     except ValueError:
         return None
-    return found
+    return found if max(map(found.netloc.count, "[]")) <= 1 else None

@@ -46,6 +46,7 @@ _OUTPUT_ERRORS = frozenset(
 _LONGEST_NAME = 200
 _PLACES = 8  # listed further places of one entry
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+_NOT_UTF8 = re.compile("[^\\s\"'<>]*[\ud800-\udfff][^\\s\"'<>]*")  # a name with a byte that is not UTF-8
 _STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 
 
@@ -243,8 +244,9 @@ def known_error(error: Exception) -> SimkitError | None:
 
     These are too little memory, and a name that is not valid UTF-8 where a file format needs text.
     """
-    if isinstance(error, UnicodeEncodeError) and re.search("[\ud800-\udfff]", error.object):
-        name = ascii(error.object if len(error.object) <= _LONGEST_NAME else error.object[:_LONGEST_NAME] + "...")
+    word = _NOT_UTF8.search(error.object) if isinstance(error, UnicodeEncodeError) else None
+    if word is not None:
+        name = ascii(word[0] if len(word[0]) <= _LONGEST_NAME else word[0][:_LONGEST_NAME] + "...")
         text = f"SK-CLI-057 {name} is not valid UTF-8, but the file or program that gets it needs text"
         return InputError(f"{text}\n    help: rename the file or folder", "SK-CLI-057")
     return find_memory_error(error)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar, cast
 
 from simkit import msgs
 from simkit.argument_checks import check_text
@@ -111,7 +111,7 @@ class EndpointTable(Generic[E]):
         Raises:
             ServiceError, ActionError: a script, or a user's plugin during a run, opens an endpoint whose name is used.
         """
-        existing, owner = self._find(name), self._bus.owner
+        existing, owner = self._find(name), cast("Any", self._bus.owner)
         if existing is None or getattr(existing, "yields", False):
             return False
         other = existing.owner

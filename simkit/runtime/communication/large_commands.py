@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from numbers import Real
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -47,5 +46,5 @@ def _values(value: FieldValue, name: str) -> Iterator[tuple[float, str]]:
     elif isinstance(value, (list, tuple, np.ndarray)):
         for number, item in enumerate(value if len(value) <= _MOST_NUMBERS else ()):
             yield from _values(item, f"{name}[{number}]")
-    elif isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value):
+    elif isinstance(value, (int, float, np.number)) and not isinstance(value, bool) and math.isfinite(value):
         yield float(value), name
