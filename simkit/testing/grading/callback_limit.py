@@ -121,6 +121,11 @@ class CallbackLimit:
         self._is_measured = False  # reading the processor time after every chunk would take too long
         self._callback, self._callback_since = "", 0.0
 
+    @property
+    def idle_time(self) -> float:
+        """Wall time since the last progress [s]."""
+        return time.monotonic() - self._since
+
     def exceeded(self) -> CallbackPosition | None:
         """Return the position of a callback that is over the limit; None if there is none."""
         now = time.monotonic()

@@ -163,7 +163,8 @@ class _JudgedRun:
         while not self._judge.is_over():
             if time.monotonic() > deadline:
                 limit = f"{self._wall_limit:g} s of wall time"
-                return {"error": f"the run was stopped after {limit}; the plugin may have an endless loop"}
+                message = f"the run was stopped after {limit}; the plugin may have an endless loop"
+                return {"error": message, "stuck": 0.0 < self._limit < callback.idle_time}
             try:
                 content = chunks.get(timeout=poll)
             except queue.Empty:
