@@ -16,6 +16,7 @@ from typing import Final
 from urllib.parse import unquote
 
 from simkit.errors import InputError
+from simkit.home_folder import home_folder
 from simkit.project_folder import is_top_folder
 
 _LONGEST: Final = 4096  # characters of a path; Linux opens no longer one
@@ -174,11 +175,14 @@ def built_workspace(folder: Path) -> list[Path]:
     """Return the folders of the colcon or catkin workspace whose folder `install` or `devel` contains a folder.
 
     They are `src`, `build` and the installed folder itself: `colcon build --symlink-install` links the files of
-    packages to the first two.
+    packages to the first two. A folder `src` or `build` that is itself a link does not count: it can lead to any place.
     """
     for ancestor in (folder, *folder.parents):
-        if ancestor.name in ("install", "devel") and len(ancestor.parts) > 2:  # not /install
+        is_workspace = len(ancestor.parts) > 2 and ancestor.parent != home_folder()  # not /install
+        if ancestor.name in ("install", "devel") and is_workspace:
             beside = [ancestor.parent / name for name in ("src", "build")]
+            real = os.path.realpath(ancestor.parent)
+            beside = [place for place in beside if os.path.realpath(place) == f"{real}{os.sep}{place.name}"]
             return [ancestor, *(place for place in beside if os.path.isdir(place))]  # noqa: PTH112
     return []
 

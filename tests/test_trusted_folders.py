@@ -232,6 +232,9 @@ def test_an_installed_folder_has_the_sources_and_the_build_of_its_workspace(tree
     assert folders.allows(installed)
     assert not folders.allows(private)
     assert built_workspace(tree / "project") == []
+    link(tree / "foreign/src", tree / "private")
+    (tree / "foreign/install/share").mkdir(parents=True)
+    assert built_workspace(tree / "foreign/install/share") == [tree / "foreign/install"]
     assert built_workspace(Path("/install/share")) == []
 
 
