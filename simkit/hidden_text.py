@@ -23,15 +23,18 @@ def hide(path: str, folder: str) -> None:
     """Hide the text of a file from now on.
 
     Args:
-        path: path of the file, as messages show it.
-        folder: folder of the file that the link leads to.
+        path: path of the file or folder, as messages show it.
+        folder: folder that the link leads to, or folder of the file that it leads to.
     """
-    _files[path] = folder
+    for shown in (os.path.realpath(path), path):  # a reader can resolve the path
+        _files.pop(shown, None)
+        _files[shown] = folder
 
 
 def show(path: str) -> None:
     """Show the text of a file again, because the user has chosen its folder since."""
-    _files.pop(path, None)
+    for shown in (os.path.realpath(path), path):
+        _files.pop(shown, None)
 
 
 def hide_everywhere() -> None:
@@ -47,12 +50,12 @@ def hidden_in_command() -> Iterator[None]:
     if _is_everywhere:
         yield
         return
-    _files.clear()
     _is_everywhere = True
     try:
         yield
     finally:
         _is_everywhere = False
+        _files.clear()
 
 
 def is_hiding() -> bool:
@@ -69,7 +72,7 @@ def hides(text: str, file: str | None = None) -> bool:
     """
     if not _files:
         return False
-    return _is_everywhere or file in _files or any(path in text for path in _files)
+    return _is_everywhere or any(path in text or path in (file or "") for path in _files)
 
 
 def place_without_text(file: str | None, line: int | None) -> tuple[str | None, int | None]:

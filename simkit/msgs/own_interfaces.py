@@ -168,7 +168,8 @@ def add_folders(folders: Iterable[str | os.PathLike[str]]) -> None:
         path = Path(folder).expanduser()
         if leads_outside(str(path)):
             hidden_text.hide(str(path), os.path.realpath(path))
-        choose_folders([path.absolute()])
+        else:
+            choose_folders([path.absolute()])
         found = list(definitions_in(path)) if path.is_dir() else []
         if not found:
             what = "has no file .msg, .srv or .action" if path.is_dir() else "is not a folder"

@@ -206,10 +206,11 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
     """Convert the errors of a command to messages and exit codes, without a traceback for errors of the user."""
 
     @functools.wraps(command)
+    @hidden_in_command()
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         try:
             is_quiet = bool(kwargs.get("quiet"))
-            with running_command(), hidden_in_command(), displayed_tasks(stderr_console, quiet=is_quiet):
+            with running_command(), displayed_tasks(stderr_console, quiet=is_quiet):
                 code = command(*args, **kwargs)
         except KeyboardInterrupt as stopped:
             print_status(f"interrupted {stopped}".rstrip())

@@ -72,7 +72,7 @@ class UriCandidates:
                 self.trusted.add(place)
         return self._projects[folder]
 
-    def _trust_plain(self, folder: Path) -> Path:
+    def trust_plain(self, folder: Path) -> Path:
         """Trust a model or package near a file, unless it is a link, which can lead to any place."""
         if not is_link(folder):
             self.trusted.add(folder)
@@ -128,7 +128,7 @@ class UriCandidates:
         for folder in self._around(relative_to):
             for ancestor in (folder, *folder.parents[:3]):
                 if ancestor.name == name and not is_private(ancestor):
-                    yield join_below(self._trust_plain(ancestor), inside)
+                    yield join_below(self.trust_plain(ancestor), inside)
             yield join_below(folder, below)
             for start, group in ((folder, "models"), (folder.parent, "."), (folder.parent, "models")):
                 near = join_below(start / group, name)
@@ -145,23 +145,23 @@ class UriCandidates:
         """Yield candidates for `package://name/...` in the package of that name, then in a package of its group."""
         around = self._around(relative_to)
         for folder in self.packages.candidates(name, around):
-            yield join_below(self._trust_plain(folder), inside)
+            yield join_below(self.trust_plain(folder), inside)
         member, _, inside = inside.partition("/")
         for folder in self.packages.members(name, member, around) if inside else ():
-            yield join_below(self._trust_plain(folder), inside)
+            yield join_below(self.trust_plain(folder), inside)
 
     def _models_of_packages(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield candidates for `model://name/...` in the folders `models` of packages, which packages export."""
         for package in self.packages.packages(self._around(relative_to)):
             folder = join_below(package / "models", name)
             if is_folder(folder) and not is_private(folder):
-                self._trust_plain(package)
+                self.trust_plain(package)
                 yield join_below(folder, inside)
 
     def media_candidates(self, text: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield candidates for a relative path in the folders `Media` of search paths and packages."""
         if ".." not in Path(text).parts:
-            packages = map(self._trust_plain, self.packages.packages(self._around(relative_to)))
+            packages = map(self.trust_plain, self.packages.packages(self._around(relative_to)))
             yield from (join_below(root / media, text) for root in chain(self.paths, packages) for media in _MEDIA)
 
     def _renamed_checkout_candidates(self, inside: str, relative_to: Path | None) -> Iterator[Path]:
@@ -174,7 +174,7 @@ class UriCandidates:
         folder = absolute_path(relative_to)
         for ancestor in (folder, *folder.parents[:2]):
             if not is_private(ancestor):
-                yield join_below(self._trust_plain(ancestor), inside)
+                yield join_below(self.trust_plain(ancestor), inside)
 
     def fuel_candidates(self, uri: str) -> Iterator[Path]:
         """Yield candidates for a Fuel URL in Gazebo's caches, then a folder of that name in the resource folders."""

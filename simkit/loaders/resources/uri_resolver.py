@@ -189,7 +189,7 @@ class Resolver(UriCandidates):
         tried: dict[Path, None] = {}
         for folder in chain(self.packages.candidates(name, self._around(relative_to)), bundled):
             tried[folder] = None
-            if is_folder(folder) and self.allows(self._trust_plain(folder), relative_to):
+            if is_folder(folder) and self.allows(self.trust_plain(folder), relative_to):
                 self._found[name] = folder
                 self.packages.confirm(name, folder)
                 return folder, list(tried)

@@ -46,7 +46,8 @@ def read_interfaces(
     def find(package: str, file: str) -> Path | None:
         beside = (join_below(folder, package) for folder in nearby)
         named = (folder for folder in nearby if folder.name == package)
-        for place in (*beside, *named, *resolver.packages.named_exactly(package, (home,))):
+        packages = map(near_world.trust_plain, resolver.packages.named_exactly(package, (home,)))
+        for place in (*beside, *named, *packages):
             path = join_below(place, file)
             if is_file(path) and near_world.allows(path):
                 return path
