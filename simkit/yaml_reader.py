@@ -11,7 +11,8 @@ from simkit.errors import SimkitError
 _DEEPEST: Final = 100
 _MOST: Final = 1_000_000  # values; repeated aliases expand a short text to very many values
 _MOST_DIGITS: Final = 1000  # the largest float has 309
-_EXPONENT: Final = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$")
+# possessive quantifiers: the time is proportional to the length, also for a million digits
+_EXPONENT: Final = re.compile(r"[-+]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)[eE][-+]?[0-9]+$")
 _SEXAGESIMAL: Final = re.compile(r"[-+]?[0-9][0-9_]*(?::[0-5]?[0-9])+(?:\.[0-9_]*)?$")
 
 

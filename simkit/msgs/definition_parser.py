@@ -39,7 +39,7 @@ _CONSTANT_NAME: Final = re.compile(r"[A-Z](?:[A-Z0-9_]*[A-Z0-9])?")
 _FOREIGN_NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _TYPE: Final = re.compile(r"([A-Za-z]\w*(?:/\w+){0,2})(<=\d+)?(\[(<=)?(\d*)\])?", re.ASCII)
 _CODE: Final = re.compile(r"""(?:[^#'"]|'(?:\\.|[^'\\])*'|"(?:\\.|[^"\\])*"|['"])*""")
-_ITEM: Final = re.compile(r"""\s*('(?:\\.|[^'\\])*'|"(?:\\.|[^"\\])*"|[^,]*?)\s*(?:,|$)""")
+_ITEM: Final = re.compile(r"""\s*+('(?:\\.|[^'\\])*+'|"(?:\\.|[^"\\])*+"|[^,]*+)\s*+(?:,|$)""")
 LARGEST_SIZE: Final = (1 << 31) - 1
 _ALIASES: Final = {
     "Header": "std_msgs/msg/Header",
@@ -292,12 +292,12 @@ def _parse_value(node: FieldNode, text: str) -> Any:
 
 
 def _items(text: str) -> Iterator[str]:
-    position = 0
-    while position < len(text) and text.strip():
+    position = 0 if text.strip() else len(text)
+    while position < len(text):
         found = _ITEM.match(text, position)
         if found is None:
             raise ValueError(f"found {text!r:.80}; expected values with commas between them")
-        yield found[1]
+        yield found[1].strip()
         position = found.end()
 
 

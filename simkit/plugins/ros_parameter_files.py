@@ -7,8 +7,6 @@ without the word `ros__parameters` is read in ROS 1's layout.
 
 from __future__ import annotations
 
-import functools
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -147,13 +145,18 @@ class ParameterFiles:
 
 def node_matches(pattern: str, name: str) -> bool:
     """Check whether a node's full name matches a pattern: `*` is one part of the name, `**` any number of parts."""
-    return _node_pattern(pattern).fullmatch(name.strip("/")) is not None
-
-
-@functools.lru_cache(maxsize=1024)
-def _node_pattern(pattern: str) -> re.Pattern[str]:
-    parts = [".*" if p == "**" else "[^/]*" if p == "*" else re.escape(p) for p in pattern.strip("/").split("/")]
-    return re.compile("/".join(parts).replace(".*/", "(.*/)?"))
+    parts, wanted = name.strip("/").split("/"), pattern.strip("/").split("/")
+    ends = {0}  # numbers of parts of the name that the pattern can have matched so far
+    for number, part in enumerate(wanted, 1):
+        if part != "**":
+            ends = {end + 1 for end in ends if end < len(parts) and part in ("*", parts[end])}
+        elif number == len(wanted):  # at the end, at least one part
+            ends = {len(parts)} if min(ends) < len(parts) else set()
+        else:
+            ends = set(range(min(ends), len(parts) + 1))
+        if not ends:
+            return False
+    return len(parts) in ends
 
 
 def read_parameter_file(path: Path, diagnostics: Diagnostics) -> ParameterFile | None:

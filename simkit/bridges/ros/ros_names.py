@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-_NAMESPACE = re.compile(r"(/?[A-Za-z_][A-Za-z0-9_]*)+/?")
+_NAMESPACE = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*/?")
 PARAMETER_SERVICES = (
     *("/describe_parameters", "/get_parameter_types", "/get_parameters"),
     *("/list_parameters", "/set_parameters", "/set_parameters_atomically"),

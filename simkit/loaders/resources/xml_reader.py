@@ -98,7 +98,6 @@ def _is_binary_stl(data: bytes) -> bool:
 MAX_BYTES = 256 * 1024 * 1024
 MAX_DEPTH = 200
 MAX_ELEMENTS = 3_000_000
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _DECLARATION = re.compile(rb"<\?xml\b[^?]*\?>")
 
 
@@ -122,6 +121,19 @@ class Document:
     def folder(self) -> Path | None:
         """Folder that relative URIs of this file start from."""
         return None if self.path is None else self.path.parent
+
+
+def without_comments(text: bytes, *, keep_lines: bool = False) -> bytes:
+    """Remove the comments from XML; `keep_lines` keeps their line feeds.
+
+    A regular expression would look for the end of each comment again, if the last one has no end.
+    """
+    pieces: list[bytes] = []
+    at = 0
+    while (start := text.find(b"<!--", at)) >= 0 and (end := text.find(b"-->", start + 4)) >= 0:
+        pieces += text[at:start], b"\n" * text.count(b"\n", start, end) if keep_lines else b""
+        at = end + 3
+    return b"".join((*pieces, text[at:]))
 
 
 class _RefusedDocument(Exception):
@@ -236,7 +248,7 @@ def _lenient_text(data: bytes) -> bytes | None:
     """
     is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<"))
     plain = data if is_wide else data.partition(b"\0")[0]
-    plain = _COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), plain)
+    plain = without_comments(plain, keep_lines=True)
     plain = _DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), plain)
     return plain if plain != data else None
 

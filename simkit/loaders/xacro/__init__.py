@@ -7,13 +7,9 @@ folders.
 
 from __future__ import annotations
 
-import re
-
-from simkit.loaders.resources.xml_reader import Document
+from simkit.loaders.resources.xml_reader import Document, without_comments
 
 __all__ = ["needs_expansion"]
-
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 
 
 def needs_expansion(document: Document) -> bool:
@@ -22,6 +18,6 @@ def needs_expansion(document: Document) -> bool:
         return True
     text = document.text
     if b"$" in text and b"<![CDATA[" not in text:  # output of xacro often contains `${...}` only in comments
-        text = _COMMENT.sub(b"", text)
+        text = without_comments(text)
     computes = b"${" in text or b"$(" in text
     return b"<xacro:" in text or (computes and "xmlns:xacro" in document.root.attributes)
