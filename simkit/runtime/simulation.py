@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.argument_checks import check_function, checked_seed
+from simkit.argument_checks import check_function, check_kind, checked_seed
 from simkit.errors import InputError, SimulationDiverged
 from simkit.in_process import InProcess
 from simkit.memory_error import find_memory_error
@@ -177,6 +177,7 @@ class Simulation(ScriptGraph, InProcess):
             seed: new seed of all random streams; None keeps the present one.
             keep_changes: True to keep masses, friction, joint dynamics, gains, noise, lights and gravity that were set.
         """
+        check_kind(keep_changes, bool, "keep_changes", "True or False")
         changes, gravity = self.engine.numbers.values, self.gravity
         self._reset(seed)
         if keep_changes:

@@ -6,6 +6,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Final
@@ -217,7 +218,8 @@ def write_atomically(path: str | os.PathLike[str], data: bytes, *, follow_link: 
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
-            Path(temporary).chmod(_MODE & ~current_umask())
+            with suppress(OSError):  # FAT file systems have no permissions
+                Path(temporary).chmod(_MODE & ~current_umask())
             os.replace(temporary, target)  # noqa: PTH105 - atomic on every platform
         except BaseException:
             Path(temporary).unlink(missing_ok=True)

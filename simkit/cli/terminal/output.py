@@ -9,6 +9,7 @@ import math
 import os
 import re
 import signal
+import stat
 import sys
 import traceback
 from collections import Counter
@@ -222,7 +223,7 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
             if error.errno == errno.ENOMEM:
                 print_error(OutOfMemory())
                 raise typer.Exit(OutOfMemory.exit_code) from None
-            if error.errno in _OUTPUT_ERRORS or error.strerror is None:
+            if _is_output_failure(error):
                 raise typer.Exit(output_failure_exit_code(error)) from None
             # a file that no other check expected to fail, for example because there are too many open files
             place = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else "a file"
@@ -251,6 +252,23 @@ def known_error(error: Exception) -> SimkitError | None:
         text = f"SK-CLI-057 {name} is not valid UTF-8, but the file or program that gets it needs text"
         return InputError(f"{text}\n    help: rename the file or folder", "SK-CLI-057")
     return find_memory_error(error)
+
+
+def _is_output_failure(error: OSError) -> bool:
+    """Check whether an error of the system may come from a standard stream.
+
+    EIO is also the error of a damaged disk: then the error has the name of the file, or no stream is a terminal.
+    """
+    if error.errno != errno.EIO:
+        return error.errno in _OUTPUT_ERRORS or error.strerror is None
+    return error.filename is None and any(map(_is_device, (1, 2)))
+
+
+def _is_device(stream: int) -> bool:
+    try:
+        return stat.S_ISCHR(os.fstat(stream).st_mode)  # isatty is False for a closed terminal
+    except OSError:
+        return False
 
 
 def output_failure_exit_code(error: OSError) -> int:

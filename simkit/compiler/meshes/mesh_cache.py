@@ -27,13 +27,15 @@ import numpy as np
 from simkit.compiler.meshes.content_digest import content_digest
 from simkit.compiler.meshes.mesh_part import MeshPart
 from simkit.home_folder import home_folder
+from simkit.input_file import read_input
 
 FORMAT: Final = "simkit mesh 5"
 """Version of the conversions; change it whenever a reader returns different numbers for the same file."""
 
 _SELF_CONTAINED: Final = {".stl", ".glb", ".ply"}
-_MAGIC: Final = b"simkit\x004"
+_MAGIC: Final = b"simkit\x005"
 _LARGEST_HEADER: Final = 1 << 22
+_LARGEST_ENTRY: Final = 1 << 31  # [bytes]
 
 
 @dataclass(frozen=True)
@@ -115,13 +117,13 @@ def store_converted(key: str, converted: ConvertedMesh) -> None:
 def load_arrays(kind: str, key: str) -> tuple[dict[str, Any], dict[str, Any]] | None:
     """Return the header and arrays stored under `key`, verified by a checksum; None if they are incomplete."""
     try:
-        content = _file_of(kind, key).read_bytes()
+        content = read_input(_file_of(kind, key), _LARGEST_ENTRY)
         length = int.from_bytes(content[8:16], "little")
         start = 24 + length
         if (
             content[:8] != _MAGIC
             or length > _LARGEST_HEADER
-            or content[16:24] != _check_header(memoryview(content)[24:])
+            or content[16:24] != _check_header(key, memoryview(content)[24:])
         ):
             return None
         header = json.loads(content[24:start])
@@ -146,7 +148,7 @@ def store_arrays(kind: str, key: str, header: Mapping[str, Any], arrays: Mapping
     text = json.dumps({"header": header, "arrays": listed}).encode()
     text += b" " * (-len(text) % 16)
     rest = text + body.getvalue()
-    content = _MAGIC + len(text).to_bytes(8, "little") + _check_header(rest) + rest
+    content = _MAGIC + len(text).to_bytes(8, "little") + _check_header(key, rest) + rest
     # RuntimeError: a user without a home folder
     with contextlib.suppress(OSError, RuntimeError):
         target = _file_of(kind, key)
@@ -162,8 +164,9 @@ def store_arrays(kind: str, key: str, header: Mapping[str, Any], arrays: Mapping
             raise
 
 
-def _check_header(content: bytes | memoryview) -> bytes:
-    return zlib.crc32(content).to_bytes(8, "little")
+def _check_header(key: str, content: bytes | memoryview) -> bytes:
+    """Return a checksum of the key too: an entry that was copied to the name of another mesh is not valid."""
+    return zlib.crc32(content, zlib.crc32(key.encode())).to_bytes(8, "little")
 
 
 def _file_of(kind: str, key: str) -> Path:

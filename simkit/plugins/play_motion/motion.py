@@ -14,6 +14,9 @@ from simkit.diagnostics import NOWHERE, Where
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 
+LARGEST_NUMBER: Final = 1e15
+"""Largest time [s], position and velocity of a motion; the sums and quotients of larger ones would be infinite."""
+
 if TYPE_CHECKING:
     from simkit.msgs import Motion as MotionMessage
     from simkit.runtime import Joint
@@ -119,6 +122,8 @@ def motion_fault(
     bad = next((v for v in (*flat, *times, *velocities) if not math.isfinite(v)), None)
     if bad is not None:
         return f"it has a NaN or infinite number ({bad})"
+    if (large := next((v for v in (*flat, *times, *velocities) if abs(v) > LARGEST_NUMBER), None)) is not None:
+        return f"it has the number {large:g}; the largest is {LARGEST_NUMBER:g}"
     if times[0] < 0:
         return f"its first time is {times[0]:g} s, before the start"
     back = next((k for k in range(1, len(times)) if times[k] <= times[k - 1]), None)

@@ -7,7 +7,6 @@ points, concatenated) and `times_from_start`. In ROS 1, a motion has `joints` an
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -16,7 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
-from simkit.plugins.play_motion.motion import Motion, motion_fault, point_rows
+from simkit.plugins.play_motion.motion import LARGEST_NUMBER, Motion, motion_fault, point_rows
 from simkit.plugins.ros_parameter_files import Entry, ParameterFile, read_parameter_file
 
 _KEYS: Final = ("joints", "positions", "times_from_start", "points", "meta")
@@ -211,7 +210,8 @@ def _read_planner(entry: Entry, found: MotionFile, diagnostics: Diagnostics) -> 
 
 def _bounded_number(entry: Entry, name: str, least: float, *, strictly: bool) -> float:
     value = _number(entry, name)
-    if not math.isfinite(value) or value < least or (strictly and value == least):
+    smallest = max(least, 1 / LARGEST_NUMBER) if strictly else least  # the time of the approach stays finite
+    if not smallest <= value <= LARGEST_NUMBER:
         raise ValueError(f"found {value:g}; expected a number {'above' if strictly else 'from'} {least:g}")
     return value
 

@@ -239,7 +239,8 @@ class FastBodyDetector:
         )
         one, other = fast[rows], others[columns]
         local = self._to_box_frames(places[one], other)
-        gap = np.linalg.norm(np.maximum(np.abs(local) - model.geom_aabb[other, 3:], 0.0), axis=1)
+        with np.errstate(over="ignore"):  # a geom that far away is not within reach
+            gap = np.linalg.norm(np.maximum(np.abs(local) - model.geom_aabb[other, 3:], 0.0), axis=1)
         keep = (gap <= reach[rows, columns]) & (one != other)
         return one[keep], other[keep]
 

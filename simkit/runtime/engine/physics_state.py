@@ -351,7 +351,8 @@ class PhysicsState:
 
     def _is_pushed(self) -> bool:
         """Check whether controls changed so much since the last check that wheels may begin to slip."""
-        change = (self.data.ctrl - self._probed) * self._push
+        with np.errstate(over="ignore", invalid="ignore"):  # NaN counts as a push
+            change = (self.data.ctrl - self._probed) * self._push
         if squared_length(change, _MIN_PUSH * _MIN_PUSH) <= _MIN_PUSH * _MIN_PUSH:
             return False
         self._probed[:] = self.data.ctrl

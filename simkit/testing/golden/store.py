@@ -107,8 +107,8 @@ def read_golden(folder: str | os.PathLike[str]) -> RunRecord:
         return decode_record(main, data, decode_scenario(main["scenario"], place, partial(_where, place)))
     except PackingError as error:
         raise _damaged_error(place / name, f"is damaged: {error}") from None
-    except (ValueError, TypeError, KeyError, AttributeError, IndexError, OverflowError, RecursionError) as error:
-        raise _damaged_error(place, f"is damaged: {type(error).__name__}: {error}") from None
+    except (ValueError, TypeError, LookupError, AttributeError, OSError, ArithmeticError, RecursionError) as error:
+        raise _damaged_error(place, f"is damaged: {type(error).__name__}: {str(error)[:300]}") from None
 
 
 def _read_main_and_data(place: Path) -> tuple[JsonObject, str, str, bytes]:
