@@ -16,7 +16,8 @@ import numpy.typing as npt
 from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.input_file import read_input
 from simkit.loaders.resources.project_folder import readable_folder
-from simkit.loaders.resources.uris import absolute_path, is_top_folder, path_of_file_uri, split_rest
+from simkit.loaders.resources.uris import absolute_path, path_of_file_uri, split_rest
+from simkit.project_folder import is_top_folder
 from simkit.trusted_folders import OutsideError, TrustedFolders, join_below, join_within
 
 if TYPE_CHECKING:
