@@ -106,7 +106,7 @@ NAMED = (
     LinkedReader("L.urdf", "check L.urdf", URDF),
     LinkedReader("L.urdf", "motion list L.urdf", URDF),
     LinkedReader("L.urdf", "run empty --spawn L.urdf:0,0,0 --duration 0.1", URDF),
-    LinkedReader("L.sdf", "run burger --world L.sdf --duration 0.1", SDF),
+    LinkedReader("L.sdf", "run turtlebot3_burger --world L.sdf --duration 0.1", SDF),
     LinkedReader("L.xacro", "check L.xacro", XACRO),
     LinkedReader("L.xml", "check L.xml", MJCF),
     LinkedReader("L.yaml", "run empty --script L.yaml --duration 0.1", SCRIPT),
@@ -178,7 +178,7 @@ FOUND = (
     LinkedReader("c.mcap", "golden record s.yaml -o O", NOTES, {"s.yaml": "world: empty\nplay: c.mcap\n"}),
     LinkedReader("c.yaml", "golden record s.yaml -o O", PARAMETERS, {"s.yaml": "world: rrbot\nparams_files: c.yaml\n"}),
     LinkedReader("c.sdf", "golden record s.yaml -o O", SDF, {"s.yaml": "world: empty\nspawn: 'c.sdf:0,0,0'\n"}),
-    LinkedReader("c.sdf", "golden record s.yaml -o O", SDF, {"s.yaml": "world: burger\nmodel_world: c.sdf\n"}),
+    LinkedReader("c.sdf", "golden record s.yaml -o O", SDF, {"s.yaml": "world: turtlebot3_burger\nmodel_world: c.sdf\n"}),
     LinkedReader(
         "c.csv",
         "sweep s.yaml -o O",

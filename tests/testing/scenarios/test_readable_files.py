@@ -111,7 +111,7 @@ def test_a_file_of_the_working_directory_is_not_read_for_a_bare_name(
     monkeypatch.chdir(stranger.parent / "private")
     with pytest.raises(LoadError, match="SK-URI-003"):
         read_scenario(stranger / "s.yaml")
-    (stranger / "s.yaml").write_text("world: empty\nspawn: ['burger:1,2,0']\n")
+    (stranger / "s.yaml").write_text("world: empty\nspawn: ['turtlebot3_burger:1,2,0']\n")
     assert read_scenario(stranger / "s.yaml").world == "empty"
 
 
