@@ -6,6 +6,14 @@ import os
 from pathlib import Path
 
 
+def expand_home(path: str | os.PathLike[str]) -> Path:
+    """Return a path whose leading `~` or `~user` is replaced; a path of an unknown user stays as it is."""
+    try:
+        return Path(path).expanduser()
+    except RuntimeError:
+        return Path(path)
+
+
 def home_folder() -> Path:
     """Return the user's home folder, or `/` for a user who has none.
 

@@ -16,6 +16,7 @@ from typing import Any, Final, Literal, Protocol, TypedDict, cast, get_args
 
 from simkit.code_requests import CodeRequest, code_refusal
 from simkit.errors import InputError
+from simkit.home_folder import expand_home
 
 FilePath = str | os.PathLike[str]
 JsonObject = dict[str, Any]
@@ -175,16 +176,16 @@ PackagePaths = Mapping[str, FilePath] | Sequence[FilePath]
 def split_package_paths(paths: PackagePaths | None) -> tuple[dict[str, Path], list[Path]]:
     """Return the folders of packages by name, and the workspaces, which are folders without a name."""
     if isinstance(paths, Mapping):
-        return {name: Path(path).expanduser() for name, path in paths.items()}, []
+        return {name: expand_home(path) for name, path in paths.items()}, []
     named: dict[str, Path] = {}
     workspaces: list[Path] = []
     for item in (paths,) if isinstance(paths, str) else paths or ():
         name, equals, path = str(item).partition("=")
         name = name.strip().removesuffix(":").strip()
         if isinstance(item, str) and equals and name and "/" not in name:
-            named[name] = Path(path).expanduser()
+            named[name] = expand_home(path)
         else:
-            workspaces.append(Path(item).expanduser())
+            workspaces.append(expand_home(item))
     return named, workspaces
 
 

@@ -18,6 +18,7 @@ from simkit import hidden_text
 from simkit.diagnostic_record import Diagnostic
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InterfaceError
+from simkit.home_folder import expand_home
 from simkit.input_file import read_failure, read_input_text
 from simkit.linked_files import choose_folders, leads_outside
 from simkit.msgs.definition_parser import (
@@ -165,7 +166,7 @@ def add_folders(folders: Iterable[str | os.PathLike[str]]) -> None:
     given: list[tuple[str, str | Path]] = []
     problems: list[Diagnostic] = []
     for folder in folders:
-        path = Path(folder).expanduser()
+        path = expand_home(folder)
         if leads_outside(str(path)):
             hidden_text.hide(str(path), os.path.realpath(path))
         else:

@@ -10,6 +10,7 @@ from typer import Exit
 
 from simkit.cli.terminal.output import print_error
 from simkit.errors import InterfaceError
+from simkit.home_folder import expand_home
 from simkit.msgs import own_interfaces
 
 _folders: list[Path] = []
@@ -17,7 +18,7 @@ _folders: list[Path] = []
 
 def define_interfaces(ctx: Any, folders: Sequence[str]) -> None:
     """Define the types in some folders; end the command with exit code 2 if a definition has errors."""
-    paths = [Path(folder).expanduser().absolute() for folder in folders]
+    paths = [expand_home(folder).absolute() for folder in folders]
     try:
         own_interfaces.add_folders(paths)
     except InterfaceError as error:

@@ -14,6 +14,7 @@ from simkit.cli.terminal import completion
 from simkit.cli.terminal.output import P, report_errors_quietly
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.home_folder import expand_home
 from simkit.run_spec import RENDERERS, LoadOptions, RendererName, SourceOptions, named_values
 
 
@@ -196,7 +197,7 @@ def source_arguments(
         InputError: SK-CLI-018 a folder does not exist, or another value is not allowed.
     """
     for folder in resource_paths:
-        if not folder.expanduser().is_dir():
+        if not expand_home(folder).is_dir():
             raise InputError(f"SK-CLI-018 --resource-path: there is no folder {str(folder)!r}", "SK-CLI-018")
     return {
         "resource_paths": resource_paths,

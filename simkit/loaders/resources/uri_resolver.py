@@ -13,6 +13,7 @@ from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
 from simkit.errors import InputError
+from simkit.home_folder import expand_home
 from simkit.linked_files import SEARCH_VARIABLES, choose_folders
 from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
 from simkit.loaders.resources.fuel_cache import parse_fuel_url
@@ -61,7 +62,7 @@ class Resolver(UriCandidates):
         missing_meshes: bool = False,
         package_paths: PackagePaths | None = None,
     ) -> None:
-        found = [Path(p).expanduser() for p in paths]
+        found = [expand_home(p) for p in paths]
         for variable in SEARCH_VARIABLES:
             found += [Path(p) for p in os.environ.get(variable, "").split(os.pathsep) if p]
         found += [Path(p) / "share" for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InterfaceError
+from simkit.home_folder import expand_home
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.uris import is_file
 from simkit.msgs import own_interfaces
@@ -39,7 +40,7 @@ def read_interfaces(
     except InterfaceError as error:
         diagnostics.extend(error.diagnostics)
     is_text = isinstance(source, str) and "<" in source
-    home = (Path.cwd() if is_text else Path(source).expanduser().absolute().parent).resolve()
+    home = (Path.cwd() if is_text else expand_home(source).absolute().parent).resolve()
     nearby = dict.fromkeys((home, enclosing_project(home) or home))
     near_world = resolver.around(home)
 

@@ -16,6 +16,7 @@ from typing import Any, Final, cast
 from simkit import progress
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
+from simkit.home_folder import expand_home
 from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject, LoadOptions, RunSpec, change_package_paths
 from simkit.testing.certify.certificate import Certificate, Difference, Row, streams_hash
 from simkit.testing.certify.child_run import ChildRequest, run_child
@@ -131,7 +132,7 @@ def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
     """Return the scenario with absolute paths, which are valid in every working directory."""
 
     def absolute(place: Any) -> str:
-        return str(Path(place).expanduser().absolute())
+        return str(expand_home(place).absolute())
 
     source = scenario.source
     if "<" not in source and Path(source).exists():

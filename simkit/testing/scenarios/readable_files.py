@@ -15,6 +15,7 @@ from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostics, shorten
 from simkit.errors import InputError
+from simkit.home_folder import expand_home
 from simkit.project_folder import enclosing_project, is_top_folder
 from simkit.run_spec import EMPTY_SPACE, GROUND, FilePath, RunSpec, split_package_paths
 from simkit.trusted_folders import TrustedFolders
@@ -60,10 +61,7 @@ class ReadableFiles:
 
     def allows(self, path: Path) -> bool:
         """Check whether the description may name a file or folder; it need not exist."""
-        try:
-            expanded = path.expanduser()  # as the readers of folders do
-        except RuntimeError:  # no user has this name
-            return False
+        expanded = expand_home(path)  # as the readers of folders do
         return self._allows(path) and (expanded == path or self._allows(expanded))
 
     def refusal(self, path: Path) -> Refusal | None:
@@ -79,9 +77,9 @@ class ReadableFiles:
     def folder_to_allow(self, path: Path) -> Path:
         """Return the folder that the user must choose, so that a path is allowed."""
         try:
-            real = Path(os.path.realpath(path.expanduser()))
+            real = Path(os.path.realpath(expand_home(path)))
             return real if real.is_dir() else real.parent
-        except (OSError, ValueError, RuntimeError):  # no file can have this name
+        except (OSError, ValueError):  # no file can have this name
             return path.parent
 
     def source_refusal(self, source: str, folder: Path) -> Refusal | None:
