@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,6 +15,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import JsonObject, printable, report_errors, stdout_console
 from simkit.errors import InputError
+from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
 
 if TYPE_CHECKING:
     from simkit.testing.bundles import Bundle, ReplayResult
@@ -102,12 +104,28 @@ def _extract(bundle: Bundle, folder: Path) -> None:
     try:
         if folder.exists() and any(folder.iterdir()):
             raise InputError(f"SK-CLI-016 {folder} is not an empty folder", "SK-CLI-016")
-        folder.mkdir(parents=True, exist_ok=True)
-        bundle.extract(folder, with_code=True)
+        _extract_whole(bundle, folder.absolute())
     except OSError as error:
         raise InputError(f"SK-CLI-016 cannot write {folder}: {error.strerror or error}", "SK-CLI-016") from None
     text = f"{folder / bundle.manifest.world} and {len(bundle.manifest.files) - 1} other files"
     stdout_console().print(printable(text))
+
+
+def _extract_whole(bundle: Bundle, folder: Path) -> None:
+    """Write the files to a temporary folder and move them to an empty or new folder at the end."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    remove_abandoned(folder.parent, folder.name)
+    stage = unfinished_folder(folder.parent, folder.name)
+    try:
+        bundle.extract(stage, with_code=True)
+        stage.chmod(0o777 & ~current_umask())
+        if folder.exists():  # it may be the folder of the user's shell, so it stays
+            for item in sorted(stage.iterdir()):
+                item.rename(folder / item.name)
+        else:
+            stage.rename(folder)
+    finally:
+        shutil.rmtree(stage, ignore_errors=True)
 
 
 def _print_contents(bundle: Bundle, *, as_json: bool) -> None:

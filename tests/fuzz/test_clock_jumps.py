@@ -132,9 +132,8 @@ def test_files_with_odd_times_change_no_result(name: str, tmp_path: Path) -> Non
     for seconds in FILE_TIMES:
         folder = tmp_path / str(seconds)
         write_inputs(folder, "http://127.0.0.1:9")
-        shutil.copytree(tmp_path / "usual" / "cache", folder / "cache") if (
-            tmp_path / "usual" / "cache"
-        ).is_dir() else 0
+        if (tmp_path / "usual" / "cache").is_dir():
+            shutil.copytree(tmp_path / "usual" / "cache", folder / "cache")
         for path in (*folder.rglob("*"), folder):
             os.utime(path, (seconds, seconds))
         found = run(COMMANDS[name], folder, "")

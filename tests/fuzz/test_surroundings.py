@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from targets import WORLD_FILES, environment, intact, recorded
+from test_system_calls import SWEEP
 
 pytestmark = [pytest.mark.fuzz, pytest.mark.skipif(sys.platform == "win32", reason="limits and paths of POSIX")]
 LIMIT = 120.0  # [s] of wall time; the processor may be shared
@@ -35,6 +36,8 @@ COMMANDS = {
     "inspect": "inspect w.sdf --json",
     "check a world": "check w.sdf",
     "doctor": "doctor",
+    "sweep of two": "sweep run sweep.yaml -o OUT -n 2 -q",
+    "check with two": "golden check golden golden --jobs 2 --no-causes",
 }
 
 
@@ -47,12 +50,14 @@ class Surroundings:
         variables: changes of the environment; None removes a variable.
         prepare: what the new process does before it becomes the command.
         codes: exit codes that may come.
+        mounts: commands of a shell, as root of a new name space of mounts, before the command starts.
     """
 
     out: str = "new"
     variables: dict[str, str | None] = field(default_factory=dict)
     prepare: Callable[[], None] | None = None
     codes: tuple[int, ...] = (0, 1, 2)
+    mounts: str = ""
 
 
 def _limit(name: str, value: int) -> Callable[[], None]:
@@ -92,6 +97,17 @@ SURROUNDINGS = {
     "a home that is nowhere": Surroundings(variables=NO_HOME, codes=(0,)),
     "no home": Surroundings(variables={**NO_HOME, "HOME": None, "USER": None, "LOGNAME": None}, codes=(0,)),
     "no folder for temporary files": Surroundings(variables={"TMPDIR": "/proc/none"}),
+    "no shared memory": Surroundings(mounts="mount -t tmpfs -o ro,size=4k none /dev/shm", codes=(0, 2)),
+    "little shared memory": Surroundings(mounts="mount -t tmpfs -o size=4k none /dev/shm", codes=(0, 2)),
+    "a closed folder of shared memory": Surroundings(mounts="mount -t tmpfs -o mode=000 none /dev/shm", codes=(0, 2)),
+    "no devices": Surroundings(mounts="mount -t tmpfs -o ro none /dev", codes=(0, 1, 2)),
+    "no folder /tmp": Surroundings(variables={"TMPDIR": None}, mounts="mount -t tmpfs -o ro none /tmp", codes=(0, 2)),
+    "no folder /proc": Surroundings(mounts="mount -t tmpfs -o ro none /proc", codes=(0, 2)),
+    "no folder /sys": Surroundings(mounts="mount -t tmpfs -o ro none /sys", codes=(0, 2)),
+    "a full folder /tmp": Surroundings(
+        variables={"TMPDIR": "/tmp"}, mounts="mount -t tmpfs -o size=4k none /tmp; echo x > /tmp/x"
+    ),
+    "a work folder that nobody writes": Surroundings(mounts="mount -o remount,ro,bind .", codes=(0, 2)),
     "a very long path": Surroundings(out="/".join(["d" * 200] * 25), codes=(0, 2)),
     "a very long name": Surroundings(out="n" * 300, codes=(0, 2)),
     "a name with a line feed and an escape": Surroundings(out="a\n\x1b[2J\x1b]0;t\x07b", codes=(0, 2)),
@@ -102,7 +118,7 @@ SURROUNDINGS = {
 
 def problems(name: str, place: str, folder: Path) -> list[str]:
     """Run a command in its surroundings and say what is wrong with its end."""
-    files = {**recorded(), **WORLD_FILES, "s.yaml": intact("scenario.yaml")}
+    files = {**recorded(), **WORLD_FILES, "s.yaml": intact("scenario.yaml"), "sweep.yaml": SWEEP}
     for path, content in files.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_bytes(content)
@@ -110,9 +126,14 @@ def problems(name: str, place: str, folder: Path) -> list[str]:
     variables = {**environment(), "TMPDIR": str(folder.parent / "tmp"), "COLUMNS": "200", **given.variables}
     (folder.parent / "tmp").mkdir(exist_ok=True)
     arguments = [part.replace("OUT", given.out) for part in COMMANDS[name].split(" ")]
+    command = [sys.executable, "-m", "simkit", *arguments]
+    if given.mounts:
+        # The work folder is mounted on /mnt, so that it stays when /tmp is hidden.
+        mounts = f"mount --bind . /mnt && cd /mnt && {given.mounts} && cd /mnt"
+        command = ["unshare", "-m", "sh", "-c", f'{mounts} && exec "$@"', "sh", *command]
     try:
         done = subprocess.run(
-            [sys.executable, "-m", "simkit", *arguments],
+            command,
             cwd=folder,
             env={k: v for k, v in variables.items() if v is not None},
             preexec_fn=given.prepare,
@@ -126,7 +147,7 @@ def problems(name: str, place: str, folder: Path) -> list[str]:
     found = [] if done.returncode in given.codes else [f"exit code {done.returncode}: {said[-1200:]}"]
     if "Traceback" in said or "Exception ignored" in said:
         found.append(f"traceback, exit code {done.returncode}: {said[-1200:]}")
-    is_open = given.prepare is None or place.startswith(("40", "a full disk", "a disk"))
+    is_open = (given.prepare is None and place != "no devices") or place.startswith(("40", "a full disk", "a disk"))
     if done.returncode == 2 and is_open and not re.search(r"SK-[A-Z0-9]+-\d{3}|Usage:", said):
         found.append(f"exit code 2 without a code: {said[-300:]}")
     if done.returncode == 1 and is_open and not said.strip():
@@ -139,6 +160,8 @@ def problems(name: str, place: str, folder: Path) -> list[str]:
 @pytest.mark.parametrize("name", COMMANDS)
 @pytest.mark.parametrize("place", SURROUNDINGS)
 def test_a_command_ends_with_a_result_or_an_error(name: str, place: str, tmp_path: Path) -> None:
+    if SURROUNDINGS[place].mounts and subprocess.run(["unshare", "-m", "true"], check=False).returncode != 0:
+        pytest.skip("only root can mount in a name space of its own")
     (folder := tmp_path / "work").mkdir()
     found = problems(name, place, folder)
     assert not found, "\n".join(found)
