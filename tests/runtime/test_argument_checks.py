@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.live import connect
 from simkit.errors import ArgumentTypeError, ArgumentValueError, InputError
+from simkit.live import connect
 from simkit.runtime.engine.snapshot import state_hash
 
 WORLD = """<sdf version="1.9"><world name="w"><light name="sun" type="directional"/><model name="b">
