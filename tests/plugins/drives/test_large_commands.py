@@ -97,7 +97,7 @@ def test_the_command_line_says_which_command_ended_the_run(tmp_path: Path) -> No
     (tmp_path / "w.sdf").write_text(WORLD.format(robots=robot))
     command = [sys.executable, "-m", "simkit", "run", "w.sdf", "--cmd-vel", "1e4,0", "--duration", "1"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    ignored = subprocess.run([*command[:5], "1e11,0", *command[6:]], cwd=tmp_path, capture_output=True, text=True)
+    ignored = subprocess.run([*command[:6], "1e11,0", *command[7:]], cwd=tmp_path, capture_output=True, text=True)
     assert ignored.returncode == 0 and "warning SK-PLUGIN-041" in ignored.stderr
     assert done.returncode == 3, done.stderr
     assert "linear.x = 10000" in done.stderr and "w.sdf:" in done.stderr
