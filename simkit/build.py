@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from simkit import progress
 from simkit.argument_checks import check_folders
@@ -225,7 +225,6 @@ def _open_page(simulation: Simulation, port: int) -> Page:
     return ScriptView(simulation, port)
 
 
-@memory_errors()
 def describe(
     source: Source,
     *,
@@ -243,12 +242,11 @@ def describe(
         LoadError: the file has errors.
     """
     check_folders(plugin_paths, "plugin_paths")
-    scene, diagnostics = read_scene(
-        source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base,
-        missing_meshes=True,
-    )  # fmt: skip
-    report_python_plugins(scene, diagnostics, [Path(p) for p in plugin_paths])
-    return describe_scene(scene, diagnostics, describe_sensor)
+    given = {"resource_paths": resource_paths, "xacro_args": xacro_args, "package_paths": package_paths, "base": base}
+    with memory_errors():
+        scene, diagnostics = read_scene(source, missing_meshes=True, **cast("Any", given))
+        report_python_plugins(scene, diagnostics, [Path(p) for p in plugin_paths])
+        return describe_scene(scene, diagnostics, describe_sensor)
 
 
 def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tuple[SceneSensor, dict[str, Any] | None]:
@@ -261,7 +259,6 @@ def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tupl
     return sensor, None if kind is None else kind(sensor, diagnostics).describe()
 
 
-@memory_errors()
 def check(
     source: Source,
     *,

@@ -97,6 +97,7 @@ HEAVY = {
     "lz4": "only some bags need it",
     "markupsafe": "comes with jinja2",
     "msvcrt": "only some systems have it",
+    "resource": "only some systems have it",
     "multiprocessing": "0.02 s; few commands start processes",
     "mapbox_earcut": "only polygons need it",
     "matplotlib": "optional: the extra `labs`",

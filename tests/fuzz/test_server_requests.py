@@ -401,10 +401,14 @@ def test_the_page_answers_in_plain_english(run: Any) -> None:
 
 def test_the_socket_of_the_run_answers_in_plain_english(run: Any) -> None:
     wrong: dict[str, str] = {}
+    last = ""
     for number, text in enumerate(["[]", "7", "{", "", *RAW.values(), *variants(LIVE, "ask")]):
         with socket.socket(socket.AF_UNIX) as link:
             link.settimeout(TIMEOUT)
-            link.connect(str(next(run[1].rglob("*.sock"))))
+            path = next(run[1].rglob("*.sock"), None)
+            assert path is not None, f"the run has ended after {last}"
+            link.connect(str(path))
+            last = text[:300]
             body = text.replace('{"ask"', f'{{"id": {number}, "ask"', 1).encode()
             head = struct.pack("<IB", 4 + len(body), ASK) + struct.pack("<I", len(body))
             link.sendall(head + body + json_frame(ASK, {"ask": "ping", "id": 10**9}))
@@ -427,4 +431,5 @@ def test_the_socket_of_the_run_answers_in_plain_english(run: Any) -> None:
 
 def test_the_run_goes_on_and_shows_no_traceback(run: Any) -> None:
     text = run[2]()
+    assert "error:" not in text, text[-3000:]
     assert "Traceback" not in text and not INSIDE.search(text), text[-3000:]

@@ -84,7 +84,7 @@ def goal_result(request: Request) -> object:
         response = derived_type(f"{action}_GetResult_Response")
         if result is None:
             result = builder_of(f"{action}_Result").default()
-    except (MessageError, ValueError) as error:
+    except (MessageError, ValueError, LookupError) as error:
         raise RequestRefused(client_text(error)) from None
     if not isinstance(result, type_of(f"{action}_Result")):
         raise RequestRefused(f"the result is not one of {action}")

@@ -10,7 +10,7 @@ import re
 import sys
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, Final, TypeVar
+from typing import Any, Final, TypeVar, cast
 
 from simkit.argument_checks import shown
 from simkit.errors import InputError
@@ -63,12 +63,12 @@ def checked_value(value: Any, name: str, kind: type[T]) -> T:
     Raises:
         RequestRefused: the value has another kind.
     """
-    if kind is float and type(value) is int and abs(value) <= sys.float_info.max:
-        value = float(value)  # JSON has integers that no float can hold
     found: Any = value
-    if type(found) is not kind or (kind is float and not abs(found) <= sys.float_info.max):
+    if kind is float and type(found) is int and abs(found) <= sys.float_info.max:
+        found = float(found)  # JSON has integers that no float can hold
+    if type(found) is not kind or (kind is float and not abs(cast("float", found)) <= sys.float_info.max):
         raise RequestRefused(f"{name} must be {_KINDS[kind]}, got {shown(value)}")
-    return found  # type: ignore[no-any-return]
+    return found
 
 
 def read_items(fields: Mapping[str, Any], name: str, kind: type[T]) -> list[T]:

@@ -33,6 +33,13 @@ def large_commands(bus: TopicBus) -> list[str]:
     return [text for _, text in sorted(found)[:_MOST_LISTED]]
 
 
+def forget_commands(bus: TopicBus) -> None:
+    """Forget the last commands, because a reset ends their effect."""
+    for _, end, _, kind in bus.endpoints():
+        if kind == "takes":
+            end.last = None
+
+
 def _numbers(message: Message, prefix: str) -> Iterator[tuple[float, str]]:
     """Yield the finite numbers of a message with the names of their fields."""
     for name, _ in field_nodes(message.__msgtype__):

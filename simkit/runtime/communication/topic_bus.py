@@ -272,12 +272,6 @@ class TopicBus:
 
     # ------------------------------------------------------------------ messages
 
-    def forget_commands(self) -> None:
-        """Forget the last commands, because a reset ends their effect."""
-        for listeners in self._listeners.values():
-            for listener in listeners:
-                listener.last = None
-
     def settle(self) -> None:
         """Make every message that is not made yet, before its source data change."""
         for publishers in self._publishers.values():

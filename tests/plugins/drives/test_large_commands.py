@@ -12,15 +12,15 @@ import pytest
 import simkit
 from simkit import SimulationDiverged
 
-ROBOT = """<model name="{name}"><pose>{x} 0 0.2 0 0 0</pose><link name="base"><inertial>
-<mass>5</mass><inertia>
-<ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial><collision name="c"><geometry><box><size>0.4 0.3 0.2</size></box>
-</geometry></collision></link><link name="wl"><pose>0 0.2 -0.05 -1.57 0 0</pose><collision name="c"><geometry><cylinder>
-<radius>0.1</radius><length>0.05</length></cylinder></geometry></collision></link><link name="wr">
-<pose>0 -0.2 -0.05 -1.57 0 0</pose><collision name="c"><geometry><cylinder><radius>0.1</radius><length>0.05</length>
-</cylinder></geometry></collision></link><joint name="jl" type="revolute"><parent>base</parent><child>wl</child><axis>
-<xyz>0 0 1</xyz></axis></joint><joint name="jr" type="revolute"><parent>base</parent><child>wr</child><axis>
-<xyz>0 0 1</xyz></axis></joint>{plugin}</model>"""
+ROBOT = """<model name="{name}"><pose>{x} 0 0.2 0 0 0</pose><link name="base"><inertial><mass>5</mass><inertia>
+<ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial><collision name="c"><geometry><box>
+<size>0.4 0.3 0.2</size></box></geometry></collision></link><link name="wl"><pose>0 0.2 -0.05 -1.57 0 0
+</pose><collision name="c"><geometry><cylinder><radius>0.1</radius><length>0.05</length></cylinder>
+</geometry></collision></link><link name="wr"><pose>0 -0.2 -0.05 -1.57 0 0</pose><collision name="c">
+<geometry><cylinder><radius>0.1</radius><length>0.05</length></cylinder></geometry></collision></link>
+<joint name="jl" type="revolute"><parent>base</parent><child>wl</child><axis><xyz>0 0 1</xyz></axis>
+</joint><joint name="jr" type="revolute"><parent>base</parent><child>wr</child><axis><xyz>0 0 1</xyz>
+</axis></joint>{plugin}</model>"""
 DRIVE = """
 <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"><left_joint>jl</left_joint>
 <right_joint>jr</right_joint><wheel_separation>0.4</wheel_separation><wheel_radius>0.1</wheel_radius>
@@ -97,7 +97,7 @@ def test_the_command_line_says_which_command_ended_the_run(tmp_path: Path) -> No
     (tmp_path / "w.sdf").write_text(WORLD.format(robots=robot))
     command = [sys.executable, "-m", "simkit", "run", "w.sdf", "--cmd-vel", "1e4,0", "--duration", "1"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    ignored = subprocess.run([*command[:5], "1e11,0", *command[6:]], cwd=tmp_path, capture_output=True, text=True)
+    ignored = subprocess.run([*command[:6], "1e11,0", *command[7:]], cwd=tmp_path, capture_output=True, text=True)
     assert ignored.returncode == 0 and "warning SK-PLUGIN-041" in ignored.stderr
     assert done.returncode == 3, done.stderr
     assert "linear.x = 10000" in done.stderr and "w.sdf:" in done.stderr
