@@ -107,17 +107,22 @@ class ParameterFiles:
     """Parameter files of one plugin; values of a later file replace those of an earlier one."""
 
     def __init__(self, files: Sequence[ParameterFile] = ()) -> None:
-        self.files = list(files)
+        self.files = tuple(files)
+        # each controller is looked for while each other one is loaded
+        self._nodes: dict[str, Entry | None] = {}
+        self._names_below: dict[str, tuple[str, ...]] = {}
 
     def __deepcopy__(self, memo: dict[int, object]) -> ParameterFiles:
         return self  # the object never changes
 
     def of_node(self, name: str) -> Entry | None:
         """Return the parameters of a node by its full name, such as `/robot/arm_controller`; None if there are none."""
-        found: Entry | None = None
-        for entry in self._of_node(name):
-            found = entry if found is None else found.merged(entry)
-        return found
+        if name not in self._nodes:
+            found: Entry | None = None
+            for entry in self._of_node(name):
+                found = entry if found is None else found.merged(entry)
+            self._nodes[name] = found
+        return self._nodes[name]
 
     def _of_node(self, name: str) -> Iterator[Entry]:
         for file in self.files:
@@ -131,8 +136,13 @@ class ParameterFiles:
                 if inner is not None and inner.below is not None:
                     yield inner
 
-    def nodes_below(self, namespace: str) -> Iterator[str]:
-        """Yield the plain names of the nodes of a namespace that the files name without a wildcard, in file order."""
+    def nodes_below(self, namespace: str) -> tuple[str, ...]:
+        """Return the plain names of the nodes of a namespace that the files name without a wildcard, in file order."""
+        if namespace not in self._names_below:
+            self._names_below[namespace] = tuple(self._nodes_below(namespace))
+        return self._names_below[namespace]
+
+    def _nodes_below(self, namespace: str) -> Iterator[str]:
         names = (pattern.rpartition("/")[2] for file in self.files for pattern, _ in file.nodes)
         for name in dict.fromkeys(name for name in names if "*" not in name):
             if any(node_matches(p, f"{namespace}/{name}") for file in self.files for p, _ in file.nodes if name in p):
@@ -145,6 +155,8 @@ class ParameterFiles:
 
 def node_matches(pattern: str, name: str) -> bool:
     """Check whether a node's full name matches a pattern: `*` is one part of the name, `**` any number of parts."""
+    if "*" not in pattern:
+        return pattern.strip("/") == name.strip("/")
     parts, wanted = name.strip("/").split("/"), pattern.strip("/").split("/")
     ends = {0}  # numbers of parts of the name that the pattern can have matched so far
     for number, part in enumerate(wanted, 1):
@@ -215,7 +227,7 @@ def _nodes(entry: Entry, path: str, diagnostics: Diagnostics) -> Iterator[tuple[
 
 
 def _expand_dotted_keys(entry: Entry) -> Entry:
-    """Return a block without dotted keys: `a.b: 1` becomes `a: {b: 1}`."""
+    """Return a block without dotted keys: `a.b: 1` becomes `a: {b: 1}`. `_EntryReader` limits the depth."""
     if entry.below is None:
         return entry
     whole = Entry(entry.where, below={})
@@ -308,7 +320,7 @@ class _EntryReader:
                 found = "an empty name" if not name else "a list or block as a name"
                 self._diagnostics.error("SK-CONTROL-002", f"found {found}; expected a text", where)
                 continue
-            entry = self.entry(value, depth + 1)
+            entry = self.entry(value, depth + 1 + name.count("."))  # a dotted key stands for several levels
             if key.tag == _MERGE:
                 merged = {**self._merged(entry, key), **merged}
                 continue

@@ -126,7 +126,7 @@ class ControllerManager(SharedByCopies):
             entry = self.files.of_node(f"{self.namespace}/{name}")
             kind = (entry.below or {}).get("type") if entry is not None else None
             # nodes that are not controllers may have a parameter `type` too, but not the name of a class
-            if name not in (*found, self.name) and kind is not None and _CLASS.fullmatch(kind.text):
+            if name not in found and name != self.name and kind is not None and _CLASS.fullmatch(kind.text):
                 found[name] = kind
         return found
 
