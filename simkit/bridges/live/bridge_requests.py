@@ -10,6 +10,7 @@ from typing import Final
 from simkit.bridges.live.introspection import topic_list
 from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response
 from simkit.errors import MessageError
+from simkit.linked_files import is_below
 from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_types import full_name, type_of
@@ -108,7 +109,9 @@ def asset(request: Request) -> object:
             if uri == known:
                 return str(mesh.file)
             if folder == known.rpartition("/")[0] and Path(name).suffix.lower() in _TEXTURES:
-                return str(mesh.file.parent / name)
+                texture = mesh.file.parent / name
+                if is_below(texture, texture.parent):
+                    return str(texture)
     raise RequestRefused(f"{uri!r:.200} is no mesh of the simulation")
 
 
