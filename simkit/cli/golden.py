@@ -276,9 +276,9 @@ def check(
     jobs: Annotated[int, option("Number of parallel processes.", "N", "--jobs", "-n", min=1)] = 1,
     causes: Annotated[bool, Option("--causes/--no-causes", help="Search for the causes of differences.")] = True,
     budget: Annotated[float, option("Wall time limit of the search for each golden run.", "S", min=0)] = 60.0,
-    resource_path: options.ReadableFolders = [],
     plugin_path: options.CodePaths = [],
     allow_code: options.AllowCode = False,
+    resource_path: options.ReadableFolders = [],
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print only failures.")] = False,
 ) -> int:
@@ -293,8 +293,8 @@ def check(
         causes,
         budget,
         html is not None,
-        allow_code,
-        tuple(plugin_path),
+        allow_code=allow_code,
+        plugin_paths=tuple(plugin_path),
         folders=tuple(resource_path),
     )
     results = check_goldens(folders, check_options, jobs)

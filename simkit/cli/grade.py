@@ -28,15 +28,15 @@ def grade(
     junit: Annotated[Path | None, option("JUnit XML report to write.", "OUT.xml")] = None,
     pictures: Annotated[Path | None, option("Folder for a picture of the path of each run.", "DIR")] = None,
     jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
-    resource_path: options.ReadableFolders = [],
     plugin_path: options.CodePaths = [],
     allow_code: options.AllowCode = False,
+    resource_path: options.ReadableFolders = [],
     json_: options.Json = False,
 ) -> int:
     """Run an exercise with submitted plugins and print the results."""
     return grade_files(
-        [exercise], submissions, junit, pictures, jobs, json_=json_, folders=resource_path, allow_code=allow_code,
-        plugin_paths=plugin_path,
+        [exercise], submissions, junit, pictures, jobs, json_=json_,
+        allow_code=allow_code, plugin_paths=plugin_path, folders=resource_path,
     )  # fmt: skip
 
 
@@ -48,9 +48,9 @@ def grade_files(
     jobs: int = 1,
     *,
     json_: bool = False,
-    folders: Sequence[FilePath] = (),
     allow_code: bool = False,
     plugin_paths: Sequence[Path] = (),
+    folders: Sequence[FilePath] = (),
 ) -> int:
     """Grade plugins, print the results, and return the exit code; the arguments are those of the command.
 

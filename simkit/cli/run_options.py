@@ -85,7 +85,7 @@ def read_run(world: str, usual_duration: float = 10.0, folders: Sequence[FilePat
     Args:
         world: world or scenario file.
         usual_duration: simulated time of a world without a scenario [s].
-        folders: folders in which the scenario file may name files, beside its own folder and its project.
+        folders: folders of the user in which a scenario may name files.
 
     Raises:
         LoadError: the scenario file has errors.
@@ -138,8 +138,8 @@ def scenario_spec(
     folders = options.get("resource_paths", ())
     found = read_run(world, usual_duration, folders) if isinstance(world, str) else world
     own = found.options.get("resource_paths", ())
-    if folders and own:  # the option allows files; it does not replace the scenario's folders
-        options = {**options, "resource_paths": (*folders, *own)}
+    if own and "resource_paths" in options:  # the option allows files; it does not replace the scenario's folders
+        options = {**options, "resource_paths": (*options["resource_paths"], *own)}
     found = add_options(found, options, allow_code)
     return replace(
         found,

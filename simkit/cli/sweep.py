@@ -69,9 +69,9 @@ def run(
     ] = None,
     trials: Annotated[int | None, option("Number of trials of a search; default: 100.", "N", min=1)] = None,
     maximise: Annotated[bool, Option("--maximise", help="Search for the largest value.")] = False,
-    resource_path: options.ReadableFolders = [],
     plugin_path: options.CodePaths = [],
     allow_code: options.AllowCode = False,
+    resource_path: options.ReadableFolders = [],
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> int:
@@ -226,9 +226,9 @@ def replay(
     number: Annotated[int, argument("Number of the run.", "RUN")],
     file: Annotated[Path | None, option("Sweep file; default: the file that the folder names.", "SWEEP.yaml")] = None,
     bundle: Annotated[Path | None, option("Write a bundle of the run.", "FILE.zip")] = None,
-    resource_path: options.ReadableFolders = [],
     plugin_path: options.CodePaths = [],
     allow_code: options.AllowCode = False,
+    resource_path: options.ReadableFolders = [],
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> int:
     """Repeat one run of a sweep and compare its end with the table. Exit code 5 if it differs."""

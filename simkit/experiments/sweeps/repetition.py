@@ -79,8 +79,8 @@ def repeat_run(
         number: number of the run.
         file: sweep file; None for the file that the folder names.
         bundle: bundle to write; None for none.
-        folders: folders in which the results may name the sweep file and the sweep file may name files, beside their
-            own folders and their projects.
+        folders: folders in which the results may name the sweep file and the sweep file may name files, beside its
+            own folder and its project.
         allow_code: allow the code that the sweep file names, as in `read_sweep`.
         plugin_paths: allow the code in these folders only.
 

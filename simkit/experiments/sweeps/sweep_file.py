@@ -44,7 +44,7 @@ def read_sweep(
     """Read a sweep file.
 
     Args:
-        path: sweep file.
+        path: file.
         folders: folders in which the file may name files, beside its own folder and its project.
         allow_code: allow the plugin folders and metric functions that the file names. Their code has the same rights
             as the user.

@@ -48,9 +48,9 @@ def check_golden(
     causes: bool = True,
     budget_s: float = CAUSE_BUDGET_SECONDS,
     pictures: bool = False,
+    folders: Sequence[FilePath] = (),
     allow_code: bool = False,
     plugin_paths: Sequence[FilePath] = (),
-    folders: Sequence[FilePath] = (),
 ) -> Verdict:
     """Run the scenario of a golden run again and compare the results.
 
@@ -75,8 +75,8 @@ def check_golden(
 
     Raises:
         InputError: SK-GOLDEN-002 to SK-GOLDEN-004 the golden run cannot be read; SK-GOLDEN-006 its scenario cannot be
-            run here; SK-GOLDEN-007 the run must not be blessed; SK-SCEN-008 it needs code that is not allowed;
-            SK-URI-003 it names a file elsewhere; or the world cannot be loaded.
+            run here; SK-GOLDEN-007 the run must not be blessed; SK-URI-003 it names a file elsewhere; SK-SCEN-008 it
+            needs code that is not allowed; or the world cannot be loaded.
         RenderError: The scenario has pictures, and no renderer is available.
     """
     if bless is not None and not bless.strip():
@@ -86,7 +86,12 @@ def check_golden(
         )
     place = golden_folder(folder)
     golden = read_golden(place)
-    current_scenario = scenario or _current_scenario(place, golden, folders, allow_code, plugin_paths)
+    stored = golden.scenario
+    current_scenario = scenario
+    if current_scenario is None:
+        scripts = [request for request in stored.code_requests if not request.is_folder]
+        check_requests(scripts, allow_code, plugin_paths)  # reading a scenario in Python runs it
+        current_scenario = _current_scenario(place, golden, folders)
     current_scenario = permit_code(current_scenario, allow_code, plugin_paths)
     with _recorded_environment(golden.environment), _run_today(golden, current_scenario) as (run, elapsed):
         comparison = compare(golden, run)
@@ -135,13 +140,7 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
     return InputError(f"{error}\n{text}", error.code)
 
 
-def _current_scenario(
-    place: Path,
-    golden: RunRecord,
-    folders: Sequence[FilePath],
-    allow_code: bool,
-    plugin_paths: Sequence[FilePath],
-) -> RunSpec:
+def _current_scenario(place: Path, golden: RunRecord, folders: Sequence[FilePath]) -> RunSpec:
     """Return the scenario to run. If the scenario has a file, read the file again, because it may have been changed."""
     stored = golden.scenario
     if stored.file is not None or not (stored.test or stored.plugins):

@@ -65,8 +65,8 @@ class Exercise:
     pass_mark: float
     runs: tuple[ExerciseRun, ...]
     file: Path
-    own_code: CodeRequest | None = None
     folders: tuple[FilePath, ...] = ()
+    own_code: CodeRequest | None = None
 
     @property
     def code_requests(self) -> tuple[CodeRequest, ...]:
@@ -92,8 +92,8 @@ def read_exercise(
         plugin_paths: Allow these folders only.
 
     Raises:
-        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006, SK-URI-003); the error lists all of
-            them. SK-SCEN-008: it names other folders than `plugin_paths`.
+        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006, SK-URI-003); the error lists all.
+            SK-SCEN-008: it names other plugin folders than `plugin_paths`.
     """
     diagnostics = Diagnostics()
     document = Document(Path(path), diagnostics, folders)
@@ -130,12 +130,14 @@ class _ExerciseReader(ValueReader):
         runs = self._runs(scenario, parameters)
         title, text, hand_in, robot = (self._stripped(key) for key in ("title", "text", "hand_in", "robot"))
         file = self._document.path
-        words = f"the exercise names the plugin {hand_in!r:.200}"
-        own = (
-            CodeRequest(words, file.parent / hand_in, self._document.where("exercise", "hand_in")) if hand_in else None
-        )
-        title, mark = title or scenario.title, self._pass_mark()
-        return Exercise(title, text, hand_in, robot, mark, runs, file, own, self._document.files.folders)
+        own = None
+        if hand_in:
+            words, where = f"the exercise names the plugin {hand_in!r:.200}", self._document.where(*self._at, "hand_in")
+            own = CodeRequest(words, file.parent / hand_in, where)
+        return Exercise(
+            title or scenario.title, text, hand_in, robot, self._pass_mark(), runs, file,
+            self._document.files.folders, own,
+        )  # fmt: skip
 
     def _runs(self, scenario: RunSpec, parameters: JsonMapping) -> tuple[ExerciseRun, ...]:
         listed = self._fields.get("runs", [{}])

@@ -21,9 +21,10 @@ def main(job_file: str) -> None:
 
     Args:
         job_file: JSON file with the job: `exercise` and `hand_in` (files; empty for none), `folders` (in which the
-            exercise may name files), `number` of the run, `target` (file for the result), `picture` (file for a picture
-            of the path; empty for none), `plugin_paths` (folders of the exercise that are allowed), and `token`, which
-            is copied to the result. The file is removed at once, so that the plugin cannot read the token.
+            exercise may name files), `plugin_paths` (folders of the exercise whose code is allowed), `number` of the
+            run, `target` (file for the result), `picture` (file for a picture of the path; empty for none), and
+            `token`, which is copied to the result. The file is removed at once, so that the plugin cannot read the
+            token.
     """
     job = json.loads(Path(job_file).read_text(encoding="utf-8"))
     Path(job_file).unlink()

@@ -140,7 +140,6 @@ class ScenarioReader(ValueReader):
     """Reader of the values of a scenario."""
 
     def scenario(self) -> RunSpec:
-        wall = self._number("wall_timeout", None, above=0.0)
         if "timeout" in self._fields and "until" not in self._fields:
             hint = "add until: CONDITION, or use duration: S to end the run at a fixed time"
             self._document.error("SK-SCEN-004", "'timeout' needs 'until'", "timeout", hint=hint)
@@ -166,7 +165,7 @@ class ScenarioReader(ValueReader):
             picture=self._whole("picture", 64, 8),
             until=self._expression(self._text("until", ""), "until"),
             timeout=self._number("timeout", None, above=0.0),
-            wall_timeout=wall,
+            wall_timeout=self._number("wall_timeout", None, above=0.0),
             checks=tuple(check for key, kind in _CHECKS.items() for check in self._checks(key, kind)),
             options=cast(LoadOptions, self._options()),
             code_requests=self._code_requests(),
