@@ -44,7 +44,8 @@ def _requests(source: str) -> dict[str, dict[str, Any]]:
 
 @pytest.mark.parametrize("service", _requests(""))
 @pytest.mark.parametrize(
-    "source", ["{}/private/one.sdf", "file://{}/private/one.sdf", "../private/one.sdf", "one.sdf", "{}/project/link.sdf"]
+    "source",
+    ["{}/private/one.sdf", "file://{}/private/one.sdf", "../private/one.sdf", "one.sdf", "{}/project/link.sdf"],
 )
 def test_a_path_outside_the_folders_of_the_run_is_refused(
     sim: simkit.Simulation, folder: Path, service: str, source: str
@@ -56,7 +57,7 @@ def test_a_path_outside_the_folders_of_the_run_is_refused(
 
 @pytest.mark.parametrize("source", ["turtlebot3_burger", "model://turtlebot3_burger", "{}/project/models/one.sdf"])
 def test_bundled_names_and_files_of_the_run_are_spawned(sim: simkit.Simulation, folder: Path, source: str) -> None:
-    assert sim.call("/world/w/create", {"entity_factory": {"sdf_filename": source.format(folder), "name": "new"}}).success
+    assert sim.call("/world/w/create", _requests(source.format(folder))["/world/w/create"]).success
     assert "new" in sim.models
 
 
@@ -69,7 +70,7 @@ def test_the_page_refuses_the_same_paths(sim: simkit.Simulation, folder: Path) -
 
 def test_a_resource_path_of_the_user_is_a_folder_of_the_run(folder: Path) -> None:
     with simkit.load(folder / "project" / "w.sdf", resource_paths=[folder / "private"]) as sim:
-        assert sim.call("/world/w/create", {"entity_factory": {"sdf_filename": f"{folder}/private/one.sdf", "name": "new"}}).success
+        assert sim.call("/world/w/create", _requests(f"{folder}/private/one.sdf")["/world/w/create"]).success
 
 
 def test_a_script_spawns_any_file(sim: simkit.Simulation, folder: Path) -> None:
