@@ -11,7 +11,6 @@ from simkit.bridges.live.introspection import topic_list
 from simkit.bridges.live.request_fields import RequestRefused, client_text
 from simkit.bridges.live.requests import Request, RequestHandler, Response
 from simkit.errors import MessageError
-from simkit.linked_files import is_below
 from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_types import full_name, type_of
