@@ -21,6 +21,8 @@ from simkit.process_control import kill_process_tree
 _START_TIMEOUT: Final = 60.0  # [s]; the first import of rclpy on a slow disk takes several seconds
 _END_TIMEOUT: Final = 5.0  # [s] for passing on the last messages
 _LAST_LINES_TIMEOUT: Final = 0.5  # [s] for the lines of a process that has ended
+_NOTE_PERIOD: Final = 10.0  # [s] of wall time
+_MOST_NOTES: Final = 20  # in a period
 _POLL: Final = 0.02  # [s] between two looks at a bridge that starts
 
 
@@ -69,6 +71,8 @@ class BridgeProcess:
         self._errors: deque[str] = deque(maxlen=20)
         self._last: dict[str, Any] = {}
         self._is_over = False
+        self._period_start: float | None = None
+        self._note_count = 0
 
     def start(
         self,
@@ -195,13 +199,32 @@ class BridgeProcess:
             found = self._lines.get()
             self._last.update(found)
             if "note" in found:
-                self._report(f"note {self._codes.note}: {found['note']}")
+                self._report_note(str(found["note"]))
+        self._report_omitted(time.monotonic() - _NOTE_PERIOD)
+
+    def _report_note(self, text: str) -> None:
+        """Report a note, or count it after `_MOST_NOTES` in a period: clients may send invalid requests."""
+        now = time.monotonic()
+        self._report_omitted(now - _NOTE_PERIOD)
+        self._period_start = self._period_start or now
+        self._note_count += 1
+        if self._note_count <= _MOST_NOTES:
+            self._report(f"note {self._codes.note}: {text}")
+
+    def _report_omitted(self, latest_start: float) -> None:
+        """End a period that began before a time, and report the number of its omitted notes."""
+        if self._period_start is None or self._period_start > latest_start:
+            return
+        if (omitted := self._note_count - _MOST_NOTES) > 0:
+            self._report(f"note {self._codes.note}: {omitted} more notes are not shown")
+        self._period_start, self._note_count = None, 0
 
     def _report_last_notes(self) -> None:
         """Process all lines of a process that has ended."""
         for reader in self._readers:
             reader.join(_LAST_LINES_TIMEOUT)  # a child of the process may keep its pipes open
         self._report_notes()
+        self._report_omitted(time.monotonic())
 
     def __enter__(self) -> Self:
         return self

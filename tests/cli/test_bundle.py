@@ -142,6 +142,18 @@ def test_an_extracted_world_can_be_loaded(folder: Path) -> None:
     assert simkit("replay", "run.zip", "--extract", "out").exit_code == 2
 
 
+def test_extracting_writes_all_files_or_none(folder: Path) -> None:
+    simkit("bundle", "sled.sdf", "-o", "run.zip", "--duration", "0.1")
+    with zipfile.ZipFile("run.zip") as old, zipfile.ZipFile("other.zip", "w") as new:
+        for name in old.namelist():
+            content = old.read(name)
+            new.writestr(name, content[::-1] if name.endswith("last_seconds.mcap") else content)
+    before = set(folder.iterdir())
+    found = simkit("replay", "other.zip", "--extract", "out")
+    assert found.exit_code == 2 and "SK-BUNDLE-001" in found.stderr
+    assert set(folder.iterdir()) == before
+
+
 def test_a_run_in_which_something_does_not_hold_leaves_a_bundle(folder: Path) -> None:
     for asked in (["--assert", "time > 9"], ["--until", "time > 9", "--timeout", "0.2"]):
         run = simkit("run", "sled.sdf", "--duration", "0.2", "-q", "--bundle-on-failure", "kept/", *asked)

@@ -317,8 +317,11 @@ def test_a_terminal_that_is_seen_to_be_gone_before_its_signal_comes_ends_as_by_t
     def write() -> None:
         raise OSError(errno.EIO, "no such terminal")
 
+    near, far = os.openpty()
+    kept = os.dup(1)
     for handler, code in ((signal.SIG_DFL, 128 + signal.SIGHUP), (signal.SIG_IGN, 0)):
         before = signal.signal(signal.SIGHUP, handler)
+        os.dup2(far, 1)
         try:
             with monkeypatch.context() as patch:
                 patch.setattr(sys, "stdout", sys.stdout)
@@ -326,5 +329,18 @@ def test_a_terminal_that_is_seen_to_be_gone_before_its_signal_comes_ends_as_by_t
                 with pytest.raises(typer.Exit) as ended:
                     report_errors(write)()
         finally:
+            os.dup2(kept, 1)
             signal.signal(signal.SIGHUP, before)
         assert ended.value.exit_code == code
+    for handle in (near, far, kept):
+        os.close(handle)
+
+
+def test_an_error_of_the_disk_is_not_taken_for_a_closed_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    def read() -> None:
+        raise OSError(errno.EIO, "Input/output error", "w.sdf")
+
+    with pytest.raises(typer.Exit) as ended:
+        report_errors(read)()
+    assert ended.value.exit_code == 2
+    assert "SK-CLI-016 cannot read or write w.sdf: Input/output error" in capsys.readouterr().err

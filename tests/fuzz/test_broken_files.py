@@ -90,11 +90,12 @@ def broken(sample: Sample, chance: random.Random) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("path", sorted(p for p in FOUND.glob("*") if p.name[0] != "."), ids=lambda p: p.name)
 def test_a_file_that_once_did_harm_does_none(path: Path, reader: Reader) -> None:
-    """A file of `found/`, or a folder with a file called `main` and what it names."""
+    """A file of `found/`, or a folder with what is opened: `main.*`, or the command line in `arguments.txt`."""
     named = [path] if path.is_file() else sorted(p for p in path.rglob("*") if p.is_file())
     files = {p.name if p == path else str(p.relative_to(path)): p.read_bytes() for p in named}
-    main = next(n for n in files if path.is_file() or n.startswith("main."))
-    answer = reader.read(main, files, path.name)
+    arguments = files.pop("arguments.txt", b"").decode().split("\n")[:-1]
+    main = "" if arguments else next(n for n in files if path.is_file() or n.startswith("main."))
+    answer = reader.read(main, files, path.name, arguments)
     assert answer["outcome"] in FINE, answer.get("trace") or answer["outcome"]
 
 

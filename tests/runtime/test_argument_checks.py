@@ -49,6 +49,7 @@ WRONG_TYPES: dict[str, Call] = {
     "run list": lambda sim: sim.run([1.0]),
     "run_until": lambda sim: sim.run_until(None, 1),
     "reset": lambda sim: sim.reset("x"),
+    "reset with changes": lambda sim: sim.reset(keep_changes=np.zeros(3)),
     "restore": lambda sim: sim.restore(None),
     "model": lambda sim: sim.model(None),
     "visual": lambda sim: sim.visual(3),

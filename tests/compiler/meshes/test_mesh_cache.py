@@ -135,6 +135,33 @@ def test_a_spoilt_entry_is_made_again(tmp_path, own_mesh_cache, spoil):
     assert entry.read_bytes() == whole
 
 
+def test_the_whole_entry_of_another_mesh_under_this_name_is_made_again(tmp_path, own_mesh_cache):
+    for name, scale in (("a", 1), ("b", 2)):
+        triangles = [[tuple(scale * x for x in corner) for corner in triangle] for triangle in TRIANGLES]
+        (tmp_path / f"{name}.stl").write_bytes(binary_stl(triangles))
+    right = load_file(tmp_path / "a.stl")[0].vertices
+    (entry,) = entries(own_mesh_cache)
+    load_file(tmp_path / "b.stl")
+    (other,) = set(entries(own_mesh_cache)) - {entry}
+    entry.write_bytes(other.read_bytes())
+    forget()
+    np.testing.assert_array_equal(load_file(tmp_path / "a.stl")[0].vertices, right)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_a_pipe_or_a_device_in_the_cache_is_not_read(tmp_path, own_mesh_cache):
+    file = tmp_path / "t.stl"
+    file.write_bytes(binary_stl(TRIANGLES))
+    right = load_file(file)[0].vertices
+    (entry,) = entries(own_mesh_cache)
+    for make in (os.mkfifo, lambda path: path.symlink_to("/dev/zero")):
+        entry.unlink()
+        make(entry)
+        forget()
+        np.testing.assert_array_equal(load_file(file)[0].vertices, right)
+        assert entry.is_file()
+
+
 def test_collision_bodies_are_kept_as_well(own_mesh_cache, monkeypatch):
     vertices, faces = polyline_triangles(Polyline((L_SHAPE,), 0.4))
     first = convex_bodies(vertices, faces, fixed=True)

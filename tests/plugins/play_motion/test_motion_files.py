@@ -94,6 +94,8 @@ def test_a_motion_has_the_line_of_its_definition(tmp_path: Path) -> None:
         ("joints: [shoulder, elbow]", "joints: shoulder", "'joints' is not a list"),
         ("0.2, 0.3]", "0.2]", "it has 3 positions, but 2 joints at 2 times need 4"),
         ("0.2, 0.3]", "0.2, nan]", "a NaN or infinite number"),
+        ("0.2, 0.3]", "0.2, 1e308]", "it has the number 1e+308; the largest is 1e+15"),
+        ("[0.5, 2.0]", "[0.5, 1e308]", "it has the number 1e+308; the largest is 1e+15"),
         ("0.2, 0.3]", "0.2, far]", "'positions' holds 'far'; expected numbers"),
         ("[0.5, 2.0]", "[0.5, 0.5]", "its times must increase, but 0.5 s comes after 0.5 s"),
         ("[0.5, 2.0]", "[-1.0, 2.0]", "its first time is -1 s"),
@@ -160,7 +162,7 @@ def test_a_motion_without_a_printable_key_is_left_out(tmp_path: Path, key: str) 
     assert not found.motions and "its key is empty or not printable" in reports[0]
 
 
-@pytest.mark.parametrize("value", [".nan", ".inf", "-.inf", "-1", "fast", "[1]"])
+@pytest.mark.parametrize("value", [".nan", ".inf", "-.inf", "-1", "fast", "[1]", "1e300"])
 def test_an_invalid_approach_speed_is_ignored(tmp_path: Path, value: str) -> None:
     settings = f"        approach_velocity: {value}\n        approach_min_duration: {value}\n"
     found, reports = read(tmp_path, ROS_2 + settings)

@@ -155,6 +155,7 @@ def test_a_killed_write_leaves_the_old_or_the_new_golden_run(tmp_path: Path, rec
         (lambda said: said.update(format="x"), "SK-GOLDEN-003"),
         (lambda said: said.update(data={"file": "../../etc/passwd", "sha256": "0"}), "SK-GOLDEN-003"),
         (lambda said: said["data"].update(sha256="0" * 64), "SK-GOLDEN-003"),
+        (lambda said: said["scenario"].update(model_world=[0.0] * 5000), "SK-GOLDEN-003"),
         (lambda said: said.update(scenario={"world": 3, "duration": "x"}), "SK-GOLDEN-003"),
         (lambda said: said.pop("fingerprint"), "SK-GOLDEN-003"),
         (lambda said: said.update(sources=[1]), "SK-GOLDEN-003"),
