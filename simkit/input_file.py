@@ -115,7 +115,7 @@ def _check_links(path: Path, inside: Path | None) -> None:
     Raises:
         OSError: a link leads outside.
     """
-    if inside is not None and not is_below(path, inside):
+    if inside is not None and not is_below(path, inside) and os.path.exists(path):  # noqa: PTH110
         target = os.path.dirname(os.path.realpath(path))  # noqa: PTH120
         reason = f"a symbolic link leads to {target}, outside the chosen folders; to allow it, set SIMKIT_RESOURCE_PATH"
         raise OSError(errno.EACCES, reason, str(path))

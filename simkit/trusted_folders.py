@@ -16,9 +16,11 @@ from typing import Final
 from urllib.parse import unquote
 
 from simkit.errors import InputError
+from simkit.home_folder import home_folder
+from simkit.project_folder import is_top_folder
 
 _LONGEST: Final = 4096  # characters of a path; Linux opens no longer one
-_MARKERS: Final = ("model.config", "package.xml", ".git")
+_MANIFESTS: Final = ("model.config", "package.xml")
 _LINK_DEPTH: Final = 3  # levels of folders below a search path with links to packages: src/repository/package
 _MOST_ENTRIES: Final = 10_000  # files and folders that are looked at to find these links
 _DRIVE: Final = re.compile(r"[A-Za-z]:")
@@ -110,8 +112,7 @@ class TrustedFolders:
     Args:
         folders: folders that the user chose; a folder may be a link, and need not exist.
         search_paths: those folders that the user's options or environment name. A link in them to a folder that is a
-            model, a package or a Git repository makes that folder a trusted folder too, because people link packages
-            into a workspace.
+            model or a package makes that folder a trusted folder too, because people link packages into a workspace.
     """
 
     def __init__(self, folders: Iterable[Path], search_paths: Iterable[Path] = ()) -> None:
@@ -174,19 +175,22 @@ def built_workspace(folder: Path) -> list[Path]:
     """Return the folders of the colcon or catkin workspace whose folder `install` or `devel` contains a folder.
 
     They are `src`, `build` and the installed folder itself: `colcon build --symlink-install` links the files of
-    packages to the first two.
+    packages to the first two. A folder `src` or `build` that is itself a link does not count: it can lead to any place.
     """
     for ancestor in (folder, *folder.parents):
-        if ancestor.name in ("install", "devel") and len(ancestor.parts) > 2:  # not /install
+        is_workspace = len(ancestor.parts) > 2 and ancestor.parent != home_folder()  # not /install
+        if ancestor.name in ("install", "devel") and is_workspace:
             beside = [ancestor.parent / name for name in ("src", "build")]
+            real = os.path.realpath(ancestor.parent)
+            beside = [place for place in beside if os.path.realpath(place) == f"{real}{os.sep}{place.name}"]
             return [ancestor, *(place for place in beside if os.path.isdir(place))]  # noqa: PTH112
     return []
 
 
 def _links_below(search_path: Path) -> Iterator[str]:
-    """Yield the real paths of models, packages and repositories that links below a search path name.
+    """Yield the real paths of models and packages that links below a search path name.
 
-    A link inside a model, package or repository does not count: it belongs to its author.
+    A link inside a model, a package or a Git repository does not count: it belongs to its author.
     """
     level = [os.fspath(search_path)]
     left = _MOST_ENTRIES
@@ -201,9 +205,10 @@ def _links_below(search_path: Path) -> Iterator[str]:
             left -= len(found)
             for entry in found:
                 if is_link_entry(entry):
-                    if _has_marker(entry.path):
-                        yield os.path.realpath(entry.path)
-                elif entry.is_dir(follow_symlinks=False) and not _has_marker(entry.path):
+                    target = os.path.realpath(entry.path)
+                    if _has_any(target, _MANIFESTS) and not is_top_folder(Path(target)):
+                        yield target
+                elif entry.is_dir(follow_symlinks=False) and not _has_any(entry.path, (*_MANIFESTS, ".git")):
                     below.append(entry.path)
         level = below
 
@@ -214,8 +219,8 @@ def is_link_entry(entry: os.DirEntry[str]) -> bool:
     return entry.is_symlink() or (is_junction is not None and is_junction())
 
 
-def _has_marker(folder: str) -> bool:
-    return any(os.path.exists(os.path.join(folder, name)) for name in _MARKERS)  # noqa: PTH110, PTH118
+def _has_any(folder: str, names: Iterable[str]) -> bool:
+    return any(os.path.exists(os.path.join(folder, name)) for name in names)  # noqa: PTH110, PTH118
 
 
 def _prefix(folder: str) -> str:

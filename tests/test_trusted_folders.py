@@ -182,7 +182,7 @@ def test_a_trusted_folder_may_be_a_link_be_missing_and_be_the_whole_machine(tree
     assert not TrustedFolders([]).allows(tree / "private/a.stl")
 
 
-@pytest.mark.parametrize("manifest", ["model.config", "package.xml", ".git"])
+@pytest.mark.parametrize("manifest", ["model.config", "package.xml"])
 def test_a_link_of_the_user_to_a_package_makes_it_a_trusted_folder(tree: Path, manifest: str) -> None:
     """People link packages into the folder `src` of a workspace."""
     (tree / "dev/robot/meshes").mkdir(parents=True)
@@ -205,7 +205,20 @@ def test_a_link_inside_a_package_does_not_make_its_target_a_trusted_folder(tree:
     (tree / "ws/foreign").mkdir(parents=True)
     (tree / "ws/foreign/package.xml").touch()
     inside = link(tree / "ws/foreign/robot", tree / "dev")
-    assert not TrustedFolders([], search_paths=[tree / "ws"]).allows(inside / "a.stl")
+    (tree / "ws/cloned/.git").mkdir(parents=True)
+    cloned = link(tree / "ws/cloned/robot", tree / "dev")
+    folders = TrustedFolders([], search_paths=[tree / "ws"])
+    assert not folders.allows(inside / "a.stl")
+    assert not folders.allows(cloned / "a.stl")
+
+
+def test_a_link_to_the_home_folder_does_not_make_it_a_trusted_folder(
+    tree: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tree / "private/package.xml").touch()
+    home = link(tree / "ws/src/home", tree / "private")
+    monkeypatch.setenv("HOME", str(tree / "private"))
+    assert not TrustedFolders([], search_paths=[tree / "ws"]).allows(home / "a.stl")
 
 
 def test_an_installed_folder_has_the_sources_and_the_build_of_its_workspace(tree: Path) -> None:
@@ -219,6 +232,9 @@ def test_an_installed_folder_has_the_sources_and_the_build_of_its_workspace(tree
     assert folders.allows(installed)
     assert not folders.allows(private)
     assert built_workspace(tree / "project") == []
+    link(tree / "foreign/src", tree / "private")
+    (tree / "foreign/install/share").mkdir(parents=True)
+    assert built_workspace(tree / "foreign/install/share") == [tree / "foreign/install"]
     assert built_workspace(Path("/install/share")) == []
 
 

@@ -10,7 +10,6 @@ from typing import Final
 from simkit.bridges.live.introspection import topic_list
 from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response
 from simkit.errors import MessageError
-from simkit.linked_files import is_below
 from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_types import full_name, type_of
@@ -18,6 +17,7 @@ from simkit.msgs.type_hashes import rihs
 from simkit.runtime.communication.service_call import Service
 from simkit.scene.geometry import Mesh
 from simkit.scene.urdf_text import urdf_text
+from simkit.trusted_folders import OutsideError, TrustedFolders, join_below
 
 _TEXTURES: Final = (".bmp", ".gif", ".jpeg", ".jpg", ".mtl", ".png", ".tga", ".tif", ".tiff", ".webp")
 
@@ -104,15 +104,24 @@ def asset(request: Request) -> object:
     folder, _, name = uri.rpartition("/")
     links = (link for model in request.sim.models.values() for link in model.scene.all_links())
     shapes = ([*(v.geometry for v in link.visuals), *(c.geometry for c in link.collisions)] for link in links)
-    for mesh in (shape for found in shapes for shape in found if isinstance(shape, Mesh)):
+    for mesh in (shape for found in shapes for shape in found if isinstance(shape, Mesh) and not shape.missing):
         for known in (mesh.uri, mesh.file.as_uri()):
             if uri == known:
                 return str(mesh.file)
             if folder == known.rpartition("/")[0] and Path(name).suffix.lower() in _TEXTURES:
-                texture = mesh.file.parent / name
-                if is_below(texture, texture.parent):
-                    return str(texture)
+                path = _beside(mesh.file, name)
+                if path is not None:
+                    return str(path)
     raise RequestRefused(f"{uri!r:.200} is no mesh of the simulation")
+
+
+def _beside(file: Path, name: str) -> Path | None:
+    """Return the path of a file in the folder of another one; None if the name or a link leads out of the folder."""
+    try:
+        path = join_below(file.parent, name)
+    except OutsideError:
+        return None
+    return path if TrustedFolders([file.parent, file.resolve().parent]).allows(path) else None
 
 
 def default_message(request: Request) -> object:

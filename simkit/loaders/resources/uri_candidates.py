@@ -130,10 +130,12 @@ class UriCandidates:
                 if ancestor.name == name and not is_private(ancestor):
                     yield join_below(self.trust_plain(ancestor), inside)
             yield join_below(folder, below)
-            for place in (folder / "models", folder.parent, folder.parent / "models"):
-                near = join_below(place, name)
+            for start, group in ((folder, "models"), (folder.parent, "."), (folder.parent, "models")):
+                near = join_below(start / group, name)
                 if not is_private(near):
-                    yield join_below(self.trust_plain(near), inside)
+                    if TrustedFolders([start]).allows(near):
+                        self.trusted.add(near)
+                    yield join_below(near, inside)
         for bundle in bundled_folders("assets"):
             yield join_below(bundle, below)
             groups = sorted(bundle.glob(f"*/{name}/")) if name.replace("_", "").isalnum() else ()

@@ -147,20 +147,6 @@ def short_repr(value: object) -> str:
     return shorten(repr(value), 60)
 
 
-def is_scalar_text(value: object) -> bool:
-    """Check whether `yaml_value_text` can convert a YAML value."""
-    if isinstance(value, list):
-        return all(is_scalar_text(one) and not isinstance(one, list) for one in value)
-    return isinstance(value, (str, int, float))
-
-
-def yaml_value_text(value: object) -> str:
-    """Convert a YAML value to text: `true` or `false` for a bool, numbers of a list separated by spaces."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    return " ".join(map(yaml_value_text, value)) if isinstance(value, list) else str(value)
-
-
 class ValueReader:
     """Reader of the values of a document.
 

@@ -123,8 +123,11 @@ def test_meshes_of_the_world_are_fetched_and_no_other_file(client: Any, court: P
     client.send("fetchAsset", uri="meshes/tetra.stl", requestId=5)
     found = client.until(_is_binary(4))
     assert struct.unpack_from("<IBI", found, 1) == (5, 0, 0) and found[10:].startswith(b"solid t")
+    (court.parent / "meshes/linked.png").symlink_to(court.parent / "counter.py")
     for uri in (
         "meshes/secret.txt",
+        "meshes/linked.png",
+        "meshes/..%2Fcounter.png",
         "meshes/../court.sdf",
         (court.parent / "counter.py").as_uri(),
         "file:///etc/passwd",

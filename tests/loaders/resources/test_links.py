@@ -171,6 +171,25 @@ def test_a_link_of_a_project_to_a_package_of_the_user_is_not_a_package_of_the_pr
     assert "SK-URI-003" in problems(world)
 
 
+def test_a_link_in_the_place_of_a_folder_of_models_or_of_a_workspace_does_not_open_its_target(
+    write: Write, tmp_path: Path
+) -> None:
+    package(write, "other/own_work", "own_work")
+    for place in ("models", "src", "build", "own"):
+        link(tmp_path / "home/project/install/share" / place, tmp_path / "home/other")
+        link(tmp_path / "home/project" / place, tmp_path / "home/other")
+    for uri in (
+        "model://own_work/meshes/m.stl",
+        "package://own_work/meshes/m.stl",
+        "models/own_work/meshes/m.stl",
+        "model://own/own_work/meshes/m.stl",
+        "package://x/own_work/meshes/m.stl",
+    ):
+        for folder in ("project", "project/install/share", "project/worlds"):
+            world = write(f"{folder}/w.sdf", WORLD.format(MESH.format(uri)))
+            assert problems(world) != [], (folder, uri)
+
+
 def test_a_pattern_of_xacro_and_a_folder_of_scripts_skip_links(write: Write, tmp_path: Path) -> None:
     write("private/x.xacro", XACRO.format('<link name="hidden"/>'))
     link(tmp_path / "home/project/parts/x.xacro", tmp_path / "home/private/x.xacro")
