@@ -20,6 +20,7 @@ from simkit.errors import LoadError
 def _nothing_hidden_or_chosen() -> Iterator[None]:
     """Forget the files and folders of a test, which a process keeps."""
     chosen = dict(linked_files._chosen)
+    linked_files._chosen.clear()
     yield
     hidden_text._files.clear()
     linked_files._chosen.clear()
