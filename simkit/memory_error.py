@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
@@ -48,9 +47,10 @@ def remedy() -> str:
 
 def memory_limit() -> int:
     """Return the limit of the address space of this process [bytes]; 0 without one."""
-    if sys.platform == "win32":
+    try:
+        import resource
+    except ImportError:  # Windows
         return 0
-    import resource
 
     found = [resource.getrlimit(getattr(resource, name))[0] for name in ("RLIMIT_AS", "RLIMIT_DATA")]
     return min((limit for limit in found if limit != resource.RLIM_INFINITY), default=0)

@@ -49,7 +49,7 @@ SMALL_MODULES = frozenset(
         "pose",
         "process_control",
     }
-    | {"hidden_text", "json_reader", "linked_files", "output_file", "project_folder"}
+    | {"early_interrupts", "hidden_text", "json_reader", "linked_files", "project_folder"}
     | {"progress", "registry", "run_spec", "save_path", "topic_logger", "trusted_folders", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""

@@ -389,8 +389,8 @@ class Simulation(ScriptGraph, InProcess):
     def __repr__(self) -> str:
         if "_loaded" not in vars(self):
             return "<Simulation (being loaded)>"
-        count = len(self.contents.models)
-        state = "closed" if self.engine.is_closed else f"t={self.time:g} s, {count} model{'' if count == 1 else 's'}"
+        plural = "" if len(self.contents.models) == 1 else "s"
+        state = "closed" if self.engine.is_closed else f"t={self.time:g} s, {len(self.contents.models)} model{plural}"
         return f"<Simulation {self.world.name!r}: {state}>"
 
     def __enter__(self) -> Simulation:

@@ -164,11 +164,12 @@ def test_a_nan_or_infinite_command_is_ignored() -> None:
 
 
 @pytest.mark.parametrize("part", ["linear", "angular"])
-def test_a_huge_command_is_reported_as_divergence(part: str) -> None:
+def test_a_command_that_the_engine_cannot_represent_is_ignored_with_a_warning(part: str) -> None:
     with opened() as sim:
         sim.publish(TOPIC, {part: {"z": 1e300}})
-        with pytest.raises(simkit.SimulationDiverged):
-            sim.step(5)
+        sim.step(5)
+        assert [d.code for d in sim.diagnostics] == ["SK-PLUGIN-041"]
+        np.testing.assert_allclose(planar(sim), (0, 0, 0), atol=1e-9)
 
 
 def test_a_stamped_command_has_the_same_effect() -> None:

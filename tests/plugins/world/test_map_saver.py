@@ -210,4 +210,5 @@ def test_a_link_in_the_folder_is_not_followed(tmp_path: Path, monkeypatch: pytes
 
 
 def test_a_name_that_is_no_text_of_unicode_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not save(tmp_path, monkeypatch, map_url="a\ud800")
+    with pytest.raises(simkit.MessageError, match="map_url"):
+        save(tmp_path, monkeypatch, map_url="a\ud800")
