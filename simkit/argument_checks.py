@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+_LARGEST_SEED: Final = 2**64 - 1
 _LONGEST_SHOWN: Final = 80  # characters of a value in a message
 
 
@@ -99,6 +100,11 @@ def checked_integer(value: object, name: str, low: int | None = None, high: int 
     if (low is not None and whole < low) or (high is not None and whole > high):
         raise wrong_value(name, allowed, value)
     return whole
+
+
+def checked_seed(value: object) -> int:
+    """Return a seed as an int; files and other programs hold seeds in 64 bits."""
+    return checked_integer(value, "seed", 0, _LARGEST_SEED)
 
 
 def checked_number(

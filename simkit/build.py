@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from simkit import progress
 from simkit.argument_checks import check_folders
@@ -20,6 +20,7 @@ from simkit.loaders.load_arguments import check_load_arguments, check_source, ch
 from simkit.loaders.model_world import add_model_world
 from simkit.loaders.resources.world_interfaces import read_interfaces
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, spawnable_models
+from simkit.memory_error import memory_errors
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.make_instances import (
     InstanceMaker,
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
 Source = str | os.PathLike[str]
 
 
+@memory_errors()
 @no_collection()
 def load(
     source: Source,
@@ -240,12 +242,11 @@ def describe(
         LoadError: the file has errors.
     """
     check_folders(plugin_paths, "plugin_paths")
-    scene, diagnostics = read_scene(
-        source, resource_paths=resource_paths, xacro_args=xacro_args, package_paths=package_paths, base=base,
-        missing_meshes=True,
-    )  # fmt: skip
-    report_python_plugins(scene, diagnostics, [Path(p) for p in plugin_paths])
-    return describe_scene(scene, diagnostics, describe_sensor)
+    given = {"resource_paths": resource_paths, "xacro_args": xacro_args, "package_paths": package_paths, "base": base}
+    with memory_errors():
+        scene, diagnostics = read_scene(source, missing_meshes=True, **cast("Any", given))
+        report_python_plugins(scene, diagnostics, [Path(p) for p in plugin_paths])
+        return describe_scene(scene, diagnostics, describe_sensor)
 
 
 def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tuple[SceneSensor, dict[str, Any] | None]:

@@ -42,6 +42,13 @@ def callback_name(callback: object) -> str:
     return f"{name!r} ({code.co_filename}:{code.co_firstlineno})" if code is not None else repr(name)
 
 
+def cause_text(error: BaseException) -> str:
+    """Return the text of an exception in a user's code: with its code if it is of simkit, else with its class."""
+    if not isinstance(error, SimkitError):
+        return repr(error)
+    return str(error) if error.code in str(error) else f"{error.code} {error}"
+
+
 _MOST_LISTED = 100  # problems in the text of a LoadError
 
 

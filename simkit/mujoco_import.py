@@ -16,6 +16,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from simkit.errors import InstallationError
+from simkit.memory_error import check_memory_limit, find_memory_error
 
 if TYPE_CHECKING:
     import mujoco as mujoco
@@ -42,6 +43,8 @@ def import_mujoco() -> None:
         InstallationError: SK-CORE-005 MuJoCo is missing, damaged, or has another version.
     """
     global _is_checked
+    if "mujoco" not in sys.modules:
+        check_memory_limit()
     try:
         mujoco = _import()
         version = str(mujoco.__version__)
@@ -52,6 +55,8 @@ def import_mujoco() -> None:
             raise _installation_error(f"MuJoCo cannot be imported ({_first_line(error)})") from error
         raise _installation_error("MuJoCo is not installed") from None
     except Exception as error:
+        if too_little := find_memory_error(error):
+            raise too_little from error
         # the exception depends on the damage: ImportError, OSError, AttributeError, …
         repair = REINSTALL
         if os.strerror(errno.EMFILE) in str(error):

@@ -8,6 +8,7 @@ imports this one. A command's module is imported only when the command runs. Thi
 from __future__ import annotations
 
 import io
+import os
 import sys
 
 from simkit.cli.terminal import interruption
@@ -48,8 +49,29 @@ def main() -> None:
         sys.exit(error.exit_code)
     except OSError as error:  # outside of a command: the output of `--help`, `--version` and of usage errors
         sys.exit(output_failure_exit_code(error))
+    except Exception as error:  # noqa: BLE001 - `_exit_code` raises what it does not know
+        sys.exit(_exit_code(error))
     finally:
         interruption.exit_if_interrupted()
+
+
+def _exit_code(error: Exception) -> int:
+    """Return the exit code of an exception that no command has handled, and print its message.
+
+    Raises:
+        Exception: the exception itself, if it is a fault of simkit.
+    """
+    try:
+        from simkit.cli.terminal.output import known_error, print_error
+
+        found = known_error(error)
+        if found is not None:
+            print_error(found)
+            return found.exit_code
+    except MemoryError:  # not even the message can be made
+        os.write(2, b"error: SK-CORE-008 too little memory\n")
+        return 1
+    raise error
 
 
 def __getattr__(name: str) -> object:

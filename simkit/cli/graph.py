@@ -19,6 +19,7 @@ from simkit.cli.terminal.output import (
     print_json,
     print_line,
     print_note,
+    printable,
     report_errors_quietly,
 )
 from simkit.cli.terminal.topic_sources import open_source
@@ -69,7 +70,7 @@ def graph(
     if not boxes:
         print_note(f"note: {source} has no {'frames' if tf else 'nodes with topics, services or actions'}")
     title = f"{'Frames' if tf else 'Nodes and topics'} of {Path(source).name if '<' not in source else 'a world'}"
-    write_atomically(output, graph_svg(title, boxes, edges).encode())
+    write_atomically(output, graph_svg(printable(title), boxes, edges).encode())
     kinds = {kind: sum(box.kind == kind for box in boxes) for kind in (("frame",) if tf else ("node", "topic"))}
     if json_:
         print_json({"output": str(output), **{f"{kind}s": count for kind, count in kinds.items()}, "edges": len(edges)})

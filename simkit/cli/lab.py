@@ -19,7 +19,7 @@ from simkit.errors import InputError
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.install_command import install_command
 from simkit.loaders.resources.bundled_models import bundled_folders
-from simkit.writers.atomic_output import remove_abandoned, unfinished_folder
+from simkit.writers.atomic_output import copy_failure, remove_abandoned, unfinished_folder
 
 lab = typer.Typer(help="List, start and grade the labs of the course.", no_args_is_help=True)
 
@@ -69,6 +69,7 @@ def start(
     target = folder.absolute()
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
         raise _not_writable(folder, "it exists and is not an empty folder")
+    stage: Path | None = None
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         remove_abandoned(target.parent, target.name)
@@ -85,7 +86,10 @@ def start(
         else:
             stage.rename(target)
     except OSError as error:
-        raise _not_writable(folder, error.strerror or str(error)) from None
+        raise _not_writable(folder, copy_failure(error)) from None
+    finally:
+        if stage is not None:
+            shutil.rmtree(stage, ignore_errors=True)  # after an error or an interrupt
     print_line(f"{folder}: {', '.join(sorted(path.name for path in target.iterdir()))}")
     missing = _missing_packages(target)
     if missing:

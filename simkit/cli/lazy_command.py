@@ -15,6 +15,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from simkit.garbage_collection import permanent_imports
+from simkit.memory_error import check_memory_limit
 
 # Command of click; newer versions of Typer have click as a private module.
 Command = Any
@@ -58,6 +59,8 @@ class Commands(TyperGroup):
         try:
             return super().invoke(ctx)
         except Exception as error:
+            if isinstance(error, MemoryError):
+                raise
             from simkit.cli.terminal.json_report import print_usage_error
 
             print_usage_error(error, ctx.meta[_WORDS])
@@ -78,6 +81,7 @@ class DeferredCommand(TyperCommand):
         """The real command; its module is imported on first access."""
         if self._real is None:
             assert self.name is not None
+            check_memory_limit()
             with permanent_imports():
                 module = import_module(f"simkit.cli.{self.name}")
             found = getattr(module, self.name)

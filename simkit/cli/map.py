@@ -66,8 +66,9 @@ def map(
     with load(world, overrides=tuple(set_), spawn=tuple(spawn), **loading) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
         found = _make(sim, height, resolution, place, everywhere=everywhere)
+    text = found.description(image.name).encode()  # before the image: the name may not be valid UTF-8
     write_atomically(image, found.image())
-    write_atomically(description, found.description(image.name).encode())
+    write_atomically(description, text)
     rows, columns = found.cells.shape
     counts = {
         name: int((found.cells == value).sum()) for name, value in (("occupied", 100), ("free", 0), ("unknown", -1))

@@ -152,6 +152,7 @@ class Session:
         self.spec, self.display, self._bridges = spec, display, bridges
         self.sim, self.blocked, self.verdict = sim, blocked, verdict
         self._teleop: Teleop | None = None
+        self._printed = frozenset(sim.diagnostics)  # before the run
 
     def execute(self) -> int:
         """Run the simulation to its end and return the exit code."""
@@ -216,6 +217,7 @@ class Session:
                     recording.close()
                 print_summary(sim, counter, recording, elapsed, quiet=display.quiet)
                 self.verdict.print_results()
+                self._report_new_warnings()
                 self._report_fallen_models()
                 if recording is not None:
                     self._report_unmatched_topics()
@@ -230,6 +232,11 @@ class Session:
         from simkit.recording.run_picture import DrivenPath  # 4 ms
 
         return DrivenPath(self.sim)
+
+    def _report_new_warnings(self) -> None:
+        """Print the warnings that the run has caused, such as ignored commands; disabled plugins are logged at once."""
+        found = [d for d in self.sim.diagnostics if d.severity == "warning" and d not in self._printed]
+        print_diagnostics([d for d in found if d.code != "SK-PLUGIN-020"], verbose=True)
 
     def _report_fallen_models(self) -> None:
         """Warn of models that fell out of the world."""

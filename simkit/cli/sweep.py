@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -84,6 +85,7 @@ def run(
     spec = read_sweep(file)
     spec = replace(spec, is_warm=not cold, keep=spec.keep if keep is None else _kept(keep))
     folder = output or Path(f"{file.stem}_sweep")
+    os.fspath(folder.absolute()).encode()  # PyArrow writes only to paths that are valid UTF-8
     if optimise is not None:
         return _search(spec, folder, optimise, trials or 100, jobs, cluster, maximise=maximise, quiet=quiet)
     try:

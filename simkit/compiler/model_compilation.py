@@ -19,6 +19,7 @@ from simkit.compiler.refused_inertias import restore_file_inertias
 from simkit.compiler.servo_gains import tune_servos
 from simkit.diagnostics import Diagnostics, Where
 from simkit.linear_algebra import matmul
+from simkit.memory_error import find_memory_error
 from simkit.scene import SceneWorld
 
 _NO_INERTIA: Final = 1e-9
@@ -201,6 +202,8 @@ def compile_spec(
         with silence_engine_warnings(), compiling:
             return spec.compile()
     except ValueError as problem:
+        if too_little := find_memory_error(problem):
+            raise too_little from problem
         text, where = user_message(str(problem), spec, records, world.where)
         diagnostics.error("SK-PHYS-023", f"MuJoCo refuses the model: {text}", where)
         diagnostics.raise_if_errors()

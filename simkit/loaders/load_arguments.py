@@ -13,7 +13,7 @@ from simkit.argument_checks import (
     check_list,
     check_paths,
     check_table,
-    checked_integer,
+    checked_seed,
     wrong_value,
 )
 from simkit.loaders.spawned_models import SpawnedModel
@@ -81,8 +81,10 @@ def check_load_arguments(
     check_kind(strict, _FLAG, "strict", "True or False")
     check_list(overrides, str, "overrides", "texts PATH=VALUE")
     check_kind(sleep, _FLAG, "sleep", "True or False")
+    check_kind(on_error, (str, type(None)), "on_error", "'stop' or 'disable'")
     if on_error not in (None, "stop", "disable"):
         raise wrong_value("on_error", "'stop' or 'disable'", on_error)
+    check_kind(renderer, (str, type(None)), "renderer", "'auto', 'gl' or 'software'")
     if renderer not in (None, *RENDERERS):
         raise wrong_value("renderer", "'auto', 'gl' or 'software'", renderer)
     check_list(spawn, (str, SpawnedModel), "spawn", "texts MODEL:x,y,yaw[:name]")
@@ -91,7 +93,7 @@ def check_load_arguments(
     check_kind(model_world, str, "model_world", "'ground', 'none', a path or a bare name")
     if change_world is not None:
         check_function(change_world, "change_world")
-    return checked_integer(seed, "seed")
+    return checked_seed(seed)
 
 
 def _is_model_and_file(value: Any) -> bool:

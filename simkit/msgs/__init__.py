@@ -18,8 +18,9 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Protocol
 
+from simkit.argument_checks import checked_integer
 from simkit.errors import ArgumentTypeError, MessageError, NoMessageError
-from simkit.msgs.cdr_serializer import make_serializer
+from simkit.msgs.cdr_serializer import SizeMismatch, make_serializer
 from simkit.msgs.message_types import Message, definition, full_name, message_class, type_of, type_store, types_of
 from simkit.msgs.own_interfaces import add
 from simkit.msgs.type_hashes import rihs
@@ -163,12 +164,12 @@ def _stamp_types() -> tuple[type[Time], type[Duration], type[Header]]:
 
 def time(ns: int) -> Time:
     """Return a `builtin_interfaces/msg/Time` of `ns` nanoseconds."""
-    return _stamp_types()[0](*divmod(ns, _NS))
+    return _stamp_types()[0](*divmod(ns if type(ns) is int else checked_integer(ns, "ns"), _NS))
 
 
 def duration(ns: int) -> Duration:
     """Return a `builtin_interfaces/msg/Duration` of `ns` nanoseconds."""
-    return _stamp_types()[1](*divmod(ns, _NS))
+    return _stamp_types()[1](*divmod(ns if type(ns) is int else checked_integer(ns, "ns"), _NS))
 
 
 def header(time_ns: int, frame_id: str) -> Header:
@@ -210,10 +211,29 @@ def serialize(message: Message) -> bytes:
     serializer = _SERIALIZERS.get(type(message)) or _serializer_of(message)
     try:
         return serializer(message)
-    except (struct.error, TypeError, ValueError, AttributeError, OverflowError) as error:
+    except SizeMismatch as error:
         raise MessageError(f"{type_name(message)} cannot be serialised: {error}") from None
+    except (struct.error, TypeError, ValueError, AttributeError, OverflowError):
+        raise MessageError(f"{type_name(message)} cannot be serialised: {_field_fault(message)}") from None
+
+
+def _field_fault(message: Message) -> str:
+    """Return which field of a message has a value that does not match its type."""
+    from simkit.msgs.message_text import message_to_dict
+
+    try:
+        _builder_of()(type_name(message)).build(message_to_dict(message))
+    except MessageError as error:
+        return str(error)
+    except Exception:  # noqa: BLE001 - a field may hold any object
+        pass
+    return "a field has a value that does not match its type"
 
 
 def deserialize(data: bytes | memoryview, type_name: str) -> Message:
-    """Decode a message that `serialize` encoded."""
+    """Decode a message that `serialize` encoded.
+
+    Raises:
+        MessageError: the type is unknown.
+    """
     return type_store().deserialize_cdr(data, full_name(type_name))

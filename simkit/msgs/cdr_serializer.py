@@ -107,10 +107,14 @@ class TextBlocks(dict[tuple[Any, ...], bytes]):
 _TEXT_BLOCKS: Final = TextBlocks()
 
 
+class SizeMismatch(ValueError):
+    """List whose number of elements or of bytes differs from that of its field; the message has both numbers."""
+
+
 def check_size(array: Any, count: int, size: int) -> None:
-    """Raise a ValueError if an array does not have `count` elements of together `size` bytes."""
+    """Raise SizeMismatch if an array does not have `count` elements of together `size` bytes."""
     if len(array) != count or array.nbytes != size:
-        raise ValueError(f"found {len(array)} elements of {array.nbytes} bytes; expected {count} of {size} bytes")
+        raise SizeMismatch(f"found {len(array)} elements of {array.nbytes} bytes; expected {count} of {size} bytes")
 
 
 class _WideStringError(Exception):
@@ -122,7 +126,8 @@ class _Generator:
 
     def __init__(self, type_name: str) -> None:
         self._globals: dict[str, object] = {
-            "texts": _TEXT_BLOCKS, "padding": PADDING, "check_size": check_size, "join": b"".join
+            "texts": _TEXT_BLOCKS, "padding": PADDING, "check_size": check_size,
+            "SizeMismatch": SizeMismatch, "join": b"".join
         }  # fmt: skip
         self._lines: list[str] = []
         self._indent = " "
@@ -181,7 +186,7 @@ class _Generator:
         if length is None:
             self._put("I", count)
         else:
-            self._emit(f"if {count} != {length}: raise ValueError(f'found {{{count}}} elements; expected {length}')")
+            self._emit(f"if {count} != {length}: raise SizeMismatch(f'found {{{count}}} elements; expected {length}')")
         if is_number:
             self._emit(f"check_size({array}, {count}, {count} * {size})")
         self._end_run()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
@@ -9,6 +10,7 @@ from functools import cache, partial
 import numpy as np
 import numpy.typing as npt
 
+from simkit.argument_checks import shown
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs.definition_parser import ARRAY, BASE, INTEGER_RANGES, NAME, SEQUENCE, TEXTS, FieldNode
@@ -17,6 +19,7 @@ from simkit.msgs.shipped_interfaces import NO_FIELD, rosbags_defaults
 
 _DTYPES = {"byte": "uint8", "char": "uint8", "bool": "bool"}
 
+_LARGEST_FLOAT32 = float.fromhex("0x1.ffffffp+127")  # larger numbers do not round to a finite one
 _Default = Callable[[], FieldValue]
 _Conversion = Callable[[FieldValue], FieldValue]
 
@@ -65,8 +68,9 @@ class MessageBuilder:
                     values.append(convert(fields[name]))
                 except MessageError as error:
                     raise MessageError(f"{self.name}.{name}: {error}") from None
-                except (TypeError, ValueError, OverflowError) as error:
-                    raise MessageError(f"{self.name}.{name}: found {_short(fields[name])}: {error}") from None
+                except (TypeError, ValueError, OverflowError):  # of an object of the caller
+                    text = f"{self.name}.{name}: found {_short(fields[name])}, which does not match the field"
+                    raise MessageError(text) from None
             else:
                 values.append(default())
         if found != len(fields):
@@ -94,7 +98,7 @@ def builder_of(type_name: str) -> MessageBuilder:
 
 
 def _short(value: object) -> str:
-    text = repr(value)
+    text = shown(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -123,21 +127,36 @@ def _scalar(name: str, bound: int) -> tuple[_Default, _Conversion]:
         return bool, _boolean
     if name in INTEGER_RANGES:
         return int, partial(_integer, *INTEGER_RANGES[name])
-    return float, _float
+    return float, _float32 if name == "float32" else _float
 
 
 def _float(value: FieldValue) -> float:
     if isinstance(value, (str, bytes, bool)):
         raise MessageError(f"found {_short(value)}; expected a number")
-    return float(value)
+    try:
+        return float(value)
+    except TypeError:
+        raise MessageError(f"found {_short(value)}; expected a number") from None
+    except OverflowError:
+        raise MessageError(f"found {_short(value)}; expected a number below 1.8e308") from None
+
+
+def _float32(value: FieldValue) -> float:
+    number = _float(value)
+    if _LARGEST_FLOAT32 < abs(number) < math.inf:
+        raise MessageError(f"found {_short(value)}; expected a number below 3.4e38")
+    return number
 
 
 def _integer(low: int, high: int, value: FieldValue) -> int:
     if isinstance(value, float) and value.is_integer():
         value = int(value)
-    number = operator.index(value)
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise MessageError(f"found {_short(value)}; expected a whole number from {low} to {high}") from None
     if not low <= number <= high:
-        raise MessageError(f"found {number}; expected a whole number from {low} to {high}")
+        raise MessageError(f"found {_short(number)}; expected a whole number from {low} to {high}")
     return number
 
 
@@ -150,6 +169,11 @@ def _boolean(value: FieldValue) -> bool:
 def _text(value: FieldValue) -> str:
     if not isinstance(value, str):
         raise MessageError(f"found {_short(value)}; expected a text")
+    if not value.isascii():
+        try:
+            value.encode()
+        except UnicodeEncodeError:
+            raise MessageError(f"found {_short(value)}; expected a text that UTF-8 can represent") from None
     return value
 
 
@@ -175,15 +199,32 @@ def _numbers(
     elif isinstance(value, (bytes, bytearray, memoryview)):
         array = np.frombuffer(value, np.uint8).astype(dtype, copy=False)
     else:
-        array = np.asarray(value)
-        if array.dtype == np.float64 and dtype == np.uint64:
-            array = np.asarray(value, object)  # NumPy converts a list with numbers above 2**63 to float64
-            array = array.astype(dtype) if all(isinstance(item, int) for item in array.flat) else np.asarray(value)
-        if array.size and (array.dtype.kind not in "biuf" or (dtype.kind in "iu" and array.dtype.kind == "f")):
-            raise MessageError(f"found {_short(value)}; expected a list of {dtype}")
-        array = array.astype(dtype).reshape(-1)
+        try:
+            array = _converted(dtype, value)
+        except (TypeError, ValueError, ArithmeticError):  # lists of different lengths, numbers out of range
+            raise MessageError(f"found {_short(value)}; expected a list of {dtype}") from None
     _check_length(len(array), length, bound)
     return array
+
+
+def _converted(dtype: np.dtype[np.generic], value: FieldValue) -> npt.NDArray[np.generic]:
+    """Return a list of numbers as a flat array.
+
+    Raises:
+        TypeError, ValueError, ArithmeticError: the list has other values, or numbers that the type cannot hold.
+    """
+    array = np.asarray(value)
+    if array.dtype == np.float64 and dtype == np.uint64:
+        array = np.asarray(value, object)  # NumPy converts a list with numbers above 2**63 to float64
+        array = array.astype(dtype) if all(isinstance(item, int) for item in array.flat) else np.asarray(value)
+    if array.size and (array.dtype.kind not in "biuf" or (dtype.kind in "iu" and array.dtype.kind == "f")):
+        raise TypeError
+    if array.size and array.dtype != dtype and dtype.kind in "iu":
+        low, high = INTEGER_RANGES[dtype.name]
+        if int(array.min()) < low or int(array.max()) > high:  # NumPy would wrap the numbers around
+            raise OverflowError
+    with np.errstate(over="raise"):
+        return array.astype(dtype).reshape(-1)
 
 
 def _items(convert: _Conversion, length: int | None, bound: int | None, value: FieldValue) -> list[FieldValue]:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from simkit.argument_checks import check_text
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs import own_interfaces
@@ -137,6 +138,7 @@ def full_name(type_name: str) -> str:
     Raises:
         MessageError: the type is unknown; the message suggests the closest name.
     """
+    check_text(type_name, "the name of a type")
     known = type_store().fielddefs
     package, _, rest = type_name.partition("/")
     long = f"{package}/msg/{rest}"

@@ -11,6 +11,13 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 _LEFT_OUT: Final = "SK-PLUGIN-041"
+LARGEST_COMMAND: Final = 1e10
+"""Largest absolute value of a command. MuJoCo counts larger velocities and accelerations as a divergence."""
+
+
+def are_usable(*values: float) -> bool:
+    """Check whether the numbers of a command are neither NaN nor beyond `LARGEST_COMMAND`."""
+    return all(abs(value) <= LARGEST_COMMAND for value in values)
 
 
 class Reporter(Protocol):
@@ -49,7 +56,8 @@ class OneTimeWarnings(SharedByCopies):
 
     def not_finite(self, command: str = "a command") -> None:
         """Warn that a command with a NaN or infinite number is ignored."""
-        self.left_out("finite", f"{command} with a NaN or infinite number is ignored")
+        text = f"{command} with a NaN or infinite number is ignored"
+        self.left_out("finite", text, f"numbers above {LARGEST_COMMAND:g} count as infinite")
 
     def has_type(self, message: Any, expected: str, parameter: str, code: str = _LEFT_OUT) -> bool:
         """Check the type of a message, and warn that a message of another type is ignored.

@@ -5,15 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
-from simkit.argument_checks import check_function, check_kind, checked_integer
+from simkit.argument_checks import check_function, check_kind, checked_seed
 from simkit.errors import InputError, SimulationDiverged
 from simkit.in_process import InProcess
+from simkit.memory_error import find_memory_error
 from simkit.pose import Pose, Vector
 from simkit.run_spec import PluginErrorPolicy, RunSpec
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
+from simkit.runtime.communication.large_commands import forget_commands, large_commands
 from simkit.runtime.communication.script_graph import ScriptGraph
 from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.contact.collision_contacts import Contact, list_contacts
@@ -158,7 +160,11 @@ class Simulation(ScriptGraph, InProcess):
             else:
                 self._page.advance(target, advance)
         except SimulationDiverged as error:
-            add_driver_hints(self.engine.structure.all_plugins(), error)
+            add_driver_hints(self.engine.structure.all_plugins(), error, large_commands(self._bus))
+            raise
+        except Exception as error:
+            if too_little := find_memory_error(error):
+                raise too_little from error
             raise
         finally:
             if journal is not None:
@@ -181,9 +187,10 @@ class Simulation(ScriptGraph, InProcess):
     @journaled
     def _reset(self, seed: int | None = None) -> None:
         loaded, engine = self._loaded_state(), self.engine
-        seed = engine.streams.seed if seed is None else checked_integer(seed, "seed")
+        seed = engine.streams.seed if seed is None else checked_seed(seed)
         engine.loop.drop_deferred()
         self.communication.bus.settle()
+        forget_commands(self._bus)
         engine.streams.reseed(seed)
         self._restore(loaded)
         for sensor in engine.structure.all_sensors():
@@ -283,8 +290,7 @@ class Simulation(ScriptGraph, InProcess):
 
     def contacts(self, model: Model | str | None = None) -> list[Contact]:
         """Return the contacts of a model, also with itself, or of all; a KeyError suggests the closest name."""
-        given = model if model is None or isinstance(model, str) else model.scoped
-        name = None if given is None else self.model(given).scoped
+        name = None if model is None else self.model(cast("str", getattr(model, "scoped", model))).scoped
         return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), name)
 
     def spawn(self, source: object, name: str | None = None, pose: Pose | None = None) -> Model:

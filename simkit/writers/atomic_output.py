@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -158,6 +159,14 @@ def remove_abandoned(parent: Path, name: str) -> None:
     """Remove the temporary folders of killed processes, as far as possible."""
     for path in abandoned_folders(parent, name):
         shutil.rmtree(path, ignore_errors=True)
+
+
+def copy_failure(error: OSError) -> str:
+    """Return the reason why files could not be copied; `shutil` lists one reason for each file."""
+    if isinstance(error, shutil.Error) and error.args and isinstance(error.args[0], list) and error.args[0]:
+        first = str(error.args[0][0][2])
+        return re.sub(r"^\[Errno \d+\] |: '.*", "", first)
+    return error.strerror or str(error)
 
 
 def _prefix(name: str) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 
 from simkit import progress
 from simkit.errors import InputError
+from simkit.memory_error import find_memory_error
 from simkit.writers.atomic_output import AtomicOutput
 
 if TYPE_CHECKING:
@@ -64,6 +65,8 @@ def write_mjcf(builder: SpecBuilder, path: Path, *, overwrite: bool = False) -> 
                 staging.file.write_text(spec.to_xml(), encoding="utf-8")
             _read_back(staging.file)
         except ValueError as error:
+            if too_little := find_memory_error(error):
+                raise too_little from error
             raise InputError(f"SK-CLI-016 cannot write {path}: MuJoCo reports: {error}", "SK-CLI-016") from None
     balanced = [name for record in builder.records.values() for name in record.exact]
     return WrittenMjcf(path, count, balanced)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -365,7 +366,7 @@ def test_an_exception_in_get_state_is_handled_like_one_in_a_hook(hook: str) -> N
         assert sim.contents.plugins["Forgetful"].steps == 2
 
 
-def test_an_error_in_load_names_the_plugin() -> None:
+def test_two_plugins_with_one_service_or_action_are_an_error_with_a_code_and_both_places() -> None:
     class Server(WorldPlugin):
         def load(self, parent: Simulation, params: Params) -> None:
             self.offer("home", "std_srvs/srv/Trigger", lambda request: None)
@@ -373,10 +374,30 @@ def test_an_error_in_load_names_the_plugin() -> None:
     class Second(Server):
         on_error = "disable"
 
-    with pytest.raises(
-        simkit.PluginError, match=r"plugin 'Server' .* raised in load .*a service '/home' exists already"
+    class Actor(WorldPlugin):
+        def load(self, parent: Simulation, params: Params) -> None:
+            self.act("home", "example_interfaces/action/Fibonacci", lambda goal: None)
+
+    class Late(Server):
+        def load(self, parent: Simulation, params: Params) -> None:
+            pass
+
+        def before_step(self) -> None:
+            self.offer("home", "std_srvs/srv/Trigger", lambda request: None)
+
+    for kind, code in ((Server, "SK-SERVICE-001"), (Actor, "SK-ACTION-001")):
+        with pytest.raises(simkit.LoadError) as found:
+            simkit.load(world(FLOATING), plugins=[kind(), kind()])
+        (problem,) = found.value.diagnostics
+        assert problem.code == code and problem.hint
+        assert re.match(
+            f"plugin '{kind.__name__}': an? .* '/home' exists already, of plugin '{kind.__name__}'", problem.message
+        )
+    with (
+        simkit.load(world(FLOATING), plugins=[Server(), Late()]) as sim,
+        pytest.raises(simkit.PluginError, match="plugin 'Late' .* SK-SERVICE-001 .*, of plugin 'Server'"),
     ):
-        simkit.load(world(FLOATING), plugins=[Server(), Server()])
+        sim.step()
     with simkit.load(world(FLOATING), plugins=[Server(), Second()]) as sim:
         assert "/home" in sim.communication.services.names() and "plugin 'Second' raised in load" in warnings(sim)[0]
 

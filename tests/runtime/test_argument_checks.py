@@ -12,6 +12,7 @@ import pytest
 
 import simkit
 from simkit.errors import ArgumentTypeError, ArgumentValueError, InputError
+from simkit.live import connect
 from simkit.runtime.engine.snapshot import state_hash
 
 WORLD = """<sdf version="1.9"><world name="w"><light name="sun" type="directional"/><model name="b">
@@ -95,6 +96,19 @@ WRONG_TYPES: dict[str, Call] = {
     "paths of describe": lambda _: simkit.describe(WORLD, plugin_paths=range(3)),
     "paths of check": lambda _: simkit.check(WORLD, plugin_paths="plugins"),
     "seed": lambda _: simkit.load(WORLD, seed="x"),
+    "seed that is true": lambda _: simkit.load(WORLD, seed=True),
+    "seed None": lambda _: simkit.load(WORLD, seed=None),
+    "policy that is an array": lambda _: simkit.load(WORLD, on_error=np.zeros(2)),
+    "renderer that is an array": lambda _: simkit.load(WORLD, renderer=np.zeros(2)),
+    "contacts": lambda sim: sim.contacts(3),
+    "choices": lambda sim: sim.declare("p", 1.0, choices=3),
+    "on_change": lambda sim: sim.declare("p", 1.0, on_change=3),
+    "axis": lambda sim: sim.joint("b::j").axis_velocity_limit("x"),
+    "type that is a number": lambda _: simkit.msgs.full_name(3),
+    "time of a message": lambda _: simkit.msgs.time("x"),
+    "duration of a message": lambda _: simkit.msgs.duration(None),
+    "name to connect to": lambda _: connect(3),
+    "wait to connect": lambda _: connect("none", wait="x"),
     "one path": lambda _: simkit.load(WORLD, resource_paths="models"),
     "xacro_args": lambda _: simkit.load(WORLD, xacro_args=3),
     "pickled simulation": lambda sim: pickle.dumps(sim),
@@ -102,6 +116,14 @@ WRONG_TYPES: dict[str, Call] = {
 }
 WRONG_VALUES: dict[str, Call] = {
     "step negative": lambda sim: sim.step(-1),
+    "seed negative": lambda _: simkit.load(WORLD, seed=-1),
+    "seed fraction": lambda _: simkit.load(WORLD, seed=1.5),
+    "seed NaN": lambda _: simkit.load(WORLD, seed=math.nan),
+    "seed of 200 bits": lambda _: simkit.load(WORLD, seed=2**200),
+    "seed of 5000 digits": lambda _: simkit.load(WORLD, seed=10**5000),
+    "seed of a reset": lambda sim: sim.reset(seed=-1),
+    "axis beyond the last": lambda sim: sim.joint("b::j").axis_velocity_limit(1),
+    "wait NaN": lambda _: connect("none", wait=math.nan),
     "plugin path of load": lambda _: simkit.load(WORLD, plugin_paths=["no/such/folder"]),
     "plugin path of check": lambda _: simkit.check(WORLD, plugin_paths=[__file__]),
     "step fraction": lambda sim: sim.step(1.5),

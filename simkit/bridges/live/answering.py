@@ -10,7 +10,8 @@ from simkit.bridges.live.bridge_requests import BRIDGE_REQUESTS
 from simkit.bridges.live.connection import ClientConnection
 from simkit.bridges.live.endpoint_requests import ENDPOINT_REQUESTS, LATER
 from simkit.bridges.live.protocol import ANSWER, BadFrame, JsonObject, read_json_frame
-from simkit.bridges.live.requests import REQUESTS, Request, RequestHost, RequestRefused, Response, define_types
+from simkit.bridges.live.request_fields import CODE, RequestRefused, client_text
+from simkit.bridges.live.requests import REQUESTS, Request, RequestHost, Response, define_types
 from simkit.bridges.live.type_exchange import LARGEST_IN, detach
 from simkit.errors import PluginError, SimkitError, SimulationDiverged, SubscriberError
 
@@ -44,15 +45,12 @@ def answer_request(server: RequestHost, peer: ClientConnection, body: bytes) -> 
             answer["type"], found = msgs.type_name(result.message), msgs.serialize(result.message)
         else:
             answer["ok"] = result
-    except KeyError as error:
-        answer |= {"error": str(error.args[0] if error.args else error), "code": "SK-LIVE-008"}
     except SimkitError as error:
         answer |= {"error": str(error), "code": error.code}
         if isinstance(error, (PluginError, SimulationDiverged, SubscriberError)):
             raised = error  # the error ends the run, as it would for a caller in the process
-    except Exception as error:  # noqa: BLE001 - a service that a script offers may raise anything
-        answer |= {"error": f"{request_name} failed: {error!r}", "code": "SK-LIVE-008"}
-        raised = error
+    except Exception as error:  # noqa: BLE001 - a value that no check expected must not end the run
+        answer |= {"error": client_text(error), "code": getattr(error, "code", CODE)}
     peer.send_json(ANSWER, answer, found)
     if raised is not None:
         peer.write()

@@ -8,7 +8,8 @@ from types import MappingProxyType
 from typing import Final
 
 from simkit.bridges.live.introspection import topic_list
-from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response
+from simkit.bridges.live.request_fields import RequestRefused, client_text
+from simkit.bridges.live.requests import Request, RequestHandler, Response
 from simkit.errors import MessageError
 from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
@@ -82,8 +83,8 @@ def goal_result(request: Request) -> object:
         response = derived_type(f"{action}_GetResult_Response")
         if result is None:
             result = builder_of(f"{action}_Result").default()
-    except (MessageError, ValueError) as error:
-        raise RequestRefused(str(error)) from None
+    except (MessageError, ValueError, LookupError) as error:
+        raise RequestRefused(client_text(error)) from None
     if not isinstance(result, type_of(f"{action}_Result")):
         raise RequestRefused(f"the result is not one of {action}")
     return Response(response(status, result))

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
+from simkit.argument_checks import check_kind, checked_number
 from simkit.bridges.live.client_graph import DEFAULT_DEPTH, ClientGraph, absolute, check_callback
 from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription
 from simkit.bridges.live.discovery import find_socket
@@ -34,7 +35,8 @@ def connect(name: str | None = None, timeout: float = 10.0, node: str | None = N
         LiveError: SK-LIVE-001 no simulation runs; SK-LIVE-002 several simulations run; SK-LIVE-003 no simulation has
             the name; SK-LIVE-004 the simulation does not answer.
     """
-    end = time.monotonic() + wait
+    check_kind(name, (str, type(None)), "name", "a text")
+    end = time.monotonic() + checked_number(wait, "wait", 0.0, unit="s", finite=False)
     while True:
         try:
             return Client(find_socket(name), timeout, node)

@@ -14,7 +14,8 @@ from simkit.bridges.live.client_endpoints import (
     ClientParameter,
     ClientService,
 )
-from simkit.bridges.live.requests import Request, RequestHandler, RequestRefused, Response, count_new_topic
+from simkit.bridges.live.request_fields import RequestRefused, read_items
+from simkit.bridges.live.requests import Request, RequestHandler, Response, count_new_topic
 from simkit.errors import SimkitError
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.log_topic import LOG, log_message
@@ -98,7 +99,7 @@ def update_goal(request: Request) -> object:
 def listen(request: Request) -> object:
     """Open a command input whose messages the client receives."""
     number = request.new_number(request.peer.endpoints)
-    topic, types = request.topic(), [str(name) for name in request.arg("types", list)]
+    topic, types = request.topic(), read_items(request.args, "types", str)
     if not request.sim.communication.bus.types_of(topic):
         count_new_topic(request, topic)
     found = ClientInput(request.server, request.peer, number, topic, types, request.arg("depth", int))

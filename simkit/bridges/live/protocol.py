@@ -82,8 +82,8 @@ def read_json_frame(body: bytes) -> tuple[JsonObject, bytes]:
         raise BadFrame("the JSON text of a frame is longer than the frame")
     try:
         content = json.loads(body[4:end])
-    except (ValueError, RecursionError) as error:
-        raise BadFrame(f"a frame is not JSON: {error}") from None
+    except (ValueError, RecursionError):
+        raise BadFrame("a frame is not JSON, or has a number with too many digits") from None
     if not isinstance(content, dict):
         raise BadFrame("the JSON of a frame is not an object")
     return content, body[end:]

@@ -13,8 +13,9 @@ from simkit.bridges.live.connection import MOST_OPEN, ClientConnection
 from simkit.bridges.live.introspection import model_state, node_list, parameter_list, topic_list
 from simkit.bridges.live.message_log import ClientSubscription
 from simkit.bridges.live.protocol import TELL, JsonObject
+from simkit.bridges.live.request_fields import RequestRefused, read_field
 from simkit.bridges.live.topic_feed import TopicFeeds
-from simkit.errors import InputError, SimkitError
+from simkit.errors import SimkitError
 from simkit.msgs import own_interfaces
 
 if TYPE_CHECKING:
@@ -23,13 +24,6 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 _TOPIC = re.compile(r"[^\s\x00-\x1f]{1,255}")
 _NEW_TOPIC = re.compile(r"(/[A-Za-z0-9_.-]+)+")
-
-
-class RequestRefused(InputError):
-    """Error for a request that the server refuses; the message has the reason."""
-
-    def __init__(self, message: str, code: str = "SK-LIVE-008") -> None:
-        super().__init__(message, code)
 
 
 class RequestHost(Protocol):
@@ -85,10 +79,7 @@ class Request:
         Raises:
             RequestRefused: the argument is missing or has another type.
         """
-        found = self.args.get(name)
-        if type(found) is not kind:
-            raise RequestRefused(f"{name!r} must be of type {kind.__name__}, got {found!r:.80}")
-        return found
+        return read_field(self.args, name, kind)
 
     def topic(self) -> str:
         """Return the absolute name of the requested topic."""
@@ -118,8 +109,8 @@ class Request:
             return msgs.deserialize(self.data, type_name)
         except SimkitError:
             raise
-        except Exception as error:  # noqa: BLE001 - invalid bytes may cause any exception
-            raise RequestRefused(f"the data is not a valid {type_name}: {error!r}") from None
+        except Exception as error:
+            raise RequestRefused(f"the data is not a valid {type_name}") from error
 
 
 @dataclass(frozen=True)

@@ -214,11 +214,11 @@ class Server:
             raise BadFrame("a message without a publisher")
         try:
             message = message_reader(publisher.type_name)(body, 4)
-        except Exception as error:  # noqa: BLE001 - invalid bytes may cause any exception
+        except Exception as error:
             if peer.is_bridge:
                 peer.send_json(TELL, {"tell": "invalid", "topic": publisher.topic, "type": publisher.type_name})
                 return
-            raise BadFrame(f"the data on {publisher.topic!r} is not a valid {publisher.type_name}: {error!r}") from None
+            raise BadFrame(f"the data on {publisher.topic!r} is not a valid {publisher.type_name}") from error
         self.feeds.memory.publishing = peer if peer.is_bridge else None
         try:
             publisher.publish(message)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.bridges.live.request_fields import CODE, client_text
 from simkit.bridges.view import scene_packet
 from simkit.bridges.view.driving import Driving
 from simkit.bridges.view.packet import make_packet
@@ -187,7 +188,7 @@ class LiveView:
                 broken, self._streams[name] = self._streams.get(name), None
                 if broken is not None:
                     broken.close()
-                packet = make_packet({"kind": name, "error": str(error)}, {})
+                packet = make_packet({"kind": name, "error": client_text(error)}, {})
             if packet is not None:
                 self._packets[name] = packet
 
@@ -243,8 +244,8 @@ class LiveView:
             self.server.answer(request.client, {"id": number, "error": str(error), "code": error.code})
             raise  # the error ends the run, as it would for a caller in the process
         except Exception as error:  # noqa: BLE001 - no request of a page ends the run
-            text = str(error.args[0] if error.args else error)
-            self.server.answer(request.client, {"id": number, "error": text, "code": getattr(error, "code", "")})
+            answer = {"id": number, "error": client_text(error), "code": getattr(error, "code", CODE)}
+            self.server.answer(request.client, answer)
         else:
             if number is not None:
                 self.server.answer(request.client, {"id": number, "ok": value})

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from typing import TYPE_CHECKING, Any, Protocol
+
+from simkit.bridges.live.request_fields import RequestRefused, checked_value, read_field
 
 if TYPE_CHECKING:
     from simkit.bridges.view.driving import Driving
@@ -12,11 +13,6 @@ if TYPE_CHECKING:
     from simkit.bridges.view.streams import Stream
     from simkit.recording.travel import Travel
     from simkit.runtime import Simulation
-
-
-def _is_finite(value: object) -> bool:
-    """Check whether a value of a request is a finite number; JSON may have integers that no float can hold."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 class ViewHost(Protocol):
@@ -40,10 +36,6 @@ class ViewHost(Protocol):
         ...
 
 
-class RequestFailed(Exception):
-    """Error for a request that cannot be executed; the message has the reason."""
-
-
 class Call:
     """Request with its arguments, each of which is validated when it is read.
 
@@ -58,32 +50,24 @@ class Call:
 
     def text(self, name: str) -> str:
         """Return an argument that is a text."""
-        value = self._arguments.get(name)
-        if not isinstance(value, str):
-            raise RequestFailed(f"{name!r} must be a text, got {value!r:.80}")
-        return value
+        return read_field(self._arguments, name, str)
 
     def number(self, name: str, default: float | None = None) -> float:
         """Return an argument that is a finite number."""
-        value: Any = self._arguments.get(name, default)
-        if not _is_finite(value):
-            raise RequestFailed(f"{name!r} must be a finite number, got {value!r:.80}")
-        return float(value)
+        if default is None:
+            return read_field(self._arguments, name, float)
+        return checked_value(self._arguments.get(name, default), f"{name!r}", float)
 
     def numbers(self, name: str, count: int) -> list[float]:
         """Return an argument that is a list of finite numbers."""
-        values: Any = self._arguments.get(name)
-        is_valid = isinstance(values, list) and len(values) == count
-        if not is_valid or not all(map(_is_finite, values)):
-            raise RequestFailed(f"{name!r} must be a list of {count} finite numbers, got {values!r:.80}")
-        return [float(v) for v in values]
+        values = read_field(self._arguments, name, list)
+        if len(values) != count:
+            raise RequestRefused(f"{name!r} must be a list of {count} finite numbers, got {len(values)}")
+        return [checked_value(value, f"{name}[{number}]", float) for number, value in enumerate(values)]
 
     def flag(self, name: str) -> bool:
         """Return an argument that is true or false."""
-        value = self._arguments.get(name)
-        if not isinstance(value, bool):
-            raise RequestFailed(f"{name!r} must be true or false, got {value!r:.80}")
-        return value
+        return read_field(self._arguments, name, bool)
 
     def value(self, name: str) -> Any:
         """Return an argument of any kind; None if it is missing."""

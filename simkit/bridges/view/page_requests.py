@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
+from simkit.bridges.live.request_fields import RequestRefused
 from simkit.bridges.view.model_requests import set_pose, spawn_standing, spawnable
-from simkit.bridges.view.page_call import Call, RequestFailed, ViewHost
+from simkit.bridges.view.page_call import Call, ViewHost
 from simkit.bridges.view.panel_requests import PANEL_REQUESTS
 from simkit.pose import Pose
 
@@ -21,11 +22,11 @@ def execute_request(view: ViewHost, request: PageRequest) -> object:
     """Execute a request and return its answer.
 
     Raises:
-        RequestFailed: the request is unknown, or an argument is invalid.
+        RequestRefused: the request is unknown, or an argument is invalid.
     """
     name = request.content["do"]
     if name not in REQUESTS:
-        raise RequestFailed(f"unknown request {name!r:.80}; known: {', '.join(REQUESTS)}")
+        raise RequestRefused(f"unknown request {name!r:.80}; known: {', '.join(REQUESTS)}")
     return REQUESTS[name](Call(view, request))
 
 
@@ -36,7 +37,7 @@ def _pause(call: Call) -> None:
 def _step(call: Call) -> None:
     count = call.number("count", 1)
     if not (count.is_integer() and 1 <= count <= 1 << 31):
-        raise RequestFailed(f"'count' must be a whole number of steps of at least 1, got {count:g}")
+        raise RequestRefused(f"'count' must be a whole number of steps of at least 1, got {count:g}")
     call.sim.control.pausing.step(int(count))
 
 
@@ -44,7 +45,7 @@ def _pace(call: Call) -> None:
     value = call.value("value")
     pace = None if value is None else call.number("value")
     if pace is not None and not pace > 0:
-        raise RequestFailed(f"'value' must be above 0, or null for no limit, got {value!r:.80}")
+        raise RequestRefused(f"'value' must be above 0, or null for no limit, got {value!r:.80}")
     call.sim.control.pausing.pace = pace
 
 
@@ -83,7 +84,7 @@ def _driver(call: Call) -> Teleop:
     topic = call.text("topic")
     found = call.view.driving.teleop(topic, call.client)
     if found is None:
-        raise RequestFailed(f"{topic!r:.80} is no topic for velocities")
+        raise RequestRefused(f"{topic!r:.80} is no topic for velocities")
     return found
 
 
@@ -91,7 +92,7 @@ def _pose(call: Call) -> object:
     """Publish a goal or an initial pose: `kind` (goal, initial), `x`, `y` [m], `yaw` [rad], optionally `topic`."""
     kind = call.text("kind")
     if kind not in ("goal", "initial"):
-        raise RequestFailed(f"'kind' must be goal or initial, got {kind!r:.80}")
+        raise RequestRefused(f"'kind' must be goal or initial, got {kind!r:.80}")
     topic = call.text("topic") if call.value("topic") is not None else ""
     place = call.number("x"), call.number("y"), call.number("yaw", 0.0)
     return call.view.driving.send_pose(kind, *place, topic)
@@ -102,7 +103,7 @@ def _joint(call: Call) -> None:
     joint = call.sim.joint(call.text("name"))
     value = call.number("value")
     if joint.dof != 1:
-        raise RequestFailed(f"joint {joint.name!r} has {joint.dof} axes; a slider moves one")
+        raise RequestRefused(f"joint {joint.name!r} has {joint.dof} axes; a slider moves one")
     if joint.lower <= joint.upper:
         value = min(max(value, float(joint.lower)), float(joint.upper))
     joint.set_position(value)
@@ -134,7 +135,7 @@ def _move(call: Call) -> None:
     model = call.sim.model(call.text("name"))
     position, quaternion = call.numbers("position", 3), call.numbers("quaternion", 4)
     if not set_pose(call.sim, model.scoped, position, quaternion):
-        raise RequestFailed(f"{model.scoped!r} cannot be moved")
+        raise RequestRefused(f"{model.scoped!r} cannot be moved")
 
 
 def _remove(call: Call) -> None:

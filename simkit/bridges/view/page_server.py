@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import logging
 import mimetypes
 import queue
 import threading
@@ -15,13 +14,13 @@ from dataclasses import dataclass, field
 from http import HTTPStatus
 from pathlib import Path
 from typing import Any, Final
-from urllib.parse import urlsplit
 
 from websockets.asyncio.server import broadcast, serve
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
-from simkit.bridges.web.access import has_token, is_known_host, is_own_origin
+from simkit.bridges.live.request_fields import CODE, RequestRefused, read_field, read_identifier, read_json
+from simkit.bridges.web.access import has_token, is_known_host, is_own_origin, quiet_logger, split_address
 
 PAGE: Final = Path(__file__).parent / "page"
 _PUBLIC: Final = ("/app.js", "/app.css", "/icon.svg")
@@ -147,8 +146,6 @@ class PageServer:
 
     async def _serve(self, ready: Future[None]) -> None:
         self._loop, self._end = asyncio.get_running_loop(), asyncio.Event()
-        log = logging.getLogger("simkit.view")  # a port that is opened and closed is not worth a line
-        log.setLevel(logging.CRITICAL)
         server = await serve(
             self._talk,
             self._host,
@@ -159,7 +156,7 @@ class PageServer:
             write_limit=1 << 18,
             compression=None,
             close_timeout=1,
-            logger=log,
+            logger=quiet_logger("simkit.view"),  # a port that is opened and closed is not worth a line
         )
         self.port = next(iter(server.sockets)).getsockname()[1]
         ready.set_result(None)
@@ -195,10 +192,14 @@ class PageServer:
 
     def _answer_http(self, connection: Any, request: Any) -> Response | None:
         """Return the answer to a request; None if the connection becomes a WebSocket."""
-        host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
+        hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+        address = split_address(request.path)
+        if address is None or len(hosts) > 1 or len(origins) > 1:
+            return _response(HTTPStatus.BAD_REQUEST, b"the request is malformed\n")
+        host, origin = "".join(hosts), origins[0] if origins else None
         if not is_known_host(host, self._host) or not is_own_origin(origin, host):
             return _response(HTTPStatus.FORBIDDEN, b"requests of other pages are refused\n")
-        path = urlsplit(request.path).path
+        path = address.path
         if path in _PUBLIC:
             return _file(path[1:])
         if not has_token(request.path, self._token):
@@ -248,14 +249,13 @@ class PageServer:
     def _take(self, client: PageClient, text: str | bytes) -> None:
         """Queue a request for the simulation, or answer it with an error."""
         try:
-            content = json.loads(text)
-            name = content["do"]
-            if not isinstance(content, dict) or not isinstance(name, str):
-                raise TypeError
-        except (ValueError, TypeError, KeyError, RecursionError):
-            self._queue_answer(client, json.dumps({"error": "a request is a JSON object with the name `do`"}))
+            content = read_json(text)
+            if not isinstance(content, dict):
+                raise RequestRefused("a request is a JSON object with the name `do`")
+            name, number = read_field(content, "do", str), read_identifier(content)
+        except RequestRefused as error:
+            self._queue_answer(client, json.dumps({"error": str(error), "code": error.code}))
             return
-        number = content.get("id")
         if name == "want":
             wants = content.get("streams")
             if isinstance(wants, dict):
@@ -268,7 +268,9 @@ class PageServer:
         try:
             self.requests.put_nowait(PageRequest(client, content))
         except queue.Full:
-            self._queue_answer(client, json.dumps({"id": number, "error": "the simulation is busy; try again"}))
+            self._queue_answer(
+                client, json.dumps({"id": number, "error": "the simulation is busy; try again", "code": CODE})
+            )
 
     def _note_wants(self) -> None:
         found: dict[str, list[Any]] = {}

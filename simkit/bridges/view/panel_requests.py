@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+from simkit.bridges.live.request_fields import RequestRefused
 from simkit.bridges.view.message_form import describe_form
-from simkit.bridges.view.page_call import Call, RequestFailed
+from simkit.bridges.view.page_call import Call
 from simkit.bridges.view.page_calls import shown_message
 from simkit.bridges.view.topic_streams import LogEntries
 from simkit.bridges.web.json_messages import message_from_json, message_to_json
@@ -26,7 +27,7 @@ def _describe(call: Call) -> object:
     """Return the form of a service (`kind` service) or an action (`kind` action): `kind`, `name`."""
     kind, name = call.text("kind"), absolute_name(call.text("name"))
     if kind not in _PARTS:
-        raise RequestFailed(f"'kind' must be service or action, got {kind!r:.80}")
+        raise RequestRefused(f"'kind' must be service or action, got {kind!r:.80}")
     communication = call.sim.communication
     endpoint = communication.services.get(name) if kind == "service" else communication.actions.get(name)
     return describe_form(f"{endpoint.type_name}_{_PARTS[kind]}")
@@ -55,7 +56,7 @@ def _goal(call: Call) -> object:
 
 def _check_room(call: Call) -> None:
     if call.view.calls.is_full:
-        raise RequestFailed("too many goals and calls wait; cancel some of them")
+        raise RequestRefused("too many goals and calls wait; cancel some of them")
 
 
 def _cancel(call: Call) -> object:
@@ -63,7 +64,7 @@ def _cancel(call: Call) -> object:
     number = call.number("goal")
     found = call.view.calls.goal(int(number))
     if found is None:
-        raise RequestFailed(f"there is no goal {number:g}")
+        raise RequestRefused(f"there is no goal {number:g}")
     if found.is_done:
         return False
     found.cancel()

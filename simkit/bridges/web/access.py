@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hmac
 import ipaddress
+import logging
 import socket
 from typing import Final
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import SplitResult, parse_qs, urlsplit
 
 _FOXGLOVE_PAGE: Final = "app.foxglove.dev"
+_MOST_FIELDS: Final = 100  # in the query of an address
 
 
 def is_loopback(host: str) -> bool:
@@ -21,12 +23,16 @@ def is_loopback(host: str) -> bool:
 
 def is_token(found: str, token: str) -> bool:
     """Compare a token that a client has sent, in a time that does not depend on its letters."""
-    return hmac.compare_digest(found.encode(), token.encode())
+    return hmac.compare_digest(found.encode(errors="surrogatepass"), token.encode())
 
 
 def has_token(path: str, token: str) -> bool | None:
     """Check the token in an address; None if the address has none."""
-    found = parse_qs(urlsplit(path).query).get("token")
+    address = split_address(path)
+    try:
+        found = parse_qs(address.query, max_num_fields=_MOST_FIELDS).get("token") if address else None
+    except ValueError:  # too many fields
+        return False
     return is_token(found[0], token) if found else None
 
 
@@ -34,7 +40,9 @@ def is_known_origin(origin: str | None) -> bool:
     """Check whether a page may connect without a token: a page of this machine or Foxglove's own, or no page at all."""
     if origin is None:
         return True
-    parts = urlsplit(origin)
+    parts = split_address(origin)
+    if parts is None:
+        return False
     if parts.scheme in ("http", "https"):
         return is_loopback(parts.hostname or "") or parts.hostname == _FOXGLOVE_PAGE
     return bool(parts.scheme)  # "null" may be any page; pages cannot choose another scheme, such as that of an app
@@ -47,7 +55,8 @@ def is_known_host(header: str, bound: str) -> bool:
         header: value of the header `Host`.
         bound: host that the server is bound to.
     """
-    name = urlsplit(f"//{header}").hostname or ""
+    address = split_address(f"//{header}")
+    name = (address.hostname if address else None) or ""
     if is_loopback(bound):
         return is_loopback(name)
     try:
@@ -64,4 +73,24 @@ def is_own_origin(origin: str | None, host: str) -> bool:
         origin: value of the header `Origin`; None without one.
         host: value of the header `Host`.
     """
-    return origin is None or urlsplit(origin).netloc == host
+    if origin is None:
+        return True
+    address = split_address(origin)
+    return address is not None and address.netloc == host
+
+
+def quiet_logger(name: str) -> logging.Logger:
+    """Return a logger that drops the messages of websockets about clients that break the rules."""
+    log = logging.getLogger(name)
+    log.setLevel(logging.CRITICAL + 1)
+    return log
+
+
+def split_address(text: str) -> SplitResult | None:
+    """Split an address of a request into its parts; None if it is malformed, such as `http://[::1`."""
+    try:
+        found = urlsplit(text)
+        found.hostname, found.port  # noqa: B018 (both raise for a malformed address)
+    except ValueError:
+        return None
+    return found if max(map(found.netloc.count, "[]")) <= 1 else None

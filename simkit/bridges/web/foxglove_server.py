@@ -5,14 +5,26 @@ from __future__ import annotations
 import json
 import struct
 import time
+from collections.abc import Sequence
 from typing import Any, Final
 
 from simkit import msgs
+from simkit.argument_checks import shown
 from simkit.bridges.live.protocol import LARGEST_OUT, JsonObject, LiveClosed, LiveError
+from simkit.bridges.live.request_fields import (
+    RequestRefused,
+    checked_value,
+    client_text,
+    read_field,
+    read_identifier,
+    read_items,
+    read_json,
+    with_code,
+)
 from simkit.bridges.simulation_link import robot_descriptions, text_message
 from simkit.bridges.web.json_messages import message_from_json, message_to_json
 from simkit.bridges.web.web_server import WebClient, WebServer, run_server
-from simkit.errors import MessageError, SimkitError
+from simkit.errors import SimkitError
 from simkit.input_file import read_failure, read_input
 
 SUBPROTOCOLS: Final = ("foxglove.sdk.v1", "foxglove.websocket.v1")
@@ -49,7 +61,7 @@ class FoxgloveClient(WebClient):
 
     def report_error(self, text: str) -> None:
         """Send a status with an error."""
-        self.tell("status", level=2, message=text)
+        self.tell("status", level=2, message=with_code(text))
 
     # ------------------------------------------------------------------ the graph
 
@@ -102,38 +114,44 @@ class FoxgloveClient(WebClient):
             if isinstance(data, bytes):
                 self._take_binary(data)
                 return
-            words = json.loads(data)
-            process = getattr(self, f"_on_{words['op']}", None)
+            words = checked_value(read_json(data), "the message", dict)
+            op = read_field(words, "op", str)
+            process = getattr(self, f"_on_{op}", None)
             if process is None:
-                raise MessageError(f"unknown op {words['op']!r:.80}")
+                raise RequestRefused(f"unknown op {op!r:.80}")
             process(words)
         except LiveClosed:
             raise
-        except KeyError as error:
-            self.report_error(f"{error} is missing or unknown")
-        except (SimkitError, TypeError, ValueError, AttributeError, RecursionError, struct.error, IndexError) as error:
-            self.report_error(f"invalid message: {error}")
+        except Exception as error:  # noqa: BLE001 - the data may be anything
+            self.report_error(client_text(error))
 
     def _take_binary(self, data: bytes) -> None:
+        if len(data) < 5:
+            raise RequestRefused(f"a binary message has {len(data)} bytes; expected at least 5")
         number = struct.unpack_from("<I", data, 1)[0]
         if data[0] == _CLIENT_MESSAGE:
+            if number not in self._publishers:
+                raise RequestRefused(f"the channel {number} is not advertised")
             publisher, type_name, is_json = self._publishers[number]
             content = data[5:]
             if is_json:
-                content = msgs.serialize(message_from_json(type_name, json.loads(content)))
+                content = msgs.serialize(message_from_json(type_name, read_json(content)))
             self.link.publish(publisher, content)
         elif data[0] == _CLIENT_CALL:
             self._call(number, data)
         else:
-            raise MessageError(f"unknown binary op {data[0]}")
+            raise RequestRefused(f"unknown binary op {data[0]}")
 
     # ------------------------------------------------------------------ topics
 
     def _on_subscribe(self, words: JsonObject) -> None:
-        for row in words["subscriptions"]:
-            number, (topic, type_name) = int(row["id"]), self._channels[row["channelId"]]
+        for row in read_items(words, "subscriptions", dict):
+            number, channel = _number(row, "id"), read_field(row, "channelId", int)
+            if channel not in self._channels:
+                raise RequestRefused(f"there is no channel {shown(channel)}")
+            topic, type_name = self._channels[channel]
             if number in self._subscriptions:
-                raise MessageError(f"the subscription {number} exists")
+                raise RequestRefused(f"the subscription {number} exists")
             robot = robot_descriptions(self.server.graph).get(topic) if type_name == _TEXT else None
             if robot is None:
                 self._subscriptions[number] = self._subscribe(number, topic, type_name)
@@ -158,18 +176,21 @@ class FoxgloveClient(WebClient):
         self.link.ask("robot_description", {"name": robot}, then=lambda text, _: self.send(head + text_message(text)))
 
     def _on_unsubscribe(self, words: JsonObject) -> None:
-        for number in words["subscriptionIds"]:
+        for number in read_items(words, "subscriptionIds", int):
+            if number not in self._subscriptions:
+                raise RequestRefused(f"there is no subscription {shown(number)}")
             subscription = self._subscriptions.pop(number)
             if subscription is not None:
                 self.link.unsubscribe(subscription)
 
     def _on_advertise(self, words: JsonObject) -> None:
-        for row in words["channels"]:
-            self._open_publisher(int(row["id"]), row["topic"], row["encoding"], msgs.full_name(row["schemaName"]))
+        for row in read_items(words, "channels", dict):
+            topic, encoding, schema = (read_field(row, name, str) for name in ("topic", "encoding", "schemaName"))
+            self._open_publisher(_number(row, "id"), topic, encoding, msgs.full_name(schema))
 
     def _open_publisher(self, channel: int, topic: str, encoding: str, type_name: str) -> None:
         if encoding not in ("cdr", "json"):
-            raise MessageError(f"found encoding {encoding!r:.80}; expected cdr or json")
+            raise RequestRefused(f"found encoding {encoding!r:.80}; expected cdr or json")
         number = self.link.next_number()
 
         def open_channel(found: JsonObject, _: bytes) -> None:
@@ -179,17 +200,21 @@ class FoxgloveClient(WebClient):
         self.link.ask("advertise", args, then=open_channel, failed=lambda error: self.report_error(str(error)))
 
     def _on_unadvertise(self, words: JsonObject) -> None:
-        for number in words["channelIds"]:
+        for number in read_items(words, "channelIds", int):
+            if number not in self._publishers:
+                raise RequestRefused(f"the channel {shown(number)} is not advertised")
             self.link.unadvertise(self._publishers.pop(number)[0])
 
     # ------------------------------------------------------------------ services
 
     def _call(self, service: int, data: bytes) -> None:
+        if len(data) < 13:
+            raise RequestRefused(f"a call has {len(data)} bytes; expected at least 13")
         call, length = struct.unpack_from("<II", data, 5)
-        encoding, content = data[13 : 13 + length].decode(), data[13 + length :]
+        encoding, content = data[13 : 13 + length].decode(errors="replace"), data[13 + length :]
 
         def fail(error: object) -> None:
-            self.tell("serviceCallFailure", serviceId=service, callId=call, message=str(error))
+            self.tell("serviceCallFailure", serviceId=service, callId=call, message=with_code(str(error)))
 
         def respond(_: Any, answer: bytes) -> None:
             if encoding == "json":
@@ -197,15 +222,15 @@ class FoxgloveClient(WebClient):
             self.send(struct.pack("<BIII", _CALL, service, call, length) + encoding.encode() + answer)
 
         try:
+            if service not in self._services:
+                raise RequestRefused(f"there is no service {service}")
             name, type_name = self._services[service]
             if encoding == "json":
-                content = msgs.serialize(message_from_json(f"{type_name}_Request", json.loads(content)))
+                content = msgs.serialize(message_from_json(f"{type_name}_Request", read_json(content)))
             elif encoding != "cdr":
-                raise MessageError(f"found encoding {encoding!r:.80}; expected cdr or json")
-        except KeyError:
-            fail(f"there is no service {service}")
-        except (SimkitError, ValueError, TypeError) as error:
-            fail(error)
+                raise RequestRefused(f"found encoding {encoding!r:.80}; expected cdr or json")
+        except Exception as error:  # noqa: BLE001 - the data may be anything
+            fail(client_text(error))
         else:
             self.link.ask("call", {"name": name, "type": f"{type_name}_Request"}, content, respond, fail)
 
@@ -221,15 +246,17 @@ class FoxgloveClient(WebClient):
         self.link.ask("parameters", {}, then=convert)
 
     def _on_getParameters(self, words: JsonObject) -> None:  # noqa: N802 - ops are found by their name
-        self._ask_parameters(lambda found: self._send_parameters(found, words))
+        names = read_items(words, "parameterNames", str) if words.get("parameterNames") else []
+        identifier = read_identifier(words)
+        self._ask_parameters(lambda found: self._send_parameters(found, names or list(found), identifier))
 
-    def _send_parameters(self, found: JsonObject, words: JsonObject) -> None:
-        names = words.get("parameterNames") or list(found)
+    def _send_parameters(self, found: JsonObject, names: Sequence[str], identifier: object) -> None:
         rows = [_parameter(name, found[name][2]) for name in names if name in found]
-        self.tell("parameterValues", parameters=rows, **({"id": words["id"]} if words.get("id") else {}))
+        self.tell("parameterValues", parameters=rows, **({"id": identifier} if identifier else {}))
 
     def _on_setParameters(self, words: JsonObject) -> None:  # noqa: N802
-        wanted = {row["name"]: row["value"] for row in words["parameters"]}
+        rows = read_items(words, "parameters", dict)
+        wanted, identifier = {read_field(row, "name", str): row.get("value") for row in rows}, read_identifier(words)
 
         def set_all(found: JsonObject) -> None:
             for name, value in wanted.items():
@@ -237,20 +264,20 @@ class FoxgloveClient(WebClient):
                     self.report_error(f"there is no parameter {name!r}")
                     continue
                 node, short, old = found[name]
-                number = float(value) if isinstance(old, float) and isinstance(value, int) else value
+                is_whole = isinstance(old, float) and type(value) is int
+                number = checked_value(value, f"{name!r}", float) if is_whole else value
                 args = {"node": node, "name": short, "value": number}
                 self.link.ask("set_parameter", args, failed=lambda error: self.report_error(str(error)))
-            if words.get("id"):
-                answer = {"parameterNames": list(wanted), "id": words["id"]}
-                self._ask_parameters(lambda found: self._send_parameters(found, answer))
+            if identifier:
+                self._ask_parameters(lambda found: self._send_parameters(found, list(wanted), identifier))
 
         self._ask_parameters(set_all)
 
     def _on_subscribeParameterUpdates(self, words: JsonObject) -> None:  # noqa: N802
-        self._watched.update(words["parameterNames"])
+        self._watched.update(read_items(words, "parameterNames", str))
 
     def _on_unsubscribeParameterUpdates(self, words: JsonObject) -> None:  # noqa: N802
-        self._watched.difference_update(words["parameterNames"])
+        self._watched.difference_update(read_items(words, "parameterNames", str))
 
     def _send_changed(self, found: JsonObject) -> None:
         values = {name: found[name][2] for name in self._watched if name in found}
@@ -262,10 +289,10 @@ class FoxgloveClient(WebClient):
     # ------------------------------------------------------------------ meshes
 
     def _on_fetchAsset(self, words: JsonObject) -> None:  # noqa: N802
-        number = int(words["requestId"])
+        number, uri = _number(words, "requestId"), read_field(words, "uri", str)
 
         def send(error: object, data: bytes = b"") -> None:
-            text = str(error).encode()
+            text = with_code(str(error)).encode(errors="replace") if error else b""
             self.send(struct.pack("<BIBI", _ASSET, number, 1 if text else 0, len(text)) + text + data)
 
         def read(path: str, _: bytes) -> None:
@@ -274,7 +301,19 @@ class FoxgloveClient(WebClient):
             except OSError as error:
                 send(read_failure(error))
 
-        self.link.ask("asset", {"uri": str(words["uri"])}, then=read, failed=send)
+        self.link.ask("asset", {"uri": uri}, then=read, failed=send)
+
+
+def _number(fields: JsonObject, name: str) -> int:
+    """Return a field that is a number of 32 bits.
+
+    Raises:
+        RequestRefused: the field is missing or has another value.
+    """
+    found = read_field(fields, name, int)
+    if not 0 <= found < 1 << 32:
+        raise RequestRefused(f"{name!r} must be from 0 to {(1 << 32) - 1}, got {shown(found)}")
+    return found
 
 
 def _channel(topic: str, type_name: str) -> JsonObject:

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from simkit.bridges.live.protocol import JsonObject
+from simkit.bridges.live.request_fields import read_field, read_json
 from simkit.bridges.web.web_server import WebClient
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE
 from simkit.msgs.message_text import field_nodes
@@ -30,6 +31,10 @@ class RosapiCall:
     args: JsonObject
     end: Callable[[Any], None]
     fail: Callable[[object], None]
+
+    def text(self, name: str) -> str:
+        """Return a field of the request that is a text."""
+        return read_field(self.args, name, str)
 
     def ask(self, question: str, respond: Callable[[Any], JsonObject], args: JsonObject | None = None) -> None:
         """Ask the simulation, and respond with what a function makes of its answer."""
@@ -81,7 +86,7 @@ def _typedefs(type_name: str) -> JsonObject:
 
 
 def _service_details(call: RosapiCall, part: str) -> None:
-    package, _, rest = str(call.args["type"]).partition("/")
+    package, _, rest = call.text("type").partition("/")
     call.end(_typedefs(f"{package}/{rest if '/' in rest else f'srv/{rest}'}_{part}"))
 
 
@@ -95,7 +100,7 @@ def _parameters(call: RosapiCall, respond: Callable[[dict[str, Any]], JsonObject
 
 
 def _get_param(call: RosapiCall) -> None:
-    name, default = call.args["name"], call.args.get("default_value", "")
+    name, default = call.text("name"), call.args.get("default_value", "")
 
     def respond(found: Mapping[str, Any]) -> JsonObject:
         return {"value": json.dumps(found[name]) if name in found else default, "successful": name in found}
@@ -104,8 +109,8 @@ def _get_param(call: RosapiCall) -> None:
 
 
 def _set_param(call: RosapiCall) -> None:
-    node, _, name = str(call.args["name"]).partition(":")
-    args = {"node": node, "name": name, "value": json.loads(call.args["value"])}
+    node, _, name = call.text("name").partition(":")
+    args = {"node": node, "name": name, "value": read_json(call.text("value"))}
     call.ask("set_parameter", lambda _: {"successful": True}, args)
 
 
@@ -115,7 +120,7 @@ def _time(state: JsonObject) -> JsonObject:
 
 
 def _topic_nodes(call: RosapiCall, field: str) -> None:
-    topic = call.args["topic"]
+    topic = call.text("topic")
     call.ask(
         "topics", lambda rows: {field: [end["node"] for row in rows if row["name"] == topic for end in row[field]]}
     )
@@ -124,23 +129,23 @@ def _topic_nodes(call: RosapiCall, field: str) -> None:
 ROSAPI: Final[Mapping[str, Callable[[RosapiCall], None]]] = MappingProxyType(
     {
         "/rosapi/topics": lambda c: _topic_types(c, lambda t: {"topics": list(t), "types": list(t.values())}),
-        "/rosapi/topic_type": lambda c: _topic_types(c, lambda t: {"type": t.get(c.args["topic"], "")}),
-        "/rosapi/topics_for_type": lambda c: _topic_types(c, lambda t: {"topics": _names_of(t, c.args["type"])}),
+        "/rosapi/topic_type": lambda c: _topic_types(c, lambda t: {"type": t.get(c.text("topic"), "")}),
+        "/rosapi/topics_for_type": lambda c: _topic_types(c, lambda t: {"topics": _names_of(t, c.text("type"))}),
         "/rosapi/publishers": lambda c: _topic_nodes(c, "publishers"),
         "/rosapi/subscribers": lambda c: _topic_nodes(c, "subscribers"),
         "/rosapi/services": lambda c: c.ask("services", lambda found: {"services": list(found)}),
-        "/rosapi/service_type": lambda c: c.ask("services", lambda found: {"type": found.get(c.args["service"], "")}),
+        "/rosapi/service_type": lambda c: c.ask("services", lambda found: {"type": found.get(c.text("service"), "")}),
         "/rosapi/services_for_type": lambda c: c.ask(
-            "services", lambda found: {"services": _names_of(found, c.args["type"])}
+            "services", lambda found: {"services": _names_of(found, c.text("type"))}
         ),
         "/rosapi/action_servers": lambda c: c.ask("actions", lambda found: {"action_servers": list(found)}),
         "/rosapi/nodes": lambda c: c.ask("nodes", lambda found: {"nodes": list(found)}),
-        "/rosapi/node_details": lambda c: c.ask("nodes", lambda found: _node_details(found, c.args["node"])),
-        "/rosapi/message_details": lambda c: c.end(_typedefs(str(c.args["type"]))),
+        "/rosapi/node_details": lambda c: c.ask("nodes", lambda found: _node_details(found, c.text("node"))),
+        "/rosapi/message_details": lambda c: c.end(_typedefs(c.text("type"))),
         "/rosapi/service_request_details": lambda c: _service_details(c, "Request"),
         "/rosapi/service_response_details": lambda c: _service_details(c, "Response"),
         "/rosapi/get_param_names": lambda c: _parameters(c, lambda found: {"names": list(found)}),
-        "/rosapi/has_param": lambda c: _parameters(c, lambda found: {"exists": c.args["name"] in found}),
+        "/rosapi/has_param": lambda c: _parameters(c, lambda found: {"exists": c.text("name") in found}),
         "/rosapi/get_param": _get_param,
         "/rosapi/set_param": _set_param,
         "/rosapi/get_time": lambda c: c.ask("state", _time),

@@ -2,122 +2,31 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
-import time
-from collections import deque
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from simkit import msgs
 from simkit.bridges.live.protocol import JsonObject, LiveClosed, LiveError
+from simkit.bridges.live.request_fields import (
+    RequestRefused,
+    client_text,
+    read_field,
+    read_identifier,
+    read_json,
+    with_code,
+)
 from simkit.bridges.web.json_messages import message_from_json, message_to_json
 from simkit.bridges.web.rosapi import ROSAPI, RosapiCall
+from simkit.bridges.web.rosbridge_topics import MOST_WAITING, SubscriptionOptions, TopicPublisher, TopicSubscription
 from simkit.bridges.web.web_server import WebClient, WebServer, run_server
-from simkit.errors import MessageError, SimkitError
+from simkit.errors import MessageError
 from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_text import field_nodes
 
 _COMPRESSIONS: Final = ("none", "cbor", "cbor-raw")
-_DEPTH: Final = 100  # queued messages of a topic in the simulation, unless the client requests more
-_MOST_WAITING: Final = 1000  # messages for a topic that the simulation has not opened yet
 _Failed = Callable[[str], None]
-
-
-class _Options(NamedTuple):
-    """Options of a subscription: time between two messages [s], queue length and compression."""
-
-    period: float
-    length: int
-    compression: str
-
-
-class _Subscription:
-    """Subscription of a client to a topic, for all of the client's ids.
-
-    Attributes:
-        number: number in the connection to the simulation.
-        options: options by id.
-    """
-
-    def __init__(self, client: RosbridgeClient, topic: str, depth: int) -> None:
-        self._client, self._topic = client, topic
-        self.options: dict[object, _Options] = {}
-        self._waiting: deque[str | bytes] = deque()
-        self._next = 0.0
-        self.number = client.link.subscribe(topic, self._take, self._fail, max(depth, _DEPTH))
-
-    def _fail(self, error: LiveError) -> None:
-        self._client.drop_subscription(self._topic)
-        self._client.report_error(f"{self._topic}: {error}", next(iter(self.options), None))
-
-    def _take(self, time_ns: int, type_name: str, data: bytes, lost: int) -> None:
-        if not self.options:
-            return
-        options = self.options.values()
-        period, length = min(one.period for one in options), max(one.length for one in options)
-        now = time.monotonic()
-        if now >= self._next and not self._waiting:
-            self._next = now + period
-            self._client.send(self._encoded(time_ns, type_name, data))
-        elif length:
-            if not self._waiting:
-                asyncio.get_running_loop().call_later(self._next - now, self._send_next)
-            self._waiting.append(self._encoded(time_ns, type_name, data))
-            if len(self._waiting) > length:
-                self._waiting.popleft()
-
-    def _send_next(self) -> None:
-        period = min((one.period for one in self.options.values()), default=0.0)
-        if self._waiting and self.options:
-            self._next = time.monotonic() + period
-            self._client.send(self._waiting.popleft())
-            if self._waiting:
-                asyncio.get_running_loop().call_later(period, self._send_next)
-
-    def _encoded(self, time_ns: int, type_name: str, data: bytes) -> str | bytes:
-        compression = next(reversed(self.options.values())).compression
-        found: JsonObject = {"op": "publish", "topic": self._topic}
-        if compression == "none":
-            return json.dumps({**found, "msg": message_to_json(msgs.deserialize(data, type_name))})
-        import cbor2
-
-        if compression == "cbor-raw":
-            seconds, nanoseconds = divmod(time_ns, 10**9)
-            return cbor2.dumps({**found, "msg": {"secs": seconds, "nsecs": nanoseconds, "bytes": data}})
-        return cbor2.dumps({**found, "msg": message_to_json(msgs.deserialize(data, type_name), is_binary=True)})
-
-
-class _Publisher:
-    """Topic that a client publishes. Messages wait until the simulation has opened the topic."""
-
-    def __init__(self, client: RosbridgeClient, words: JsonObject) -> None:
-        self._client, self._topic = client, words["topic"]
-        self.number = client.link.next_number()
-        self._type: str | None = None
-        self._waiting: deque[JsonObject] = deque(maxlen=_MOST_WAITING)
-        args = {"number": self.number, "topic": self._topic, "type": words.get("type") or None}
-        latched = words.get("latch") is True
-        client.link.ask("advertise", {**args, "latched": latched}, then=self._open, failed=self._fail)
-
-    def _open(self, found: JsonObject, _: bytes) -> None:
-        self._type = found["type"]
-        while self._waiting:
-            words = self._waiting.popleft()
-            self._client.guarded(words, self.publish)
-
-    def _fail(self, error: LiveError) -> None:
-        self._client.publishers.pop(self._topic, None)
-        self._client.report_error(f"{self._topic}: {error}")
-
-    def publish(self, words: JsonObject) -> None:
-        """Publish a message."""
-        if self._type is None:
-            self._waiting.append(words)
-        else:
-            message = message_from_json(self._type, words.get("msg", {}))
-            self._client.link.publish(self.number, msgs.serialize(message))
 
 
 class RosbridgeClient(WebClient):
@@ -131,8 +40,8 @@ class RosbridgeClient(WebClient):
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self.publishers: dict[str, _Publisher] = {}
-        self._subscriptions: dict[str, _Subscription] = {}
+        self.publishers: dict[str, TopicPublisher] = {}
+        self._subscriptions: dict[str, TopicSubscription] = {}
         self._goals: dict[object, int] = {}
         self._offered: dict[str, int] = {}
         self._calls: dict[str, JsonObject] = {}
@@ -142,24 +51,21 @@ class RosbridgeClient(WebClient):
     def take(self, data: str | bytes) -> None:
         """Process a message of the client; an invalid one is answered with a status."""
         try:
-            if isinstance(data, bytes) and not data.startswith((b"{", b"[", b" ")):
-                import cbor2
-
-                words = cbor2.loads(data)
-            else:
-                words = json.loads(data)
-        except Exception as error:  # noqa: BLE001 - the data may be anything
-            self.report_error(f"the message is not JSON or CBOR: {error}")
+            words = (
+                read_json(data) if isinstance(data, str) or data.startswith((b"{", b"[", b" ")) else _read_cbor(data)
+            )
+            if not isinstance(words, dict):
+                raise RequestRefused("the message is not a JSON object")
+            identifier, op = read_identifier(words), read_field(words, "op", str)
+        except RequestRefused as error:
+            self.report_error(str(error))
             return
-        if not isinstance(words, dict):
-            self.report_error("the message is not a JSON object")
-        elif not self.is_allowed and words.get("op") != "auth":
-            self.report_error("send the token first: add ?token=TOKEN to the address, or send op auth", words.get("id"))
-        elif words.get("op") not in _OPERATIONS:
-            self.report_error(f"unknown op {words.get('op')!r:.80}; expected {', '.join(_OPERATIONS)}", words.get("id"))
+        if not self.is_allowed and op != "auth":
+            self.report_error("send the token first: add ?token=TOKEN to the address, or send op auth", identifier)
+        elif op not in _OPERATIONS:
+            self.report_error(f"unknown op {op!r:.80}; expected {', '.join(_OPERATIONS)}", identifier)
         else:
-            operation = _OPERATIONS[words["op"]]
-            self.guarded(words, lambda words: operation(self, words))
+            self.guarded(words, lambda words: _OPERATIONS[op](self, words))
 
     def guarded(self, words: JsonObject, process: Callable[[JsonObject], None]) -> None:
         """Process a message, and answer errors of its content with a status."""
@@ -167,10 +73,8 @@ class RosbridgeClient(WebClient):
             process(words)
         except LiveClosed:
             raise
-        except KeyError as error:
-            self.report_error(f"op {words.get('op')}: {error} is missing or unknown", words.get("id"))
-        except (SimkitError, TypeError, ValueError, AttributeError, RecursionError) as error:
-            self.report_error(f"op {words.get('op')}: {error}", words.get("id"))
+        except Exception as error:  # noqa: BLE001 - the data may be anything
+            self.report_error(f"op {words['op']}: {client_text(error)}", words.get("id"))
 
     def tell(self, op: str, **words: Any) -> None:
         """Send a message of the protocol; fields that are None are left out."""
@@ -178,11 +82,12 @@ class RosbridgeClient(WebClient):
 
     def report_error(self, text: str, identifier: object = None) -> None:
         """Send a status with an error."""
-        self.tell("status", level="error", msg=text, id=identifier)
+        self.tell("status", level="error", msg=with_code(text), id=identifier)
 
     def authenticate(self, words: JsonObject) -> None:
         """Check the token, in `token` or in `mac`."""
-        self.is_allowed = self.is_allowed or self.server.is_token(str(words.get("token") or words.get("mac")))
+        token = read_field(words, "token", str, "") or read_field(words, "mac", str, "")
+        self.is_allowed = self.is_allowed or self.server.is_token(token)
         if not self.is_allowed:
             self.report_error("the token is wrong", words.get("id"))
 
@@ -190,12 +95,13 @@ class RosbridgeClient(WebClient):
 
     def advertise(self, words: JsonObject) -> None:
         """Open a topic for publishing."""
-        if words["topic"] not in self.publishers:
-            self.publishers[words["topic"]] = _Publisher(self, words)
+        topic = read_field(words, "topic", str)
+        if topic not in self.publishers:
+            self.publishers[topic] = TopicPublisher(self, topic, words)
 
     def unadvertise(self, words: JsonObject) -> None:
         """Close a publisher."""
-        publisher = self.publishers.pop(words["topic"], None)
+        publisher = self.publishers.pop(read_field(words, "topic", str), None)
         if publisher is not None:
             self.link.unadvertise(publisher.number)
 
@@ -206,23 +112,25 @@ class RosbridgeClient(WebClient):
 
     def subscribe(self, words: JsonObject) -> None:
         """Subscribe to a topic."""
-        topic, length = str(words["topic"]), int(words.get("queue_length") or 0)
-        compression = words.get("compression") or "none"
+        topic, identifier = read_field(words, "topic", str), read_identifier(words)
+        length = min(max(0, int(read_field(words, "queue_length", float, 0.0))), MOST_WAITING)
+        rate = max(0.0, read_field(words, "throttle_rate", float, 0.0) / 1000)
+        compression = read_field(words, "compression", str, "") or "none"
         if compression not in _COMPRESSIONS:
             self.tell("status", level="warning", msg=f"compression {compression!r:.80} is not supported: none is used")
             compression = "none"
         if topic not in self._subscriptions:
-            self._subscriptions[topic] = _Subscription(self, topic, length)
-        rate = max(0.0, float(words.get("throttle_rate") or 0) / 1000)
-        self._subscriptions[topic].options[words.get("id")] = _Options(rate, max(0, length), compression)
+            self._subscriptions[topic] = TopicSubscription(self, topic, length)
+        self._subscriptions[topic].options[identifier] = SubscriptionOptions(rate, length, compression)
 
     def unsubscribe(self, words: JsonObject) -> None:
         """End the subscription of an id, or all subscriptions to the topic."""
-        found = self._subscriptions.get(words["topic"])
+        topic, identifier = read_field(words, "topic", str), read_identifier(words)
+        found = self._subscriptions.get(topic)
         if found is not None:
-            found.options.pop(words.get("id"), None)
-            if not found.options or words.get("id") is None:
-                self.drop_subscription(words["topic"])
+            found.options.pop(identifier, None)
+            if not found.options or identifier is None:
+                self.drop_subscription(topic)
                 self.link.unsubscribe(found.number)
 
     def drop_subscription(self, topic: str) -> None:
@@ -235,16 +143,17 @@ class RosbridgeClient(WebClient):
 
     def call_service(self, words: JsonObject) -> None:
         """Call a service of the simulation or of rosapi."""
-        name, identifier = words["service"], words.get("id")
+        name, identifier = read_field(words, "service", str), read_identifier(words)
 
         def end(values: Any, result: bool = True) -> None:
             self.tell("service_response", id=identifier, service=name, values=values, result=result)
 
         def fail(text: object) -> None:
-            end(str(text), False)
+            end(with_code(str(text)), False)
 
         if name in ROSAPI:
-            self.link.guarded(ROSAPI[name], fail)(RosapiCall(self, words.get("args") or {}, end, fail))
+            args = read_field(words, "args", dict, {}) if words.get("args") else {}
+            self.link.guarded(ROSAPI[name], fail)(RosapiCall(self, args, end, fail))
             return
 
         def send(kind: str, data: bytes) -> None:
@@ -269,16 +178,16 @@ class RosbridgeClient(WebClient):
                 if isinstance(fields, list):
                     fields = dict(zip((field for field, _ in field_nodes(f"{type_name}_{part}")), fields, strict=False))
                 data = msgs.serialize(message_from_json(f"{type_name}_{part}", fields))
-            except (SimkitError, KeyError, TypeError, ValueError) as error:
-                fail(str(error))
+            except Exception as error:  # noqa: BLE001 - the client may have sent any value
+                fail(client_text(error))
             else:
                 then(type_name, data)
 
-        self.link.ask(kind, {}, then=receive, failed=lambda error: fail(str(error)))
+        self.link.ask(kind, {}, then=receive, failed=lambda error: fail(client_text(error)))
 
     def advertise_service(self, words: JsonObject) -> None:
         """Open a service that the client answers."""
-        name, kind = words["service"], _service_type(words["type"])
+        name, kind = read_field(words, "service", str), _service_type(read_field(words, "type", str))
         number = self._offered[name] = self.link.next_number()
 
         def ask_client(found: JsonObject, data: bytes) -> None:
@@ -296,21 +205,23 @@ class RosbridgeClient(WebClient):
 
     def unadvertise_service(self, words: JsonObject) -> None:
         """Close a service of the client."""
-        number = self._offered.pop(words["service"], None)
+        number = self._offered.pop(read_field(words, "service", str), None)
         if number is not None:
             self.link.endpoints.pop(number, None)
             self.link.ask("close_endpoint", {"number": number})
 
     def service_response(self, words: JsonObject) -> None:
         """Pass the response of the client to the caller of its service."""
-        args = self._calls.pop(words["id"])
+        args = self._calls.pop(read_field(words, "id", str), None)
+        if args is None:
+            raise RequestRefused(f"no call with the id {words['id']!r:.80} waits for a response")
         kind = args.pop("type")
         try:
             if words.get("result") is False:
                 raise MessageError(str(words.get("values") or "the service failed"))
             data = msgs.serialize(message_from_json(kind, words.get("values") or {}))
-        except SimkitError as error:
-            self.link.ask("respond", {**args, "error": str(error)})
+        except Exception as error:
+            self.link.ask("respond", {**args, "error": client_text(error)})
             raise
         self.link.ask("respond", {**args, "type": kind}, data)
 
@@ -318,7 +229,7 @@ class RosbridgeClient(WebClient):
 
     def send_action_goal(self, words: JsonObject) -> None:
         """Send a goal to an action of the simulation."""
-        action, identifier = words["action"], words.get("id")
+        action, identifier = read_field(words, "action", str), read_identifier(words)
         number = self._goals[identifier] = self.link.next_number()
 
         def end(values: Any, status: GoalStatus, result: bool) -> None:
@@ -327,7 +238,7 @@ class RosbridgeClient(WebClient):
             self.tell("action_result", id=identifier, action=action, values=values, status=int(status), result=result)
 
         def fail(text: object) -> None:
-            end(str(text), GoalStatus.UNKNOWN, False)
+            end(with_code(str(text)), GoalStatus.UNKNOWN, False)
 
         def send(kind: str, data: bytes) -> None:
             def update(found: JsonObject, data: bytes) -> None:
@@ -349,14 +260,30 @@ class RosbridgeClient(WebClient):
 
     def cancel_action_goal(self, words: JsonObject) -> None:
         """Request the cancellation of a goal."""
-        number = self._goals[words["id"]]
+        number = self._goals.get(read_identifier(words))
+        if number is None:
+            raise RequestRefused(f"there is no goal with the id {words.get('id')!r:.80}")
         # the goal is sent when the simulation has answered a request for its type, which the answer to `ping` follows
         self.link.ask("ping", {}, then=lambda *_: self.link.ask("cancel", {"number": number}))
 
 
+def _read_cbor(data: bytes) -> Any:
+    """Return the value of CBOR data.
+
+    Raises:
+        RequestRefused: the data are not CBOR.
+    """
+    import cbor2
+
+    try:
+        return cbor2.loads(data)
+    except Exception:  # noqa: BLE001 - the data may be anything
+        raise RequestRefused("the message is not JSON or CBOR") from None
+
+
 def _service_type(name: str) -> str:
     """Return the full name of a service type: `std_srvs/SetBool` is `std_srvs/srv/SetBool`."""
-    package, _, rest = str(name).partition("/")
+    package, _, rest = name.partition("/")
     found = name if "/" in rest else f"{package}/srv/{rest}"
     msgs.type_of(f"{found}_Request")
     return found

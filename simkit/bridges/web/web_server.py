@@ -14,8 +14,9 @@ from typing import Any, Final
 
 from simkit.bridges.bridge_program import begin, run_until_end, tell
 from simkit.bridges.live.protocol import LARGEST_IN, JsonObject, LiveClosed, LiveError
+from simkit.bridges.live.request_fields import CODE, client_text
 from simkit.bridges.simulation_link import DEPTH, Failed, SimulationLink, Then
-from simkit.bridges.web.access import has_token, is_known_origin, is_token
+from simkit.bridges.web.access import has_token, is_known_origin, is_token, quiet_logger, split_address
 from simkit.bridges.web.web_process import TOKEN_VARIABLE
 
 _GRAPH_PERIOD: Final = 0.25  # [s] between two looks at the simulation's graph
@@ -56,7 +57,7 @@ class WebLink(SimulationLink):
             if failed is None:
                 self.report_failure(text)
             else:
-                failed(LiveError(text, "SK-LIVE-001"))
+                failed(LiveError(text, CODE))
 
         super().ask(question, args, data, self.guarded(then or (lambda *_: None), end), self.guarded(fail))
 
@@ -74,10 +75,8 @@ class WebLink(SimulationLink):
                 call(*args)
             except LiveClosed:
                 raise
-            except KeyError as error:
-                (end or self.report_failure)(f"{error} is missing or unknown")
             except Exception as error:  # noqa: BLE001 - the client may have asked for anything
-                (end or self.report_failure)(f"{type(error).__name__}: {error}")
+                (end or self.report_failure)(client_text(error))
 
         return guarded_call
 
@@ -276,6 +275,7 @@ class WebServer:
                 max_size=LARGEST_IN,
                 compression=None,
                 close_timeout=1,
+                logger=quiet_logger("simkit.web"),
                 **more,
             )
         except OSError as error:
@@ -323,6 +323,8 @@ class WebServer:
 
     def _check(self, connection: Any, request: Any) -> Any:
         """Return the refusal of a client without a right to connect; None for other clients."""
+        if len(request.headers.get_all("Origin")) > 1 or split_address(request.path) is None:
+            return connection.respond(HTTPStatus.BAD_REQUEST, "the request is malformed\n")
         if self._settings["token"]:
             found = self._has_token(request.path)
             if found or (found is None and self._class.can_authenticate_later):

@@ -116,7 +116,7 @@ ModelWorld = Annotated[
 ]
 CmdVel = Annotated[str | None, option("Send a constant velocity: m/s forward, rad/s left.", "V,W", "--cmd-vel")]
 Script = Annotated[Path | None, option("Script of timed commands.", "FILE.yaml", "--script")]
-Seed = Annotated[int | None, option("Seed of all random streams.", "N", "--seed", min=0)]
+Seed = Annotated[int | None, option("Seed of all random streams.", "N", "--seed", min=0, max=2**64 - 1)]
 Renderer = Annotated[
     str | None,
     option(

@@ -24,6 +24,7 @@ from simkit.cli.terminal.plain_console import PlainConsole, is_plain_stream
 from simkit.cli.terminal.task_display import displayed_tasks
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, LoadError, PluginError, SimkitError
+from simkit.memory_error import OutOfMemory, find_memory_error
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderableType
@@ -42,8 +43,10 @@ _MOST_LISTED, _MOST_ERRORS_LISTED = 12, 200  # listed entries of one code
 _OUTPUT_ERRORS = frozenset(
     getattr(errno, name, errno.ENOSPC) for name in ("EPIPE", "EIO", "ENOSPC", "EDQUOT", "EFBIG", "EBADF")
 )
+_LONGEST_NAME = 200
 _PLACES = 8  # listed further places of one entry
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+_NOT_UTF8 = re.compile("[^\\s\"'<>]*[\ud800-\udfff][^\\s\"'<>]*")  # a name with a byte that is not UTF-8
 _STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 
 
@@ -214,12 +217,21 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
             print_error(error)
             raise typer.Exit(error.exit_code) from None
         except OSError as error:
+            if error.errno == errno.ENOMEM:
+                print_error(OutOfMemory())
+                raise typer.Exit(OutOfMemory.exit_code) from None
             if _is_output_failure(error):
                 raise typer.Exit(output_failure_exit_code(error)) from None
             # a file that no other check expected to fail, for example because there are too many open files
             place = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else "a file"
             print_error(InputError(f"SK-CLI-016 cannot read or write {place}: {error.strerror}", "SK-CLI-016"))
             raise typer.Exit(2) from None
+        except Exception as error:
+            found = known_error(error)
+            if found is None:
+                raise
+            print_error(found)
+            raise typer.Exit(found.exit_code) from None
         if code:
             raise typer.Exit(int(code))
 
@@ -241,6 +253,19 @@ def _is_device(stream: int) -> bool:
         return stat.S_ISCHR(os.fstat(stream).st_mode)  # isatty is False for a closed terminal
     except OSError:
         return False
+
+
+def known_error(error: Exception) -> SimkitError | None:
+    """Return the error for the user behind an exception that may come from anywhere; None if it is a fault of simkit.
+
+    These are too little memory, and a name that is not valid UTF-8 where a file format needs text.
+    """
+    word = _NOT_UTF8.search(error.object) if isinstance(error, UnicodeEncodeError) else None
+    if word is not None:
+        name = ascii(word[0] if len(word[0]) <= _LONGEST_NAME else word[0][:_LONGEST_NAME] + "...")
+        text = f"SK-CLI-057 {name} is not valid UTF-8, but the file or program that gets it needs text"
+        return InputError(f"{text}\n    help: rename the file or folder", "SK-CLI-057")
+    return find_memory_error(error)
 
 
 def output_failure_exit_code(error: OSError) -> int:

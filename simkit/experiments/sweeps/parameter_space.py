@@ -25,6 +25,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit.argument_checks import shown
 from simkit.diagnostics import did_you_mean, shorten
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul
@@ -71,6 +72,8 @@ def parameter_space(names: str | Names, description: object) -> ParameterSpace:
     Raises:
         InvalidSpace: the description has an error.
     """
+    if not isinstance(names, (str, tuple, list)):
+        raise InvalidSpace(f"the name {shown(names)} is not a text")
     together = (names,) if isinstance(names, str) else tuple(names)
     if hasattr(description, "ppf"):
         return ParameterSpace(

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Final, cast
 
 from simkit import progress
+from simkit.argument_checks import shown
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.experiments.sweeps.design import SAMPLINGS, Design, Sampling, SweepRow
@@ -159,9 +160,12 @@ def make_design(
 
 def _listed_rows(parameters: Any, problems: list[str]) -> tuple[dict[str, Any], ...]:
     rows = []
+    if not isinstance(parameters, Iterable):
+        problems.append(f"parameters: found {shown(parameters)}; expected a mapping or a list of mappings")
+        return ()
     for number, row in enumerate(parameters):
         if not isinstance(row, Mapping):
-            problems.append(f"parameters: item {number} is {row!r:.60}; expected a mapping of names to values")
+            problems.append(f"parameters: item {number} is {shown(row)}; expected a mapping of names to values")
             continue
         try:
             rows.append({str(name): plain_value(value) for name, value in row.items()})

@@ -13,6 +13,7 @@ from pathlib import Path
 from types import CodeType, FunctionType, MethodType
 from typing import Any, Final, Literal, cast
 
+from simkit.argument_checks import shown
 from simkit.errors import InputError
 from simkit.experiments.sweeps.design import Design, SweepRow
 from simkit.input_file import read_input
@@ -28,6 +29,7 @@ _LARGEST_WORLD: Final = 1 << 30  # [bytes]
 INVALID: Final = "SK-SWEEP-001"
 UNKNOWN_PARAMETER: Final = "SK-SWEEP-002"
 
+_MOST_SEEDS: Final = 1 << 40
 ROW_COLUMNS: Final = ("run", "seed")
 """Columns of a result table before the parameters."""
 RESULT_COLUMNS: Final = ("exit_code", "status", "end", "code", "message", "time", "steps", "state_hash")
@@ -277,10 +279,10 @@ def _duration_problems(duration: Any, has_end: bool) -> list[str]:
 def metric_problems(metrics: Any) -> list[str]:
     """Return a message for each metric that is neither an expression nor a function."""
     if not isinstance(metrics, Mapping):
-        return [f"{INVALID} metrics: found {metrics!r:.60}; expected a mapping of names to expressions or functions"]
+        return [f"{INVALID} metrics: found {shown(metrics)}; expected a mapping of names to expressions or functions"]
     wrong = {name: one for name, one in metrics.items() if not (isinstance(one, str) or callable(one))}
     return [
-        f"{INVALID} metric {name!r}: found {one!r:.60}; expected an expression as text, or a function of the simulation"
+        f"{INVALID} metric {name!r}: found {shown(one)}; expected an expression, or a function of the simulation"
         for name, one in wrong.items()
     ]
 
@@ -291,7 +293,7 @@ def spec_of_world(world: Any, duration: float | None, until: str) -> RunSpec:
         duration = cast(Any, duration).item()
     problems = [] if duration is None else _duration_problems(duration, bool(until or getattr(world, "until", "")))
     if not isinstance(world, (str, os.PathLike, RunSpec)):
-        problems.append(f"{INVALID} world: found {world!r:.60}; expected a file, a bare name, XML text or a RunSpec")
+        problems.append(f"{INVALID} world: found {shown(world)}; expected a file, a bare name, XML text or a RunSpec")
     raise_problems(problems)
     if isinstance(world, RunSpec):
         changes: dict[str, Any] = {} if duration is None else {"duration": duration, "timeout": None}
@@ -311,10 +313,12 @@ def sequence_of_seeds(seeds: int | Sequence[int] | range | None, default: int) -
     if seeds is None:
         return (default,)
     given: Any = seeds  # from YAML, or from a caller that does not check types
-    found = range(given) if isinstance(given, int) and not isinstance(given, bool) else given
+    found = range(given) if isinstance(given, int) and not isinstance(given, bool) and given < _MOST_SEEDS else given
     if isinstance(found, (str, bool)) or not hasattr(found, "__iter__"):
         found = [-1]
     listed = found if isinstance(found, range) else tuple(getattr(one, "__index__", lambda: -1)() for one in found)
     if not listed or min(listed[0], listed[-1]) < 0 or (not isinstance(listed, range) and min(listed) < 0):
-        raise InputError(f"{INVALID} seeds: found {seeds!r}; expected a count, or whole numbers of at least 0", INVALID)
+        raise InputError(
+            f"{INVALID} seeds: found {shown(seeds)}; expected a count, or whole numbers of at least 0", INVALID
+        )
     return listed

@@ -39,6 +39,7 @@ from simkit.plugins.baxter.controller_declarations import (
 )
 from simkit.plugins.baxter.inverse_kinematics import IK_SERVICE, IK_TYPE, ArmInverseKinematics
 from simkit.plugins.baxter.robot_states import BaxterStates, tip_of
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, block, boolean
 from simkit.plugins.ros2_control.control_plugin import ControlOptions, GazeboRosControl
 from simkit.plugins.ros2_control.controllers.baxter_controllers import (
@@ -304,7 +305,7 @@ class BaxterControl(GazeboRosControl):
             what = f"a joint command with {len(names)} names and {len(values)} values is ignored"
             self._once.left_out("length", what, "give one value for each name")
             return
-        if not all(math.isfinite(value) for value in values):
+        if not are_usable(*values):
             self._once.not_finite("a joint command")
             return
         if mode not in (POSITION_MODE, VELOCITY_MODE, TORQUE_MODE, RAW_POSITION_MODE):
@@ -345,7 +346,7 @@ class BaxterControl(GazeboRosControl):
     def _on_head_pan(self, message: HeadPanCommand) -> None:
         if self._is_disabled("a command for the head"):
             return
-        if not (math.isfinite(message.target) and math.isfinite(message.speed_ratio)):
+        if not are_usable(message.target, message.speed_ratio):
             self._once.not_finite("a command for the head")
             return
         head: BaxterHeadController = self.controller("head_position_controller")

@@ -11,6 +11,7 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import find_named_link
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, choice, text
 from simkit.pose import Vector, quat_rotate
 
@@ -60,7 +61,7 @@ class GazeboRosForce(ModelPlugin):
     def _on_wrench(self, message: Wrench) -> None:
         f, t = message.force, message.torque
         wrench = np.array((f.x, f.y, f.z, t.x, t.y, t.z), float)
-        if not np.isfinite(wrench).all():
+        if not are_usable(*wrench):
             self._once.not_finite("a wrench")
             return
         self._wrench = wrench

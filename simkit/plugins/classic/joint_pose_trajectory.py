@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final
 
 from simkit.errors import InputError
@@ -11,6 +10,7 @@ from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import listens
 from simkit.plugins.joints.joint_axis import suggest_names
 from simkit.plugins.joints.joint_trajectory import nanoseconds
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, choice, number, text
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
             return
         points = [(tuple(float(v) for v in p.positions), nanoseconds(p.time_from_start)) for p in message.points]
         for i, (positions, _) in enumerate(points):
-            if not all(math.isfinite(v) for v in positions):
+            if not are_usable(*positions):
                 self._once.left_out("finite", f"a trajectory is ignored: point {i} has a NaN or infinite number")
                 return
         self._names, self._points, self._model_name = names, points, model.scoped

@@ -13,6 +13,7 @@ from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMov
 from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, TrueMotion, planar_covariance
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS
 from simkit.plugins.endpoints import listens, publishes
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import boolean, number, text
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, quat_from_rpy
@@ -135,7 +136,7 @@ class GazeboRosPlanarMove(KinematicPlugin):
     def _on_command(self, message: Twist | TwistStamped) -> None:
         twist = cast("Twist", getattr(message, "twist", message))
         requested = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
-        if all(map(math.isfinite, requested)):
+        if are_usable(*requested):
             self._requested, self._requested_ns = requested, self.sim.time_ns
         else:
             self._once.not_finite()

@@ -23,6 +23,7 @@ from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.fluids.tuple_vectors import to_world_axes
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.joints.joint_axis import JointAxis
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, blocks, boolean, integer, number, text
 
 if TYPE_CHECKING:
@@ -146,7 +147,7 @@ class UsvThrust(ModelPlugin):
 
     def _number(self, message: Float32) -> float | None:
         value = float(message.data)
-        if math.isfinite(value):
+        if are_usable(value):
             return value
         self._once.not_finite()
         return None

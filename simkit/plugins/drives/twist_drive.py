@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import abc
-import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, cast
@@ -15,6 +14,7 @@ from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odomet
 from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimitOptions, limit_each
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.find_entities import read_topic
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, number, text
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ class TwistDrive(ModelPlugin):
     def on_twist(self, message: Twist | TwistStamped) -> None:
         """Set the target speeds from a `Twist` or `TwistStamped`."""
         speeds = self.speeds_of(cast("Twist", getattr(message, "twist", message)))
-        if all(map(math.isfinite, speeds)):
+        if are_usable(*speeds):
             self.aim(speeds)
         else:
             self._once.not_finite()

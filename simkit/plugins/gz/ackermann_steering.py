@@ -14,6 +14,7 @@ from simkit.plugins.drives.twist_drive import TwistDrive, WheeledDriveOptions
 from simkit.plugins.drives.wheel_joints import find_drive_joint, steering_angles
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import read_topic
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import OptionsOf, boolean, integer, number, text, texts
 
 if TYPE_CHECKING:
@@ -179,7 +180,7 @@ class AckermannSteering(TwistDrive):
             self._steer(float(message.position[self._number]))
 
     def _steer(self, angle: float) -> None:
-        if math.isfinite(angle):
+        if are_usable(angle):
             self.aim((0.0, angle))
         else:
             self._once.not_finite()

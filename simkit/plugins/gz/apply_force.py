@@ -5,7 +5,6 @@ The systems are `gz::sim::systems::ApplyLinkWrench` and `gz::sim::systems::Apply
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeVar
@@ -19,6 +18,7 @@ from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import read_required_name, read_topic
 from simkit.plugins.joints.joint_axis import JointAxis, find_joints
 from simkit.plugins.joints.joint_commands import DOUBLE
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, blocks, boolean, choice, text, texts, vector3
 from simkit.plugins.world.service_entities import RequestRefused, entity_of
 from simkit.pose import Vector
@@ -164,7 +164,7 @@ class ApplyLinkWrench(WorldPlugin):
     def _read_wrench(self, message: EntityWrench) -> _Wrench | None:
         found = self._name_and_type(message.entity)
         force, torque = _xyz(message.wrench.force), _xyz(message.wrench.torque)
-        if not all(map(math.isfinite, (*force, *torque))):
+        if not are_usable(*force, *torque):
             self._once.not_finite("a wrench")
             return None
         return None if found is None else _Wrench(*found, force, torque)
@@ -251,10 +251,10 @@ class ApplyJointForce(ModelPlugin):
 
     def _on_command(self, message: Float64) -> None:
         effort = float(message.data)
-        if math.isfinite(effort):
+        if are_usable(effort):
             self._effort = effort
         else:
-            self._once.left_out("finite", f"the command {effort} is ignored; expected a finite number")
+            self._once.left_out("finite", f"the command {effort} is ignored; expected a finite number up to 1e10")
 
     def explain_divergence(self, name: str) -> str:
         """Describe the effort of this plugin on a joint whose physics diverged, or return an empty text."""

@@ -14,7 +14,6 @@ The added mass acts through the acceleration of the last steps: see `simkit.plug
 
 from __future__ import annotations
 
-import math
 import re
 from typing import TYPE_CHECKING, Final
 
@@ -28,6 +27,7 @@ from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.fluids.added_mass import SmoothedAcceleration, own_inertia
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3, without_effect
 from simkit.pose import Vector
 
@@ -144,7 +144,7 @@ class Hydrodynamics(ModelPlugin):
 
     def _on_current(self, message: Vector3) -> None:
         current = float(message.x), float(message.y), float(message.z)
-        if all(map(math.isfinite, current)):
+        if are_usable(*current):
             self._current = np.array(current)
         else:
             self._once.not_finite()

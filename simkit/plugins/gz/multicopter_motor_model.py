@@ -26,6 +26,7 @@ from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.joint_commands import ACTUATORS
 from simkit.plugins.joints.propeller_joint import PropellerJoint, propeller_inertia
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, choice, integer, number, text, without_effect
 
 if TYPE_CHECKING:
@@ -109,7 +110,7 @@ class MulticopterMotorModel(ModelPlugin):
         if self._number >= len(speeds):
             what = f"a message has {len(speeds)} velocities and none for motor {self._number}"
             self._once.left_out("short", f"{what}; the message is ignored")
-        elif not math.isfinite(speeds[self._number]):
+        elif not are_usable(speeds[self._number]):
             self._once.left_out("finite", f"the command {speeds[self._number]} is ignored; expected a finite number")
         else:
             self.command(float(speeds[self._number]))

@@ -8,7 +8,6 @@ speeds of the rotors. It reads true values of the simulation, with noise on requ
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
@@ -24,6 +23,7 @@ from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import find_named_joint, find_named_link
 from simkit.plugins.fluids.link_forces import moving_data
 from simkit.plugins.gz.multicopter_motor_model import MulticopterMotorModel
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, block, blocks, choice, number, text, vector3
 from simkit.pose import Vector
 
@@ -141,7 +141,7 @@ class MulticopterVelocityControl(ModelPlugin):
     def _on_command(self, message: Twist | TwistStamped) -> None:
         twist = cast("Twist", getattr(message, "twist", message))
         values = [float(v) for v in (twist.linear.x, twist.linear.y, twist.linear.z, twist.angular.z)]
-        if not all(map(math.isfinite, values)):
+        if not are_usable(*values):
             self._once.not_finite()
             return
         (x, y, z), most = self.options.most_linear, abs(self.options.most_angular[2])

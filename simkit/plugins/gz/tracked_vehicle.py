@@ -21,6 +21,7 @@ from simkit.plugins.drives.tracks import TrackOdometry, belt_of, needs_direction
 from simkit.plugins.drives.twist_drive import OdometryOptions, Speeds, TwistDrive
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import find_link, find_named_link, read_topic
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, number, text, vector3
 from simkit.plugins.publish_on_demand import publish_while_subscribed
 from simkit.pose import Pose
@@ -119,7 +120,7 @@ class TrackController(ModelPlugin):
 
     def _on_speed(self, message: msgs.Float64) -> None:
         speed = float(message.data)
-        if not math.isfinite(speed):
+        if not are_usable(speed):
             self._once.not_finite()
             return
         self._target_speed = speed

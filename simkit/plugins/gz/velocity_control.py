@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -18,6 +17,7 @@ from simkit.plugins.drives.kinematic_motion import (
 )
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.find_entities import find_link
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, OptionsOf, text, texts, vector3
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ class VelocityControl(KinematicPlugin):
     def _motion_of(self, message: Any) -> Motion | None:
         twist = getattr(message, "twist", message)
         linear, angular = ((float(v.x), float(v.y), float(v.z)) for v in (twist.linear, twist.angular))
-        if all(map(math.isfinite, (*linear, *angular))):
+        if are_usable(*linear, *angular):
             return linear, angular
         self._once.not_finite()
         return None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import abc
-import math
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from simkit.msgs.topic_names import valid_topic
@@ -14,7 +13,7 @@ from simkit.plugins.joints.kinematic_trees import KinematicTrees
 from simkit.plugins.joints.pid import FIELDS, Pid, PidOptions, declare_pid
 from simkit.plugins.joints.velocity_servo import VelocityServo
 from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.one_time_warnings import OneTimeWarnings, are_usable
 from simkit.plugins.options import OptionsOf, boolean, integer, text, texts
 
 if TYPE_CHECKING:
@@ -160,10 +159,10 @@ class JointCommander(ControlledJoints, ModelPlugin):
             self._once.left_out("short", f"{what}; the message is ignored")
 
     def _aim(self, target: float) -> None:
-        if math.isfinite(target):
+        if are_usable(target):
             self._target = target
         else:
-            self._once.left_out("finite", f"the command {target} is ignored; expected a finite number")
+            self._once.left_out("finite", f"the command {target} is ignored; expected a finite number up to 1e10")
 
     def declare_controller(self, first: Pid) -> None:
         """Set the controller and declare its gains as live parameters.

@@ -6,6 +6,8 @@ from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
+from simkit.plugins.one_time_warnings import are_usable
+
 if TYPE_CHECKING:
     from simkit.msgs import Duration, JointTrajectory, Time
 
@@ -68,7 +70,7 @@ def trajectory_faults(names: list[str], points: list[TrajectoryPoint]) -> str:
     before = 0
     for i, point in enumerate(points):
         fields = point.positions, point.velocities, point.accelerations, point.efforts
-        if not all(abs(value) < float("inf") for values in fields for value in values):
+        if not all(are_usable(*values) for values in fields):
             return f"point {i} has a NaN or infinite number"
         if point.time < before:
             return f"point {i} is at {point.time / SECOND:g} s, but the point before it is at {before / SECOND:g} s"

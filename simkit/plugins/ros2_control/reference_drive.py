@@ -16,6 +16,7 @@ from simkit.float_sum import float_sum
 from simkit.params import Params
 from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, DeadReckoning, Motion
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros_parameter_block import read_names, read_numbers
 from simkit.pose import Pose
@@ -119,7 +120,7 @@ class ReferenceDrive(Controller):
             return
         twist: Any = getattr(message, "twist", message)
         reference = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
-        if not all(map(math.isfinite, reference)):
+        if not are_usable(*reference):
             self._warn("finite", "a command has a value that is NaN or infinite; the command is ignored")
             return
         header = getattr(message, "header", None)

@@ -219,11 +219,13 @@ class Rosbag2Folder(McapBag):
 
         target = self.folder / "metadata.yaml"
         draft = target.with_suffix(".yaml.tmp")
-        draft.write_text(
-            yaml.dump({"rosbag2_bagfile_information": self._information()}, Dumper=_plain_dumper(), sort_keys=False),
-            encoding="utf-8",
-        )
-        draft.replace(target)
+        content = {"rosbag2_bagfile_information": self._information()}
+        try:
+            draft.write_text(yaml.dump(content, Dumper=_plain_dumper(), sort_keys=False), encoding="utf-8")
+            draft.replace(target)
+        except BaseException:  # a full disk, or an interrupt
+            draft.unlink(missing_ok=True)
+            raise
 
     def _information(self) -> dict[str, object]:
         start = {"nanoseconds_since_epoch": self.span.start}

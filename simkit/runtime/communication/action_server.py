@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from simkit.argument_checks import check_function
-from simkit.errors import ActionError, InputError, PluginError, SimkitError, SubscriberError, callback_name
+from simkit.errors import ActionError, InputError, PluginError, SimkitError, SubscriberError, callback_name, cause_text
 from simkit.in_process import InProcess
 from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_arguments import checked_message
@@ -147,7 +147,7 @@ class GoalHandle(InProcess):
             if isinstance(error, SimkitError) and not isinstance(error, InputError):
                 raise
             topic, now = f"{self._action.name}/_action/{part}", self._action.engine.time
-            raise SubscriberError(topic, callback_name(callback), now, repr(error)) from error
+            raise SubscriberError(topic, callback_name(callback), now, cause_text(error)) from error
 
     def _as_message(self, value: Message, part: str) -> Message:
         return checked_message(
@@ -235,7 +235,7 @@ class Action(InProcess):
             raise
         except Exception as error:
             name, where = getattr(owner, "name", "") or self.name, str(getattr(owner, "where", ""))
-            raise PluginError(name, hook, self.engine.time, where, repr(error)) from error
+            raise PluginError(name, hook, self.engine.time, where, cause_text(error)) from error
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name!r} {self.type_name}>"

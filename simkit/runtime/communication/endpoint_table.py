@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar, cast
 
 from simkit import msgs
 from simkit.argument_checks import check_text
@@ -105,12 +105,13 @@ class EndpointTable(Generic[E]):
         """Report that another endpoint has this name already; return false if there is none.
 
         For a plugin of simkit this is a warning, because the file names the endpoint and Gazebo continues, too. The new
-        endpoint is then reached when the other one is removed.
+        endpoint is then reached when the other one is removed. For a user's plugin this is an error of the file while
+        the world is loaded, unless its policy is to be disabled.
 
         Raises:
-            ServiceError, ActionError: a script or a user's plugin opens an endpoint whose name is already used.
+            ServiceError, ActionError: a script, or a user's plugin during a run, opens an endpoint whose name is used.
         """
-        existing, owner = self._find(name), self._bus.owner
+        existing, owner = self._find(name), cast("Any", self._bus.owner)
         if existing is None or getattr(existing, "yields", False):
             return False
         other = existing.owner
@@ -121,11 +122,17 @@ class EndpointTable(Generic[E]):
             whose = f", of plugin {getattr(other, 'name', '')!r} ({getattr(other, 'where', '')})"
         problem = f"{self.article} {self.kind} {name!r} exists already{whose}"
         params = getattr(owner, "params", None)
-        if params is None or not type(owner).__module__.startswith("simkit."):
-            raise self.error(problem)
         title, where = getattr(owner, "name", ""), getattr(owner, "where", NOWHERE)
         hint = "give the plugins different names or namespaces, or a <remapping>"
-        params.diagnostics.warning("SK-SERVICE-004", f"plugin {title!r} cannot be reached: {problem}", where, hint)
+        if params is not None and type(owner).__module__.startswith("simkit."):
+            params.diagnostics.warning("SK-SERVICE-004", f"plugin {title!r} cannot be reached: {problem}", where, hint)
+            return True
+        if params is None:
+            raise self.error(f"{self.error.code} {problem}")
+        text = f"plugin {title!r}: {problem}"
+        if self._bus.refuses_clashes or owner.sim.engine.faults.policy(owner) == "disable":
+            raise self.error(f"{self.error.code} {text} ({where})\n    help: {hint}")
+        params.diagnostics.error(self.error.code, text, where, hint)
         return True
 
     def _find(self, name: str) -> E | None:

@@ -8,7 +8,7 @@ from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
 
-from simkit.argument_checks import check_text, checked_number, shown
+from simkit.argument_checks import check_list, check_text, checked_number, shown
 from simkit.errors import ParameterError
 from simkit.in_process import InProcess
 from simkit.msgs.topic_names import absolute_name
@@ -85,7 +85,7 @@ class Parameter(InProcess, Generic[T]):
         """
         found = _convert(value, self.value)
         if found is None or not self.is_within(found):
-            raise ParameterError(f"{self.node} {self.name}: found {value!r}; expected {self.allowed}")
+            raise ParameterError(f"{self.node} {self.name}: found {shown(value)}; expected {self.allowed}")
         return found  # type: ignore[no-any-return]
 
     def take(self, value: T) -> None:
@@ -125,6 +125,7 @@ def checked_parameter(node: str, name: str, value: object, **options: Any) -> An
     """
     check_text(node, "node")
     check_text(name, "name")
+    check_list(options.get("choices", ()), object, "choices", "values")
     bounds = {end: options.get(end) for end in ("minimum", "maximum")}
     bounds = {end: None if found is None else checked_number(found, end) for end, found in bounds.items()}
     if isinstance(value, (np.generic, np.ndarray)):

@@ -229,13 +229,18 @@ class ExternalPublisher(Publisher):
 
 
 class Listener(InProcess):
-    """Command input; its callback is called between two steps."""
+    """Command input; its callback is called between two steps.
 
-    __slots__ = ("_bus", "active", "callback", "owner", "topic", "types")
+    Attributes:
+        last: last message, for the explanation of a divergence; None before the first one.
+    """
+
+    __slots__ = ("_bus", "active", "callback", "last", "owner", "topic", "types")
 
     def __init__(self, bus: PublishingBus, topic: str, types: Sequence[str], callback: Callback, owner: object) -> None:
         self._bus, self.topic, self.types, self.callback, self.owner = bus, topic, tuple(types), callback, owner
         self.active = True
+        self.last: Message | None = None
 
     def close(self) -> None:
         """Close the command input permanently."""

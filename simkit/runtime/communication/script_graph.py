@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from simkit.argument_checks import check_function
 from simkit.runtime.communication.parameter import Parameter, checked_parameter
 from simkit.runtime.communication.script_callback import ScriptCallback
 
@@ -213,6 +214,8 @@ class ScriptGraph:
             ParameterError: the node has a parameter of that name, or the value is not allowed.
         """
         self.engine.check_open()
+        if on_change is not None:
+            check_function(on_change, "on_change")
         parameter = checked_parameter(
             node,
             name,
@@ -221,7 +224,9 @@ class ScriptGraph:
             maximum=maximum,
             choices=choices,
             description=description,
-            on_change=on_change and ScriptCallback(self.communication.bus, on_change, "parameter", name),
+            on_change=None
+            if on_change is None
+            else ScriptCallback(self.communication.bus, on_change, "parameter", name),
         )
         self.communication.live_parameters.declare(self.communication.services, parameter)
         return parameter

@@ -22,6 +22,7 @@ from simkit.errors import (
     SimkitError,
     SubscriberError,
     callback_name,
+    cause_text,
 )
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
@@ -220,7 +221,7 @@ class ServiceTable(EndpointTable[Service]):
             if isinstance(error, SimkitError) and not isinstance(error, InputError):
                 raise
             name, now = callback_name(call.on_done), self._engine.time
-            raise SubscriberError(call.service.name, name, now, repr(error), "service") from error
+            raise SubscriberError(call.service.name, name, now, cause_text(error), "service") from error
 
     def _answer(self, service: Service, request: Message) -> Message:
         owner, hook = service.owner, f"service {service.name}"
@@ -234,7 +235,7 @@ class ServiceTable(EndpointTable[Service]):
             if hasattr(owner, "on_error"):
                 self._engine.faults.meet(owner, hook, error)
                 raise ServiceError(f"service {service.name!r} raised, and plugin {name!r} is disabled") from error
-            raise PluginError(name, hook, self._engine.time, where, repr(error)) from error
+            raise PluginError(name, hook, self._engine.time, where, cause_text(error)) from error
         finally:
             self._answering -= 1
 

@@ -342,6 +342,7 @@ class TopicBus:
     def _deliver_input(self, topic: str, message: Message) -> None:
         for listener in tuple(self._listeners.get(topic, ())):
             if listener.active and msgs.type_name(message) in listener.types:
+                listener.last = message
                 try:
                     listener.callback(message)
                 except SimkitError:

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged, SubscriberError, callback_name
+from simkit.errors import (
+    InputError,
+    PluginError,
+    SimkitError,
+    SimulationDiverged,
+    SubscriberError,
+    callback_name,
+    cause_text,
+)
 from simkit.runtime.communication.subscription import MAX_KEPT_MESSAGES
 from simkit.runtime.engine.plugin_faults import is_guarded
 
@@ -37,7 +45,7 @@ class TopicFailures:
         if subscription.on_error == "stop":
             if isinstance(error, SimkitError) and not isinstance(error, InputError):
                 raise error  # unchanged, so that the publishing plugin is not blamed
-            raise SubscriberError(topic, name, self.now(), repr(error)) from error
+            raise SubscriberError(topic, name, self.now(), cause_text(error)) from error
         subscription.close()
         message = f"subscriber {name} of {topic!r} raised at t={self.now():.6g} s and is closed: {error!r}"
         self._reports.warning("SK-TOPIC-003", message)
@@ -46,8 +54,9 @@ class TopicFailures:
         """Return the error for a command input whose callback raised."""
         owner, hook = listener.owner, f"its callback for {listener.topic!r}"
         if hasattr(owner, "where"):
-            return PluginError(str(getattr(owner, "name", owner)), hook, self.now(), str(owner.where), repr(error))
-        return SubscriberError(listener.topic, callback_name(listener.callback), self.now(), repr(error))
+            name = str(getattr(owner, "name", owner))
+            return PluginError(name, hook, self.now(), str(owner.where), cause_text(error))
+        return SubscriberError(listener.topic, callback_name(listener.callback), self.now(), cause_text(error))
 
     def report_full(self, topic: str) -> None:
         """Warn that a subscription without `keep` has received more messages than it can keep."""

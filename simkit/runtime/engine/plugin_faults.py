@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
-from simkit.errors import InputError, InterfaceError, PluginError, SimkitError, SimulationDiverged
+from simkit.errors import InputError, InterfaceError, PluginError, SimkitError, SimulationDiverged, cause_text
+from simkit.memory_error import find_memory_error
 from simkit.run_spec import PluginErrorPolicy
 
 if TYPE_CHECKING:
@@ -149,10 +150,12 @@ class PluginFaults:
             SimkitError: the exception itself, if the plugin did not cause it: the physics diverged, there is no
                 renderer, another plugin stopped the run, or the definition of a type has errors.
         """
+        if too_little := find_memory_error(error):
+            raise too_little from error
         if isinstance(error, InterfaceError) or (isinstance(error, SimkitError) and not isinstance(error, InputError)):
             raise error
         if self.policy(plugin) == "stop":
-            raise PluginError(plugin.name, hook, self._engine.time, str(plugin.where), repr(error)) from error
+            raise PluginError(plugin.name, hook, self._engine.time, str(plugin.where), cause_text(error)) from error
         if (
             isinstance(error, RecursionError)
             and sum(c.plugin is plugin for c in active_plugin_calls(sys._getframe())) > 1
@@ -273,13 +276,14 @@ def active_plugin_calls(frame: FrameType | None) -> list[PluginCall]:
 _MAX_EXPLANATIONS = 3
 
 
-def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged) -> None:
-    """Add the explanations of plugins to a divergence error.
+def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged, commands: Sequence[str] = ()) -> None:
+    """Add the explanations of plugins and the largest commands to a divergence error.
 
     A plugin explains with its method `explain_divergence(name) -> str`. The name is that of the diverged joint. If no
     plugin drives the joint, the name is that of the model.
     """
     found = _explanations(plugins, error.joint) or _explanations(plugins, error.joint.split("::")[0])
+    found = [*commands, *found]
     if found:
         more = "; ".join(found[:_MAX_EXPLANATIONS]) + (
             f"; and {len(found) - _MAX_EXPLANATIONS} more" if len(found) > _MAX_EXPLANATIONS else ""

@@ -40,6 +40,8 @@ class Handle(InProcess):
 class UnknownName(KeyError):
     """Unknown name; the message suggests the closest name."""
 
+    code = "SK-NAME-006"
+
     def __str__(self) -> str:
         return str(self.args[0])
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from simkit.argument_checks import checked_number, checked_vector, wrong_value
+from simkit.argument_checks import checked_integer, checked_number, checked_vector, wrong_value
 from simkit.errors import InputError
 from simkit.linear_algebra import matmul
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
@@ -288,6 +288,7 @@ class Joint(TunableJoint):
 
     def axis_velocity_limit(self, axis: int) -> float:
         """Return the velocity limit of an axis [rad/s or m/s]."""
+        axis = checked_integer(axis, "axis", 0, len(self._velocity_limit) - 1)
         limit: float = self._velocity_limit.item(axis)
         return limit
 

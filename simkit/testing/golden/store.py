@@ -83,6 +83,7 @@ def write_golden(
                 os.fsync(handle)
             _remove_old_data(place, name)
     except OSError as error:
+        _remove_unfinished(place, name)
         message = f"SK-GOLDEN-005 cannot write {place}: {error.strerror or error}"
         raise InputError(message, "SK-GOLDEN-005") from None
 
@@ -209,11 +210,15 @@ def _damaged_error(path: Path, what: str) -> InputError:
 def _write_atomically(folder: Path, name: str, data: bytes) -> None:
     """Write a file atomically, so that it is complete or absent."""
     left = folder / f".golden-{os.getpid()}.tmp"
-    with open(left, "wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-    left.replace(folder / name)
+    try:
+        with open(left, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        left.replace(folder / name)
+    except BaseException:  # a full disk, or an interrupt
+        left.unlink(missing_ok=True)
+        raise
 
 
 @contextmanager
@@ -250,6 +255,16 @@ def _locked_file(path: Path) -> Iterator[None]:
                     yield
                 finally:
                     file_lock.remove_locked_file(file, path)
+
+
+def _remove_unfinished(place: Path, name: str) -> None:
+    """Remove the data file of a golden run that could not be written, unless a complete golden run has it."""
+    main = place / MAIN_FILE
+    with suppress(OSError):
+        if not main.is_file() or name.encode() not in main.read_bytes():
+            (place / name).unlink(missing_ok=True)
+        if not any(place.iterdir()):
+            place.rmdir()
 
 
 def _remove_old_data(folder: Path, name: str) -> None:

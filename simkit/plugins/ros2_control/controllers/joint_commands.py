@@ -13,6 +13,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.params import Params
+from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.joint_pids import JointPids
@@ -68,8 +69,8 @@ class ForwardCommandController(Controller):
         problem = ""
         if len(values) != len(self._names):
             problem = f"command size ({len(values)}) does not match number of interfaces ({len(self._names)})"
-        elif not np.isfinite(values).all():
-            problem = f"a command has NaN or infinite values: {values.tolist()}"
+        elif not are_usable(*values.tolist()):
+            problem = f"a command has NaN, infinite or too large values: {values.tolist()}"
         if problem:
             message = f"controller {self.name!r}: {problem}; the command is ignored"
             self.sim.engine.reports.warning("SK-CONTROL-016", message, self.params.where)
@@ -201,7 +202,7 @@ class _LoopController(Controller):
     def set_command(self, data: Sequence[float]) -> None:
         """Set the targets; a command of wrong length or with NaN or infinite values is reported and ignored."""
         values = np.array(data, dtype=float)
-        if len(values) == len(self._joints) and np.isfinite(values).all():
+        if len(values) == len(self._joints) and are_usable(*values.tolist()):
             self._target = values
             return
         found = f"a command of {len(values)} numbers" if len(values) != len(self._joints) else f"{values.tolist()}"

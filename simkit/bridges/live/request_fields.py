@@ -1,0 +1,128 @@
+"""Fields of a client's request, checked when they are read, and the texts of errors for clients.
+
+A client gets a code and plain English. The texts of Python's own exceptions stay inside.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Final, TypeVar, cast
+
+from simkit.argument_checks import shown
+from simkit.errors import InputError
+
+T = TypeVar("T")
+CODE: Final = "SK-LIVE-008"
+_KINDS: Final[Mapping[type, str]] = MappingProxyType(
+    {
+        str: "a text",
+        bool: "true or false",
+        int: "a whole number",
+        float: "a finite number",
+        list: "a list",
+        dict: "an object",
+    }
+)
+_REQUIRED: Final = object()
+_HAS_CODE: Final = re.compile(r"SK-[A-Z]+-\d{3}")
+
+
+class RequestRefused(InputError):
+    """Error for a request that a server refuses; the message has the reason."""
+
+    code = CODE
+
+
+def read_field(fields: Mapping[str, Any], name: str, kind: type[T], default: object = _REQUIRED) -> T:
+    """Return a field of a request.
+
+    Args:
+        fields: request.
+        name: name of the field.
+        kind: class of its value: str, bool, int, float (any finite number), list or dict.
+        default: value if the field is missing or null.
+
+    Raises:
+        RequestRefused: the field is missing or has a value of another kind.
+    """
+    value: Any = fields.get(name)
+    if value is None and default is not _REQUIRED:
+        return default  # type: ignore[return-value]  # the caller chooses a value of the kind
+    if name not in fields:
+        raise RequestRefused(f"{name!r} is missing; expected {_KINDS[kind]}")
+    return checked_value(value, f"{name!r}", kind)
+
+
+def checked_value(value: Any, name: str, kind: type[T]) -> T:
+    """Return a value of a request if it has a kind; see `read_field`.
+
+    Raises:
+        RequestRefused: the value has another kind.
+    """
+    found: Any = value
+    if kind is float and type(found) is int and abs(found) <= sys.float_info.max:
+        found = float(found)  # JSON has integers that no float can hold
+    if type(found) is not kind or (kind is float and not abs(cast("float", found)) <= sys.float_info.max):
+        raise RequestRefused(f"{name} must be {_KINDS[kind]}, got {shown(value)}")
+    return found
+
+
+def read_items(fields: Mapping[str, Any], name: str, kind: type[T]) -> list[T]:
+    """Return a field that is a list of values of one kind.
+
+    Raises:
+        RequestRefused: the field is missing or has another value.
+    """
+    return [checked_value(item, f"an item of {name!r}", kind) for item in read_field(fields, name, list)]
+
+
+def read_identifier(fields: Mapping[str, Any], name: str = "id") -> str | int | float | None:
+    """Return the name or number that a client has given to a request; None without one.
+
+    Raises:
+        RequestRefused: it is neither a text nor a finite number.
+    """
+    found = fields.get(name)
+    if found is None or isinstance(found, str):
+        return found
+    if isinstance(found, bool) or not isinstance(found, (int, float)) or not abs(found) <= sys.float_info.max:
+        raise RequestRefused(f"{name!r} must be a text or a number, got {shown(found)}")
+    return found
+
+
+def read_json(data: str | bytes) -> Any:
+    """Return the value of a JSON text.
+
+    Raises:
+        RequestRefused: the text is not JSON, or is nested too deeply.
+    """
+    try:
+        return json.loads(data)
+    except json.JSONDecodeError as error:
+        raise RequestRefused(f"the message is not JSON: {error}") from None
+    except UnicodeDecodeError:
+        raise RequestRefused("the message is not JSON: it is not valid UTF-8") from None
+    except ValueError:  # Python refuses to read very long integers
+        raise RequestRefused("the message has a number with too many digits") from None
+    except RecursionError:
+        raise RequestRefused("the message is nested too deeply") from None
+
+
+def client_text(error: BaseException) -> str:
+    """Return the text of an error for a client, with its code. An error without a code of simkit is not shown."""
+    code = getattr(error, "code", "")
+    if isinstance(code, str) and code.startswith("SK-"):
+        text = str(error)
+        return text if code in text else f"{code} {text}"
+    if isinstance(error, RecursionError):
+        return f"{CODE} the request is nested too deeply"
+    return f"{CODE} the request cannot be executed: a field is missing or has a value that is not allowed"
+
+
+def with_code(text: str) -> str:
+    """Return the text of an error for a client, with a code if it has none."""
+    return text if _HAS_CODE.search(text) else f"{CODE} {text}"

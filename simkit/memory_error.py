@@ -1,0 +1,104 @@
+"""Recognition of errors that mean too little memory, whichever library raises them."""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Final
+
+from simkit.errors import SimkitError
+
+CODE: Final = "SK-CORE-008"
+# Address space [MiB] that the imports of NumPy and MuJoCo take, and what OpenBLAS takes for each thread. With less,
+# OpenBLAS ends the process by itself.
+_IMPORTS, _THREAD = 200, 40
+_TEXTS: Final = (
+    "could not allocate memory",  # MuJoCo
+    "failed to allocate",
+    "unable to allocate",
+    "cannot allocate memory",
+    "failed to map segment",  # the loader of shared libraries
+    "memory allocation failed",  # libxml2
+    "out of memory",
+    "insufficient memory",  # OpenCV
+    "can't start new thread",
+    "bad_alloc",
+)
+
+
+class OutOfMemory(SimkitError, MemoryError):
+    """End of the available memory, or of the memory that a limit allows."""
+
+    code = CODE
+
+    def __init__(self, reason: str = "") -> None:
+        text = f"{CODE} too little memory{f': {reason}' if reason else ''}"
+        super().__init__(f"{text}\n    help: {remedy()}")
+
+
+def remedy() -> str:
+    """Return what helps against too little memory, with the limit of this process if there is one."""
+    limit = memory_limit()
+    rest = "close other programs, or use a smaller world, fewer --jobs or smaller images"
+    return f"raise the limit of this process (ulimit -v), now {limit >> 20} MiB; or {rest}" if limit else rest
+
+
+def memory_limit() -> int:
+    """Return the limit of the address space of this process [bytes]; 0 without one."""
+    if sys.platform == "win32":
+        return 0
+    import resource
+
+    found = [resource.getrlimit(getattr(resource, name))[0] for name in ("RLIMIT_AS", "RLIMIT_DATA")]
+    return min((limit for limit in found if limit != resource.RLIM_INFINITY), default=0)
+
+
+def check_memory_limit() -> None:
+    """Raise OutOfMemory if a limit of the process is so small that NumPy and MuJoCo cannot be imported."""
+    limit = memory_limit()
+    if limit:
+        threads = os.environ.get("OPENBLAS_NUM_THREADS", "")
+        count = int(threads) if threads.isdecimal() and len(threads) < 4 else os.cpu_count() or 1
+        least = _IMPORTS + _THREAD * max(1, count)
+        if limit < least << 20:
+            raise OutOfMemory(f"simkit needs at least {least} MiB")
+
+
+def find_memory_error(error: BaseException) -> OutOfMemory | None:
+    """Return the error for too little memory, if this is the cause of an exception."""
+    seen: set[int] = set()
+    found: BaseException | None = error
+    while found is not None and id(found) not in seen:
+        seen.add(id(found))
+        if isinstance(found, OutOfMemory):
+            return found
+        if _is_memory_error(found):
+            return OutOfMemory()
+        found = found.__cause__ or found.__context__
+    return None
+
+
+@contextmanager
+def memory_errors() -> Iterator[None]:
+    """Convert the exceptions of a block that mean too little memory to OutOfMemory."""
+    try:
+        yield
+    except Exception as error:
+        found = find_memory_error(error)
+        if found is None or found is error:
+            raise
+        raise found from error
+
+
+def _is_memory_error(error: BaseException) -> bool:
+    if isinstance(error, MemoryError):
+        return True
+    if isinstance(error, OSError):
+        return error.errno == errno.ENOMEM
+    if isinstance(error, SimkitError):
+        return False
+    text = str(error).lower()
+    return any(part in text for part in _TEXTS)
