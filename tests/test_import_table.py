@@ -24,6 +24,7 @@ SMALL_MODULES = frozenset(
         "child_process",
         "diagnostic_record",
         "diagnostics",
+        "early_interrupts",
         "errors",
         "garbage_collection",
         "float_sum",
