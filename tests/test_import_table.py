@@ -25,6 +25,7 @@ SMALL_MODULES = frozenset(
         "code_requests",
         "diagnostic_record",
         "diagnostics",
+        "early_interrupts",
         "errors",
         "garbage_collection",
         "float_sum",

@@ -153,12 +153,11 @@ class Simulation(ScriptGraph, InProcess):
         journal = self._bus.journal
         if journal is not None:
             journal.before_steps()
-        advance = self.engine.loop.advance
         try:
             if self._page is None or is_served:
-                advance(target, is_served=is_served)
+                self.engine.loop.advance(target, is_served=is_served)
             else:
-                self._page.advance(target, advance)
+                self._page.advance(target, self.engine.loop.advance)
         except SimulationDiverged as error:
             add_driver_hints(self.engine.structure.all_plugins(), error, large_commands(self._bus))
             raise
