@@ -14,6 +14,15 @@ CODE: Final = "SK-CORE-008"
 # Address space [MiB] that the imports of NumPy and MuJoCo take, and what OpenBLAS takes for each thread. With less,
 # OpenBLAS ends the process by itself.
 _IMPORTS, _THREAD = 200, 40
+# SciPy and OpenCV each have an OpenBLAS of their own. With too little memory for its threads, it tries without end or
+# sends itself the signal of Ctrl-C.
+_OPENBLAS = 60
+_USERS: Final = (
+    frozenset({"cv2"}),
+    frozenset(
+        f"scipy.{name}" for name in ("linalg", "special", "sparse.linalg", "optimize", "integrate", "interpolate", "odr")
+    ),
+)
 _TEXTS: Final = (
     "could not allocate memory",  # MuJoCo
     "failed to allocate",
@@ -57,14 +66,44 @@ def memory_limit() -> int:
 
 
 def check_memory_limit() -> None:
-    """Raise OutOfMemory if a limit of the process is so small that NumPy and MuJoCo cannot be imported."""
+    """Raise OutOfMemory if a limit of the process is so small that NumPy and MuJoCo cannot be imported.
+
+    With a limit, each later import of SciPy or OpenCV checks the memory that is left.
+    """
     limit = memory_limit()
     if limit:
-        threads = os.environ.get("OPENBLAS_NUM_THREADS", "")
-        count = int(threads) if threads.isdecimal() and len(threads) < 4 else os.cpu_count() or 1
-        least = _IMPORTS + _THREAD * max(1, count)
+        least = _IMPORTS + _openblas_size()
         if limit < least << 20:
             raise OutOfMemory(f"simkit needs at least {least} MiB")
+        if not any(isinstance(finder, _OpenBlasCheck) for finder in sys.meta_path):
+            sys.meta_path.insert(0, _OpenBlasCheck())
+
+
+class _OpenBlasCheck:
+    """Check of the memory that is left before SciPy or OpenCV is imported, whichever module imports it."""
+
+    def find_spec(self, name: str, path: object = None, target: object = None) -> None:
+        """Find nothing.
+
+        Raises:
+            OutOfMemory: the process may not have the memory that the library needs.
+        """
+        for users in _USERS:
+            if name in users and users.isdisjoint(sys.modules):
+                import mmap
+
+                least = _OPENBLAS + _openblas_size()
+                try:
+                    mmap.mmap(-1, least << 20).close()
+                except (OSError, ValueError):
+                    raise OutOfMemory(f"the import of {name} needs {least} MiB more") from None
+
+
+def _openblas_size() -> int:
+    """Return the address space [MiB] of one OpenBLAS for its threads."""
+    threads = os.environ.get("OPENBLAS_NUM_THREADS", "")
+    count = int(threads) if threads.isdecimal() and len(threads) < 4 else os.cpu_count() or 1
+    return _THREAD * max(1, count)
 
 
 def find_memory_error(error: BaseException) -> OutOfMemory | None:
@@ -101,4 +140,6 @@ def _is_memory_error(error: BaseException) -> bool:
     if isinstance(error, SimkitError):
         return False
     text = str(error).lower()
+    if "caught an unknown exception" in text:  # of MuJoCo's bindings, if the engine cannot allocate
+        return memory_limit() > 0
     return any(part in text for part in _TEXTS)
