@@ -6,7 +6,8 @@ ends the process in Python's way: without a message, or with a traceback of Pyth
 
 from __future__ import annotations
 
-import _signal as signal  # `python -m simkit` would import a file `signal.py` of the working directory
+# not `signal`: `python -m simkit` would import a file of that name in the working directory
+import _signal as signal  # type: ignore[import-not-found]
 import os
 import sys
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
@@ -20,7 +21,8 @@ _OPENBLAS = 60
 _USERS: Final = (
     frozenset({"cv2"}),
     frozenset(
-        f"scipy.{name}" for name in ("linalg", "special", "sparse.linalg", "optimize", "integrate", "interpolate", "odr")
+        f"scipy.{name}"
+        for name in ("linalg", "special", "sparse.linalg", "optimize", "integrate", "interpolate", "odr")
     ),
 )
 _TEXTS: Final = (
