@@ -147,6 +147,8 @@ def _current_scenario(
     if stored.file is not None or not (stored.test or stored.plugins):
         refused_files(place, stored, folders).raise_if_errors()
     if stored.file is not None and stored.file.is_file():
+        scripts = [request for request in stored.code_requests if not request.is_folder]
+        check_requests(scripts, allow_code, plugin_paths)
         return read_scenario(stored.file, folders)
     if stored.file is not None:
         problem = f": its scenario {stored.file.resolve()} does not exist\n    help: restore the file, or record anew"

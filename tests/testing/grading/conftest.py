@@ -78,6 +78,6 @@ def graded(tmp_path: Path) -> Callable[..., Grade]:
         file.parent.mkdir(exist_ok=True)
         indented = [code.replace("\n", "\n        ") for code in (load, before)]
         file.write_text(HAND_IN.replace("LOAD", indented[0]).replace("BEFORE", indented[1]))
-        return grade(read_exercise(exercise / "push.yaml"), file, limit=limit)
+        return grade(read_exercise(exercise / "push.yaml"), file, limit=limit, allow_code=True)
 
     return run
