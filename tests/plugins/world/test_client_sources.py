@@ -100,7 +100,9 @@ def test_all_forms_of_a_plugin_get_the_namespace():
     tail = "<plugin x='1'><ros><namespace>n</namespace></ros></plugin>"
     head = "<plugin name='a>b' filename=\"f\">"
     assert added("<y/>") == f"{head}<ros><namespace>n</namespace></ros><y/></plugin>{tail}"
-    assert added("<ros><namespace> old </namespace></ros>") == f"{head}<ros><namespace>n</namespace></ros></plugin>{tail}"
+    assert (
+        added("<ros><namespace> old </namespace></ros>") == f"{head}<ros><namespace>n</namespace></ros></plugin>{tail}"
+    )
     assert added("<ros><z/></ros>") == f"{head}<ros><namespace>n</namespace><z/></ros></plugin>{tail}"
     own = "<robotNamespace>n</robotNamespace>"
     assert added("<robotNamespace>/old</robotNamespace>") == f"{head}{own}</plugin>{tail}"
