@@ -17,14 +17,10 @@ CODE: Final = "SK-CORE-008"
 _IMPORTS, _THREAD = 200, 40
 # SciPy and OpenCV each have an OpenBLAS of their own. With too little memory for its threads, it tries without end or
 # sends itself the signal of Ctrl-C.
-_OPENBLAS = 60
-_USERS: Final = (
-    frozenset({"cv2"}),
-    frozenset(
-        f"scipy.{name}"
-        for name in ("linalg", "special", "sparse.linalg", "optimize", "integrate", "interpolate", "odr")
-    ),
+_SCIPY: Final = frozenset(
+    f"scipy.{name}" for name in ("linalg", "special", "sparse.linalg", "optimize", "integrate", "interpolate", "odr")
 )
+_WITH_OPENBLAS: Final = ((_SCIPY, 60), (frozenset({"cv2"}), 230))  # modules, and what they take beside threads [MiB]
 _TEXTS: Final = (
     "could not allocate memory",  # MuJoCo
     "failed to allocate",
@@ -90,11 +86,11 @@ class _OpenBlasCheck:
         Raises:
             OutOfMemory: the process may not have the memory that the library needs.
         """
-        for users in _USERS:
+        for users, size in _WITH_OPENBLAS:
             if name in users and users.isdisjoint(sys.modules):
                 import mmap
 
-                least = _OPENBLAS + _openblas_size()
+                least = size + _openblas_size()
                 try:
                     mmap.mmap(-1, least << 20).close()
                 except (OSError, ValueError):

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError
+from simkit.memory_error import memory_errors
 from simkit.pose import Pose, checked_pose, quat_conjugate, quat_multiply
 from simkit.runtime.communication.journal import journaled
 from simkit.runtime.engine.physics_state import STALE
@@ -107,6 +108,7 @@ class WorldContents:
 
     # ------------------------------------------------------------------ spawn and remove
 
+    @memory_errors()
     def spawn_all(self, models: Iterable[SpawnRequest]) -> list[Model]:
         """Add several models in one operation, which takes little longer than adding one. If one fails, none is added.
 

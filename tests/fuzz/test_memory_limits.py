@@ -46,6 +46,20 @@ try:
 except simkit.SimkitError as error:
     print(error.code)
 """
+IMPORT = """
+import importlib, resource, sys
+import simkit.build, mujoco
+from simkit.memory_error import check_memory_limit, find_memory_error
+limit = int(sys.argv[1]) << 20
+used = int(next(l for l in open("/proc/self/status") if l.startswith("VmSize")).split()[1]) << 10
+resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
+check_memory_limit()
+resource.setrlimit(resource.RLIMIT_AS, (used + limit, used + limit))
+try:
+    importlib.import_module(sys.argv[2])
+except Exception as error:
+    print(find_memory_error(error).code)
+"""
 
 
 def _limited(arguments: list[str], folder: Path, limit: int = 0) -> subprocess.CompletedProcess[str]:
@@ -110,3 +124,10 @@ def test_a_command_with_too_little_memory_ends_with_one_line(name: str, tmp_path
 def test_python_calls_raise_an_error_of_simkit(limit: int, tmp_path: Path) -> None:
     done = _limited(["-c", PYTHON, str(limit)], _folder(tmp_path))
     assert done.returncode == 0 and done.stdout.strip() in ("", "SK-CORE-008"), done.stdout + done.stderr[-1500:]
+
+
+@pytest.mark.parametrize("limit", [1, 60, 130])
+@pytest.mark.parametrize("module", ["scipy.special", "scipy.stats", "cv2"])
+def test_an_import_of_a_library_with_its_own_openblas_ends(module: str, limit: int, tmp_path: Path) -> None:
+    done = _limited(["-c", IMPORT, str(limit), module], tmp_path)
+    assert (done.returncode, done.stdout.strip()) == (0, "SK-CORE-008"), done.stdout + done.stderr[-1500:]

@@ -6,6 +6,7 @@ A client gets a code and plain English. The texts of Python's own exceptions sta
 from __future__ import annotations
 
 import json
+import logging
 import re
 import sys
 from collections.abc import Mapping
@@ -17,6 +18,7 @@ from simkit.errors import InputError
 
 T = TypeVar("T")
 CODE: Final = "SK-LIVE-008"
+FAULT: Final = "SK-LIVE-010"
 _KINDS: Final[Mapping[type, str]] = MappingProxyType(
     {
         str: "a text",
@@ -28,6 +30,8 @@ _KINDS: Final[Mapping[type, str]] = MappingProxyType(
     }
 )
 _REQUIRED: Final = object()
+_LOGGED: Final[set[str]] = set()
+_MOST_LOGGED: Final = 100
 _HAS_CODE: Final = re.compile(r"SK-[A-Z]+-\d{3}")
 
 
@@ -113,14 +117,31 @@ def read_json(data: str | bytes) -> Any:
 
 
 def client_text(error: BaseException) -> str:
-    """Return the text of an error for a client, with its code. An error without a code of simkit is not shown."""
+    """Return the text of an error for a client, with its code.
+
+    An error without a code of simkit is not shown to the client: it is a fault of simkit and is logged once.
+    """
     code = getattr(error, "code", "")
     if isinstance(code, str) and code.startswith("SK-"):
         text = str(error)
         return text if code in text else f"{code} {text}"
     if isinstance(error, RecursionError):
         return f"{CODE} the request is nested too deeply"
+    _log_fault(error)
     return f"{CODE} the request cannot be executed: a field is missing or has a value that is not allowed"
+
+
+def _log_fault(error: BaseException) -> None:
+    """Log an unexpected exception with the place that raised it, once for each place; without values of the client."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    place = f"{trace.tb_frame.f_code.co_filename}:{trace.tb_lineno}" if trace is not None else "an unknown place"
+    fault = f"{type(error).__name__} at {place}"
+    if fault not in _LOGGED and len(_LOGGED) < _MOST_LOGGED:
+        _LOGGED.add(fault)
+        text = "warning %s the request of a client met a fault of simkit: %s\n    help: %s"
+        logging.getLogger("simkit").warning(text, FAULT, fault, "report it with the request of the client")
 
 
 def with_code(text: str) -> str:

@@ -25,8 +25,13 @@ KINDS: Final = ("none", "light", "model", "link", "visual", "collision", "sensor
 """Kinds of entities, indexed by their number in `ros_gz_interfaces/msg/Entity`."""
 
 _WORLD: Final = ("", "world", "map", "/map")
-_PLUGIN: Final = re.compile(r"(<plugin\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*?)(/>|>(.*?)</plugin\s*>)", re.DOTALL)
-_NAMESPACE: Final = re.compile(r"<namespace\s*>.*?</namespace\s*>|<namespace\s*/>", re.DOTALL)
+# XML has no `<` in a tag. The patterns use this, so that their time does not grow with the square of the length.
+_TAG: Final = r"(<plugin\b(?:[^<>\"']|\"[^<\"]*\"|'[^<']*')*?)"
+_PLUGIN: Final = re.compile(_TAG + r"(/>|>(.*?)</plugin\s*>)", re.DOTALL)
+_EMPTY_PLUGIN: Final = re.compile(_TAG + r"(/>)()")
+_PLUGIN_END: Final = re.compile(r"</plugin\s*>")
+_NAMESPACE: Final = re.compile(r"<namespace\s*>[^<]*</namespace\s*>|<namespace\s*/>")
+_ROBOT_NAMESPACE: Final = re.compile(r"<robotNamespace\s*(?:/>|>[^<]*</robotNamespace\s*>)")
 
 
 class RequestRefused(Exception):
@@ -101,14 +106,13 @@ def add_namespace(xml: str, namespace: str) -> str:
                 content = re.sub(r"<ros\s*>", lambda m: m[0] + element, content, count=1)
         elif "<robotNamespace" in content:
             own = f"<robotNamespace>{namespace}</robotNamespace>"
-            content = re.sub(
-                r"<robotNamespace\s*(/>|>.*?</robotNamespace\s*>)", lambda _: own, content, flags=re.DOTALL
-            )
+            content = _ROBOT_NAMESPACE.sub(lambda _: own, content)
         else:
             content = f"<ros>{element}</ros>{content}"
         return f"{match[1]}>{content}</plugin>"
 
-    return _PLUGIN.sub(named, xml)
+    end = max((match.end() for match in _PLUGIN_END.finditer(xml)), default=0)
+    return _PLUGIN.sub(named, xml[:end]) + _EMPTY_PLUGIN.sub(named, xml[end:])
 
 
 # ---------------------------------------------------------------------- entities

@@ -16,6 +16,7 @@ from simkit.argument_checks import wrong_type
 from simkit.compiler.state_transfer import restore_compiled_fields
 from simkit.errors import ArgumentValueError
 from simkit.in_process import InProcess
+from simkit.memory_error import memory_errors
 from simkit.runtime.engine.physics_state import STALE, StepWindow
 
 if TYPE_CHECKING:
@@ -170,6 +171,7 @@ class Snapshots:
         if snapshot.variant != self.variant:
             raise ArgumentValueError("the snapshot is from before the world got other overrides")
 
+    @memory_errors()
     def take(self) -> Snapshot:
         """Take a snapshot of the present state."""
         engine = self._engine

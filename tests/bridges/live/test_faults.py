@@ -14,7 +14,7 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.bridges.live import socket_files
+from simkit.bridges.live import answering, request_fields, socket_files
 from simkit.bridges.live.connection import MOST_OPEN, ClientConnection
 from simkit.bridges.live.message_log import MOST_BYTES, Entry
 from simkit.bridges.live.protocol import (
@@ -446,3 +446,26 @@ def test_unused_topics_are_removed(court: simkit.Simulation) -> None:
         caller.socket.close()
         server.poll(0.1)
     assert (len(bus._readers), len(bus._publishers), len(bus._listeners)) == before
+
+
+def test_a_fault_of_simkit_is_logged_once(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, court: simkit.Simulation
+) -> None:
+    def broken(request: object) -> object:
+        raise KeyError("secret of the client")
+
+    monkeypatch.setitem(answering._HANDLERS, "state", broken)
+    monkeypatch.setattr(request_fields, "_LOGGED", set())
+    with Server(court) as server:
+        caller = Caller(server)
+        for _ in range(3):
+            caller.ask("state")
+            server.poll(0.05)
+        for _ in range(10):
+            server.poll(0.01)
+        answers = [words for words in caller.heard() if "error" in words]
+        caller.socket.close()
+    assert [words["code"] for words in answers] == ["SK-LIVE-008"] * 3
+    assert "secret" not in str(answers)
+    (line,) = [record.getMessage() for record in caplog.records if "SK-LIVE-010" in record.getMessage()]
+    assert "KeyError at " in line and "test_faults.py:" in line and "secret" not in line

@@ -11,6 +11,7 @@ from service_worlds import model
 
 import simkit
 from simkit.errors import InputError
+from simkit.plugins.world.service_entities import add_namespace
 
 WORLD = """<sdf version="1.9"><world name="w"><plugin filename="libgazebo_ros_factory.so" name="f"/></world></sdf>"""
 
@@ -75,3 +76,34 @@ def test_a_resource_path_of_the_user_is_a_folder_of_the_run(folder: Path) -> Non
 
 def test_a_script_spawns_any_file(sim: simkit.Simulation, folder: Path) -> None:
     assert sim.spawn(str(folder / "private" / "one.sdf"), "new").name == "new"
+
+
+HALVES = ("<plugin>", "<plugin ", '<plugin "', "<plugin '\"", "<plugin>x</plugin ", "<plugin a='b'")
+
+
+@pytest.mark.parametrize("half", HALVES)
+@pytest.mark.parametrize("end", ["", "</plugin>", "/>"])
+def test_the_time_to_add_a_namespace_grows_linearly(half, end):
+    text = f"<sdf>{half * 100_000}{end}</sdf>"  # with the square of the length: hours
+    assert add_namespace(text, "a").startswith("<sdf>")
+
+
+@pytest.mark.parametrize("half", ["<ros><namespace>", "<ros><namespace ", "<robotNamespace>", "<robotNamespace "])
+def test_an_unfinished_namespace_costs_no_time(half):
+    assert add_namespace(f"<plugin>{half * 100_000}</plugin>", "a").endswith("</plugin>")
+
+
+def test_all_forms_of_a_plugin_get_the_namespace():
+    def added(content):
+        return add_namespace(f"<plugin name='a>b' filename=\"f\">{content}</plugin><plugin x='1'/>", "n")
+
+    tail = "<plugin x='1'><ros><namespace>n</namespace></ros></plugin>"
+    head = "<plugin name='a>b' filename=\"f\">"
+    assert added("<y/>") == f"{head}<ros><namespace>n</namespace></ros><y/></plugin>{tail}"
+    assert (
+        added("<ros><namespace> old </namespace></ros>") == f"{head}<ros><namespace>n</namespace></ros></plugin>{tail}"
+    )
+    assert added("<ros><z/></ros>") == f"{head}<ros><namespace>n</namespace><z/></ros></plugin>{tail}"
+    own = "<robotNamespace>n</robotNamespace>"
+    assert added("<robotNamespace>/old</robotNamespace>") == f"{head}{own}</plugin>{tail}"
+    assert added("<robotNamespace/>") == f"{head}{own}</plugin>{tail}"
