@@ -277,7 +277,9 @@ class _Fetcher:
         if read:
             names, where = ", ".join(read), next(iter(read.values()))
             message = f"nothing is sent, because the URL can contain the environment variable {names:.200} ({where})"
-            hint = f"write the URL without xacro, or expand the file and look at its URLs: xacro {where.file} -o robot.urdf"
+            hint = (
+                f"write the URL without xacro, or expand the file and check its URLs: xacro {where.file} -o robot.urdf"
+            )
             raise DownloadError(PRIVATE, message, hint)
 
     def _cached(self, url: FuelUrl, entry: LockEntry | None) -> FetchedResource | None:
