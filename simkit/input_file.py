@@ -42,6 +42,8 @@ def open_input(path: str | Path, *, inside: Path | None = None) -> BufferedReade
     try:
         _check_kind(handle, Path(path), allow_pipe=False)
         hide_linked_text(Path(path), inside)
+        os.read(handle, 1)  # a file of the system, such as /proc/kmsg, has no content yet: BlockingIOError
+        os.lseek(handle, 0, os.SEEK_SET)
     except OSError:
         os.close(handle)
         raise

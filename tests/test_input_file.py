@@ -190,3 +190,9 @@ def test_a_command_refuses_a_pipe_in_a_folder(name: str, command: str, pipe: Pat
     arguments = [sys.executable, "-m", "simkit", *command.format(folder).split()]
     done = subprocess.run(arguments, capture_output=True, text=True, timeout=60)
     assert (done.returncode, "Traceback" in done.stderr) == (2, False), done.stderr
+
+
+@pytest.mark.skipif(not os.access("/proc/kmsg", os.R_OK), reason="only the administrator of a Linux system reads it")
+def test_a_file_that_has_no_content_yet_is_refused() -> None:
+    with pytest.raises(OSError, match="unavailable"):
+        open_input("/proc/kmsg")

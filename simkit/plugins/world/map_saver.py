@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.errors import SimkitError
+from simkit.input_file import open_input
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.endpoints import listens, offers
 from simkit.plugins.not_deep_copied import SharedByCopies
@@ -211,7 +212,7 @@ def _check_is_map(path: Path, ending: str) -> None:
     """
     if not path.is_file() or path.is_symlink():  # a link is replaced, and its target stays
         return
-    with path.open("rb") as file:
+    with open_input(path) as file:
         head = file.read(_HEAD)
     if head and _BEGINS[ending].search(head) is None:
         raise MapNotSaved(f"{path} exists and is not a map; choose another map_url")

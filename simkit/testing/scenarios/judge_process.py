@@ -27,6 +27,7 @@ from simkit.loaders import Resolver
 from simkit.loaders.resources.world_interfaces import read_interfaces
 from simkit.process_control import kill_process_tree
 from simkit.run_spec import JsonObject, RunSpec
+from simkit.sensors.cameras.overview_image import render_view
 from simkit.testing.conditions import Watch
 from simkit.testing.grading.callback_limit import CallbackLimit
 from simkit.testing.grading.judge import RunJudge
@@ -248,11 +249,8 @@ class _JudgedRun:
             return False
         return True
 
-
     def _can_render(self) -> bool:
         """Check whether this machine can draw the world of the exercise, without the hand-in."""
-        from simkit.sensors.cameras.overview_image import render_view
-
         scenario = self._variation.scenario
         plain = RunSpec(_EMPTY_WORLD, options={"renderer": scenario.options.get("renderer")})
         for spec in (scenario, plain):  # the world of the exercise may need the hand-in

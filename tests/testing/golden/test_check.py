@@ -171,3 +171,12 @@ def test_parallel_checks_give_the_same_results(golden: Path, tmp_path: Path) -> 
     simkit("golden", "record", tmp_path / "ball.sdf", "--out", golden.parent / "other", "--duration", 0.1)
     code, said = simkit("golden", "check", golden.parent, "-n", 2)
     assert code == 0 and "2 of 2 golden runs passed" in said
+
+
+@pytest.mark.parametrize("value", ["a\0b", "\ud800"])
+def test_an_environment_variable_that_cannot_be_set_is_damage(golden: Path, value: str) -> None:
+    main = golden / "golden.json"
+    content = json.loads(main.read_text())
+    main.write_text(json.dumps({**content, "environment": {"TURTLEBOT3_MODEL": value}}))
+    code, said = simkit("golden", "check", golden)
+    assert code == 2 and "SK-GOLDEN-003" in said
