@@ -277,13 +277,7 @@ class _Fetcher:
         if read:
             names, where = ", ".join(read), next(iter(read.values()))
             message = f"nothing is sent, because the URL can contain the environment variable {names:.200} ({where})"
-<<<<<<< HEAD
             hint = f"write the URL without xacro, or expand the file and read its URL: xacro {where.file} -o robot.urdf"
-=======
-            hint = (
-                f"write the URL without xacro, or expand the file and check its URLs: xacro {where.file} -o robot.urdf"
-            )
->>>>>>> attack1
             raise DownloadError(PRIVATE, message, hint)
 
     def _cached(self, url: FuelUrl, entry: LockEntry | None) -> FetchedResource | None:
