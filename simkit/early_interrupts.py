@@ -6,8 +6,9 @@ ends the process in Python's way: without a message, or with a traceback of Pyth
 
 from __future__ import annotations
 
+# not `signal`: `python -m simkit` would import a file of that name in the working directory
+import _signal as signal  # type: ignore[import-not-found]
 import os
-import signal
 import sys
 
 TYPE_CHECKING = False  # `typing` takes 3 ms
@@ -20,7 +21,7 @@ def install_in_command() -> None:
     if not _is_command():
         return
     for number in (signal.SIGINT, signal.SIGTERM):
-        if signal.getsignal(number) is not signal.SIG_IGN:
+        if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _end)
 
 

@@ -55,9 +55,10 @@ def remedy() -> str:
 
 def memory_limit() -> int:
     """Return the limit of the address space of this process [bytes]; 0 without one."""
-    if sys.platform == "win32":
+    try:
+        import resource
+    except ImportError:  # Windows
         return 0
-    import resource
 
     found = [resource.getrlimit(getattr(resource, name))[0] for name in ("RLIMIT_AS", "RLIMIT_DATA")]
     return min((limit for limit in found if limit != resource.RLIM_INFINITY), default=0)

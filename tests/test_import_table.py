@@ -25,6 +25,7 @@ SMALL_MODULES = frozenset(
         "code_requests",
         "diagnostic_record",
         "diagnostics",
+        "early_interrupts",
         "errors",
         "garbage_collection",
         "float_sum",
@@ -50,7 +51,7 @@ SMALL_MODULES = frozenset(
         "pose",
         "process_control",
     }
-    | {"hidden_text", "json_reader", "linked_files", "output_file", "project_folder"}
+    | {"early_interrupts", "hidden_text", "json_reader", "linked_files", "project_folder"}
     | {"progress", "registry", "run_spec", "save_path", "topic_logger", "trusted_folders", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""

@@ -31,7 +31,9 @@ OWN_FILES = {
     "testing/certify/certification.py": "a temporary file of simkit",
     "testing/certify/outcome.py": "a temporary file of simkit",
     "testing/run_record/fingerprint.py": "modules of the package",
+    "testing/grading/callback_limit.py": "the stack of a child process, and its times in /proc",
     "testing/scenarios/grading_process.py": "a temporary file of simkit",
+    "testing/scenarios/judge_process.py": "a temporary file of simkit",
     "writers/mjcf.py": "assets that the loader has read already",
 }
 """Files of the package that read without `simkit.input_file`, and what they read."""

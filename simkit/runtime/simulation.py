@@ -153,12 +153,11 @@ class Simulation(ScriptGraph, InProcess):
         journal = self._bus.journal
         if journal is not None:
             journal.before_steps()
-        advance = self.engine.loop.advance
         try:
             if self._page is None or is_served:
-                advance(target, is_served=is_served)
+                self.engine.loop.advance(target, is_served=is_served)
             else:
-                self._page.advance(target, advance)
+                self._page.advance(target, self.engine.loop.advance)
         except SimulationDiverged as error:
             add_driver_hints(self.engine.structure.all_plugins(), error, large_commands(self._bus))
             raise
@@ -388,8 +387,8 @@ class Simulation(ScriptGraph, InProcess):
     def __repr__(self) -> str:
         if "_loaded" not in vars(self):
             return "<Simulation (being loaded)>"
-        count = len(self.contents.models)
-        state = "closed" if self.engine.is_closed else f"t={self.time:g} s, {count} model{'' if count == 1 else 's'}"
+        plural = "" if len(self.contents.models) == 1 else "s"
+        state = "closed" if self.engine.is_closed else f"t={self.time:g} s, {len(self.contents.models)} model{plural}"
         return f"<Simulation {self.world.name!r}: {state}>"
 
     def __enter__(self) -> Simulation:

@@ -142,16 +142,16 @@ def visual(value: SceneVisual, uri_of: UriOf) -> Params:
         *changed_elements(value, "transparency", "cast_shadows"),
         flags,
         *changed_elements(value, "laser_retro"),
-        *(_visual_plugin(plugin(p), uri_of) for p in value.plugins),
+        *(_visual_plugin(plugin(p), p.where.file, uri_of) for p in value.plugins),
     ]
     return element("visual", children, name=value.name)
 
 
-def _visual_plugin(written: Params, uri_of: UriOf) -> Params:
-    """Adapt the URI of the temperature image in a visual's plugin to the new file."""
+def _visual_plugin(written: Params, file: str | None, uri_of: UriOf) -> Params:
+    """Adapt the URI of the temperature image in a visual's plugin, which is from a file, to the new file."""
     for i, child in enumerate(written.children):
-        if child.name == "heat_signature" and child.where.file and child.value:
-            uri = uri_of(Path(child.where.file).parent / child.value, child.value)
+        if child.name == "heat_signature" and file and child.value:
+            uri = uri_of(Path(file).parent / child.value, child.value)
             written.children[i] = text_element(child.name, uri)
     return written
 

@@ -39,7 +39,7 @@ static void jump(struct timespec *t) {
     if (!strcmp(mode, "both")) t->tv_sec += (n % 2 ? 1 : -1) * 86400L * (n % 400);
     if (!strcmp(mode, "still")) { t->tv_sec = 1700000000; t->tv_nsec = 0; }
     if (!strcmp(mode, "1970")) { t->tv_sec = n; t->tv_nsec = 0; }
-    if (!strcmp(mode, "2262")) t->tv_sec = 9300000000L + n;
+    if (!strcmp(mode, "2261")) t->tv_sec = 9200000000L + n;
     if (!strcmp(mode, "before 1970")) t->tv_sec = -100000L + n;
 }
 int clock_gettime(clockid_t id, struct timespec *t) {
@@ -58,7 +58,7 @@ time_t time(time_t *p) {
     if (p) *p = t.tv_sec; return t.tv_sec;
 }
 """
-MODES = ("back", "forward", "both", "still", "1970", "2262", "before 1970")
+MODES = ("back", "forward", "both", "still", "1970", "2261", "before 1970")
 COMMANDS = {
     "paced run": "run w.sdf --duration 0.6 --rtf 1 --record new.mcap",
     "limited run": "run w.sdf --duration 0.3 --wall-timeout 60 --record new",

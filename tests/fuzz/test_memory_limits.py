@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from targets import WORLD_FILES, environment, intact, recorded
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform != "linux", reason="limits of the address space")]
+pytestmark = [pytest.mark.fuzz, pytest.mark.skipif(sys.platform != "linux", reason="limits of the address space")]
 COMMANDS = {
     "check": "check w.sdf",
     "inspect": "inspect w.sdf --json",

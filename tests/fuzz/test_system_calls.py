@@ -155,7 +155,7 @@ def _without_times(path: Path) -> bytes:
 def others(folder: Path, prepared: frozenset[str]) -> list[str]:
     """Return the names of the files that are neither inputs nor outputs; the cache may have any whole file."""
     names = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()} - prepared
-    stays = re.compile(r"new.*|cache/\w+/\w+\.bin|tmp/simkit-\d+/\.lock")
+    stays = re.compile(r"new.*|simkit\.lock|cache/\w+/\w+\.bin|tmp/simkit-\d+/\.lock")
     return sorted(name for name in names if not stays.fullmatch(name))
 
 

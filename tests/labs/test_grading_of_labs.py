@@ -69,19 +69,19 @@ def test_an_edited_exercise_or_world_is_told_and_not_used(teacher: Path, student
     (student / "exercise.yaml").write_text(EXERCISE.replace("> 0.1", "> -1"))
     (student / "cart.sdf").write_text(CART.replace("<pose>0 0", "<pose>5 0"))
     (student / "tools.py").write_text("speed = 1.0\n")
-    found = lab("grade", student, "--exercise", teacher)
+    found = lab("grade", student, "--exercise", teacher, "--allow-code")
     assert found.exit_code == 5
     assert f"lab teacher: push.py of {student}" in found.output
     assert "note: not used, because the lab has its own: cart.sdf, exercise.yaml, tools.py" in found.output
     assert "pose('cart').x was 0" in found.output
-    report = json.loads(lab("grade", student, "--exercise", teacher / "exercise.yaml", "--json").stdout)
+    report = json.loads(lab("grade", student, "--exercise", teacher / "exercise.yaml", "--allow-code", "--json").stdout)
     assert report[0]["points"] == 0.0
 
 
 def test_the_hand_in_of_the_student_is_used_with_its_further_modules(teacher: Path, student: Path) -> None:
     (student / "push.py").write_text("import helper\n" + SOLUTION.replace("(1, 0, 0)", "helper.velocity"))
     (student / "helper.py").write_text("import tools\nvelocity = (1.0 - tools.speed, 0, 0)\n")
-    found = lab("grade", student, "--exercise", teacher)
+    found = lab("grade", student, "--exercise", teacher, "--allow-code")
     assert (found.exit_code, "note:" in found.output) == (0, False)
 
 
@@ -89,12 +89,12 @@ def test_a_further_module_replaces_none_of_the_lab(teacher: Path, student: Path)
     (student / "push.py").write_text("import tools\n" + SOLUTION.replace("(1, 0, 0)", "(tools.speed, 0, 0)"))
     (student / "tools").mkdir()
     (student / "tools" / "__init__.py").write_text("speed = 1.0\n")
-    assert lab("grade", student, "--exercise", teacher).exit_code == 5
+    assert lab("grade", student, "--exercise", teacher, "--allow-code").exit_code == 5
 
 
 def test_an_error_names_the_file_of_the_student(teacher: Path, student: Path) -> None:
     (student / "push.py").write_text("this is no Python\n")
-    found = lab("grade", student, "--exercise", teacher)
+    found = lab("grade", student, "--exercise", teacher, "--allow-code")
     assert found.exit_code == 5 and str(student / "push.py") in found.output and "simkit-grade-" not in found.output
 
 
@@ -103,7 +103,7 @@ def test_a_hand_in_that_links_out_of_its_folder_is_not_read(teacher: Path, stude
     secret.write_text("password = 'seven words'\n")
     (student / "push.py").unlink()
     (student / "push.py").symlink_to(secret)
-    found = lab("grade", student, "--exercise", teacher)
+    found = lab("grade", student, "--exercise", teacher, "--allow-code")
     assert found.exit_code == 5 and "SK-URI-003" in found.output and "seven words" not in found.output
 
 

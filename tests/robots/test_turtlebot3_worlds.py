@@ -12,7 +12,7 @@ import pytest
 import simkit
 from simkit import Pose
 
-SHARED = pathlib.Path(__file__).resolve().parents[3] / "shared"
+SHARED = pathlib.Path(__file__).resolve().parents[3].joinpath("shared").resolve()  # messages show no text behind a link
 GZ = SHARED / "corpus" / "files" / "ROBOTIS-GIT+turtlebot3_simulations" / "turtlebot3_gazebo"
 COURSE = SHARED / "course"
 ROBOT = "turtlebot3_waffle"

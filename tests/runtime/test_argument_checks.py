@@ -122,6 +122,7 @@ WRONG_VALUES: dict[str, Call] = {
     "seed of 200 bits": lambda _: simkit.load(WORLD, seed=2**200),
     "seed of 5000 digits": lambda _: simkit.load(WORLD, seed=10**5000),
     "seed of a reset": lambda sim: sim.reset(seed=-1),
+    "policy of a subscription": lambda sim: sim.subscribe("/x", on_error=np.zeros(2)),
     "axis beyond the last": lambda sim: sim.joint("b::j").axis_velocity_limit(1),
     "wait NaN": lambda _: connect("none", wait=math.nan),
     "plugin path of load": lambda _: simkit.load(WORLD, plugin_paths=["no/such/folder"]),

@@ -68,7 +68,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
     def __init__(
         self, spec: EnvironmentSpec, render_mode: str | None = None, size: tuple[int, int] = (480, 360)
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
+        if render_mode is not None and (not isinstance(render_mode, str) or render_mode != "rgb_array"):
             raise invalid(f"render_mode: found {render_mode!r}; expected 'rgb_array' or None")
         if not (isinstance(size, (tuple, list)) and len(size) == 2 and all(type(n) is int and n > 0 for n in size)):
             raise invalid(f"size: found {size!r}; expected width and height of the images, such as (480, 360)")

@@ -114,7 +114,8 @@ def _write_parquet(path: Path, store: ResultStore) -> None:
     pa, pq = import_module("pyarrow"), import_module("pyarrow.parquet")
     types = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: pa.string()}
     schema = pa.schema([(name, types[kind]) for name, kind in column_kinds(store).items()])
-    with pq.ParquetWriter(path, schema) as writer:
+    # an open file, because the library takes only paths that are valid UTF-8
+    with path.open("wb") as file, pq.ParquetWriter(file, schema) as writer:
         for block in typed_blocks(store):
             if block["run"]:
                 writer.write_table(pa.table(block, schema=schema))

@@ -144,8 +144,8 @@ def make_design(
                 problems.append(f"parameter {names!r}: {error}")
     else:
         listed = _listed_rows(parameters, problems)
-    if sampling not in SAMPLINGS:
-        hint = did_you_mean(sampling, SAMPLINGS) or f"expected {', '.join(SAMPLINGS)}"
+    if not isinstance(sampling, str) or sampling not in SAMPLINGS:
+        hint = did_you_mean(str(sampling), SAMPLINGS) or f"expected {', '.join(SAMPLINGS)}"
         problems.append(f"sampling: found {sampling!r}; {hint}")
     if samples is not None and (not isinstance(samples, int) or isinstance(samples, bool) or samples < 1):
         problems.append(f"samples: found {samples!r}; expected a whole number of at least 1")

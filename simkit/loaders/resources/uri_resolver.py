@@ -52,6 +52,9 @@ class Resolver(UriCandidates):
             inspecting a file without its meshes.
         package_paths: folder of each ROS package that the caller knows, or workspaces with such packages; searched
             before all other folders.
+
+    Attributes:
+        variables_read: environment variables that a xacro file has read, with the place of the first expression.
     """
 
     def __init__(
@@ -76,6 +79,7 @@ class Resolver(UriCandidates):
         choose_folders((*searched, *folders.values(), *map(absolute_path, workspaces)))
         super().__init__(searched, folders, [absolute_path(p) for p in workspaces], base)
         self.missing_meshes = missing_meshes
+        self.variables_read: dict[str, Where] = {}
         self._reported: set[str] = set()
 
     def around(self, folder: Path | None) -> Resolver:

@@ -270,8 +270,9 @@ class _Expansion:
 
     def _environment_variable(self, name: str) -> str:
         """Return an environment variable; on a machine without ROS, a variable that every ROS installation sets."""
-        if name in os.environ:
-            return os.environ[name]
+        value = self._variable(name)
+        if value is not None:
+            return value
         if name not in _ROS_VARIABLES:
             raise ExpansionError(f"the environment variable {name} is not set")
         value = _ROS_VARIABLES[name]
@@ -279,6 +280,12 @@ class _Expansion:
             self.unset_variables.add(name)
             self._report_message((f"the environment variable {name} is not set; {value} is used",))
         return value
+
+    def _variable(self, name: str) -> str | None:
+        """Return an environment variable; note that the file depends on it, unless every ROS installation sets it."""
+        if name in os.environ and name not in _ROS_VARIABLES:
+            self.files.resolver.variables_read.setdefault(name, self.where)
+        return os.environ.get(name)
 
     def _command(self, text: str, symbols: Names | None) -> Value:
         words = text.split()
@@ -290,7 +297,8 @@ class _Expansion:
         if name == "env" and len(rest) == 1:
             return self._environment_variable(rest[0])
         if name == "optenv" and rest:
-            return os.environ.get(rest[0], " ".join(rest[1:]))
+            value = self._variable(rest[0])
+            return " ".join(rest[1:]) if value is None else value
         if name in ("dirname", "cwd") and not rest:
             return str(self._current_folder() if name == "dirname" else Path.cwd())
         if name == "eval" and rest:
@@ -328,10 +336,14 @@ class _Expansion:
         commands = {
             "find": Function(lambda name: self.files.package_folder(str(name), self._current_folder())),
             "env": Function(lambda name: self._command(f"env {name}", None)),
-            "optenv": Function(lambda name, default="": os.environ.get(str(name), default)),
+            "optenv": Function(self._optional_variable),
         }
         shared = {name: own[name] for name in ("load_yaml", "abs_filename", "dotify", "arg")}
         return {**mathematics, **direct, **shared, **commands, **spaces, "true": True, "false": False}
+
+    def _optional_variable(self, name: object, default: Value = "") -> Value:
+        value = self._variable(str(name))
+        return default if value is None else value
 
     def _print_message(self, *args: object, **_: object) -> str:
         self._report_message(args)

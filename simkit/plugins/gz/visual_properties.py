@@ -108,8 +108,8 @@ def _find_picture(options: ThermalOptions, builder: SpecBuilder) -> Path | None:
     """
     params, uri = options.params, options.heat_signature
     element = params.block("heat_signature")
-    folder = Path(element.where.file).parent if element.where.file else None
-    path = builder.find_file(uri, folder)
+    file = params.where.file  # not that of the element, which can be the text of an override
+    path = builder.find_file(uri, Path(file).parent if file else None)
     problem = "is not found"
     if path is not None:
         try:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.diagnostics import NOWHERE, Diagnostics, did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import acts, offers_all
@@ -117,12 +117,12 @@ class PlayMotion(ModelPlugin):
     def _find(self, element: Params, builder: SpecBuilder) -> Path | None:
         """Find a motion file by its URI, or next to the robot's file.
 
-        The Python API passes plain paths, in any folder; its elements have no line.
+        The Python API passes plain paths, in any folder. A value of `--set` or of a scenario does not.
         """
         uri = element.value
         found = find_plugin_file(self, uri, builder, ("motions", "config", "../motions"))
         with suppress(OSError, ValueError):  # the URI is not a valid file name
-            is_own = found is None and element.where.line is None
+            is_own = found is None and self.where == NOWHERE
             return Path(uri) if is_own and Path(uri).is_file() else found
         return found
 

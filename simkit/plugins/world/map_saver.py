@@ -27,6 +27,13 @@ if TYPE_CHECKING:
 _GRID: Final = "nav_msgs/msg/OccupancyGrid"
 _MODES: Final = ("trinary", "scale", "raw")
 _FORMATS: Final = {"pgm": "PPM", "png": "PNG", "bmp": "BMP"}  # file ending -> name in Pillow
+_BEGINS: Final = {  # of the files that a save may replace
+    "yaml": re.compile(rb"^image\s*:", re.MULTILINE),
+    "pgm": re.compile(rb"\AP[25]"),
+    "png": re.compile(rb"\A\x89PNG"),
+    "bmp": re.compile(rb"\ABM"),
+}
+_HEAD: Final = 4096  # bytes at the begin of a file that are searched
 _FREE, _OCCUPIED, _UNKNOWN = 254, 0, 205  # grey values of map_server
 _LARGEST: Final = 100  # of the values of known cells
 _READ_AS_UNKNOWN: Final = 0.196  # a map_server reads grey 205 as 0.19608 occupied; a larger limit makes it free
@@ -103,9 +110,10 @@ class MapSaver(WorldPlugin):
         stem = _target(request.map_url or "map")
         message = self._map_on(request.map_topic or self.options.map_topic)
         cells = _cells(message)
-        image = stem.with_name(f"{stem.name}.{ending}")
+        image, file = (stem.with_name(f"{stem.name}.{end}") for end in (ending, "yaml"))
+        _check_is_map(image, ending)
+        _check_is_map(file, "yaml")
         _write(image, _encode(_pixels(cells[::-1], mode, free, occupied), _FORMATS[ending]))
-        file = stem.with_name(f"{stem.name}.yaml")
         _write(file, _description(message.info, image.name, mode, free, occupied).encode())
         return file
 
@@ -193,6 +201,20 @@ def _yaml_text(name: str) -> str:
     """Return a file name as YAML: quoted if it contains other characters than letters, digits and "_-."."""
     is_plain = re.fullmatch(r"[A-Za-z_][\w.-]*", name, re.ASCII) is not None
     return name if is_plain else json.dumps(name)
+
+
+def _check_is_map(path: Path, ending: str) -> None:
+    """Check that a file which a save replaces is a map or an image; the request can come from a stranger's bundle.
+
+    Raises:
+        MapNotSaved: the file is another file of the user.
+    """
+    if not path.is_file() or path.is_symlink():  # a link is replaced, and its target stays
+        return
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if head and _BEGINS[ending].search(head) is None:
+        raise MapNotSaved(f"{path} exists and is not a map; choose another map_url")
 
 
 def _write(path: Path, data: bytes) -> None:

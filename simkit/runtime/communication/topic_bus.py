@@ -145,7 +145,7 @@ class TopicBus:
             on_error: policy for a callback that raises: "stop" stops the run with a SubscriberError, "drop" closes the
                 subscription with a warning, and the run continues.
         """
-        if on_error not in ("stop", "drop"):
+        if not isinstance(on_error, str) or on_error not in ("stop", "drop"):
             raise wrong_value("on_error", "'stop' or 'drop'", on_error)
         if callback is not None:
             check_function(callback, "callback")

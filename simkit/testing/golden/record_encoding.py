@@ -243,6 +243,9 @@ def decode_record(stored: JsonMapping, data: bytes, scenario: RunSpec) -> RunRec
     Raises:
         PackingError, ValueError, TypeError, KeyError: The data are damaged.
     """
+    environment = {str(k): str(v) for k, v in stored.get("environment", {}).items() if k in ENVIRONMENT_VARIABLES}
+    if not all(map(str.isprintable, environment.values())):  # no variable can have a zero byte
+        raise PackingError("an environment variable has an invalid character")
     unpacker = Unpacker(data)
     inner = unpacker.about
     if not scenario.world:
@@ -258,7 +261,7 @@ def decode_record(stored: JsonMapping, data: bytes, scenario: RunSpec) -> RunRec
         {str(k): str(v) for k, v in stored["sources"].items()},
         {str(k): int(v) for k, v in stored["diagnostics"].items()},
         str(stored["end"]),
-        environment={str(k): str(v) for k, v in stored.get("environment", {}).items() if k in ENVIRONMENT_VARIABLES},
+        environment=environment,
     )
 
 

@@ -277,7 +277,7 @@ def _remove_unfinished(place: Path, name: str) -> None:
     """Remove the data file of a golden run that could not be written, unless a complete golden run has it."""
     main = place / MAIN_FILE
     with suppress(OSError):
-        if not main.is_file() or name.encode() not in main.read_bytes():
+        if not main.is_file() or name.encode() not in read_input(main, _MAX_TEXT_BYTES):
             (place / name).unlink(missing_ok=True)
         if not any(place.iterdir()):
             place.rmdir()

@@ -175,7 +175,7 @@ class CallbackLimit:
 def _processor_time(process: int) -> float | None:
     """Return the processor time of a process so far [s]; None if the operating system does not tell it."""
     try:
-        fields = Path(f"/proc/{process}/stat").read_text("utf-8", "replace").rpartition(")")[2].split()
+        fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
     except (OSError, ValueError, IndexError, AttributeError):
         return None

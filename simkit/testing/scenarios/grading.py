@@ -270,8 +270,8 @@ class _Grader:
             done = self.processes.run(
                 "simkit.testing.scenarios.judge_process", [str(job_file)], environment=environment, limit=limit
             )
-            if done.is_late:
-                return {"error": f"the run was stopped after {limit:g} s of wall time", "time": 0.0}
+            if done.is_late:  # the judge has a shorter limit, so the hand-in has stopped the judge
+                return {"error": f"the run was stopped after {limit:g} s of wall time", "time": 0.0, "stuck": True}
             found = _read_process_result(target, token, len(_required_checks(variation)))
         if found is None:
             how = f"with {done.code}" if done.code >= 0 else f"by signal {-done.code}"

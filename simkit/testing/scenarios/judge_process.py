@@ -22,7 +22,7 @@ from typing import Any, Final
 
 from simkit.child_process import OutputTail, exit_immediately, exit_with_parent, last_lines
 from simkit.diagnostics import Diagnostics
-from simkit.errors import InputError, LoadError, SimkitError
+from simkit.errors import InputError, LoadError, RenderError, SimkitError
 from simkit.loaders import Resolver
 from simkit.loaders.resources.world_interfaces import read_interfaces
 from simkit.process_control import kill_process_tree
@@ -42,6 +42,7 @@ _WAITING_CHUNKS: Final = 256
 _END_WAIT: Final = 2.0  # [s] longest wait for the end of a process that closed its stream
 _LEAST_POLL: Final = 0.02  # [s]
 _SET_DUMPABLE: Final = 4  # of prctl
+_EMPTY_WORLD: Final = '<sdf version="1.9"><world name="empty"/></sdf>'
 
 
 def main(job_file: str) -> None:
@@ -206,11 +207,13 @@ class _JudgedRun:
     def _verdict(self) -> JsonObject:
         """Return the results after the end of the run, or its error."""
         end = self._judge.end or {}
-        codes = [str(code) for code in end.get("codes", ())]
+        listed = end.get("codes")
+        codes = [str(code) for code in listed] if isinstance(listed, list) else []
         if "problem" in end:
             return self._attribute(str(end["problem"]), codes)
         if "fault" in end:
-            return {"fault": str(end["fault"]), "code": codes[0] if codes else ""}
+            is_renderer_missing = not self._task["hand_in"] or not self._can_render()
+            return {"fault" if is_renderer_missing else "error": str(end["fault"]), "code": codes[0] if codes else ""}
         if "error" in end:
             return {"error": str(end["error"])}
         foreign = self._judge.foreign_text()
@@ -243,6 +246,24 @@ class _JudgedRun:
             return own == {"SK-PLUGIN-001"} and "SK-PLUGIN-001" not in codes  # only the hand-in is missing
         except SimkitError:
             return False
+        return True
+
+
+    def _can_render(self) -> bool:
+        """Check whether this machine can draw the world of the exercise, without the hand-in."""
+        from simkit.sensors.cameras.overview_image import render_view
+
+        scenario = self._variation.scenario
+        plain = RunSpec(_EMPTY_WORLD, options={"renderer": scenario.options.get("renderer")})
+        for spec in (scenario, plain):  # the world of the exercise may need the hand-in
+            try:
+                with open_scenario(spec) as sim:
+                    render_view(sim, 16, 16)
+                return True
+            except RenderError:
+                return False
+            except SimkitError:
+                continue
         return True
 
 

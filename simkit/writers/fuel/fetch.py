@@ -45,7 +45,7 @@ from simkit.writers.fuel.download import (
 )
 from simkit.writers.fuel.references import Reference, ReferenceSearch
 
-OTHER_CONTENT, NO_LOCK = "SK-FETCH-005", "SK-FETCH-009"
+OTHER_CONTENT, NO_LOCK, PRIVATE = "SK-FETCH-005", "SK-FETCH-009", "SK-FETCH-010"
 _UNPACKED_RATIO = 4  # the files of an archive may have this many times the limit of the archive
 _MOST_RESOURCES = 2000
 _MOST_REFERENCES = 100_000  # places in files that name a resource
@@ -255,6 +255,7 @@ class _Fetcher:
             self._unreachable[server][1].append(reference)
             return None
         try:
+            self._check_environment()
             self.options.connection.check(address)
             if self.options.dry_run:
                 remote, size = remote_size(address, self.options.connection)
@@ -266,6 +267,18 @@ class _Fetcher:
             else:
                 self._error(reference, error)
             return None
+
+    def _check_environment(self) -> None:
+        """Refuse every request if the xacro file has read an environment variable, which can be a password.
+
+        A search for its value in the URL is not enough: a condition can choose a URL for each letter of the value.
+        """
+        read = self.search.resolver.variables_read
+        if read:
+            names, where = ", ".join(read), next(iter(read.values()))
+            message = f"nothing is sent, because the URL can contain the environment variable {names:.200} ({where})"
+            hint = f"write the URL without xacro, or expand the file and look at its URLs: xacro {where.file} -o robot.urdf"
+            raise DownloadError(PRIVATE, message, hint)
 
     def _cached(self, url: FuelUrl, entry: LockEntry | None) -> FetchedResource | None:
         """Return the resource in the cache; None if it is not there, or if it is not what the lock file lists."""

@@ -308,12 +308,18 @@ def test_a_second_robot_without_a_namespace_uses_its_own_name(tmp_path: Path) ->
         )
 
 
-@pytest.mark.parametrize("end", [3e9, 1e300])
-def test_a_time_beyond_the_range_of_a_trajectory_is_refused(sim: Any, end: float) -> None:
-    motion = {"key": "x", "joints": ["wrist"], "positions": [0.2], "times_from_start": [end]}
+def test_a_time_beyond_the_range_of_a_trajectory_is_refused(sim: Any) -> None:
+    motion = {"key": "x", "joints": ["wrist"], "positions": [0.2], "times_from_start": [3e9]}
     goal = sim.send_goal("/play_motion2/raw", {"motion": motion})
     sim.run(0.1)
     assert goal.status.name == "ABORTED" and "motion 'x' would take" in goal.result.error
+
+
+def test_a_number_above_1e15_in_a_motion_is_refused(sim: Any) -> None:
+    motion = {"key": "x", "joints": ["wrist"], "positions": [0.2], "times_from_start": [1e300]}
+    goal = sim.send_goal("/play_motion2/raw", {"motion": motion})
+    sim.run(0.1)
+    assert goal.status.name == "REJECTED" and "it has the number 1e+300" in goal.reason
 
 
 MIMIC = '<mimic joint="right_finger"><multiplier>2</multiplier><offset>0.01</offset><reference>0</reference></mimic>'

@@ -11,7 +11,7 @@ from PIL import Image
 
 import simkit
 from simkit import msgs
-from simkit.errors import LoadError
+from simkit.errors import LoadError, MessageError
 
 GRID = "nav_msgs/msg/OccupancyGrid"
 VALUES = np.array([[0, 25, 26, 64], [65, 100, -1, 50]], np.int8)
@@ -149,7 +149,7 @@ def test_an_origin_without_a_rotation_has_the_yaw_zero(tmp_path: Path, monkeypat
 def test_a_latched_map_of_another_topic_is_saved_and_replaces_the_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "m.pgm").write_bytes(b"old")
+    (tmp_path / "m.pgm").write_bytes(b"P5 old")
     monkeypatch.chdir(tmp_path)
     box = """<model name="b"><static>true</static><link name="l"><collision name="c"><geometry><box>
         <size>1 1 1</size></box></geometry></collision></link></model>"""
@@ -210,4 +210,15 @@ def test_a_link_in_the_folder_is_not_followed(tmp_path: Path, monkeypatch: pytes
 
 
 def test_a_name_that_is_no_text_of_unicode_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not save(tmp_path, monkeypatch, map_url="a\ud800")
+    with pytest.raises(MessageError):
+        save(tmp_path, monkeypatch, map_url="a\ud800")
+
+
+@pytest.mark.parametrize("name", ["notes.yaml", "notes.pgm"])
+def test_a_file_that_is_no_map_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    (tmp_path / name).write_text("steps: [build]\n")
+    assert not save(tmp_path, monkeypatch, map_url="notes")
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [(name, "steps: [build]\n")]
+    (tmp_path / "notes.yaml").write_text("# of the ground floor\nresolution: 1\nimage: old.pgm\n")
+    (tmp_path / "notes.pgm").write_bytes(b"P5 1 1 255 0")
+    assert save(tmp_path, monkeypatch, map_url="notes")

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
+
+from simkit.testing.scenarios import grading
 
 ONE_RUN = ("    - {name: again, seed: 2}\n", "")
 
@@ -140,3 +144,33 @@ def test_a_file_of_the_exercise_beside_the_hand_in_is_not_used(graded, tmp_path)
     assert found.outcomes[0].error.startswith("the folder of the hand-in has another referee.py than the exercise")
     other.write_text((tmp_path / "exercise" / "referee.py").read_text())  # a student's copy of the whole exercise
     assert graded(before="self.cart.set_velocity((1, 0, 0))", one=ONE_RUN).passed
+
+
+def test_a_hand_in_cannot_end_the_grading_with_an_error_of_the_machine(graded):
+    for load, before in (("raise RenderError('no')", "pass"), ("pass", "raise RenderError('no')")):
+        code = "from simkit.errors import RenderError\n"
+        found = graded(code + load, code + before, one=ONE_RUN)
+        assert found.points == 0.0 and "no" in found.outcomes[0].error
+
+
+FORGED_END = """
+from simkit.testing.grading.run_stream import END, FrameWriter
+for one in gc.get_objects():
+    if isinstance(one, FrameWriter):
+        one.add_json(END, {"problem": "x", "codes": 5})
+        one.flush()
+"""
+
+
+def test_an_end_with_values_of_wrong_types_is_no_error_of_the_judge(graded):
+    found = graded(before=FORGED_END, one=ONE_RUN)
+    assert found.points == 0.0 and found.outcomes[0].error == "x"
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows cannot stop a process")
+def test_a_hand_in_that_stops_its_judge_is_not_run_again(graded, monkeypatch):
+    monkeypatch.setattr(grading, "_SPARE_SECONDS", 5.0)
+    timeout = ("duration: 0.3", "duration: 0.3\nwall_timeout: 1.0")
+    found = graded(before="import signal; os.kill(os.getppid(), signal.SIGSTOP)", timeout=timeout)
+    assert found.points == 0.0 and "of wall time" in found.outcomes[0].error
+    assert found.outcomes[1].error.startswith("the run was not started")

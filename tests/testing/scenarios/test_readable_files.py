@@ -241,3 +241,28 @@ def test_a_golden_run_directly_in_the_home_folder_names_files_beside_it_and_none
     assert files.allows(stranger / "ball.sdf") and files.allows(stranger / "g" / "x.sdf")
     assert not files.allows(stranger / ".ssh" / "key") and not files.allows(stranger / "models" / "m.sdf")
     assert not files.allows(stranger / ".netrc")
+
+
+HEAT = """<sdf version="1.9"><world name="w"><model name="m"><link name="l"><visual name="v"><geometry>
+<box><size>1 1 1</size></box></geometry><plugin filename="gz-sim-thermal-system" name="gz::sim::systems::Thermal">
+<heat_signature>t.png</heat_signature></plugin></visual></link><plugin filename="libsimkit_play_motion.so"
+name="play_motion2"><motions>none.yaml</motions></plugin></model></world></sdf>"""
+OVERRIDES = {  # the place of the value is a message, and no path: the second part would be a folder of the scenario
+    "m::l::v::gz::sim::systems::Thermal.heat_signature": ("{}", "../private/t.png", "q/../../private/t.png"),
+    "m::play_motion2.motions": ("{}", "file://{}", "../private/t.png", "linked/t.png"),
+}
+
+
+@pytest.mark.parametrize("element", OVERRIDES)
+def test_an_override_opens_no_file_outside(stranger: Path, element: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    private = stranger.parent / "private" / "t.png"
+    private.write_text("no image: [")
+    (stranger / "linked").symlink_to(private.parent)
+    (stranger / "w.sdf").write_text(HEAT)
+    monkeypatch.chdir(stranger)
+    for text in OVERRIDES[element]:
+        value = text.format(private)
+        (stranger / "s.yaml").write_text(f"world: w.sdf\nduration: 0\nset: {{'{element}': '{value}'}}\n")
+        with open_scenario(read_scenario(stranger / "s.yaml")) as sim:
+            said = [d.message for d in sim.diagnostics if value in d.message]
+        assert said and all("is not found" in message for message in said), said

@@ -183,3 +183,44 @@ def test_a_cache_that_cannot_be_written_is_an_error(fuel: Fuel) -> None:
     write_world(f"{fuel.url}/1.0/o/models/box")
     result = run("fetch", "w.sdf")
     assert result.exit_code == 2 and "SK-CLI-016" in result.output
+
+
+def secret_robot(fuel: Fuel, content: str, model_name: str) -> str:
+    """Return a xacro file whose mesh has a URL of the server; `content` is before it, and NAME means the variable."""
+    mesh = f'<mesh filename="{fuel.url}/1.0/o/models/{model_name}/1/files/a.stl"/>'
+    link = f'<link name="m"><visual><geometry>{mesh}</geometry></visual></link>'
+    text = content.replace("{}", link) if "{}" in content else content + link
+    xmlns = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    return f'<robot name="r" {xmlns}><link name="l"/>\n{text}</robot>'.replace("NAME", "SIMKIT_TEST_SECRET")
+
+
+SECRET_URLS = {
+    "whole": ("", "$(env NAME)"),
+    "optional": ("", "$(optenv NAME none)"),
+    "function": ("", "${env('NAME')}"),
+    "function with a default": ("", "${optenv('NAME', 'x')}"),
+    "one letter": ("", "${env('NAME')[2]}"),
+    "other letters": ("", "${env('NAME').upper()}"),
+    "condition": ("""<xacro:if value="${env('NAME')[0] == 't'}">{}</xacro:if>""", "a"),
+    "argument": ('<xacro:arg name="a" default="$(env NAME)"/>', "$(arg a)"),
+}
+
+
+@pytest.mark.parametrize("name", SECRET_URLS)
+def test_no_request_contains_an_environment_variable(fuel: Fuel, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SIMKIT_TEST_SECRET", "token123")
+    Path("r.xacro").write_text(secret_robot(fuel, *SECRET_URLS[name]))
+    for options in ((), ("--dry-run",), ("--server", fuel.url)):
+        result = run("fetch", "r.xacro", *options)
+        assert result.exit_code == 2 and "r.xacro:2: error SK-FETCH-010" in result.output, result.output
+        assert "SIMKIT_TEST_SECRET" in result.output and "help: " in result.output
+    assert not fuel.requests, "the request could contain the value"
+
+
+def test_a_variable_that_is_not_set_or_that_of_ros_is_no_secret(fuel: Fuel, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SIMKIT_TEST_SECRET", raising=False)
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    fuel.archives["o/models/jazzy_box"] = [model(**{"a.stl": "x"})]
+    Path("r.xacro").write_text(secret_robot(fuel, "", "$(env ROS_DISTRO)_$(optenv NAME box)"))
+    result = run("fetch", "r.xacro")
+    assert result.exit_code == 0 and len(fuel.requests) == 1, result.output
