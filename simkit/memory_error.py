@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import mmap
 import os
 import sys
 from collections.abc import Iterator
@@ -88,8 +89,6 @@ class _OpenBlasCheck:
         """
         for users, size in _WITH_OPENBLAS:
             if name in users and users.isdisjoint(sys.modules):
-                import mmap
-
                 least = size + _openblas_size()
                 try:
                     mmap.mmap(-1, least << 20).close()

@@ -34,6 +34,7 @@ SMALL_MODULES = frozenset(
         "in_process",
         "input_file",
         "install_command",
+        "early_interrupts",
         "interrupts",
         "json_reader",
         "elementary_functions",
