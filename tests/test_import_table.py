@@ -34,7 +34,6 @@ SMALL_MODULES = frozenset(
         "in_process",
         "input_file",
         "install_command",
-        "early_interrupts",
         "interrupts",
         "json_reader",
         "elementary_functions",
@@ -51,7 +50,7 @@ SMALL_MODULES = frozenset(
         "pose",
         "process_control",
     }
-    | {"early_interrupts", "hidden_text", "json_reader", "linked_files", "project_folder"}
+    | {"hidden_text", "json_reader", "linked_files", "project_folder"}
     | {"progress", "registry", "run_spec", "save_path", "topic_logger", "trusted_folders", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""

@@ -20,7 +20,6 @@ OWN_FILES = {
     "cli/diagnostic_catalogue.py": "data of the package",
     "bridges/ros/type_support.py": "/proc/self/maps",
     "bridges/view/page_server.py": "data of the package",
-    "compiler/meshes/mesh_cache.py": "the cache of simkit",
     "compiler/meshes/parallel_conversion.py": "a temporary file of simkit",
     "mujoco_import.py": "the list of files that pip has installed",
     "msgs/shipped_interfaces.py": "data of the package",

@@ -378,8 +378,9 @@ class Simulation(ScriptGraph, InProcess):
         if self._page is not None:
             self._page.close()
         first = self.contents.spawner.close_plugins()
-        for part in (*engine.structure.all_sensors(), self.contents.handles):
-            part.close()
+        for sensor in engine.structure.all_sensors():
+            sensor.close()
+        self.contents.handles.close()
         engine.is_closed = True
         if first is not None:
             raise first
