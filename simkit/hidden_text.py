@@ -50,12 +50,15 @@ def hidden_in_command() -> Iterator[None]:
     if _is_everywhere:
         yield
         return
+    before = dict(_files)  # a file that this process read before the command says nothing about the command
+    _files.clear()
     _is_everywhere = True
     try:
         yield
     finally:
         _is_everywhere = False
         _files.clear()
+        _files.update(before)
 
 
 def is_hiding() -> bool:

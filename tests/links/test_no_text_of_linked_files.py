@@ -172,3 +172,11 @@ def test_a_folder_after_a_link_is_the_one_that_the_system_opens(tmp_path: Path) 
     (tmp_path / "stranger" / "in").symlink_to(tmp_path / "private" / "inner")
     assert linked_files.leads_outside(str(tmp_path / "stranger" / "in" / ".." / "diary"))
     assert not linked_files.leads_outside(os.path.join("/dev/fd", "0"))  # noqa: PTH118
+
+
+def test_a_command_shows_text_although_its_process_has_read_a_linked_file_before(tmp_path: Path) -> None:
+    (tmp_path / "w.sdf").write_text('<sdf version="1.9"><world name="w"><modell name="m"/></world></sdf>')
+    hidden_text.hide(str(tmp_path / "linked.yaml"), str(tmp_path))
+    output = CliRunner().invoke(app, ["check", str(tmp_path / "w.sdf")]).output
+    assert "modell" in output and "not shown" not in output
+    assert hidden_text.is_hiding()

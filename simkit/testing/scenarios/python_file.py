@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from typing import Any, Final, get_args
 
@@ -86,6 +87,13 @@ def _problem(key: str, value: object, allowed: str) -> str:
     return f"{key}: found {value!r:.60}, expected {allowed}"
 
 
+class _UncachedLoader(SourceFileLoader):
+    """Loader that writes no byte code: the folder of a scenario gets no copy of a file that a link leads to."""
+
+    def set_data(self, path: str, data: Any, *, _mode: int = 0o666) -> None:
+        """Write nothing."""
+
+
 def load_python_scenario(file: Path, diagnostics: Diagnostics) -> RunSpec:
     """Run a Python file and return its `scenario`.
 
@@ -96,7 +104,8 @@ def load_python_scenario(file: Path, diagnostics: Diagnostics) -> RunSpec:
     where = Where(str(file))
     problem: Callable[..., None] = diagnostics.error
     found: Any = None
-    spec = importlib.util.spec_from_file_location(f"simkit_scenario_{file.stem}", file)
+    name = f"simkit_scenario_{file.stem}"
+    spec = importlib.util.spec_from_file_location(name, file, loader=_UncachedLoader(name, str(file)))
     if spec is None or spec.loader is None or not file.is_file():
         problem("SK-SCEN-001", "cannot be read: the file does not exist", where)
         raise LoadError(tuple(diagnostics))
