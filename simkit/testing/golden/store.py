@@ -79,11 +79,12 @@ def write_golden(
         indent=1,
         ensure_ascii=False,
     )
+    content = (text + "\n").encode()  # before anything is written: a name that is not UTF-8 is an error
     try:
         place.mkdir(parents=True, exist_ok=True)
         with _locked_folder(place) as handle:
             _write_atomically(place, name, data)
-            _write_atomically(place, MAIN_FILE, (text + "\n").encode())
+            _write_atomically(place, MAIN_FILE, content)
             if handle is not None:
                 os.fsync(handle)
             _remove_old_data(place, name)

@@ -32,7 +32,7 @@ def prepare(folder: Path, count: int) -> None:
 
 
 def start(folder: Path, output: str, jobs: int, kill_size: int = sys.maxsize) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "simkit", "sweep", "sweep.yaml", "-o", output, "--jobs", str(jobs)]
+    command = [sys.executable, "-m", "simkit", "sweep", "sweep.yaml", "-o", output, "--allow-code", "--jobs", str(jobs)]
     environment = {
         **os.environ,
         "SWEEP_TEST_LOG": str(folder / f"{output}.log"),
