@@ -257,18 +257,22 @@ def known_error(error: Exception) -> SimkitError | None:
 def _is_output_failure(error: OSError) -> bool:
     """Check whether an error of the system may come from a standard stream.
 
-    EIO is also the error of a damaged disk: then the error has the name of the file, or no stream is a terminal.
+    A full disk is also an error of other files: then the error has the name of the file, or both streams are pipes.
+    EIO is also the error of a damaged disk: then no stream is a terminal.
     """
-    if error.errno != errno.EIO:
-        return error.errno in _OUTPUT_ERRORS or error.strerror is None
-    return error.filename is None and any(map(_is_device, (1, 2)))
+    if error.errno not in _OUTPUT_ERRORS:
+        return error.strerror is None
+    if error.errno in (errno.EPIPE, errno.EBADF):
+        return True
+    kinds = (stat.S_ISCHR,) if error.errno == errno.EIO else (stat.S_ISCHR, stat.S_ISREG)
+    return error.filename is None and any(is_kind(_stream_mode(stream)) for stream in (1, 2) for is_kind in kinds)
 
 
-def _is_device(stream: int) -> bool:
+def _stream_mode(stream: int) -> int:
     try:
-        return stat.S_ISCHR(os.fstat(stream).st_mode)  # isatty is False for a closed terminal
+        return os.fstat(stream).st_mode  # isatty is False for a closed terminal
     except OSError:
-        return False
+        return 0
 
 
 def output_failure_exit_code(error: OSError) -> int:

@@ -130,34 +130,28 @@ class RequestLimits:
         return found
 
 
-class _TimedSocket(socket.socket):
-    """Socket whose calls end at the end of a request."""
+class _TimedReading:
+    """Part of a socket whose calls end at the end of a request."""
 
     limits: RequestLimits
 
     def recv_into(self, *args: Any, **options: Any) -> int:
+        connection: Any = super()
         try:
-            self.settimeout(self.limits.time_left())
-            received = super().recv_into(*args, **options)
+            self.settimeout(self.limits.time_left())  # type: ignore[attr-defined]
+            received: int = connection.recv_into(*args, **options)
         except TimeoutError:
             raise self.limits.expired() from None
         self.limits.count(received)
         return received
 
 
-class _TimedTlsSocket(ssl.SSLSocket):
-    """Encrypted socket whose calls end at the end of a request."""
+class _TimedSocket(_TimedReading, socket.socket):
+    """Socket of a request."""
 
-    limits: RequestLimits
 
-    def recv_into(self, *args: Any, **options: Any) -> int:
-        try:
-            self.settimeout(self.limits.time_left())
-            received = super().recv_into(*args, **options)
-        except TimeoutError:
-            raise self.limits.expired() from None
-        self.limits.count(received)
-        return received
+class _TimedTlsSocket(_TimedReading, ssl.SSLSocket):
+    """Encrypted socket of a request."""
 
 
 class _TimedConnection(HTTPConnection):
