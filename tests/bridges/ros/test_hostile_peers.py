@@ -102,6 +102,7 @@ tell(count)
 DEATH = """
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Empty
+client.call(Empty, "/unpause_physics")  # the node before may have died between its two calls
 publisher = node.create_publisher(Twist, "/cmd_vel", 10)
 scans = client.hear("/scan", LaserScan, rclpy.qos.qos_profile_sensor_data)
 asked = node.create_client(Empty, "/pause_physics")
