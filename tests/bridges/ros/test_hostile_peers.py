@@ -167,9 +167,14 @@ def test_a_run_outlives_nodes_that_are_killed(simkit_run: SimkitRun, ros_node: R
     code = textwrap.dedent(HEAD.format(seconds=SECONDS) + DEATH)
     command = [str(ros_python), str(FOLDER / "ros_client.py"), code]
     with attacked(simkit_run, ros_node):
-        end, killed = time.monotonic() + SECONDS, 0
+        end, killed, has_missed = time.monotonic() + SECONDS, 0, False
         while killed < 2 or time.monotonic() < end:
             found = subprocess.run(command, capture_output=True, text=True, env=ros_environment(), timeout=TIMEOUT)
-            assert found.returncode == -9, found.stderr
-            killed += 1
+            if found.returncode != -9:
+                # Fast DDS 3.2 tells a node that starts when the lease of a killed one ends, 20 s after its death, only
+                # a part of the endpoints. The next node gets all.
+                assert not has_missed and "TimeoutError" in found.stderr, found.stderr
+                has_missed = True
+                continue
+            killed, has_missed = killed + 1, False
         print(f"\n{killed} nodes killed")  # noqa: T201 -- read with -s
