@@ -9,6 +9,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 from simkit import progress
+from simkit.errors import InputError
 from simkit.recording.command_script import Commands, commands_of, read_script, steady_velocity
 from simkit.run_spec import RunSpec
 from simkit.testing.scenarios.code_permission import permit_code
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 
 
 _SLICE_SECONDS = 0.25  # simulated time between two checks of the wall clock [s]
+_PAUSED = (
+    "SK-SCEN-009 the world was paused at t = {time:g} s, and nothing in the scenario resumes it\n"
+    "    help: remove the call that pauses the world, or resume the world in the same step"
+)
 
 
 @dataclass(frozen=True)
@@ -82,7 +87,7 @@ def run_scenario(
 
     Raises:
         InputError: A command or a check does not fit the world, or SK-SCEN-008 the scenario needs code that is not
-            allowed.
+            allowed, or SK-SCEN-009 the world was paused before the end.
         SimulationDiverged: The state became NaN or infinite.
         PluginError: A plugin raised an exception.
     """
@@ -106,7 +111,10 @@ def run_scenario(
             stop = min(sim.tick + slice_, sim.tick + end - sim.engine.steps)
             if commands.next_tick is not None:
                 stop = min(stop, max(commands.next_tick, sim.tick + 1))
+            before = sim.engine.steps
             sim.control.pausing.advance(stop - sim.tick)
+            if sim.engine.steps == before and not watch.ended:
+                raise InputError(_PAUSED.format(time=sim.time), "SK-SCEN-009")
             task.done = (sim.engine.steps - begun) * sim.timestep
             if on_slice is not None:
                 on_slice()
