@@ -118,7 +118,7 @@ def name_fault(name: str) -> str:
     """Return the reason why an archive must not contain a file of this name; empty if the name is allowed."""
     parts = name.split("/")
     if name.startswith("/") or not name:
-        return "is an absolute path" if name else "is empty"
+        return "is an absolute path" if name else "has no name"
     if not _NAME.fullmatch(name):
         return "has characters that are not allowed in file names"
     if any(part in ("", ".", "..") for part in parts):
@@ -149,13 +149,14 @@ def files_fault(infos: Iterable[zipfile.ZipInfo], check_name: Callable[[str], st
     folders: set[str] = set()
     for info in infos:
         name = info.filename.removesuffix("/")
+        is_folder = info.filename.endswith("/")  # `ZipInfo.is_dir` fails on an empty name
         problem = check_name(name) or kind_fault(info)
         folded = name.casefold()
-        if not problem and folded in seen and not info.is_dir():
+        if not problem and folded in seen and not is_folder:
             problem = f"is a duplicate (of {seen[folded]!r:.80})"
         if problem:
-            return f"the {'folder' if info.is_dir() else 'file'} {name!r:.80} {problem}"
-        if info.is_dir():
+            return f"the {'folder' if is_folder else 'file'} {name!r:.80} {problem}"
+        if is_folder:
             folders.add(folded)
         else:
             seen[folded] = name

@@ -87,6 +87,10 @@ def test_files_that_share_bytes_of_the_archive_are_refused() -> None:
     assert "overlaps" in refusal(beyond)[1]
 
 
+def test_a_file_without_a_name_is_refused() -> None:
+    assert refusal(zip64(entry(b""), 1)) == ("name", "the file '' has no name")
+
+
 def test_the_folders_of_an_archive_are_counted_too() -> None:
     deep = "/".join("a" * 400)
     with open_archive(archive_of([f"{i}/{deep}" for i in range(40)]), 1 << 30):
