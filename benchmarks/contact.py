@@ -4,8 +4,8 @@ python benchmarks/contact.py [--list] [--case GLOB] [--steps MS,MS] [--engines N
     [--json FILE] [--plot FILE.svg] [--write PAGE.md]
 
 Each case is data and one measure, in the file of its table. The same cases run in simkit, in simkit with MuJoCo's own
-contact law, and in PyBullet, Drake and DART where they are installed (extra `compare`). `--write` replaces the tables in
-a page, which is docs/accuracy.md. Times are processor times; the engines take turns.
+contact law, and in PyBullet, Drake and DART where they are installed (extra `compare`). `--write` replaces the tables
+in a page, which is docs/accuracy.md. Times are processor times; the engines take turns.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import measure  # noqa: F401  (finds simkit beside it)
-from contact_engines import LAW, DivergedError, Engine, UnsupportedCaseError, engines, versions
+from contact_engines import DivergedError, Engine, UnsupportedCaseError, engines, versions
 from contact_hits import BOUNCES_AND_DROPS, HITS
 from contact_piles import DICE, DOMINO_WAVE, FALLING_HEAPS, LOADS, PYRAMIDS
 from contact_record import record
@@ -71,10 +71,6 @@ def run_case(case: Case, table: Table, makers: Makers) -> dict[str, dict[str, fl
                 results[name]["step_us"] = 1e6 * taken
         for engine in made.values():
             engine.close()
-    base = results.get(LAW, {})
-    if "step_us" in base:
-        for found in results.values():
-            found["step_ratio"] = found.get("step_us", math.nan) / base["step_us"]
     return results
 
 

@@ -10,7 +10,7 @@ import dartpy
 import numpy as np
 import numpy.typing as npt
 from contact_engines import NOT_ASKED, UnsupportedCaseError, check_supported, quaternion
-from contact_scene import GROUND, Body, Case, Pair, Shape, Vector
+from contact_scene import GROUND, Body, Case, Pair, Shape
 
 KINDS = {"box", "sphere", "cylinder", "capsule"}
 SLAB = (20.0, 20.0, 0.5)  # half lengths of the ground, because the detectors differ in planes [m]

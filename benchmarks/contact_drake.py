@@ -6,7 +6,6 @@ contact has one point of a face, on which a box rocks; a hydroelastic contact ha
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +16,8 @@ from contact_scene import Body, Case, Pair, Shape, Vector
 from pydrake.common.eigen_geometry import Quaternion
 from pydrake.geometry import (
     AddCompliantHydroelasticProperties,
-    AddRigidHydroelasticProperties,
     AddContactMaterial,
+    AddRigidHydroelasticProperties,
     Box,
     Capsule,
     Cylinder,

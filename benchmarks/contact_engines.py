@@ -101,7 +101,7 @@ class Simkit:
         self._start = self.sim.snapshot()
 
     def advance(self, count: int) -> None:
-        if self._pushed is None:
+        if self._pushed is None or self.case.push is None:
             self.sim.step(count)
             return
         for _ in range(count):

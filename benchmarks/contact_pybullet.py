@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pybullet
 from contact_engines import NOT_ASKED, UnsupportedCaseError
-from contact_scene import GROUND, LATERAL, Body, Case, Pair, Shape, Vector
+from contact_scene import GROUND, LATERAL, Body, Case, Pair, Shape
 from contact_sdf import CELLS, SLAB, mesh, slab
 
 DRIVE_LIMIT = 1e4  # greatest torque of a wheel's velocity motor [N·m]
@@ -44,7 +43,9 @@ class PyBullet:
         for body in (*case.blocks, *case.bodies):
             if body not in case.hinged:
                 turn = pybullet.getQuaternionFromEuler(body.rpy)
-                made = self._create(0 if body in case.blocks else body.mass, self._shape(body.shape), body.position, turn)
+                made = self._create(
+                    0 if body in case.blocks else body.mass, self._shape(body.shape), body.position, turn
+                )
                 self.names[made, -1] = body.name
         keys = {name: key for key, name in self.names.items()}
         self.bodies = [keys[body.name] for body in case.moving]
@@ -91,9 +92,7 @@ class PyBullet:
             kind, options = pybullet.GEOM_MESH, {"vertices": mesh(shape)[0].tolist()}
         else:
             raise UnsupportedCaseError(shape.kind)
-        made = pybullet.createCollisionShape(
-            kind, collisionFramePosition=place, physicsClientId=self.client, **options
-        )
+        made = pybullet.createCollisionShape(kind, collisionFramePosition=place, physicsClientId=self.client, **options)
         return int(made)
 
     def _build_vehicle(self, case: Case) -> None:
@@ -130,8 +129,7 @@ class PyBullet:
             -1,
             linkMasses=[body.mass for body in case.hinged],
             linkCollisionShapeIndices=[
-                self._shape(body.shape, place=arm.tolist()) if body.touches else -1
-                for body, arm in zip(case.hinged, arms, strict=True)
+                self._shape(body.shape, place=arm.tolist()) for body, arm in zip(case.hinged, arms, strict=True)
             ],
             linkVisualShapeIndices=[-1] * count,
             linkPositions=[(anchors[h.child] - anchors[h.parent]).tolist() for h in case.hinges],
@@ -143,7 +141,9 @@ class PyBullet:
             linkJointAxis=[h.axis for h in case.hinges],
         )
         self.names |= {(made, i): hinge.child for i, hinge in enumerate(case.hinges)}
-        for i in range(count):
+        for i, body in enumerate(case.hinged):
+            if not body.touches:  # a link without a shape has no inertia
+                pybullet.setCollisionFilterGroupMask(made, i, 0, 0, physicsClientId=self.client)
             pybullet.setJointMotorControl2(made, i, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=self.client)
 
     def _drive(self, yaw_rate: float) -> None:
@@ -223,7 +223,7 @@ class PyBullet:
                 linear, angular = pybullet.getBaseVelocity(body, physicsClientId=self.client)
             else:
                 found = pybullet.getLinkState(body, link, 1, 1, physicsClientId=self.client)
-                position, (x, y, z, w), linear, angular = *found[:2], *found[6:8]
+                (position, (x, y, z, w)), (linear, angular) = found[:2], found[6:8]
             rows.append((*position, w, x, y, z, *linear, *angular))
         return np.array(rows)
 

@@ -85,7 +85,7 @@ def extent(shape: Shape, down: Floats) -> Floats:
     """Return how far a shape reaches from its centre along directions that are given in its axes, shape (t, 3)."""
     size, down = shape.size, np.abs(down)
     if shape.kind in {"box", "mesh_box"}:
-        flat: Floats = down @ np.array(size)
+        flat: Floats = (down * size).sum(axis=1)
         return flat
     if shape.kind == "ellipsoid":
         oval: Floats = np.linalg.norm(down * size, axis=1)
@@ -93,7 +93,8 @@ def extent(shape: Shape, down: Floats) -> Floats:
     if shape.kind == "sphere":
         return np.full(len(down), size[0])
     if shape.kind == "capsule":
-        return size[0] + size[1] * down[:, 2]
+        straight: Floats = size[0] + size[1] * down[:, 2]
+        return straight
     reach: Floats = size[0] * np.hypot(down[:, 0], down[:, 1]) + size[1] * down[:, 2]
     return reach
 
@@ -126,7 +127,7 @@ def observe(engine: Engine, case: Case, looks: int) -> Record:
     all_states: Floats = np.stack(states)
     if engine.has_diverged() or not np.isfinite(all_states).all():
         raise DivergedError(case.name)
-    times: Floats = np.arange(looks + 1) * (case.timestep * case.stride)
+    times = case.timestep * case.stride * np.arange(looks + 1, dtype=np.float64)
     return Record(
         case,
         engine,

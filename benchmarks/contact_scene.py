@@ -217,6 +217,7 @@ class Quantity:
         aim: largest error aimed at, or the smallest value where `more` is better; None where there is no aim.
         exact: value without any error.
         mean: whether a row shows the mean of its cases, and not the worst of them.
+        beside: whether a cell also shows the ratio to the value of MuJoCo's law.
     """
 
     title: str
@@ -225,6 +226,7 @@ class Quantity:
     more: bool = False
     exact: float = 0.0
     mean: bool = False
+    beside: bool = False
 
     def error(self, value: float) -> float:
         """Distance from the exact value, of an error only the harmful side."""

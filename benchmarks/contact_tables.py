@@ -9,12 +9,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from contact_engines import LAW
 from contact_scene import Quantity, Table
 
-STEP = Quantity("step", "µs", mean=True)
-RATIO = Quantity("beside MuJoCo's law", mean=True)
-TIMES = {"step_us": STEP, "step_ratio": RATIO}
-RATIO_OF = {"fall_us": "fall_ratio", "rest_us": "rest_ratio"}
+STEP = {"step_us": Quantity("step", "µs", mean=True, beside=True)}
 
 
 @dataclass
@@ -45,7 +43,7 @@ class Results:
     def quantities(self) -> dict[str, Quantity]:
         """Quantities of the table that any engine found, and the times of a step."""
         keys = {key for cases in self.found.values() for values in cases for key in values}
-        return {key: quantity for key, quantity in {**self.table.quantities, **TIMES}.items() if key in keys}
+        return {key: quantity for key, quantity in {**self.table.quantities, **STEP}.items() if key in keys}
 
     def value(self, row: str, engine: str, key: str, steps: Iterable[float]) -> float | None:
         """Value of a cell: the worst or the mean of the cases; NaN where a case diverged, None where there is none."""
@@ -54,8 +52,6 @@ class Results:
         if not values:
             return None
         quantity = self.quantities[key]
-        if key in TIMES:
-            return statistics.median(values)
         if any(math.isnan(value) for value in values):
             return math.nan
         return statistics.fmean(values) if quantity.mean else max(values, key=quantity.error)
@@ -75,10 +71,18 @@ def number(value: float | None) -> str:
 
 def _title(quantity: Quantity) -> str:
     unit = f" [{quantity.unit}]" if quantity.unit else ""
+    if quantity.beside:
+        unit += f" (beside {LAW})"
     if quantity.aim is None:
         return f"{quantity.title}{unit}"
     bound = f"{quantity.exact:g} ± {quantity.aim:g}" if quantity.exact else f"≤ {quantity.aim:g}"
     return f"{quantity.title}{unit}, " + (f"≥ {quantity.aim:g}" if quantity.more else bound)
+
+
+def _cell(results: Results, row: str, engine: str, key: str, steps: Iterable[float]) -> str:
+    value = results.value(row, engine, key, steps)
+    base = results.value(row, LAW, key, steps) if results.quantities[key].beside else None
+    return number(value) + (f" ({number(value / base)})" if value and base else "")
 
 
 def _line(cells: Sequence[str]) -> str:
@@ -90,7 +94,7 @@ def markdown(results: Results) -> str:
     shown = results.quantities
     if results.table.by_step:
         head = [f"{1e3 * step:g} ms" for step in results.steps]
-        columns = [([key for key in shown if key not in TIMES], (step,)) for step in results.steps]
+        columns: list[tuple[list[str], tuple[float, ...]]] = [(list(shown), (step,)) for step in results.steps]
     else:
         head = [_title(quantity) for quantity in shown.values()]
         columns = [([key], results.steps) for key in shown]
@@ -99,8 +103,8 @@ def markdown(results: Results) -> str:
         for engine in results.engines:
             cells = []
             for keys, steps in columns:
-                values = [results.value(row, engine, key, steps) for key in keys]
-                cells.append("–" if all(v is None for v in values) else " / ".join(map(number, values)))
+                texts = [_cell(results, row, engine, key, steps) for key in keys]
+                cells.append("–" if set(texts) == {"–"} else " / ".join(texts))
             if set(cells) != {"–"}:
                 lines.append(_line([row, engine, *cells]))
     return "\n".join(lines)
@@ -126,8 +130,8 @@ def replace_sections(text: str, sections: Mapping[str, str]) -> str:
         pattern = re.compile(re.escape(first) + ".*?" + re.escape(last), re.DOTALL)
         if not pattern.search(text):
             raise ValueError(f"the page has no section {first} … {last}")
-        whole = f"{first}\n\n{content}\n\n{last}"
-        text = pattern.sub(lambda _, whole=whole: whole, text)
+        before, rest = pattern.split(text, maxsplit=1)
+        text = f"{before}{first}\n\n{content}\n\n{last}{rest}"
     return text
 
 

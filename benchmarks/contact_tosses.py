@@ -1,9 +1,9 @@
 """Cases of `contact.py` from recorded tosses of a cube, which are read from a folder.
 
-The recordings of ContactNets (Pfrommer, Halm and Posa 2020; github.com/DAIRLab/contact-nets, folder `data`) are 570 tosses
-at 148 Hz: `params_processed/experiment.json` and one file of PyTorch for each toss, with a row for each sample. A row has
-position, quaternion (w, x, y, z), velocity and angular velocity (in the cube's axes); lengths are in units of half the
-cube's width. Each toss starts from its first sample and is then predicted without correction.
+The recordings of ContactNets (Pfrommer, Halm and Posa 2020; github.com/DAIRLab/contact-nets, folder `data`) are 570
+tosses at 148 Hz: `params_processed/experiment.json` and one file of PyTorch for each toss, with a row for each sample.
+A row has position, quaternion (w, x, y, z), velocity and angular velocity (in the cube's axes); lengths are in units of
+half the cube's width. Each toss starts from its first sample and is then predicted without correction.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import numpy as np
 from contact_record import Floats, Record, matrices
 from contact_scene import Body, Case, Found, Quantity, Shape, Table
 
+from simkit.linear_algebra import matmul
 from simkit.pose import rpy_from_quat
 
 HALF_WIDTH = 0.0524  # of the cube [m]
@@ -111,7 +112,7 @@ def toss(name: str, samples: Floats, settings: Mapping[str, float], bounce: floa
         tuple(rpy_from_quat(turn).tolist()),
         settings["mu"],
         tuple((HALF_WIDTH * first[7:10]).tolist()),
-        tuple((matrices(turn) @ first[10:13]).tolist()),
+        tuple(matmul(matrices(turn), first[10:13]).tolist()),
         (settings["inertia"] / settings["mass"] * HALF_WIDTH**2,) * 3,
     )
     return Case(
@@ -143,9 +144,9 @@ def tosses(folder: Path | None) -> Table:
         "tosses",
         "Real tosses of a cube",
         "Recorded tosses of a cube of 105 mm with μ 0.18 (148 Hz, ContactNets, Pfrommer, Halm and Posa 2020), every "
-        "fourth of 570, are predicted from their first sample. Each cell has the mean error of the position [% of the "
-        "cube's width] and of the rotation [°] over all samples. Reference: the recording. Steps are divisors of the "
-        "sampling period: 0.97, 0.68, 0.34 and 0.17 ms.",
+        "fourth of 570, are predicted from their first sample. Each cell has the mean error of the position [% of "
+        "the cube's width] and of the rotation [°] over all samples. Reference: the recording. Steps are divisors "
+        "of the sampling period: 0.97, 0.68, 0.34 and 0.17 ms.",
         {"position": Quantity("position", "%", mean=True), "rotation": Quantity("rotation", "°", mean=True)},
         partial(_tosses, folder) if folder else lambda step, quick: iter(()),
         steps=(0.00097, 0.00068, 0.00034, 0.00017),

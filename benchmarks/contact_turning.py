@@ -16,27 +16,32 @@ from contact_scene import GRAVITY, LATERAL, Body, Case, Found, Hinge, Quantity, 
 def disc(step: float) -> Case:
     """A thin disc that precesses about its resting centre, its rim rolling on the ground.
 
-    For a disc of radius R, inclined by a to the ground, the steady precession about the vertical is W with
-    W² = 4 g / (R sin a) (thin disc); the angular velocity is W sin a along the radius to the contact.
+    With the radius R, the half thickness h, the inclination a to the ground and the moments of inertia A across and C
+    along the axis for 1 kg, the precession W about the vertical has
+
+        W² = g R (R cos a - h sin a) / (sin a (A R cos a - C h sin a)),
+
+    which is 4 g / (R sin a) for h = 0. The angular velocity is along the line from the centre to the contact, because
+    both are at rest; friction is zero and the normal force is the weight.
     """
     radius, half, incline = 0.1, 0.002, math.radians(30)
+    shape = Shape("cylinder", (radius, half))
     sine, cosine = math.sin(incline), math.cos(incline)
+    across, _, along = shape.inertia
+    arm = across * radius * cosine - along * half * sine
+    precession = math.sqrt(GRAVITY * radius * (radius * cosine - half * sine) / (sine * arm))
     # pitch by a: the lowest rim is at +x
     rim: Vector = (radius * cosine - half * sine, 0.0, -radius * sine - half * cosine)
-    precession = math.sqrt(4 * GRAVITY / (radius * sine))
-    turning = precession * sine / math.hypot(*rim)
+    turning = precession * sine / radius
     angular = (rim[0] * turning, 0.0, rim[2] * turning)
-    body = Body("disc", Shape("cylinder", (radius, half)), 0.5, (0.0, 0.0, -rim[2]), (0.0, incline, 0.0), 1.0)
-    body = Body(body.name, body.shape, body.mass, body.position, body.rpy, body.mu, angular=angular)
+    body = Body("disc", shape, 0.5, (0.0, 0.0, -rim[2]), (0.0, incline, 0.0), 1.0, angular=angular)
 
     def energy(r: Record) -> Found:
         whole = r.energy + body.mass * GRAVITY * (body.position[2] - half)  # beside the disc that lies
         return {"energy": 100.0 * float(whole[-1] / whole[0] - 1.0)}
 
     look = max(1, round(0.01 / step))
-    return Case(
-        "disc", "disc of 0.1 m, 30°", energy, (body,), settle=0.0, duration=4.0, stride=look, timestep=step
-    )
+    return Case("disc", "disc of 0.1 m, 30°", energy, (body,), settle=0.0, duration=4.0, stride=look, timestep=step)
 
 
 def _disc(step: float, quick: bool) -> Iterator[Case]:
@@ -51,7 +56,9 @@ def turntable(step: float) -> Case:
     rate, distance = 2.0, 0.3
     table = Body("table", Shape("cylinder", (0.5, 0.05)), 1000.0, (0.0, 0.0, 0.5))
     place = (distance, 0.0, 0.6)
-    box = Body("box", Shape("box", (0.05,) * 3), 1.0, place, linear=(0.0, rate * distance, 0.0), angular=(0.0, 0.0, rate))
+    box = Body(
+        "box", Shape("box", (0.05,) * 3), 1.0, place, linear=(0.0, rate * distance, 0.0), angular=(0.0, 0.0, rate)
+    )
 
     def creep(r: Record) -> Found:
         offset = r.positions[:, 0] - r.positions[:, 1]
@@ -85,8 +92,8 @@ EDGE_RADIUS = 0.04
 def over_the_edge(speed: float, mu: float, radius: float = EDGE_RADIUS) -> tuple[float, float]:
     """Return horizontal speed [m/s] and spin [rad/s] of a cylinder that rolled over the edge of a table.
 
-    The cylinder turns about the edge, its centre by the angle a from the vertical: without slip a'' = 2 g sin a / (3 R),
-    with a friction of m g sin a / 3. From the angle on at which this exceeds mu N it slips. It leaves at N = 0.
+    The cylinder turns about the edge, its centre by the angle a from the vertical. Without slip it accelerates with
+    a'' = 2 g sin a / (3 R), with a friction of m g sin a / 3. From the angle on at which this exceeds mu N it slips. It leaves at N = 0.
     """
     step = 1e-5
     angle, rate, spin, slips = 0.0, speed / radius, speed / radius, False
@@ -194,9 +201,9 @@ def _pendulums(step: float, quick: bool) -> Iterator[Case]:
 DISC = Table(
     "disc",
     "Euler's disc",
-    "A disc with a radius of 0.1 m and a thickness of 4 mm rolls on its rim about its resting centre, inclined by 30°, "
-    "μ 1. Each cell has the change of its energy in 4 s [%], the potential energy counted from the disc that lies. "
-    "Reference: rolling without slip keeps the energy, so the change is 0.",
+    "A disc with a radius of 0.1 m and a thickness of 4 mm rolls on its rim about its resting centre, inclined by "
+    "30°, μ 1. Each cell has the change of its energy in 4 s [%], the potential energy counted from the disc that "
+    "lies. Reference: rolling without slip keeps the energy, so the change is 0.",
     {"energy": Quantity("change of energy", "%")},
     _disc,
     steps=(0.002, 0.001, 0.0005, 0.00025),
@@ -206,8 +213,8 @@ DISC = Table(
 TURNTABLE = Table(
     "turntable",
     "Box on a turntable",
-    "A box of 0.1 m stands at 0.3 m from the axis of a heavy turntable that turns at 2 rad/s, μ 0.5. Each cell has the "
-    "creep relative to the table in 5 s [mm]. Reference: friction holds the box, so the creep is 0.",
+    "A box of 0.1 m stands at 0.3 m from the axis of a heavy turntable that turns at 2 rad/s, μ 0.5. Each cell has "
+    "the creep relative to the table in 5 s [mm]. Reference: friction holds the box, so the creep is 0.",
     {"creep": Quantity("creep", "mm")},
     _turntable,
     steps=(0.004, 0.002, 0.001, 0.0005),
@@ -218,9 +225,9 @@ TURNTABLE = Table(
 EDGES = Table(
     "edge",
     "Log over the edge of a table",
-    "A cylinder with a radius of 40 mm rolls across the edge of a box, μ 0.5. Each cell has the errors of its horizontal "
-    "speed and of its spin in the fall [%]. Reference: the equations of a cylinder that turns about the edge, slips when "
-    "friction no longer holds it, and leaves when the normal force is zero.",
+    "A cylinder with a radius of 40 mm rolls across the edge of a box, μ 0.5. Each cell has the errors of its "
+    "horizontal speed and of its spin in the fall [%]. Reference: the equations of a cylinder that turns about the "
+    "edge, slips when friction no longer holds it, and leaves when the normal force is zero.",
     {"speed": Quantity("speed", "%"), "spin": Quantity("spin", "%")},
     _edges,
     steps=(0.002, 0.001, 0.0005, 0.00025),
@@ -230,9 +237,9 @@ EDGES = Table(
 PENDULUMS = Table(
     "pendulums",
     "Pendulums",
-    "Links of 0.2 m in a row, without friction and contact, are released horizontally. Each cell has the greatest change "
-    "of energy in 10 s [%], over the energy that the links have above the one in which they hang. Reference: the energy "
-    "is constant.",
+    "Links of 0.2 m in a row, without friction and contact, are released horizontally. Each cell has the greatest "
+    "change of energy in 10 s [%], over the energy that the links have above the one in which they hang. Reference: "
+    "the energy is constant.",
     {"drift": Quantity("change of energy", "%")},
     _pendulums,
     steps=(0.004, 0.002, 0.001, 0.0005),
