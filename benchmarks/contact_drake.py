@@ -1,7 +1,7 @@
-"""Drake as one of the engines of `contact.py`: TAMSI, hydroelastic contact, and damping that lets no body rebound.
+"""Drake as one of the engines of `contact.py`: hydroelastic contact, and damping that lets no body rebound.
 
-Of its approximations, TAMSI hits best: with the default, friction stops a box that lands at 3 m/s with mu 0.3. A point
-contact has one point of a face, on which a box rocks; a hydroelastic contact has the whole surface.
+The approximation is "similar": with "lagged", the default, friction stops a box that lands at 3 m/s with mu 0.3. A
+point contact has one point of a face, on which a box rocks; a hydroelastic contact has the whole surface.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Drake:
         self.case = case
         self.steps = 0
         builder = DiagramBuilder()
-        config = MultibodyPlantConfig(time_step=case.timestep, discrete_contact_approximation="tamsi")
+        config = MultibodyPlantConfig(time_step=case.timestep, discrete_contact_approximation="similar")
         self.plant, _ = AddMultibodyPlant(config=config, builder=builder)
         self.plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -case.gravity])
         world = self.plant.world_body()

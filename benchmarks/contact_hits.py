@@ -90,11 +90,7 @@ class Hit:
         found = (*r.linear[look, 0, [0, 2]].tolist(), float(r.angular[look, 0, 1]))
         weights = (1.0, 1.0, self.gyration)
         off = sum(w * (a - b) ** 2 for w, a, b in zip(weights, found, self.after, strict=True))
-        energy = r.energy
-        return {
-            "error": 100.0 * math.sqrt(off) / SPEED,
-            "gain": 100.0 * float((energy - np.minimum.accumulate(energy)).max() / energy[0]),
-        }
+        return {"error": 100.0 * math.sqrt(off) / SPEED}
 
 
 def _lowest_rise(r: Record) -> Floats:

@@ -93,7 +93,8 @@ def over_the_edge(speed: float, mu: float, radius: float = EDGE_RADIUS) -> tuple
     """Return horizontal speed [m/s] and spin [rad/s] of a cylinder that rolled over the edge of a table.
 
     The cylinder turns about the edge, its centre by the angle a from the vertical. Without slip it accelerates with
-    a'' = 2 g sin a / (3 R), with a friction of m g sin a / 3. From the angle on at which this exceeds mu N it slips. It leaves at N = 0.
+    a'' = 2 g sin a / (3 R), with a friction of m g sin a / 3. It slips from the angle on at which this friction exceeds
+    mu N. It leaves at N = 0.
     """
     step = 1e-5
     angle, rate, spin, slips = 0.0, speed / radius, speed / radius, False
