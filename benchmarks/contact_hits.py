@@ -245,11 +245,11 @@ Measure = Callable[[Record], dict[str, float]]
 HITS = Table(
     "hits",
     "Oblique hits",
-    "A body without spin hits a plane at 4 m/s, without gravity. Each cell has the error of the motion after the "
-    "hit [%]: the root of the energy of the difference over the energy before the hit. It is the worst of the "
-    "coefficients of friction 0.1, 0.3, 0.6 and 1 and of the angles 10°, 30°, 45°, 60° and 80° to the ground. "
-    "Reference: the rigid body that keeps e times its closing speed (e = 0 where none is given), with the impulse "
-    "of Coulomb's friction. Hits in which the slip would reverse are left out, because laws of impact differ there. "
+    "A body without spin hits a plane at 4 m/s, without gravity. A cell has the error of the motion after the hit "
+    "[%]. Its square is the energy of the difference from the reference over the energy before the hit. Each cell "
+    "is the worst of four coefficients of friction (0.1 to 1) and five angles to the ground (10° to 80°). "
+    "Reference: the rigid body keeps e times its closing speed, and Coulomb's friction acts during the hit. Without "
+    "e in the row, e is 0. Hits in which the slip would reverse are left out, because laws of impact differ there. "
     "The motion is read when the contact no longer closes.",
     {"error": Quantity("error", "%", 3.0)},
     _hits,

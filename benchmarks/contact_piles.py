@@ -85,7 +85,7 @@ def _dice(step: float, quick: bool) -> Iterator[Case]:
         turn = (draw.uniform(-3, 3), draw.uniform(-1.5, 1.5), draw.uniform(-3, 3))
         linear = (draw.uniform(1.5, 2.5), 0.0, draw.uniform(-1.0, 0.0))
         angular = (draw.uniform(-20, 20), draw.uniform(-20, 20), draw.uniform(-20, 20))
-        place = (0.0, 2.0 * i, draw.uniform(0.1, 0.2))
+        place = (0.0, 0.5 * i, draw.uniform(0.1, 0.2))
         dice.append(Body(f"die_{i}", DIE, 0.005, place, turn, 0.4, linear, angular))
     looks = max(1, round(0.01 / step))
     yield Case("dice", "24 dice, μ 0.4", _mean_way, tuple(dice), settle=0.0, duration=2.5, stride=looks, timestep=step)
@@ -147,14 +147,14 @@ def _random_turn(draw: random.Random) -> Vector:
 
 
 def _tray(side: float) -> tuple[Body, ...]:
-    """Four walls around a square."""
-    wall = 0.05
-    long, high = Shape("box", (side + 2 * wall, wall, 0.3)), Shape("box", (wall, side, 0.3))
+    """Four walls around a square, higher than any body falls."""
+    wall, high = 0.05, 1.5
+    along, across = Shape("box", (side + 2 * wall, wall, high)), Shape("box", (wall, side, high))
     return (
-        Body("wall_0", long, 1.0, (0.0, side + wall, 0.3)),
-        Body("wall_1", long, 1.0, (0.0, -side - wall, 0.3)),
-        Body("wall_2", high, 1.0, (side + wall, 0.0, 0.3)),
-        Body("wall_3", high, 1.0, (-side - wall, 0.0, 0.3)),
+        Body("wall_0", along, 1.0, (0.0, side + wall, high)),
+        Body("wall_1", along, 1.0, (0.0, -side - wall, high)),
+        Body("wall_2", across, 1.0, (side + wall, 0.0, high)),
+        Body("wall_3", across, 1.0, (-side - wall, 0.0, high)),
     )
 
 
@@ -222,7 +222,7 @@ DOMINO_WAVE = Table(
     _dominoes,
     engines=WITHOUT_DRAKE,
     steps=(0.002, 0.001, 0.0005, 0.00025),
-    quick_steps=(0.001, 0.00025),
+    quick_steps=(0.001, 0.0005),
     by_step=True,
 )
 DICE = Table(

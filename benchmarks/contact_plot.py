@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,25 +14,26 @@ COLOURS = {"simkit": "C3", LAW: "C0", "PyBullet": "C1", "Drake": "C2", "DART": "
 WIDEST = 20.0  # ratio of the greatest to the least value above which an axis is logarithmic
 LEAST = 1e-3  # value that is drawn for smaller ones on such an axis
 HEAP = "fall_us"
+MOST = 4  # rows of a table that are drawn one by one
 
 
 def _over_step(axes: Any, results: Results) -> None:
-    """Draw the first quantity of each row over the step, a line for each row and engine."""
+    """Draw the first quantity over the step: a line for each row and engine, or the median of more than `MOST` rows."""
     key, quantity = next(iter(results.quantities.items()))
     drawn: list[float] = []
-    for engine in results.engines:
-        for place, row in enumerate(results.rows):
-            values = [results.value(row, engine, key, (step,)) for step in results.steps]
-            points = [
-                (1e3 * step, max(LEAST, abs(value)))
-                for step, value in zip(results.steps, values, strict=True)
-                if value is not None and not math.isnan(value)
-            ]
-            if points:
-                drawn += [value for _, value in points]
-                label = engine if place == 0 else None
-                axes.plot(*zip(*points, strict=True), "o-", color=COLOURS[engine], ms=3, lw=1, alpha=0.7, label=label)
-    axes.set(xscale="log", xlabel="step [ms]", title=results.table.title)
+    for engine in reversed(results.engines):  # simkit's lines lie on top
+        rows = [[results.value(row, engine, key, (step,)) for step in results.steps] for row in results.rows]
+        lines = [[math.nan if value is None else max(LEAST, abs(value)) for value in row] for row in rows]
+        lines = [line for line in lines if not all(map(math.isnan, line))]
+        if len(lines) > MOST:
+            lines = [[statistics.median(values) for values in zip(*lines, strict=True)]]
+        for line in lines:
+            drawn += [value for value in line if not math.isnan(value)]
+            axes.plot([1e3 * step for step in results.steps], line, "o-", color=COLOURS[engine], ms=3, lw=1, alpha=0.7)
+    is_median = len(results.rows) > MOST
+    axes.set(
+        xscale="log", xlabel="step [ms]", title=results.table.title + (", median of the rows" if is_median else "")
+    )
     axes.set_ylabel(f"{quantity.title} [{quantity.unit}]")
     if drawn and max(drawn) > WIDEST * min(drawn):
         axes.set_yscale("log")

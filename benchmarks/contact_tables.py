@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import statistics
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +13,7 @@ from pathlib import Path
 from contact_engines import LAW
 from contact_scene import Quantity, Table
 
+WIDTH = 130  # of a line of text
 STEP = {"step_us": Quantity("step", "µs", mean=True, beside=True)}
 
 
@@ -112,7 +114,7 @@ def markdown(results: Results) -> str:
 
 def section(results: Results) -> str:
     """The text of a table and the table."""
-    return f"{results.table.text}\n\n{markdown(results)}"
+    return f"{textwrap.fill(results.table.text, WIDTH, break_on_hyphens=False)}\n\n{markdown(results)}"
 
 
 def _marker(name: str) -> tuple[str, str]:

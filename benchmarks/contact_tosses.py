@@ -117,7 +117,7 @@ def toss(name: str, samples: Floats, settings: Mapping[str, float], bounce: floa
     )
     return Case(
         name,
-        "e = 0, no <bounce>" if bounce is None else f"e = {bounce:g}",
+        "e = 0, the default" if bounce is None else f"e = {bounce:g}",
         Prediction(samples),
         (cube,),
         timestep=period / stride,
@@ -143,10 +143,10 @@ def tosses(folder: Path | None) -> Table:
     return Table(
         "tosses",
         "Real tosses of a cube",
-        "Recorded tosses of a cube of 105 mm with μ 0.18 (148 Hz, ContactNets, Pfrommer, Halm and Posa 2020), every "
-        "fourth of 570, are predicted from their first sample. Each cell has the mean error of the position [% of "
-        "the cube's width] and of the rotation [°] over all samples. Reference: the recording. Steps are divisors "
-        "of the sampling period: 0.97, 0.68 and 0.17 ms.",
+        "A cube of 105 mm with μ 0.18 was tossed and recorded at 148 Hz (ContactNets: Pfrommer, Halm and Posa "
+        "2020). Every fourth of 570 tosses is predicted from its first sample. Each cell has the mean error of the "
+        "position [% of the cube's width] and of the rotation [°] over all samples. Reference: the recording. The "
+        "steps are divisors of the sampling period.",
         {"position": Quantity("position", "%", mean=True), "rotation": Quantity("rotation", "°", mean=True)},
         partial(_tosses, folder) if folder else lambda step, quick: iter(()),
         steps=(0.00097, 0.00068, 0.00017),

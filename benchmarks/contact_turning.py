@@ -202,9 +202,9 @@ def _pendulums(step: float, quick: bool) -> Iterator[Case]:
 DISC = Table(
     "disc",
     "Euler's disc",
-    "A disc with a radius of 0.1 m and a thickness of 4 mm rolls on its rim about its resting centre, inclined by "
-    "30°, μ 1. Each cell has the change of its energy in 4 s [%], the potential energy counted from the disc that "
-    "lies. Reference: rolling without slip keeps the energy, so the change is 0.",
+    "A disc of 4 mm with a radius of 0.1 m rolls on its rim about its resting centre. It is inclined by 30°, μ 1. "
+    "Each cell has the change of its energy in 4 s [%], the potential energy counted from the disc that lies. "
+    "Reference: rolling without slip keeps the energy, so the change is 0.",
     {"energy": Quantity("change of energy", "%")},
     _disc,
     steps=(0.002, 0.001, 0.0005, 0.00025),
@@ -228,7 +228,7 @@ EDGES = Table(
     "Log over the edge of a table",
     "A cylinder with a radius of 40 mm rolls across the edge of a box, μ 0.5. Each cell has the errors of its "
     "horizontal speed and of its spin in the fall [%]. Reference: the equations of a cylinder that turns about the "
-    "edge, slips when friction no longer holds it, and leaves when the normal force is zero.",
+    "edge. It slips when friction no longer holds it, and leaves when the normal force is zero.",
     {"speed": Quantity("speed", "%"), "spin": Quantity("spin", "%")},
     _edges,
     steps=(0.002, 0.001, 0.0005, 0.00025),
@@ -239,8 +239,7 @@ PENDULUMS = Table(
     "pendulums",
     "Pendulums",
     "Links of 0.2 m in a row, without friction and contact, are released horizontally. Each cell has the greatest "
-    "change of energy in 10 s [%], over the energy that the links have above the one in which they hang. Reference: "
-    "the energy is constant.",
+    "change of energy in 10 s [%], over the energy above the hanging links. Reference: the energy is constant.",
     {"drift": Quantity("change of energy", "%")},
     _pendulums,
     steps=(0.004, 0.002, 0.001, 0.0005),
