@@ -14,7 +14,7 @@ from contact_scene import GRAVITY, LATERAL, Body, Case, Found, Hinge, Quantity, 
 
 
 def disc(step: float) -> Case:
-    """A thin disc that precesses about its resting centre, its rim rolling on the ground.
+    """A thin disc in steady precession about its resting centre, its rim rolling on the ground.
 
     With the radius R, the half thickness h, the inclination a to the ground and the moments of inertia A across and C
     along the axis for 1 kg, the precession W about the vertical has
