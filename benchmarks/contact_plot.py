@@ -1,90 +1,83 @@
-"""Plot of `contact.py`: hop and way of sliding boxes over their speed, errors of the other cases beside their aims."""
+"""Plot of `contact.py`: results over the time step, and the time of a step in heaps."""
 
 from __future__ import annotations
 
 import math
-import re
+import statistics
 from collections.abc import Sequence
 from typing import Any
 
-from contact_measures import MEASURES
-from contact_tables import Done, grouped, number, quantities, worst
+from contact_engines import LAW
+from contact_tables import Results
 
-COLOURS = ("C0", "C1", "C2")
-BARS = ("hop", "distance", "angle", "creep", "yaw", "restitution", "rebound", "rest", "sink", "stands")
-LEAST, MOST = 1e-3, 1e4  # shares of an aim that are drawn
+COLOURS = {"simkit": "C3", LAW: "C0", "PyBullet": "C1", "Drake": "C2", "DART": "C4"}
+WIDEST = 20.0  # ratio of the greatest to the least value above which an axis is logarithmic
+LEAST = 1e-3  # value that is drawn for smaller ones on such an axis
+HEAP = "fall_us"
+MOST = 4  # rows of a table that are drawn one by one
 
 
-def _over_speed(axes: Any, done: Done, engines: Sequence[str], quantity: str) -> None:
-    """Worst and best error of the sliding boxes at each speed, over all coefficients and steps."""
-    measure = MEASURES[quantity]
-    floor = 1e-4
-    for colour, engine in zip(COLOURS, engines, strict=False):
-        speeds: dict[float, list[float]] = {}
-        for case in done:
-            found = re.fullmatch(r"box_(\d+)mps_mu.*", case["name"])
-            value = case["results"].get(engine, {}).get(quantity)
-            if found and value is not None and not math.isnan(value):
-                speeds.setdefault(float(found[1]), []).append(max(floor, measure.error(value)))
-        if speeds:
-            x = sorted(speeds)
-            axes.plot(x, [max(speeds[v]) for v in x], "o-", color=colour, label=engine)
-            axes.fill_between(x, [min(speeds[v]) for v in x], [max(speeds[v]) for v in x], color=colour, alpha=0.15)
-    axes.axhline(measure.aim, color="k", linestyle=":", label=f"aim, {measure.aim:g} {measure.unit}")
-    axes.set(xscale="log", yscale="log", xlabel="speed at the start [m/s]")
-    ticks = (1, 3, 10, 20)
-    axes.set_xticks(ticks, [str(tick) for tick in ticks])
+def _over_step(axes: Any, results: Results) -> None:
+    """Draw the first quantity over the step: a line for each row and engine, or the median of more than `MOST` rows."""
+    key, quantity = next(iter(results.quantities.items()))
+    drawn: list[float] = []
+    for engine in reversed(results.engines):  # simkit's lines lie on top
+        rows = [[results.value(row, engine, key, (step,)) for step in results.steps] for row in results.rows]
+        lines = [[math.nan if value is None else max(LEAST, abs(value)) for value in row] for row in rows]
+        lines = [line for line in lines if not all(map(math.isnan, line))]
+        if len(lines) > MOST:
+            lines = [[statistics.median(values) for values in zip(*lines, strict=True)]]
+        for line in lines:
+            drawn += [value for value in line if not math.isnan(value)]
+            axes.plot([1e3 * step for step in results.steps], line, "o-", color=COLOURS[engine], ms=3, lw=1, alpha=0.7)
+    is_median = len(results.rows) > MOST
+    axes.set(
+        xscale="log", xlabel="step [ms]", title=results.table.title + (", median of the rows" if is_median else "")
+    )
+    axes.set_ylabel(f"{quantity.title} [{quantity.unit}]")
+    if drawn and max(drawn) > WIDEST * min(drawn):
+        axes.set_yscale("log")
+    if quantity.aim is not None:
+        axes.axhline(quantity.aim, color="k", linestyle=":", lw=1)
+    axes.set_xticks([1e3 * step for step in results.steps], [f"{1e3 * step:.2g}" for step in results.steps])
     axes.minorticks_off()
     axes.grid(alpha=0.3)
 
 
-def _bars(axes: Any, done: Done, engines: Sequence[str]) -> int:
-    """Draw every other error as a multiple of what is aimed at; return the number of rows."""
-    rows = []
-    for group, cases in grouped(done).items():
-        for quantity in quantities(cases):
-            if quantity not in BARS or re.fullmatch(r"box, \d+ m/s", group):
-                continue
-            rows.append((group, quantity, [worst(cases, engine, quantity) for engine in engines]))
-    height = 0.8 / len(engines)
-    for place, (_, quantity, values) in enumerate(rows):
-        measure = MEASURES[quantity]
-        for i, value in enumerate(values):
-            if value is None:
-                continue
-            share = MOST if math.isnan(value) else measure.error(value) / max(measure.allowed, 1e-9)
-            share = min(MOST, max(LEAST * 1.5, share))
-            at = place - 0.4 + (i + 0.5) * height
-            axes.barh(at, share, height, left=0, color=COLOURS[i], label=engines[i] if place == 0 else None)
-            axes.text(share * 1.1, at, number(value), fontsize=5.5, va="center")
-    labels = [f"{group}: {MEASURES[q].title} [{MEASURES[q].unit}]".replace(" []", "") for group, q, _ in rows]
-    axes.set_yticks(range(len(rows)), labels, fontsize=8)
-    axes.set(xscale="log", xlim=(LEAST, MOST * 4), ylim=(len(rows) - 0.4, -0.6), xlabel="error / error aimed at")
-    axes.axvline(1.0, color="k", linestyle=":")
-    axes.grid(axis="x", alpha=0.3)
-    return len(rows)
+def _heaps(axes: Any, results: Results) -> None:
+    """Draw the time of a step in each heap that falls."""
+    width = 0.8 / len(results.engines)
+    for place, engine in enumerate(results.engines):
+        values = [results.value(row, engine, HEAP, results.steps) or 0.0 for row in results.rows]
+        at = [i + (place + 0.5) * width - 0.4 for i in range(len(values))]
+        axes.bar(at, values, width, color=COLOURS[engine], label=engine)
+    axes.set(title="Heaps that fall", ylabel="step [µs]")
+    axes.set_xticks(range(len(results.rows)), results.rows)
+    axes.grid(axis="y", alpha=0.3)
 
 
-def draw(done: Done, engines: Sequence[str], path: str) -> None:
-    """Draw the figure into a file."""
+def draw(done: Sequence[Results], path: str) -> None:
+    """Draw the figure into a file, a panel for each table that has a column for each step."""
     import matplotlib as mpl
 
     mpl.use("Agg")
     mpl.rcParams["svg.hashsalt"] = "contact"  # the same numbers give the same file
     from matplotlib import pyplot as plt
+    from matplotlib.lines import Line2D
 
-    figure = plt.figure(figsize=(10, 16), constrained_layout=True)
-    halves: Any = figure.subfigures(2, 1, height_ratios=(1, 3))
-    top, bottom = halves
-    left, right = top.subplots(1, 2)
-    _over_speed(left, done, engines, "hop")
-    left.set(title="Boxes that slide: hop", ylabel="greatest hop [mm]")
-    left.legend()
-    _over_speed(right, done, engines, "distance")
-    right.set(title="Boxes that slide: way, beyond the integrator's v·dt/2", ylabel="error of the way [%]")
-    axes = bottom.subplots()
-    _bars(axes, done, engines)
-    axes.set_title("Other cases: worst of each row, in the unit named; left of 1 is within the aim")
-    axes.legend(loc="lower right")
+    panels = [results for results in done if results.table.by_step or HEAP in results.quantities]
+    if not panels:
+        raise SystemExit("no table of these cases is drawn")
+    columns = min(3, len(panels))
+    rows = -(-len(panels) // columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(4.2 * columns, 3.4 * rows), squeeze=False)
+    for axes, results in zip(grid.flat, panels, strict=False):
+        (_over_step if results.table.by_step else _heaps)(axes, results)
+    for axes in grid.flat[len(panels) :]:
+        axes.set_axis_off()
+    names = {name: None for results in panels for name in results.engines}
+    handles = [Line2D([], [], color=COLOURS[name], marker="o", label=name) for name in COLOURS if name in names]
+    figure.legend(handles=handles, loc="upper center", ncols=len(handles))
+    figure.tight_layout(rect=(0, 0, 1, 0.96))
     metadata = {"Date": None} if path.endswith(".svg") else None
     figure.savefig(path, dpi=110, metadata=metadata)

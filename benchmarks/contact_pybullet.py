@@ -9,17 +9,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pybullet
-from contact_cases import GRAVITY, GROUND, LATERAL, Case, Pair, Shape
-from contact_engines import UnsupportedCaseError
-from contact_models import CELLS, SLAB, mesh, slab
+from contact_engines import NOT_ASKED, UnsupportedCaseError
+from contact_scene import GROUND, LATERAL, Body, Case, Pair, Shape
+from contact_sdf import CELLS, SLAB, mesh, slab
 
 DRIVE_LIMIT = 1e4  # greatest torque of a wheel's velocity motor [N·m]
 
 
 class PyBullet:
     """A case in PyBullet (`pybullet.DIRECT`)."""
-
-    local_rates = False
 
     def __init__(self, case: Case, folder: Path) -> None:
         self.case = case
@@ -31,21 +29,26 @@ class PyBullet:
             raise
 
     def _build(self, case: Case) -> None:
-        pybullet.setGravity(0, 0, -GRAVITY, physicsClientId=self.client)
+        pybullet.setGravity(0, 0, -case.gravity, physicsClientId=self.client)
         options = {"fixedTimeStep": case.timestep, "restitutionVelocityThreshold": 0.01}
         pybullet.setPhysicsEngineParameter(**options, physicsClientId=self.client)
         self.names: dict[tuple[int, int], str] = {}
-        self.bodies: list[int] = []
-        ground = self._create(0, self._ground(case))
-        self.names[ground, -1] = GROUND
+        self.bodies: list[tuple[int, int]] = []  # number of the multibody and of the link, -1 for its base
+        if case.ground != "none":
+            self.names[self._create(0, self._ground(case)), -1] = GROUND
         if case.vehicle:
             self._build_vehicle(case)
-        else:
-            for body in case.bodies:
+        if case.hinges:
+            self._build_mechanism(case)
+        for body in (*case.blocks, *case.bodies):
+            if body not in case.hinged:
                 turn = pybullet.getQuaternionFromEuler(body.rpy)
-                made = self._create(body.mass, self._shape(body.shape), body.position, turn)
+                made = self._create(
+                    0 if body in case.blocks else body.mass, self._shape(body.shape), body.position, turn
+                )
                 self.names[made, -1] = body.name
-                self.bodies.append(made)
+        keys = {name: key for key, name in self.names.items()}
+        self.bodies = [keys[body.name] for body in case.moving]
         self._set_surfaces(case)
 
     def _create(self, mass: float, shape: int, position: Any = (0, 0, 0), turn: Any = (0, 0, 0, 1), **more: Any) -> int:
@@ -74,7 +77,7 @@ class PyBullet:
             shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
         return int(shape)
 
-    def _shape(self, shape: Shape, rpy: Any = (0, 0, 0)) -> int:
+    def _shape(self, shape: Shape, place: Any = (0, 0, 0)) -> int:
         size = shape.size
         options: dict[str, Any]
         if shape.kind == "box":
@@ -89,10 +92,7 @@ class PyBullet:
             kind, options = pybullet.GEOM_MESH, {"vertices": mesh(shape)[0].tolist()}
         else:
             raise UnsupportedCaseError(shape.kind)
-        turn = pybullet.getQuaternionFromEuler(rpy)
-        made = pybullet.createCollisionShape(
-            kind, collisionFrameOrientation=turn, physicsClientId=self.client, **options
-        )
+        made = pybullet.createCollisionShape(kind, collisionFramePosition=place, physicsClientId=self.client, **options)
         return int(made)
 
     def _build_vehicle(self, case: Case) -> None:
@@ -114,18 +114,46 @@ class PyBullet:
             linkJointTypes=[pybullet.JOINT_REVOLUTE] * count,
             linkJointAxis=[(0, 0, -1)] * count,
         )
-        self.bodies.append(chassis)
         self.names[chassis, -1] = "chassis"
         self.names |= {(chassis, number): name for number, name in enumerate(vehicle.wheels)}
         self._drive(0.0)
 
+    def _build_mechanism(self, case: Case) -> None:
+        """One multibody whose base is fixed; each link's frame is at its hinge, and turned as the world's."""
+        number = {hinge.child: i for i, hinge in enumerate(case.hinges)}
+        anchors = {"": np.zeros(3)} | {hinge.child: np.array(hinge.anchor) for hinge in case.hinges}
+        arms = [np.array(body.position) - anchors[body.name] for body in case.hinged]
+        count = len(case.hinges)
+        made = self._create(
+            0,
+            -1,
+            linkMasses=[body.mass for body in case.hinged],
+            linkCollisionShapeIndices=[
+                self._shape(body.shape, place=arm.tolist()) for body, arm in zip(case.hinged, arms, strict=True)
+            ],
+            linkVisualShapeIndices=[-1] * count,
+            linkPositions=[(anchors[h.child] - anchors[h.parent]).tolist() for h in case.hinges],
+            linkOrientations=[(0, 0, 0, 1)] * count,
+            linkInertialFramePositions=[arm.tolist() for arm in arms],
+            linkInertialFrameOrientations=[(0, 0, 0, 1)] * count,
+            linkParentIndices=[number[h.parent] + 1 if h.parent else 0 for h in case.hinges],
+            linkJointTypes=[pybullet.JOINT_REVOLUTE] * count,
+            linkJointAxis=[h.axis for h in case.hinges],
+        )
+        self.names |= {(made, i): hinge.child for i, hinge in enumerate(case.hinges)}
+        for i, body in enumerate(case.hinged):
+            if not body.touches:  # a link without a shape has no inertia
+                pybullet.setCollisionFilterGroupMask(made, i, 0, 0, physicsClientId=self.client)
+            pybullet.setJointMotorControl2(made, i, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=self.client)
+
     def _drive(self, yaw_rate: float) -> None:
         vehicle = self.case.vehicle
         assert vehicle is not None
+        chassis = next(body for (body, _), name in self.names.items() if name == "chassis")
         rate = yaw_rate * vehicle.track / 2 / vehicle.radius
         for number in range(len(vehicle.wheels)):
             pybullet.setJointMotorControl2(
-                self.bodies[0],
+                chassis,
                 number,
                 pybullet.VELOCITY_CONTROL,
                 targetVelocity=-rate if number % 2 == 0 else rate,
@@ -135,10 +163,11 @@ class PyBullet:
 
     def _set_surfaces(self, case: Case) -> None:
         """Bullet multiplies the coefficients of two surfaces: roots of what a pair shall have are set."""
-        (mu,) = {body.mu for body in case.moving}
-        shapes = {body.name: (body.mass, body.shape) for body in case.moving}
+        mu = case.friction
+        inertias = {body.name: body.inertia for body in case.moving}
         if case.vehicle:
-            shapes |= dict.fromkeys(case.vehicle.wheels, (case.vehicle.wheel_mass, case.vehicle.wheel))
+            wheel = Body("wheel", case.vehicle.wheel, case.vehicle.wheel_mass, (0.0, 0.0, 0.0))
+            inertias |= dict.fromkeys(case.vehicle.wheels, wheel.inertia)
         for (body, link), name in self.names.items():
             options: dict[str, Any] = {
                 "lateralFriction": min(mu, case.ground_mu) / math.sqrt(mu) if name == GROUND else math.sqrt(mu),
@@ -147,14 +176,14 @@ class PyBullet:
                 "spinningFriction": 0.0,
                 "linearDamping": 0.0,
                 "angularDamping": 0.0,
+                "jointDamping": 0.0,
                 "activationState": pybullet.ACTIVATION_STATE_DISABLE_SLEEPING,
             }
             if case.restitution is not None:
                 # else Bullet takes the gap that is left before the hit, over the step, off the speed of the rebound
                 options["contactProcessingThreshold"] = 0.0
-            if name != GROUND:
-                mass, shape = shapes[name]
-                options["localInertiaDiagonal"] = np.multiply(mass, shape.inertia).tolist()
+            if name in inertias:
+                options["localInertiaDiagonal"] = inertias[name]
             pybullet.changeDynamics(body, link, physicsClientId=self.client, **options)
 
     def settle(self, count: int) -> None:
@@ -162,9 +191,13 @@ class PyBullet:
             pybullet.stepSimulation(physicsClientId=self.client)
 
     def start(self) -> None:
-        for number, body in zip(self.bodies, self.case.moving, strict=True):
+        for (number, _), body in zip(self.bodies, self.case.moving, strict=True):
             if any(body.linear) or any(body.angular):
                 pybullet.resetBaseVelocity(number, body.linear, body.angular, physicsClientId=self.client)
+        keys = {name: key for key, name in self.names.items()}
+        for hinge in self.case.hinges:
+            number, link = keys[hinge.child]
+            pybullet.resetJointState(number, link, 0.0, hinge.rate, physicsClientId=self.client)
         if self.case.vehicle:
             self._drive(self.case.vehicle.yaw_rate)
         self._start = pybullet.saveState(physicsClientId=self.client)
@@ -173,9 +206,10 @@ class PyBullet:
         push = self.case.push
         for _ in range(count):
             if push:
-                centre, _ = pybullet.getBasePositionAndOrientation(self.bodies[0], physicsClientId=self.client)
+                number, _ = self.bodies[0]
+                centre, _ = pybullet.getBasePositionAndOrientation(number, physicsClientId=self.client)
                 frame = pybullet.WORLD_FRAME
-                pybullet.applyExternalForce(self.bodies[0], -1, push, centre, frame, physicsClientId=self.client)
+                pybullet.applyExternalForce(number, -1, push, centre, frame, physicsClientId=self.client)
             pybullet.stepSimulation(physicsClientId=self.client)
 
     def rewind(self) -> None:
@@ -183,9 +217,13 @@ class PyBullet:
 
     def state(self) -> npt.NDArray[np.float64]:
         rows = []
-        for body in self.bodies:
-            position, (x, y, z, w) = pybullet.getBasePositionAndOrientation(body, physicsClientId=self.client)
-            linear, angular = pybullet.getBaseVelocity(body, physicsClientId=self.client)
+        for body, link in self.bodies:
+            if link < 0:
+                position, (x, y, z, w) = pybullet.getBasePositionAndOrientation(body, physicsClientId=self.client)
+                linear, angular = pybullet.getBaseVelocity(body, physicsClientId=self.client)
+            else:
+                found = pybullet.getLinkState(body, link, 1, 1, physicsClientId=self.client)
+                (position, (x, y, z, w)), (linear, angular) = found[:2], found[6:8]
             rows.append((*position, w, x, y, z, *linear, *angular))
         return np.array(rows)
 
@@ -193,6 +231,9 @@ class PyBullet:
         names = self.names
         points = pybullet.getContactPoints(physicsClientId=self.client)
         return {frozenset((names[p[1], p[3]], names[p[2], p[4]])) for p in points if p[9] > 0.0}
+
+    def asleep(self) -> float:
+        return NOT_ASKED
 
     def has_diverged(self) -> bool:
         return False  # Bullet goes on with what it has

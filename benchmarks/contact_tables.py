@@ -1,47 +1,62 @@
-"""Tables of `contact.py` in Markdown: a row for each group of cases, with the worst of the group in each engine."""
+"""Tables of `contact.py` in Markdown: a row for each row of cases and each engine, and the page that shows them."""
 
 from __future__ import annotations
 
 import math
+import re
 import statistics
-from collections.abc import Mapping, Sequence
-from typing import Any
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
 
-from contact_measures import MEASURES
+from contact_engines import LAW
+from contact_scene import Quantity, Table
 
-Done = Sequence[Mapping[str, Any]]
-SLIDING = ("contact", "hop", "distance", "force", "direction", "gain")
-
-
-def grouped(done: Done) -> dict[str, list[Mapping[str, Any]]]:
-    """The cases by their group, in the order of the run."""
-    groups: dict[str, list[Mapping[str, Any]]] = {}
-    for case in done:
-        groups.setdefault(case["group"], []).append(case)
-    return groups
+WIDTH = 130  # of a line of text
+STEP = {"step_us": Quantity("step", "µs", mean=True, beside=True)}
 
 
-def worst(cases: Done, engine: str, quantity: str) -> float | None:
-    """Value of a quantity in the case with the greatest error; NaN where a case gave none, None where none has it."""
-    results = [case["results"].get(engine, {}) for case in cases]
-    values: list[float] = [found[quantity] for found in results if quantity in found]
-    if not values:
-        return None
-    if any(math.isnan(value) for value in values):
-        return math.nan
-    return max(values, key=MEASURES[quantity].error)
+@dataclass
+class Results:
+    """Results of a table's cases.
 
+    Attributes:
+        found: by row, engine and step; one mapping from quantity to value for each case.
+    """
 
-def quantities(cases: Done) -> list[str]:
-    """Quantities that any engine found in these cases."""
-    found = {quantity for case in cases for results in case["results"].values() for quantity in results}
-    return [quantity for quantity in MEASURES if quantity in found]
+    table: Table
+    steps: tuple[float, ...]
+    found: dict[tuple[str, str, float], list[Mapping[str, float]]] = field(default_factory=dict)
 
+    def add(self, row: str, engine: str, step: float, values: Mapping[str, float]) -> None:
+        self.found.setdefault((row, engine, step), []).append(values)
 
-def integrator_shares(cases: Done) -> str:
-    """Smallest and greatest error of the way that v dt/2 of the integrator makes in these cases."""
-    shares = [case["integrator_share"] for case in cases if not math.isnan(case["integrator_share"])]
-    return " to ".join(dict.fromkeys(number(share) for share in (max(shares), min(shares)))) if shares else ""
+    @property
+    def rows(self) -> list[str]:
+        return list(dict.fromkeys(row for row, _, _ in self.found))
+
+    @property
+    def engines(self) -> list[str]:
+        names = {engine for _, engine, _ in self.found}
+        return [name for name in self.table.engines if name in names]
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """Quantities of the table that any engine found, and the times of a step."""
+        keys = {key for cases in self.found.values() for values in cases for key in values}
+        return {key: quantity for key, quantity in {**self.table.quantities, **STEP}.items() if key in keys}
+
+    def value(self, row: str, engine: str, key: str, steps: Iterable[float]) -> float | None:
+        """Value of a cell: the worst or the mean of the cases; NaN where a case diverged, None where there is none."""
+        cases = [values for step in steps for values in self.found.get((row, engine, step), ())]
+        values = [found[key] for found in cases if key in found]
+        if not values:
+            return None
+        quantity = self.quantities[key]
+        if any(math.isnan(value) for value in values):
+            return math.nan
+        return statistics.fmean(values) if quantity.mean else max(values, key=quantity.error)
 
 
 def number(value: float | None) -> str:
@@ -56,56 +71,72 @@ def number(value: float | None) -> str:
     return f"{value:.0f}" if size >= 100 else f"{value:.{2 if size < 10 else 1}f}" if size >= 0.01 else f"{value:.3f}"
 
 
-def step_time(cases: Done, engine: str) -> str:
-    """Median CPU time of a step [µs] and the median of its ratios to plain MuJoCo."""
-    found = [case["results"][engine] for case in cases if "step_us" in case["results"].get(engine, ())]
-    if not found:
-        return "–"
-    taken, ratio = (statistics.median(f[key] for f in found) for key in ("step_us", "step_ratio"))
-    return f"{taken:.1f} ({ratio:.2f})"
+def _title(quantity: Quantity) -> str:
+    unit = f" [{quantity.unit}]" if quantity.unit else ""
+    if quantity.beside:
+        unit += f" (beside {LAW})"
+    if quantity.aim is None:
+        return f"{quantity.title}{unit}"
+    bound = f"{quantity.exact:g} ± {quantity.aim:g}" if quantity.exact else f"≤ {quantity.aim:g}"
+    return f"{quantity.title}{unit}, " + (f"≥ {quantity.aim:g}" if quantity.more else bound)
 
 
-def _title(quantity: str) -> str:
-    measure = MEASURES[quantity]
-    return f"{measure.title} [{measure.unit}]" if measure.unit else measure.title
+def _cell(results: Results, row: str, engine: str, key: str, steps: Iterable[float]) -> str:
+    value = results.value(row, engine, key, steps)
+    base = results.value(row, LAW, key, steps) if results.quantities[key].beside else None
+    return number(value) + (f" ({number(value / base)})" if value and base else "")
 
 
-def _aim(quantity: str) -> str:
-    measure = MEASURES[quantity]
-    if measure.more:
-        return f"≥ {measure.aim:g}"
-    return f"{measure.exact:g} ± {measure.aim:g}" if measure.exact else f"≤ {measure.aim:g}"
-
-
-def _row(cells: Sequence[str]) -> str:
+def _line(cells: Sequence[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def markdown(done: Done, engines: Sequence[str]) -> str:
-    """What slides in one table with a column for each quantity, everything else in another."""
-    groups = grouped(done)
-    beside = " / ".join(engines)
-    lines = [f"Worst case of each row; in each cell {beside}.", ""]
-    head = ["case", *(f"{_title(q)}, {_aim(q)}" for q in SLIDING), "v·dt/2 itself [%]", "step [µs] (beside MuJoCo)"]
-    lines += [_row(head), "|---" * len(head) + "|"]
-    sliding = {group: cases for group, cases in groups.items() if "gain" in quantities(cases)}
-    for group, cases in sliding.items():
-        cells = [group]
-        for quantity in SLIDING:
-            # an angle that is turned is a way, too
-            here = "angle" if quantity == "distance" and "angle" in quantities(cases) else quantity
-            values = [worst(cases, engine, here) for engine in engines]
-            cells.append("" if all(v is None for v in values) else " / ".join(map(number, values)))
-        times = " / ".join(step_time(cases, engine) for engine in engines)
-        lines.append(_row([*cells, integrator_shares(cases), times]))
-    head = ["case", "quantity", "aim", *engines]
-    lines += ["", _row(head), "|---" * len(head) + "|"]
-    for group, cases in groups.items():
-        rest = [q for q in quantities(cases) if group not in sliding or q not in {*SLIDING, "angle"}]
-        for quantity in rest:
-            shown = [number(worst(cases, engine, quantity)) for engine in engines]
-            lines.append(_row([group, _title(quantity), _aim(quantity), *shown]))
-        if group not in sliding:
-            cells = [group, "step [µs] (beside MuJoCo)", "", *(step_time(cases, engine) for engine in engines)]
-            lines.append(_row(cells))
+def markdown(results: Results) -> str:
+    """The table, with a column for each step or for each quantity."""
+    shown = results.quantities
+    if results.table.by_step:
+        head = [f"{1e3 * step:g} ms" for step in results.steps]
+        columns: list[tuple[list[str], tuple[float, ...]]] = [(list(shown), (step,)) for step in results.steps]
+    else:
+        head = [_title(quantity) for quantity in shown.values()]
+        columns = [([key], results.steps) for key in shown]
+    lines = [_line(["case", "engine", *head]), "|---" * (2 + len(head)) + "|"]
+    for row in results.rows:
+        for engine in results.engines:
+            cells = []
+            for keys, steps in columns:
+                texts = [_cell(results, row, engine, key, steps) for key in keys]
+                cells.append("–" if set(texts) == {"–"} else " / ".join(texts))
+            if set(cells) != {"–"}:
+                lines.append(_line([row, engine, *cells]))
     return "\n".join(lines)
+
+
+def section(results: Results) -> str:
+    """The text of a table and the table."""
+    return f"{textwrap.fill(results.table.text, WIDTH, break_on_hyphens=False)}\n\n{markdown(results)}"
+
+
+def _marker(name: str) -> tuple[str, str]:
+    return f"<!-- contact.py: {name} -->", f"<!-- end of {name} -->"
+
+
+def replace_sections(text: str, sections: Mapping[str, str]) -> str:
+    """Return a page with the text between the markers of each section replaced.
+
+    Raises:
+        ValueError: the page has no markers for a section.
+    """
+    for name, content in sections.items():
+        first, last = _marker(name)
+        pattern = re.compile(re.escape(first) + ".*?" + re.escape(last), re.DOTALL)
+        if not pattern.search(text):
+            raise ValueError(f"the page has no section {first} … {last}")
+        before, rest = pattern.split(text, maxsplit=1)
+        text = f"{before}{first}\n\n{content}\n\n{last}{rest}"
+    return text
+
+
+def write_page(path: Path, sections: Mapping[str, str]) -> None:
+    """Replace the sections of a page in its file."""
+    path.write_text(replace_sections(path.read_text(encoding="utf-8"), sections), encoding="utf-8")

@@ -1,0 +1,249 @@
+"""Cases of `contact.py` in which bodies turn: Euler's disc, turntable, log over an edge, pendulums."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from contact_record import Record
+from contact_scene import GRAVITY, LATERAL, Body, Case, Found, Hinge, Quantity, Shape, Table, Vector
+
+# Euler's disc
+
+
+def disc(step: float) -> Case:
+    """A thin disc in steady precession about its resting centre, its rim rolling on the ground.
+
+    With the radius R, the half thickness h, the inclination a to the ground and the moments of inertia A across and C
+    along the axis for 1 kg, the precession W about the vertical has
+
+        W² = g R (R cos a - h sin a) / (sin a (A R cos a - C h sin a)),
+
+    which is 4 g / (R sin a) for h = 0. The angular velocity is along the line from the centre to the contact, because
+    both are at rest; friction is zero and the normal force is the weight.
+    """
+    radius, half, incline = 0.1, 0.002, math.radians(30)
+    shape = Shape("cylinder", (radius, half))
+    sine, cosine = math.sin(incline), math.cos(incline)
+    across, _, along = shape.inertia
+    arm = across * radius * cosine - along * half * sine
+    precession = math.sqrt(GRAVITY * radius * (radius * cosine - half * sine) / (sine * arm))
+    # pitch by a: the lowest rim is at +x
+    rim: Vector = (radius * cosine - half * sine, 0.0, -radius * sine - half * cosine)
+    turning = precession * sine / radius
+    angular = (rim[0] * turning, 0.0, rim[2] * turning)
+    body = Body("disc", shape, 0.5, (0.0, 0.0, -rim[2]), (0.0, incline, 0.0), 1.0, angular=angular)
+
+    def energy(r: Record) -> Found:
+        whole = r.energy + body.mass * GRAVITY * (body.position[2] - half)  # beside the disc that lies
+        return {"energy": 100.0 * float(whole[-1] / whole[0] - 1.0)}
+
+    look = max(1, round(0.01 / step))
+    return Case("disc", "disc of 0.1 m, 30°", energy, (body,), settle=0.0, duration=4.0, stride=look, timestep=step)
+
+
+def _disc(step: float, quick: bool) -> Iterator[Case]:
+    yield disc(step)
+
+
+# Turntable
+
+
+def turntable(step: float) -> Case:
+    """A box that stands on a turntable of 1000 kg, at 2 rad/s: it needs a hundredth of the friction that it has."""
+    rate, distance = 2.0, 0.3
+    table = Body("table", Shape("cylinder", (0.5, 0.05)), 1000.0, (0.0, 0.0, 0.5))
+    place = (distance, 0.0, 0.6)
+    box = Body(
+        "box", Shape("box", (0.05,) * 3), 1.0, place, linear=(0.0, rate * distance, 0.0), angular=(0.0, 0.0, rate)
+    )
+
+    def creep(r: Record) -> Found:
+        offset = r.positions[:, 0] - r.positions[:, 1]
+        in_table = np.einsum("tji,tj->ti", r.rotations[:, 1], offset)
+        return {"creep": 1e3 * float(np.linalg.norm((in_table[-1] - in_table[0])[:2]))}
+
+    hinge = Hinge("table", "", (0.0, 0.0, 0.5), (0.0, 0.0, 1.0), rate)
+    look = max(1, round(0.01 / step))
+    return Case(
+        "turntable",
+        "box at 0.3 m, 2 rad/s",
+        creep,
+        (box, table),
+        hinges=(hinge,),
+        ground="none",
+        duration=5.0,
+        stride=look,
+        timestep=step,
+    )
+
+
+def _turntable(step: float, quick: bool) -> Iterator[Case]:
+    yield turntable(step)
+
+
+# Log over an edge
+
+EDGE_RADIUS = 0.04
+
+
+def over_the_edge(speed: float, mu: float, radius: float = EDGE_RADIUS) -> tuple[float, float]:
+    """Return horizontal speed [m/s] and spin [rad/s] of a cylinder that rolled over the edge of a table.
+
+    The cylinder turns about the edge, its centre by the angle a from the vertical. Without slip it accelerates with
+    a'' = 2 g sin a / (3 R), with a friction of m g sin a / 3. It slips from the angle on at which this friction exceeds
+    mu N. It leaves at N = 0.
+    """
+    step = 1e-5
+    angle, rate, spin, slips = 0.0, speed / radius, speed / radius, False
+    while True:
+        normal = GRAVITY * math.cos(angle) - radius * rate * rate
+        if normal <= 0.0:
+            return radius * rate * math.cos(angle), spin
+        pull = GRAVITY * math.sin(angle)
+        slips = slips or pull / 3 > mu * normal
+        friction = mu * normal if slips else pull / 3
+        rate += step * (pull - friction) / radius
+        spin = spin + step * 2 * friction / radius if slips else rate
+        angle += step * rate
+
+
+@dataclass(frozen=True)
+class Edge:
+    """The measure of a log that left an edge: its motion in free flight beside the reference.
+
+    Attributes:
+        speed, spin: reference [m/s, rad/s].
+    """
+
+    speed: float
+    spin: float
+
+    def __call__(self, r: Record) -> Found:
+        speed, spin = float(r.linear[-1, 0, 0]), float(r.angular[-1, 0, 1])
+        return {"speed": 100.0 * (speed / self.speed - 1.0), "spin": 100.0 * (spin / self.spin - 1.0)}
+
+
+def _edges(step: float, quick: bool) -> Iterator[Case]:
+    top, mu = 2.0, 0.5
+    table = Body("bench", Shape("box", (0.5, 0.5, 0.05)), 1.0, (-0.5, 0.0, top - 0.05))
+    for speed in (0.05, 0.2):
+        place = (-0.03, 0.0, top + EDGE_RADIUS)
+        log = Body(
+            "log",
+            Shape("cylinder", (EDGE_RADIUS, 0.15)),
+            1.0,
+            place,
+            LATERAL,
+            mu,
+            (speed, 0.0, 0.0),
+            (0.0, speed / EDGE_RADIUS, 0.0),
+        )
+        duration = 0.03 / speed + 0.6
+        measure = Edge(*over_the_edge(speed, mu))
+        yield Case(
+            f"log_edge_{speed:g}mps",
+            f"log at {speed:g} m/s",
+            measure,
+            (log,),
+            blocks=(table,),
+            settle=0.05,
+            duration=duration,
+            stride=max(1, round(0.01 / step)),
+            ground="none",
+            timestep=step,
+        )
+
+
+# Pendulums
+
+
+def pendulum(links: int, step: float) -> Case:
+    """Links of 0.2 m in a row, released horizontally; their axes are alternately across and, from three on, upright."""
+    length = 0.2
+    shape = Shape("box", (length / 2, 0.01, 0.01))
+    bodies = tuple(Body(f"link_{i}", shape, 0.3, (length * (i + 0.5), 0.0, 2.0), touches=False) for i in range(links))
+    hinges = tuple(
+        Hinge(
+            f"link_{i}",
+            f"link_{i - 1}" if i else "",
+            (length * i, 0.0, 2.0),
+            (0.0, 0.0, 1.0) if links > 2 and i % 2 else (0.0, 1.0, 0.0),
+        )
+        for i in range(links)
+    )
+    whole = sum(body.mass * GRAVITY * body.position[0] for body in bodies)
+
+    def drift(r: Record) -> Found:
+        energy = r.energy
+        return {"drift": 100.0 * float(np.abs(energy - energy[0]).max()) / whole}
+
+    return Case(
+        f"pendulum_{links}",
+        f"{links} links" + (", axes across and upright" if links > 2 else ""),
+        drift,
+        bodies,
+        hinges=hinges,
+        ground="none",
+        settle=0.0,
+        duration=10.0,
+        stride=max(1, round(0.004 / step)),
+        timestep=step,
+    )
+
+
+def _pendulums(step: float, quick: bool) -> Iterator[Case]:
+    for links in (2, 3, 7):
+        yield pendulum(links, step)
+
+
+DISC = Table(
+    "disc",
+    "Euler's disc",
+    "A disc of 4 mm with a radius of 0.1 m rolls on its rim about its resting centre. It is inclined by 30°, μ 1. "
+    "Each cell has the change of its energy in 4 s [%], the potential energy counted from the disc that lies. "
+    "Reference: rolling without slip keeps the energy, so the change is 0.",
+    {"energy": Quantity("change of energy", "%")},
+    _disc,
+    steps=(0.002, 0.001, 0.0005, 0.00025),
+    quick_steps=(0.001,),
+    by_step=True,
+)
+TURNTABLE = Table(
+    "turntable",
+    "Box on a turntable",
+    "A box of 0.1 m stands at 0.3 m from the axis of a heavy turntable that turns at 2 rad/s, μ 0.5. Each cell has "
+    "the creep relative to the table in 5 s [mm]. Reference: friction holds the box, so the creep is 0.",
+    {"creep": Quantity("creep", "mm")},
+    _turntable,
+    steps=(0.004, 0.002, 0.001, 0.0005),
+    quick_steps=(0.001,),
+    engines=("simkit", "MuJoCo's law", "PyBullet"),
+    by_step=True,
+)
+EDGES = Table(
+    "edge",
+    "Log over the edge of a table",
+    "A cylinder with a radius of 40 mm rolls across the edge of a box, μ 0.5. Each cell has the errors of its "
+    "horizontal speed and of its spin in the fall [%]. Reference: the equations of a cylinder that turns about the "
+    "edge. It slips when friction no longer holds it, and leaves when the normal force is zero.",
+    {"speed": Quantity("speed", "%"), "spin": Quantity("spin", "%")},
+    _edges,
+    steps=(0.002, 0.001, 0.0005, 0.00025),
+    quick_steps=(0.001,),
+    by_step=True,
+)
+PENDULUMS = Table(
+    "pendulums",
+    "Pendulums",
+    "Links of 0.2 m in a row, without friction and contact, are released horizontally. Each cell has the greatest "
+    "change of energy in 10 s [%], over the energy above the hanging links. Reference: the energy is constant.",
+    {"drift": Quantity("change of energy", "%")},
+    _pendulums,
+    steps=(0.004, 0.002, 0.001, 0.0005),
+    quick_steps=(0.001,),
+    engines=("simkit", "MuJoCo's law", "PyBullet"),
+    by_step=True,
+)
