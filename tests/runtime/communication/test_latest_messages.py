@@ -70,7 +70,7 @@ def test_all_received_messages_stay_in_the_list(sim: simkit.Simulation) -> None:
     before = [stamp(message) for message in readings.messages]
     sim.reset()
     sim.run(0.02)
-    assert before == [0.001, 0.01, 0.02, 0.03]
+    assert before == pytest.approx([0.001, 0.01, 0.02, 0.03])
     assert [stamp(message) for message in readings.messages] == [*before, *before[:3]]
 
 
