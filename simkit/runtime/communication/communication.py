@@ -13,6 +13,7 @@ from simkit.lifecycle import LifecycleStates
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
 from simkit.runtime.communication.action_server import ActionTable
+from simkit.runtime.communication.large_commands import large_commands
 from simkit.runtime.communication.latest_messages import LatestMessages
 from simkit.runtime.communication.log_topic import LogTopic
 from simkit.runtime.communication.parameter import Parameter
@@ -176,6 +177,7 @@ class Communication:
         self.latest_messages = LatestMessages(bus)
         engine.log = TopicLogger("simkit", self, "simkit")
         self.log_topic.hear(engine.reports)
+        engine.stray_bodies.commands = lambda: large_commands(bus)
 
     def stateful(self) -> list[Stateful]:
         """Return every part with a state, in the order of restoring."""
