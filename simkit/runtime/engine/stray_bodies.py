@@ -15,7 +15,7 @@ from simkit.runtime.engine.plugin_faults import explanations
 
 if TYPE_CHECKING:
     from simkit.compiler.name_map import LinkBinding
-    from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.engine.engine_state import EngineState
 
 RATE: Final = 10.0
 """Rate at which bodies are checked [Hz], that of `sleep`, so that a run needs no further stops."""
@@ -48,7 +48,7 @@ class StrayBodies:
         commands: function that describes the last large commands.
     """
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: EngineState) -> None:
         self._engine = engine
         self.reported: set[str] = set()
         self.commands: Callable[[], list[str]] = list
