@@ -245,7 +245,11 @@ def _substitute_inertias(
         extra = (inertia_matrix(total.inertial.inertia) if new is None else new) - tensor
         own = judged[foot.scoped].inertial
         exact = inertia_moments(inertia_matrix(foot.inertial.inertia) + _rotate_from_world(foot, extra))
-        written[foot.scoped] = BodyInertia(own.mass, own.com, own.inertia, exact)
+        valid = Inertial(own.mass, own.com, exact)
+        if repair_inertia(valid).inertial is valid:
+            written[foot.scoped] = _file_inertia(valid)
+        else:
+            written[foot.scoped] = BodyInertia(own.mass, own.com, own.inertia, exact)
         used = total.new if new is None else _as_vector(eigh(new)[0])
         source = "" if new is None else f", which are those of its collisions at {mass:g} kg"
         text = f"{owner}: {total.why}; {format_moments(used)} are used{source}"
