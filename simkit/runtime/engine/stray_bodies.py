@@ -27,7 +27,7 @@ FARTHEST: Final = 1000.0
 """Distance from the world [m] above which a body is reported."""
 
 _LEAST_GYRATION: Final = 0.01
-"""Least radius of gyration, relative to the radius of a body, that is not named as the cause."""
+"""Least radius of gyration of the largest moment, relative to the radius of a body, that is not named as the cause."""
 
 _GROUND_HINT: Final = "give the world a ground below it: <include><uri>model://ground_plane</uri></include>"
 _COLLISION_HINT: Final = "its links have no <collision>, so that no ground can carry it: add one to the lowest links"
@@ -132,7 +132,7 @@ def _too_small_moments(model: mujoco.MjModel, body: int) -> str:
     geoms = np.flatnonzero(model.geom_bodyid == body)
     radius = float(model.geom_rbound[geoms].max(initial=0.0))
     moments, mass = model.body_inertia[body], float(model.body_mass[body])
-    if not math.isfinite(radius) or mass <= 0.0 or float(moments.min()) >= mass * (_LEAST_GYRATION * radius) ** 2:
+    if not math.isfinite(radius) or mass <= 0.0 or float(moments.max()) >= mass * (_LEAST_GYRATION * radius) ** 2:
         return ""
     return "(" + ", ".join(f"{value:.3g}" for value in sorted(moments.tolist())) + ") kg m2"
 
