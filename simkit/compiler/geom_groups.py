@@ -14,10 +14,11 @@ COLLISION: Final = 3
 """Group of geoms that collide; rays against collisions see them."""
 
 COLLISION_RAY: Final = 4
-"""Group of exact copies of non-convex static meshes: rays against collisions see them, but they never collide."""
+"""Group of exact copies of meshes that collide as other shapes: rays against collisions see them, but they never
+collide."""
 
 COLLISION_CONTACT: Final = 5
-"""Group of convex pieces that collide instead of a non-convex static mesh; no ray sees them."""
+"""Group of hulls, convex pieces and wheel cylinders that collide instead of a mesh; no ray sees them."""
 
 SEEN_AS_COLLISIONS: Final = (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
 """Groups that rays against collisions see."""

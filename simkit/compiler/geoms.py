@@ -183,23 +183,31 @@ class GeomWriter:
         vertices, faces = join_parts(parts)
         optimization, most = (shape.optimization, shape.max_hulls) if isinstance(shape, Mesh) else ("", 16)
         bodies = convex_bodies(vertices, faces, fixed=parent.fixed, optimization=optimization, most=most)
+        wheel = None
         if isinstance(shape, Mesh) and parent.axis is not None:
             wheel = round_mesh(bodies.shapes, collision.pose_link, parent.axis)
-            if wheel is not None:
-                self._wheel(parent, owner, collision, wheel, solid)
-                return
-        for severity, code, text, hint in bodies.findings:
-            report_once(self.diagnostics, severity, code, f"{_collision_title(shape)} {text}", collision.where, hint)
-        settings = solid if bodies.is_exact else {**solid, "group": COLLISION_CONTACT}
-        names = self.assets.convex_bodies(bodies)
-        for name in names:
-            self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
-        self._large_surface(parent, owner, collision.pose_link, bodies, names, settings)
-        if not bodies.is_exact:
+        is_exact = bodies.is_exact and wheel is None
+        settings = solid if is_exact else {**solid, "group": COLLISION_CONTACT}
+        if wheel is not None:
+            self._wheel(parent, owner, collision, wheel, settings)
+        else:
+            for severity, code, text, hint in bodies.findings:
+                title = _collision_title(shape)
+                report_once(self.diagnostics, severity, code, f"{title} {text}", collision.where, hint)
+            self._convex_bodies(parent, owner, collision.pose_link, bodies, settings)
+        if not is_exact:
             drawn: GeomSettings = {"contype": 0, "conaffinity": 0, "group": COLLISION_RAY}
             is_shared = len(parts) == 1 and len(faces) > TRIANGLES_FROM  # with the visual of the same file
             name = self.assets.part(parts[0], False) if is_shared else self.assets.surface(vertices, faces)
             self._add(parent, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **drawn)
+
+    def _convex_bodies(
+        self, parent: GeomParent, owner: GeomOwner, pose: Pose, bodies: ConvexBodies, settings: GeomSettings
+    ) -> None:
+        names = self.assets.convex_bodies(bodies)
+        for name in names:
+            self._add(parent, owner, pose, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
+        self._large_surface(parent, owner, pose, bodies, names, settings)
 
     def _large_surface(
         self,

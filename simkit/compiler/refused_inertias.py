@@ -10,6 +10,8 @@ by fixed joints) about their common centre of mass:
   refuses it. The compiler gets the nearest valid tensor, and after the compile the file's own tensor is restored. The
   motion is therefore that of the file. A shortfall up to `SLIGHT_VIOLATION` of C is reported as a note, else as a
   warning.
+* All moments are zero and there are collisions: the group gets the inertia of its collisions at its mass. Gazebo
+  Classic takes 1 kg·m² there. Both are stable; with 1 kg·m², small objects turn over in seconds and balls do not roll.
 * A moment is zero, or negative by at most `REPAIRABLE_VIOLATION` of the largest: the moment is raised to that of the
   smallest body of the same mass (`LEAST_RADIUS`), and the largest moment stays. A warning contains old and new numbers.
 * Any larger violation is an error that contains the moments.
@@ -26,6 +28,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.collision_inertia import collision_inertia
 from simkit.diagnostics import Diagnostics
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import det, matmul
@@ -135,6 +138,11 @@ def repair_inertia(inertial: Inertial, slack: float = 2 * _ROUNDING) -> InertiaR
     return InertiaRepair(_with_inertial(inertial, new, axes), verdict, old, _as_vector(new), part)
 
 
+def is_point(found: InertiaRepair) -> bool:
+    """Check whether a repaired inertia is that of a point: no moment is larger than that of the smallest body."""
+    return found.verdict == "mended" and found.old[2] <= max(LEAST_MOMENT, LEAST_RADIUS**2 * found.inertial.mass)
+
+
 def plan_inertials(
     links: Sequence[SceneLink], rigid: Mapping[str, str], still: frozenset[str], diagnostics: Diagnostics
 ) -> dict[str, BodyInertia]:
@@ -233,11 +241,18 @@ def _substitute_inertias(
         text = f"{owner}: {total.why}; no rigid body has such moments, they are simulated as written"
         report("SK-INERTIA-001", text, foot.where, hint)
     elif total.verdict == "mended":
-        extra = inertia_matrix(total.inertial.inertia) - tensor
+        new = collision_inertia(members, mass, diagnostics) if is_point(total) else None
+        extra = (inertia_matrix(total.inertial.inertia) if new is None else new) - tensor
         own = judged[foot.scoped].inertial
         exact = inertia_moments(inertia_matrix(foot.inertial.inertia) + _rotate_from_world(foot, extra))
-        written[foot.scoped] = BodyInertia(own.mass, own.com, own.inertia, exact)
-        text = f"{owner}: {total.why}; {format_moments(total.new)} are used"
+        valid = Inertial(own.mass, own.com, exact)
+        if repair_inertia(valid).inertial is valid:
+            written[foot.scoped] = _file_inertia(valid)
+        else:
+            written[foot.scoped] = BodyInertia(own.mass, own.com, own.inertia, exact)
+        used = total.new if new is None else _as_vector(eigh(new)[0])
+        source = "" if new is None else f", which are those of its collisions at {mass:g} kg"
+        text = f"{owner}: {total.why}; {format_moments(used)} are used{source}"
         diagnostics.warning("SK-PHYS-011", text, foot.where, hint)
     elif total.verdict == "beyond":
         text = f"{owner} of {mass:g} kg: {total.why}; the error is too large{_likely_cause(foot.inertial, total)}"

@@ -27,12 +27,14 @@ class WrittenInertia:
         spans: byte range of each number in the file, by name (`ixx`, ...); missing numbers have none.
         end: byte position at which a missing number can be inserted.
         is_urdf: true if the numbers are attributes (URDF), false if they are elements (SDF).
+        is_rotated: true if the pose of the `<inertial>` has a rotation.
     """
 
     link: str
     line: int
     is_urdf: bool
     mass: float = 1.0
+    is_rotated: bool = False
     values: dict[str, float] = field(default_factory=dict)
     spans: dict[str, tuple[int, int]] = field(default_factory=dict)
     end: int = -1
@@ -52,6 +54,7 @@ class _InertiaFinder:
         self.links: list[str] = []
         self.found: list[WrittenInertia] = []
         self.mass: float | None = None
+        self.is_rotated = False
         self.is_urdf = False
         self.open: WrittenInertia | None = None
         self.number_from = -1
@@ -85,7 +88,11 @@ class _InertiaFinder:
         if name == "link":
             self.links.append(attributes.get("name", ""))
         elif name == "inertial":
-            self.mass = None
+            self.mass, self.is_rotated = None, False
+        elif name == "origin" and where[-2:-1] == ["inertial"]:
+            self.is_rotated = _has_rotation(attributes.get("rpy", ""))
+        elif name == "pose" and where[-2:-1] == ["inertial"]:
+            self.number_from = self.tag_end()
         elif name == "mass" and where[-2:-1] == ["inertial"]:
             self.number_from = self.tag_end()
             if "value" in attributes:
@@ -116,16 +123,25 @@ class _InertiaFinder:
             self.open.values[name] = float(self.data[self.number_from : position].decode())
         elif name == "mass" and self.stack[-1:] == ["inertial"] and not self.is_urdf:
             self.mass = float(self.data[self.number_from : position].decode())
+        elif name == "pose" and self.stack[-1:] == ["inertial"]:
+            text = self.data[self.number_from : position].decode()
+            self.is_rotated = _has_rotation(" ".join(text.split()[3:]))
         elif name == "inertia" and self.open is not None:
             if not self.is_urdf:
                 self.open.end = position
             self.found.append(self.open)
             self.open = None
-        elif name == "inertial" and self.found and self.mass is not None and self.links:
-            if self.found[-1].link == self.links[-1]:
+        elif name == "inertial" and self.found and self.links and self.found[-1].link == self.links[-1]:
+            self.found[-1].is_rotated = self.is_rotated
+            if self.mass is not None:
                 self.found[-1].mass = self.mass
         elif name == "link":
             self.links.pop()
+
+
+def _has_rotation(text: str) -> bool:
+    """Check whether the angles of a pose contain anything but zeros."""
+    return any(word.strip("+-0.") for word in text.split())
 
 
 def find_inertias(path: Path) -> tuple[bytes, list[WrittenInertia]]:

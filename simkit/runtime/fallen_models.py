@@ -26,16 +26,18 @@ def find_fallen_models(sim: Simulation) -> Diagnostics:
     """Return a warning for each top-level model that is farther below everything else than the world's extent.
 
     Everything else are the static collisions; in a world without any, all collisions at their first poses. The time at
-    which a model left the ground follows from its velocity if it falls freely.
+    which a model left the ground follows from its velocity if it falls freely. A divergence and a model that
+    `StrayBodies` has reported have other causes, so they get no warning here.
     """
     found = Diagnostics()
-    gravity = float(sim.mj_model.opt.gravity[2])
-    if not gravity < 0.0 or not np.isfinite(sim.mj_data.qpos).all():  # a divergence has its own report
+    gravity, engine = float(sim.mj_model.opt.gravity[2]), sim.engine
+    if not gravity < 0.0 or engine.physics.has_diverged:
         return found
     lowest, extent = _lowest_height(sim.mj_model), float(sim.mj_model.stat.extent)
     for name, model in sim.models.items():
         height = float(model.pose.position[2])
-        if model.static or not model.links or not height < lowest - extent:
+        is_told = name in engine.stray_bodies.reported
+        if model.static or not model.links or is_told or not height < lowest - extent:
             continue
         link = next(iter(model.links.values()))
         velocity, acceleration = float(link.linear_velocity[2]), float(link.linear_acceleration[2])

@@ -242,8 +242,7 @@ class Simulation(ScriptGraph, InProcess):
     def _stateful(self) -> list[Stateful]:
         """Return every part with a state, except sensors and plugins, in the order of restoring."""
         engine, interfaces, control, handles = self.engine, self.communication, self.control, self.contents.handles
-        calls = (interfaces.live_parameters, interfaces.services, interfaces.actions, interfaces.transforms)
-        own = (engine.faults, *calls, interfaces.lifecycle_states, control.pausing, control.origin)
+        own = (engine.faults, *interfaces.stateful(), control.pausing, control.origin)
         return [*handles.stateful(), *own, engine.numbers, engine.velocity_servos, *handles.tables["model"].values()]
 
     def _loaded_state(self) -> Snapshot:

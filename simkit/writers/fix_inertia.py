@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
+from simkit.compiler.collision_inertia import collision_inertia
 from simkit.compiler.mjcf_parser import MjcfParser
-from simkit.compiler.refused_inertias import format_moments, repair_inertia
+from simkit.compiler.refused_inertias import InertiaRepair, format_moments, inertia_moments, is_point, repair_inertia
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
+from simkit.linear_algebra import matmul
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.inertia_text import WrittenInertia, find_inertias, replace_numbers
 from simkit.loaders.sdf.inertial import MOMENT_NAMES
-from simkit.scene import Inertial, Scene
+from simkit.scene import Inertial, Scene, SceneLink
 
 _SLACK = 1e-6  # relative to the largest moment; tolerance for rounded values in files
 
@@ -100,7 +104,9 @@ def find_inertia_fixes(source: Path, resource_paths: Sequence[Path] = ()) -> Ine
         raise InputError(f"SK-LOAD-002 {source} is not a file", "SK-LOAD-002")
     fixes: list[InertiaFix] = []
     problems: list[str] = []
-    for file in dict.fromkeys([path, *_scene_files(scene)]):
+    links = _scene_links(scene)
+    by_place = {(Path(link.where.file).resolve(), link.name): link for link in links if link.where.file}
+    for file in dict.fromkeys([path, *_link_files(links)]):
         if file.suffix == ".xacro":
             problems.append(f"{file}: xacro files compute their values; correct the expanded file")
             continue
@@ -109,25 +115,39 @@ def find_inertia_fixes(source: Path, resource_paths: Sequence[Path] = ()) -> Ine
         except (OSError, ValueError) as error:
             problems.append(f"{file}: {error}")
             continue
-        fixes += [fix for inertia in inertias if (fix := _fix_inertia(file, inertia)) is not None]
+        for inertia in inertias:
+            fix = _fix_inertia(file, inertia, by_place.get((file.resolve(), inertia.link)))
+            fixes += [fix] if fix is not None else []
     return InertiaFixes(path, tuple(fixes), tuple(problems))
 
 
-def _scene_files(scene: Scene) -> list[Path]:
-    """Return the files that the links of a scene come from."""
+def _scene_links(scene: Scene) -> list[SceneLink]:
     tops = [m for w in scene.worlds for m in w.models] + ([scene.model] if scene.model is not None else [])
-    named = {link.where.file for top in tops for link in top.all_links() if link.where.file}
+    return [link for top in tops for link in top.all_links()]
+
+
+def _link_files(links: Sequence[SceneLink]) -> list[Path]:
+    """Return the files that links come from."""
+    named = {link.where.file for link in links if link.where.file}
     return [path for name in sorted(named) if (path := Path(name)).is_file()]
 
 
-def _fix_inertia(file: Path, inertia: WrittenInertia) -> InertiaFix | None:
-    """Return the correction of an inertia; None if it is valid, or if the link has no mass."""
+def _fix_inertia(file: Path, inertia: WrittenInertia, link: SceneLink | None) -> InertiaFix | None:
+    """Return the correction of an inertia; None if it is valid, or if the link has no mass.
+
+    Args:
+        file: file of the inertia.
+        inertia: inertia as written.
+        link: link of the inertia, whose collisions give the numbers if all moments are zero; None if it is not known.
+    """
     original = Inertial(inertia.mass, (0.0, 0.0, 0.0), inertia.moments)
     if inertia.mass <= 0:
         return None
     found = repair_inertia(original, slack=_SLACK)
     if found.verdict == "sound":
         return None
+    if is_point(found) and link is not None:
+        found = _from_collisions(found, inertia, link)
     new = dict(zip(MOMENT_NAMES, found.inertial.inertia, strict=True))
     size = max(abs(v) for v in new.values())
     texts = {k: f"{v:.9g}" if abs(v) > 1e-9 * size else "0" for k, v in new.items()}
@@ -135,3 +155,19 @@ def _fix_inertia(file: Path, inertia: WrittenInertia) -> InertiaFix | None:
     return InertiaFix(
         file, inertia.line, inertia.link, inertia.mass, found.old, found.new, changed, inertia.values, found.why
     )
+
+
+def _from_collisions(found: InertiaRepair, inertia: WrittenInertia, link: SceneLink) -> InertiaRepair:
+    """Return the repair with the inertia of the link's collisions; unchanged if they have no volume.
+
+    If the axes of the inertia are rotated, all moments are the mean, which is the same in all axes.
+    """
+    tensor = collision_inertia([link], inertia.mass, Diagnostics())
+    if tensor is None:
+        return found
+    turn = link.pose_world.matrix
+    tensor = matmul(turn.T, tensor, turn)
+    if inertia.is_rotated:
+        tensor = np.eye(3) * (np.trace(tensor) / 3.0)
+    own = repair_inertia(Inertial(inertia.mass, (0.0, 0.0, 0.0), inertia_moments(tensor)), slack=_SLACK)
+    return replace(found, inertial=own.inertial, new=own.new)

@@ -136,6 +136,22 @@ def test_missing_inertia_values_of_sdf_are_inserted(here: Path) -> None:
     assert "<iyy>0<" not in (here / "n.sdf").read_text()
 
 
+@pytest.mark.parametrize("pose", ["", "<pose>0 0 0 0 0 1</pose>"])
+def test_zero_moments_become_those_of_the_collisions(here: Path, pose: str) -> None:
+    """Numbers in rotated axes are the mean, because all axes have it."""
+    (here / "m.sdf").write_text(
+        f"<sdf version='1.9'><model name='m'><link name='a'><inertial><mass>6</mass>{pose}"
+        "<inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia></inertial>"
+        "<collision name='c'><geometry><box><size>0.75 0.55 0.35</size></box></geometry></collision>"
+        "</link></model></sdf>"
+    )
+    assert "1 impossible inertias" in run("m.sdf", "--fix-inertia", "-o", "n.sdf").stdout
+    link = simkit.describe(here / "n.sdf")["model"]["links"][0]
+    x, y, z = (0.5 * side**2 for side in (0.75, 0.55, 0.35))
+    expected = (y + z, x + z, x + y) if not pose else (2 * (x + y + z) / 3,) * 3
+    assert link["inertia_com_linkframe"] == pytest.approx([*expected, 0, 0, 0], rel=1e-5)
+
+
 def test_a_file_that_is_there_is_replaced_only_by_force(here: Path) -> None:
     (here / "arm.urdf").write_text(URDF)
     assert run("arm.urdf", "--fix-inertia", "-o", "arm.urdf").exit_code == 2

@@ -81,12 +81,15 @@ def test_names_masks_and_friction_are_those_of_the_collision(wheel):
     square_one, as_mesh, _ = wheel(prism(4), surface=surface)
     assert (as_cylinder.type, as_mesh.type) == (CYLINDER, MESH)
     assert as_cylinder.name == as_mesh.name
-    for field in ("friction", "contype", "conaffinity", "group", "condim", "priority", "solref", "solimp"):
+    for field in ("friction", "contype", "conaffinity", "condim", "priority", "solref", "solimp"):
         np.testing.assert_array_equal(getattr(as_cylinder, field), getattr(as_mesh, field))
     for c in (round_one, square_one):
         link = c.names.link("cart::wheel")
-        assert link.ray_geoms == link.geoms
-        assert c.names.geom_owner(link.geoms[0]) == ("cart::wheel", "cart::wheel::c", False)
+        for geom in (*link.geoms, *link.ray_geoms):
+            assert c.names.geom_owner(geom) == ("cart::wheel", "cart::wheel::c", False)
+            assert c.model.geom_type[geom] == MESH or geom not in link.ray_geoms
+    links = [c.names.link("cart::wheel") for c in (round_one, square_one)]
+    assert [set(link.geoms) & set(link.ray_geoms) == set() for link in links] == [True, False]
 
 
 @pytest.mark.parametrize(

@@ -48,3 +48,18 @@ def test_a_model_without_collisions_is_told_to_have_none() -> None:
         sim.run(2.0)
         (warning,) = find_fallen_models(sim)
         assert "<collision>" in warning.hint
+
+
+def test_a_model_that_a_hit_or_a_divergence_threw_below_the_world_is_not_told_to_have_no_ground() -> None:
+    with simkit.load(world(0.0)) as sim:
+        sim.model("ball").set_pose(simkit.Pose((0.0, 0.0, -5.0)))
+        sim.model("ball").set_velocity((0.0, 0.0, -300.0))
+        sim.run(0.2)
+        assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-PHYS-032"]
+        assert not list(find_fallen_models(sim))
+    with simkit.load(world(0.0)) as sim:
+        sim.model("ball").set_pose(simkit.Pose((0.0, 0.0, -50.0)))
+        sim.model("ball").set_velocity((0.0, 0.0, -1e12))
+        with pytest.raises(simkit.SimulationDiverged):
+            sim.run(0.2)
+        assert not list(find_fallen_models(sim))

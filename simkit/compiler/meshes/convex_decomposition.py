@@ -2,7 +2,8 @@
 
 MuJoCo collides a mesh as its convex hull, which is exact for a convex mesh. A moving non-convex mesh is replaced by the
 hulls of its connected pieces, or by a convex decomposition if the file requests one. A static mesh keeps its exact
-surface. CoACD (the extra `decompose`) computes the decomposition; the same mesh and settings give the same pieces.
+surface. Rays always hit the triangles of the mesh. CoACD (the extra `decompose`) computes the decomposition; the same
+mesh and settings give the same pieces.
 """
 
 from __future__ import annotations
@@ -30,8 +31,9 @@ from simkit.compiler.meshes.convex_pieces import (
     hull_volume,
     is_convex,
     is_inside_out,
+    is_own_hull,
     mesh_volume,
-    piece_hulls,
+    moving_pieces,
     surface_prisms,
 )
 from simkit.compiler.meshes.height_tiles import HeightTile
@@ -132,7 +134,7 @@ LARGEST_ERROR: Final = 0.005
 """Largest error [m] of the contacts of a large static mesh that is not reported as a warning."""
 
 _REPORTS: Final = (
-    8  # version of the bodies and of the texts of their findings, which are cached: raise it with every change
+    9  # version of the bodies and of the texts of their findings, which are cached: raise it with every change
 )
 _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
 _KEPT: Final = 128
@@ -148,7 +150,7 @@ class ConvexBodies:
 
     Attributes:
         shapes: vertices, shape (n, 3) [m], and faces of each body; no faces if MuJoCo has to compute them.
-        is_exact: True if rays can use the bodies; else rays need a copy of the mesh itself.
+        is_exact: True if the bodies have the surface of the mesh; otherwise rays need a copy of the mesh itself.
         findings: diagnostics about the conversion.
         tiles: height fields that collide beside the bodies.
         copies: number of a shape and offset [m] of each further place of it.
@@ -193,16 +195,16 @@ def _compute_bodies(vertices: Floats, faces: Ints, fixed: bool, optimization: st
     whole = hull_volume(vertices)
     if whole <= 1e-9 * float(np.ptp(vertices, axis=0).max()) ** 3:
         return _surface_plates(vertices, faces)
-    if optimization == "convex_hull":
-        return ConvexBodies(_hulls([vertices]))
     if is_convex(vertices, faces) and not (fixed and is_inside_out(vertices, faces)):
-        return ConvexBodies(_hulls([vertices]))
+        return ConvexBodies(_hulls([vertices]), is_own_hull(vertices, faces))
+    if optimization == "convex_hull":
+        return ConvexBodies(_hulls([vertices]), False)
     if optimization == "convex_decomposition":
         try:
             pieces = _hulls(decompose(vertices, faces, most))
             if not pieces:
                 raise DecompositionError("CoACD gave no piece")
-            return ConvexBodies(pieces, not fixed, (_decompose_mesh(vertices, faces, pieces),))
+            return ConvexBodies(pieces, False, (_decompose_mesh(vertices, faces, pieces),))
         except DecompositionError as problem:
             rest = _surface(vertices, faces) if fixed else _by_pieces(vertices, faces)
             finding = ("warning", "SK-MESH-014", f"is not decomposed: {problem}", problem.hint)
@@ -218,7 +220,8 @@ def _decompose_mesh(vertices: Floats, faces: Ints, pieces: tuple[tuple[Floats, I
 
 
 def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
-    sets = [points for points in piece_hulls(vertices, faces) if hull_volume(points) > 0.0] or [vertices]
+    pieces = moving_pieces(vertices, faces)
+    sets = [points for points, _ in pieces if hull_volume(points) > 0.0] or [vertices]
     own = mesh_volume(vertices, faces)
     whole = float_sum(hull_volume(points) for points in sets)
     hulls = "its convex hull" if len(sets) == 1 else f"the convex hulls of its {len(sets)} pieces"
@@ -233,7 +236,8 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
     text = f"collides as {hulls}, {share}"
     finding = severity, "SK-MESH-004", text, _DECOMPOSE if severity == "warning" else ""
     findings = (finding,) if not own or whole > 1.005 * own else ()
-    return ConvexBodies(_hulls(sets), True, findings)
+    is_exact = all(is_convex(*piece) and is_own_hull(*piece) for piece in pieces)
+    return ConvexBodies(_hulls(sets), is_exact, findings)
 
 
 def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:

@@ -18,6 +18,12 @@ _THINNEST: Final = 0.002
 _CLOSED_MOST: Final = 8000
 """Largest number of closed convex parts of a mesh that are pieces of their own."""
 
+SURFACE_TOLERANCE: Final = 1e-4
+"""Largest depth of a mesh's surface inside its hull, relative to its size, up to which rays use the hull."""
+
+_COMPARED_AT_A_TIME: Final = 1 << 20
+"""Number of pairs of a triangle and a plane of the hull that are compared at a time."""
+
 _FEW_FACES: Final = 128
 """Number of faces up to which arrays are faster than a mesh of trimesh."""
 
@@ -41,6 +47,27 @@ def is_convex(vertices: Floats, faces: Ints) -> bool:
     return hull > 0.0 and bool(abs(mesh.volume) > 0.999 * hull)
 
 
+def is_own_hull(vertices: Floats, faces: Ints) -> bool:
+    """Check whether no triangle of a mesh is deeper inside its convex hull than `SURFACE_TOLERANCE` times its size.
+
+    The depth is measured at the centres of the triangles. No point of a triangle is deeper than three times its centre,
+    because the depth is a concave function.
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        planes = ConvexHull(vertices).equations
+    except (QhullError, ValueError):
+        return False
+    centres = vertices[faces].mean(axis=1)
+    rows = max(1, _COMPARED_AT_A_TIME // len(planes))
+    least = -SURFACE_TOLERANCE / 3.0 * float(np.ptp(vertices, axis=0).max())
+    return all(
+        bool(((matmul(centres[i : i + rows], planes[:, :3].T) + planes[:, 3]).max(axis=1) >= least).all())
+        for i in range(0, len(centres), rows)
+    )
+
+
 def hull_volume(vertices: Floats) -> float:
     """Return the volume of the convex hull [m³]; 0 for points in a plane."""
     from scipy.spatial import ConvexHull, QhullError
@@ -61,12 +88,10 @@ def connected_pieces(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]
     return pieces
 
 
-def piece_hulls(vertices: Floats, faces: Ints) -> list[Floats]:
-    """Return point sets whose hulls collide for a moving mesh: one for each connected piece, or one for all."""
+def moving_pieces(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
+    """Return the meshes whose hulls collide for a moving mesh: its connected pieces, or itself if they are too many."""
     pieces = connected_pieces(vertices, faces)
-    if len(pieces) > HULLS_MOST:
-        return [vertices]
-    return [v for v, _ in pieces]
+    return [(vertices, faces)] if len(pieces) > HULLS_MOST else pieces
 
 
 def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:

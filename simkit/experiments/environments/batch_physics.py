@@ -18,8 +18,8 @@ from simkit.experiments.environments.sampled_rows import SampledRows
 from simkit.experiments.environments.servo_arrays import ServoArrays
 from simkit.runtime import Simulation
 from simkit.runtime.engine.physics_state import BAD_ACCELERATION, BAD_POSITION, BAD_VELOCITY, divergence
-from simkit.runtime.engine.step_tasks import _LIMIT_RATE, _NO_LIMIT
-from simkit.runtime.engine.velocity_limits import limit_velocities
+from simkit.runtime.engine.step_tasks import _LIMIT_RATE
+from simkit.runtime.engine.velocity_limits import NO_LIMIT, limit_velocities
 
 Ids = npt.NDArray[np.intp]
 _STATE: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
@@ -62,7 +62,7 @@ class BatchPhysics:
 
     def _compute_limits(self) -> None:
         joints = [joint for joint in self._sim.contents.handles.tables["joint"].values() if joint.mj_dofs]
-        limited = [joint for joint in joints if joint.least_velocity_limit < _NO_LIMIT]
+        limited = [joint for joint in joints if joint.least_velocity_limit < NO_LIMIT]
         self._limited = np.array([dof for joint in limited for dof in joint.mj_dofs], dtype=np.intp)
         self._limits = np.array([joint.axis_velocity_limit(i) for joint in limited for i in range(len(joint.mj_dofs))])
         self._limit_grid = self._sim.engine.clock.grid(_LIMIT_RATE, from_start=True)

@@ -76,7 +76,7 @@ class DriveArrays(abc.ABC):
         self.plugin, self._servos, self._view, self._clock = plugin, servos, view, sim.engine.clock
         actuators = [sim.engine.names.actuator(wheel.servo) for wheel in wheels]
         self._columns = np.array([servos.column(actuator) for actuator in actuators], dtype=np.intp)
-        limits = [sim.engine.velocity_limit(wheel.servo.joint, wheel.servo.axis) for wheel in wheels]
+        limits = [sim.engine.speed_limit(wheel.servo) for wheel in wheels]
         self._limits = np.minimum(_LARGEST, limits)
         self._radii = np.array([wheel.radius for wheel in wheels])
         self._arms = np.array([wheel.side * wheel.separation for wheel in wheels])

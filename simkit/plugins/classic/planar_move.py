@@ -137,7 +137,8 @@ class GazeboRosPlanarMove(KinematicPlugin):
         twist = cast("Twist", getattr(message, "twist", message))
         requested = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
         if are_usable(*requested):
-            self._requested, self._requested_ns = requested, self.sim.time_ns
+            (ahead, aside, _), (_, _, turn) = self.bounded((*requested[:2], 0.0), (0.0, 0.0, requested[2]))
+            self._requested, self._requested_ns = (ahead, aside, turn), self.sim.time_ns
         else:
             self._once.not_finite()
 

@@ -7,7 +7,7 @@ import functools
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -24,6 +24,12 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 Triple = tuple[float, float, float]
+
+LARGEST_STEP: Final = 1.0
+"""Largest commanded motion in a step [m]. A model on a plane diverges at 10 m."""
+
+LARGEST_TURN: Final = 0.2
+"""Largest commanded rotation in a step [rad], as for the wheels of a drive. A model diverges at 10 rad."""
 
 _STATIC, _OTHER = -1, -2  # values of `_owners` for geoms that no motion moves
 _SIX = np.arange(6)
@@ -199,6 +205,18 @@ class KinematicPlugin(ModelPlugin):
     def velocity_targets(self) -> list[VelocityTarget]:
         """Return the commanded velocities of the next step."""
 
+    def bounded(self, linear: Triple, angular: Triple) -> tuple[Triple, Triple]:
+        """Return a commanded twist with at most `LARGEST_STEP` and `LARGEST_TURN` in a step; warn if it was larger."""
+        step = self.sim.timestep
+        kept = [_shortened(linear, LARGEST_STEP / step), _shortened(angular, LARGEST_TURN / step)]
+        if kept != [linear, angular]:
+            text = (
+                f"a command asks for {math.hypot(*linear):.4g} m/s and {math.hypot(*angular):.4g} rad/s; the model "
+                f"gets {LARGEST_STEP / step:g} m/s and {LARGEST_TURN / step:g} rad/s at most"
+            )
+            self._once.warn("SK-PHYS-033", "bound", text, "send a smaller command")
+        return kept[0], kept[1]
+
     def before_step(self) -> None:
         """Set the velocities for the next step."""
         self._mover.move(self.velocity_targets())
@@ -212,6 +230,15 @@ class KinematicPlugin(ModelPlugin):
             mover.move([move for plugin in rota for move in plugin.velocity_targets()])
 
         return run
+
+
+def _shortened(vector: Triple, most: float) -> Triple:
+    """Return a vector that is not longer than `most`, in the same direction."""
+    length = math.hypot(*vector)
+    if length <= most:
+        return vector
+    x, y, z = (value * (most / length) for value in vector)
+    return x, y, z
 
 
 def _solve_force(mobility: Vector, acceleration: Vector) -> Vector:

@@ -98,7 +98,7 @@ class VelocityControl(KinematicPlugin):
         twist = getattr(message, "twist", message)
         linear, angular = ((float(v.x), float(v.y), float(v.z)) for v in (twist.linear, twist.angular))
         if are_usable(*linear, *angular):
-            return linear, angular
+            return self.bounded(linear, angular)
         self._once.not_finite()
         return None
 

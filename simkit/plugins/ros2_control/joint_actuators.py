@@ -16,6 +16,7 @@ command, under a PID loop from the file, and when it is not driven.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
@@ -198,7 +199,8 @@ class JointActuators(SharedByCopies):
         if cached is not None and cached.modes is self.modes and cached.claimed_groups is self.groups:
             return cached
         addresses = self._ids, self._qpos, self._dofs
-        self._cached = ActiveModes(self.modes, self.groups, self._loops, addresses, self._max_velocities)
+        tops = np.array([self._sim.engine.bounded_limit(limit) for limit in self._max_velocities.tolist()])
+        self._cached = ActiveModes(self.modes, self.groups, self._loops, addresses, tops)
         return self._cached
 
     def _rebind_if_needed(self) -> None:
@@ -281,7 +283,11 @@ class JointActuators(SharedByCopies):
             previous, commanded = control(actuator) / stiffness, speed(k)
             previous_speeds.append(previous)
             references.append(target(k) + previous * period)
-            speeds.append(top if commanded > top else -top if commanded < -top else commanded)
+            if commanded > top or commanded < -top:
+                if top > 0.0:  # it is 0 for an effort
+                    self._sim.engine.report_bound(self.actuators[k], commanded)
+                commanded = math.copysign(top, commanded)
+            speeds.append(commanded)
             positions.append(position(qpos))
             velocities.append(velocity(dof))
         return advance_references(

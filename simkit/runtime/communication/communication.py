@@ -13,6 +13,8 @@ from simkit.lifecycle import LifecycleStates
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
 from simkit.runtime.communication.action_server import ActionTable
+from simkit.runtime.communication.large_commands import large_commands
+from simkit.runtime.communication.latest_messages import LatestMessages
 from simkit.runtime.communication.log_topic import LogTopic
 from simkit.runtime.communication.parameter import Parameter
 from simkit.runtime.communication.parameter_server import ParameterTable
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.scheduler import Phase, Scheduler, Task
+    from simkit.runtime.engine.snapshot import Stateful
 
 
 MessageMaker = Callable[[str], "Message"]
@@ -159,6 +162,7 @@ class Communication:
         transforms: transforms of `/tf` and `/tf_static`, received from their first use on.
         log_topic: topic `/rosout`.
         lifecycle_states: states of the lifecycle nodes of plugins and scripts.
+        latest_messages: newest message of each subscription.
     """
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
@@ -170,8 +174,15 @@ class Communication:
         self.transforms = TransformBuffer(bus, lambda: engine.time_ns)
         self.log_topic = LogTopic(bus, engine, self.live_parameters.node_with)
         self.lifecycle_states = LifecycleStates()
+        self.latest_messages = LatestMessages(bus)
         engine.log = TopicLogger("simkit", self, "simkit")
         self.log_topic.hear(engine.reports)
+        engine.stray_bodies.commands = lambda: large_commands(bus)
+
+    def stateful(self) -> list[Stateful]:
+        """Return every part with a state, in the order of restoring."""
+        calls = (self.live_parameters, self.services, self.actions, self.transforms)
+        return [*calls, self.lifecycle_states, self.latest_messages]
 
     def set_active(self, owners: Sequence[object]) -> None:
         """Enable the interfaces of these plugins and sensors and those without an owner; disable the others."""

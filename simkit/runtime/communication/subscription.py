@@ -157,6 +157,7 @@ class Subscription(InProcess):
         self._bus, self.topic, self.callback, self.on_error = bus, topic, callback, on_error
         self._messages: deque[Message] = deque(maxlen=MAX_KEPT_MESSAGES if keep is None else keep)
         self.is_called, self.keeps = callback is not None, math.inf if keep is None else keep
+        self._restored: tuple[LazyMessage | None, Message] = (None, None)
         self.receive: Callback = self._messages.append if callback is None else self._keep_and_call
 
     @property
@@ -169,10 +170,11 @@ class Subscription(InProcess):
 
     @property
     def latest(self) -> Message:
-        """Newest message, or None before the first."""
+        """Newest message, or None before the first. A reset or a restore returns it to that of the restored state."""
         self._bus.gather(self.topic)
-        if not self._messages:
-            return None
+        last, restored = self._restored
+        if not self._messages or self._messages[-1] is last:
+            return restored
         newest = self._messages[-1]
         if isinstance(newest, LazyMessage):
             newest = newest.get()
@@ -180,6 +182,16 @@ class Subscription(InProcess):
             self._messages.pop()
             return self.latest
         return newest
+
+    def restore_latest(self, message: Message) -> None:
+        """Set the newest message of a restored state, or None; `messages` stays complete."""
+        last = None
+        if self._messages:
+            # the program may publish the same message object again, so the last one so far gets an object of its own
+            before = self._messages.pop()
+            last = LazyMessage(before.get if isinstance(before, LazyMessage) else lambda: before)
+            self._messages.append(last)
+        self._restored = last, message
 
     def to_dataframe(self) -> DataFrame:
         """Return the messages as a pandas DataFrame, one row for each; see `simkit.to_dataframe`."""

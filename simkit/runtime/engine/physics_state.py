@@ -324,6 +324,11 @@ class PhysicsState:
         if counts[BAD_POSITION] or counts[BAD_VELOCITY] or counts[BAD_ACCELERATION]:
             raise divergence(self.model, data, self.clock, self.tick)
 
+    @property
+    def has_diverged(self) -> bool:
+        """True if the engine met NaN or infinite numbers since the last reset of its counters."""
+        return bool(self._warnings[[BAD_POSITION, BAD_VELOCITY, BAD_ACCELERATION]].any())
+
     def clear_warnings(self) -> None:
         """Clear the engine's warnings, because a restored state has none."""
         self._warnings[:] = 0

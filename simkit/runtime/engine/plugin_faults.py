@@ -282,7 +282,7 @@ def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged, comma
     A plugin explains with its method `explain_divergence(name) -> str`. The name is that of the diverged joint. If no
     plugin drives the joint, the name is that of the model.
     """
-    found = _explanations(plugins, error.joint) or _explanations(plugins, error.joint.split("::")[0])
+    found = explanations(plugins, error.joint) or explanations(plugins, error.joint.split("::")[0])
     found = [*commands, *found]
     if found:
         more = "; ".join(found[:_MAX_EXPLANATIONS]) + (
@@ -292,6 +292,7 @@ def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged, comma
         error.args = (f"{error.args[0]}; {more}",)
 
 
-def _explanations(plugins: Sequence[object], name: str) -> list[str]:
+def explanations(plugins: Sequence[object], name: str) -> list[str]:
+    """Return the explanations of plugins that drive a joint or a model."""
     methods = (getattr(plugin, "explain_divergence", None) for plugin in plugins)
     return [text for explain in methods if explain is not None and (text := explain(name))]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from simkit.runtime.engine import sleep, velocity_servos
+from simkit.runtime.engine import sleep, stray_bodies, velocity_servos
 from simkit.runtime.engine.scheduler import Scheduler, Task
-from simkit.runtime.engine.velocity_limits import LimitedJoint, limited_dofs, velocity_limiter
+from simkit.runtime.engine.velocity_limits import NO_LIMIT, LimitedJoint, limited_dofs, velocity_limiter
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
@@ -114,7 +114,6 @@ def _guard_group(faults: PluginFaults, group: PluginGroup, hook: str, run: Calla
     return task
 
 
-_NO_LIMIT = 1e6  # [rad/s or m/s] a larger limit in a file means no limit
 _LIMIT_RATE = 100.0  # [Hz] at which the velocity limit of an undriven joint is enforced
 _CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 _RANGE = "sensor_msgs/msg/Range"
@@ -137,6 +136,7 @@ def fill_schedule(
     engine.faults.begin_schedule()
     if engine.physics.sleep.watches:
         scheduler.every(sleep.RATE, engine.look_for_rest, "after")
+    scheduler.every(stray_bodies.RATE, engine.stray_bodies.look, "after")
     _schedule_velocity_limits(engine, scheduler, joints, exact_limits)
     if engine.velocity_servos.are_there:  # before the commands of the step, which have had no time to take effect
         scheduler.every(velocity_servos.RATE, engine.velocity_servos.correct, "before")
@@ -165,7 +165,7 @@ def _schedule_velocity_limits(
 ) -> None:
     moving = [joint for joint in joints if joint.mj_dofs]
     exact = [joint for joint in moving if joint in exact_limits]
-    coasting = [joint for joint in moving if joint not in exact_limits and joint.least_velocity_limit < _NO_LIMIT]
+    coasting = [joint for joint in moving if joint not in exact_limits and joint.least_velocity_limit < NO_LIMIT]
     last, scheduler.limiters = scheduler.limiters, {}
     for rate, limited in ((None, exact), (_LIMIT_RATE, coasting)):
         if limited:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 import mujoco
 import numpy as np
@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.forward_pass import ForwardPass
 
 Vector = npt.NDArray[np.float64]
+
+NO_LIMIT: Final = 1e6
+"""Velocity [rad/s or m/s] from which a limit in a file means no limit."""
+
 _LIMIT_SHARE = 0.999  # threshold for the sum of squares of velocities over their limits
 
 

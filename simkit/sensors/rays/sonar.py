@@ -12,21 +12,14 @@ from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import SEEN_AS_COLLISIONS
 from simkit.diagnostics import Diagnostics
-from simkit.linear_algebra import matmul, norm
 from simkit.params import Params
-from simkit.pose import Vector
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
-from simkit.sensors.rays.ray_fan import RayFan
+from simkit.sensors.rays.nearest_in_cone import NearestInCone
 
 TYPE = "sensor_msgs/msg/Range"
 ULTRASOUND = 0
-MIN_RAY_ANGLE = math.radians(0.5)
-"""Largest angle between the rings of a cone [rad]; larger if the cone would need more than `MAX_RINGS` rings."""
-MAX_RINGS = 24
-SPHERE_RAYS = 2000
-_GOLDEN = math.pi * (3.0 - math.sqrt(5.0))  # [rad]
 _MAX_RANGE = 3e38  # messages contain 32-bit floats
 
 
@@ -73,9 +66,9 @@ def _read_axis(block: Params) -> tuple[float, float, float]:
 class Sonar(Sensor):
     """Sonar, `sonar`: the distance to the nearest collision in a cone (or sphere) from the sensor's origin.
 
-    The cone opens along the sensor's -z axis, as in Gazebo Classic, or along `<axis>`. Rays sample the cone: one on
-    its axis and rings around it, the last on its edge. A surface of any orientation is detected; echoes are not
-    modelled. The sensor's own link is never hit.
+    The cone opens along the sensor's -z axis, as in Gazebo Classic, or along `<axis>`. Rays sample the cone: one on its
+    axis and rings around it, the last on its edge. Around the nearest hits, denser rays follow. A surface of any
+    orientation is detected; echoes are not modelled. The sensor's own link is never hit.
     """
 
     kinds = ("sonar",)
@@ -86,7 +79,7 @@ class Sonar(Sensor):
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         options = self.options
-        self._fan = RayFan(cone_directions(options.half_angle, options.axis), SEEN_AS_COLLISIONS, options.range_max)
+        self._cone = NearestInCone(options.half_angle, options.axis, SEEN_AS_COLLISIONS, options.range_max)
 
     def read_options(self, params: Params) -> SonarOptions:
         block = params.block("sonar")
@@ -123,7 +116,7 @@ class Sonar(Sensor):
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         names = compiled.names
-        self._fan.bind(compiled.model, names, self._body, names.link(self.scene.parent).ray_geoms)
+        self._cone.bind(compiled.model, names, self._body, names.link(self.scene.parent).ray_geoms)
         self._geom_owner = names.geom_owner
 
     @property
@@ -133,15 +126,11 @@ class Sonar(Sensor):
         return reading.hit if reading is not None else ""
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> SonarReading:
-        options, fan = self.options, self._fan
-        origin, rotation = self._frame_in_world(data)
-        fan.cast(model, data, origin, rotation)
-        distances = np.where(fan.distances < 0, np.inf, fan.distances)
-        nearest = int(np.argmin(distances))
-        found = float(distances[nearest])
+        options = self.options
+        found, geom = self._cone.find(model, data, *self._frame_in_world(data))
         if found > options.range_max:
             return SonarReading(math.inf, "")
-        owner = str(self._geom_owner(int(fan.geoms[nearest]))[1])
+        owner = str(self._geom_owner(geom)[1])
         return SonarReading(found if found >= options.range_min else -math.inf, owner)
 
     def perturb(self, reading: SonarReading, index: int) -> SonarReading:
@@ -162,45 +151,3 @@ class Sonar(Sensor):
             range=reading.range,
             variance=min(self.noise.variance(), _MAX_RANGE),
         )
-
-
-def cone_directions(half_angle: float, axis: tuple[float, float, float]) -> Vector:
-    """Return unit vectors that sample a cone, shape (n, 3); the first is the axis.
-
-    Ring k around the axis, k = 1, 2, ..., has 6k rays; the last ring is on the edge. Neighbouring rays of a ring are
-    as far apart as neighbouring rings. Each direction in the cone is closer to a ray than 0.75 of this distance. With a
-    half angle of pi (all directions), the rays are both directions of three perpendicular axes and a Fibonacci spiral.
-
-    Args:
-        half_angle: angle between axis and edge [rad].
-        axis: unit vector.
-    """
-    if half_angle >= math.pi:
-        upright = np.vstack((np.eye(3)[[2, 0, 1]], -np.eye(3)[[2, 0, 1]], _spiral_directions(SPHERE_RAYS)))
-    else:
-        rings = min(max(math.ceil(half_angle / MIN_RAY_ANGLE), 1), MAX_RINGS) if half_angle > 0 else 0
-        number = np.concatenate([np.full(max(6 * k, 1), k) for k in range(rings + 1)])
-        index = np.concatenate([np.arange(max(6 * k, 1)) for k in range(rings + 1)])
-        away = half_angle * number / max(rings, 1)
-        # every second ring is rotated by half a gap, so that the gaps do not form straight lines
-        around = 2 * np.pi * (index + 0.5 * (number % 2)) / np.maximum(6 * number, 1)
-        upright = np.stack((np.sin(away) * np.cos(around), np.sin(away) * np.sin(around), np.cos(away)), axis=-1)
-    return np.asarray(matmul(upright, _frame_along(axis)), dtype=np.float64)
-
-
-def _spiral_directions(count: int) -> Vector:
-    step = np.arange(count)
-    height = 1.0 - (2.0 * step + 1.0) / count
-    across = np.sqrt(1.0 - height**2)
-    spiral: Vector = np.stack((across * np.cos(_GOLDEN * step), across * np.sin(_GOLDEN * step), height), axis=-1)
-    return spiral
-
-
-def _frame_along(axis: tuple[float, float, float]) -> Vector:
-    """Return a matrix whose rows are three perpendicular unit vectors, the last along the axis."""
-    along = np.array(axis)
-    other = np.eye(3)[int(np.argmin(np.abs(along)))]
-    first = np.cross(other, along)
-    first /= norm(first)
-    frame: Vector = np.stack((first, np.cross(along, first), along))
-    return frame

@@ -47,24 +47,67 @@ ONE = WORLD.format(robots=ROBOT.format(name="bot", x=0, plugin=JOINTS))
 FLOAT = {"/speed", "/angle", "/thrust", "/model/bot/joint/jl/cmd_force"}
 
 
-def test_a_run_that_a_command_ends_names_the_command_and_its_plugin() -> None:
+def bounds(sim: simkit.Simulation) -> list[str]:
+    return [d.message for d in sim.diagnostics if d.code == "SK-PHYS-033"]
+
+
+@pytest.mark.parametrize("speed", [1e4, -1e9])
+def test_a_drive_without_limits_gets_a_bound_and_says_so_once(speed: float) -> None:
+    """The bound is 0.2 rad in a step, or 150 rad/s; without it the run ended with SK-PHYS-001."""
     with simkit.load(TWO) as sim:
         sim.publish("/other/cmd_vel", {"linear": {"x": 0.2}})
+        sim.publish("/cmd_vel", {"linear": {"x": speed}})
+        sim.run(1.0)
+        (message,) = bounds(sim)
+        assert "plugin 'gz::sim::systems::DiffDrive': a command asks joint bot::jl for" in message
+        assert "so it gets 100 rad/s at most" in message
+        assert abs(sim.joint("bot::jl").velocity) < 110
+        sim.publish("/cmd_vel", {"linear": {"x": 2 * speed}})
+        sim.run(0.1)
+        assert len(bounds(sim)) == 1
+
+
+def test_a_joint_with_a_velocity_limit_has_that_limit_and_no_bound() -> None:
+    limit = "<xyz>0 0 1</xyz><limit><velocity>180</velocity></limit>"
+    with simkit.load(TWO.replace("<xyz>0 0 1</xyz>", limit).replace("0.002", "0.001")) as sim:
         sim.publish("/cmd_vel", {"linear": {"x": 1e4}})
+        sim.run(0.3)
+        assert bounds(sim) == []
+        assert sim.joint("bot::jl").velocity == pytest.approx(180, abs=5)
+
+
+@pytest.mark.parametrize("topic", ["/twist", "/move"])
+def test_a_drive_that_sets_velocities_gets_a_bound_too(topic: str) -> None:
+    moves = """<plugin filename="libgazebo_ros_planar_move.so" name="move"><ros><remapping>cmd_vel:=move</remapping>
+      </ros></plugin>"""
+    text = ONE if topic == "/twist" else WORLD.format(robots=ROBOT.format(name="bot", x=0, plugin=moves))
+    with simkit.load(text) as sim:
+        sim.publish(topic, {"linear": {"x": 1e6}, "angular": {"z": 1e4}})
+        sim.run(0.2)
+        (message,) = bounds(sim)
+        assert "the model gets 500 m/s and 100 rad/s at most" in message
+        sim.publish(topic, {"linear": {"x": 0.5}, "angular": {"z": 0.1}})
+        sim.run(0.2)
+        assert float(sim.link("bot::base").angular_velocity[2]) == pytest.approx(0.1, abs=2e-3)
+
+
+def test_a_run_that_a_command_ends_names_the_command_and_its_plugin() -> None:
+    with simkit.load(ONE) as sim:
+        sim.publish("/model/bot/joint/jl/cmd_force", {"data": 1e9})
         with pytest.raises(SimulationDiverged, match=r"SK-PHYS-001 .*'bot::") as found:
             sim.run(1.0)
-    assert "the last command on /cmd_vel for plugin 'gz::sim::systems::DiffDrive'" in str(found.value)
-    assert "has linear.x = 10000" in found.value.hint and "/other/cmd_vel" not in str(found.value)
+    assert "the last command on /model/bot/joint/jl/cmd_force for plugin" in str(found.value)
+    assert "has data = 1e+09" in found.value.hint
 
 
 def test_a_reset_forgets_the_command() -> None:
-    with simkit.load(TWO) as sim:
-        sim.publish("/cmd_vel", {"linear": {"x": 1e4}})
+    with simkit.load(ONE) as sim:
+        sim.publish("/model/bot/joint/jl/cmd_force", {"data": 1e9})
         with pytest.raises(SimulationDiverged):
             sim.run(1.0)
         sim.reset()
         sim.run(0.1)
-        sim.model("bot").set_velocity((0.0, 0.0, 0.0), (0.0, 1e9, 0.0))
+        sim.model("bot").set_velocity((0.0, 0.0, 0.0), (0.0, 1e12, 0.0))
         with pytest.raises(SimulationDiverged) as found:
             sim.run(1.0)
     assert "command on" not in str(found.value)
@@ -92,12 +135,13 @@ def test_every_kind_of_command_is_checked(topic: str, value: float) -> None:
         assert [d.code for d in sim.diagnostics if d.severity == "warning"] == expected
 
 
-def test_the_command_line_says_which_command_ended_the_run(tmp_path: Path) -> None:
+def test_the_command_line_names_the_bound_and_does_not_ask_for_a_ground(tmp_path: Path) -> None:
     robot = ROBOT.format(name="bot", x=0, plugin=DRIVE.format(topic="/cmd_vel"))
     (tmp_path / "w.sdf").write_text(WORLD.format(robots=robot))
     command = [sys.executable, "-m", "simkit", "run", "w.sdf", "--cmd-vel", "1e4,0", "--duration", "1"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
     ignored = subprocess.run([*command[:6], "1e11,0", *command[7:]], cwd=tmp_path, capture_output=True, text=True)
     assert ignored.returncode == 0 and "warning SK-PLUGIN-041" in ignored.stderr
-    assert done.returncode == 3, done.stderr
-    assert "linear.x = 10000" in done.stderr and "w.sdf:" in done.stderr
+    assert done.returncode == 0, done.stderr
+    assert "warning SK-PHYS-033" in done.stderr and "w.sdf:" in done.stderr
+    assert "ground" not in done.stderr

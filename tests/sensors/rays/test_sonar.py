@@ -10,7 +10,7 @@ import pytest
 from sensor_worlds import box, noise, sensor, world
 
 import simkit
-from simkit.sensors.rays.sonar import MAX_RINGS, MIN_RAY_ANGLE, cone_directions
+from simkit.sensors.rays.nearest_in_cone import MAX_RINGS, MIN_RAY_ANGLE, cone_directions
 
 FORWARD = "<axis>1 0 0</axis>"
 HALF = math.atan2(0.5, 4.0)  # of the cone below
@@ -74,6 +74,35 @@ def test_a_ball_in_the_cone_is_detected_at_its_nearest_point(away: float) -> Non
     # off by at most 0.75 of a spacing, on a surface that curves away
     assert exact - 1e-9 <= message.range <= exact + (3 * 0.75 * spacing) ** 2 / (2 * 0.15) * 1.1
     assert hit == "ball::l::c"
+
+
+@pytest.mark.parametrize("roll", [0.1, 0.7, 1.3])
+@pytest.mark.parametrize("turn", [30, 60, 80])
+def test_a_steep_wall_is_detected_on_the_edge_of_the_cone_in_every_direction(turn: float, roll: float) -> None:
+    """The nearest point is between two rays of the edge; without denser rays the range was up to 2 cm too large."""
+    tilt = math.radians(turn)
+    wall = box("wall", f"2 0 1 0 0 {tilt}", "0.0002 9 9")
+    message, *_ = reading(world(sonar(), others=wall, pose=f"0 0 1 {roll} 0 0"))
+    expected = 2 * math.cos(tilt) / math.cos(tilt - HALF)
+    assert message.range == pytest.approx(expected, abs=5e-4)
+
+
+@pytest.mark.parametrize("roll", [0.0, 0.4, 1.1])
+@pytest.mark.parametrize("side", [0.02, 0.1, 0.2, 0.24])
+def test_a_box_that_is_partly_in_the_cone_is_detected_at_its_edge(side: float, roll: float) -> None:
+    others = box("crate", f"2.5 {side + 0.5} 1 0 0 0", "1 1 4")
+    message, hit, _ = reading(world(sonar(), others=others, pose=f"0 0 1 {roll} 0 0"))
+    assert message.range == pytest.approx(math.hypot(2, side), abs=2e-4)
+    assert hit == "crate::l::c"
+
+
+def test_of_two_objects_the_nearer_one_is_found_between_the_rays() -> None:
+    """The edge of the crate is nearer than the pole, but each ray that hits the crate hits it farther away."""
+    edge = 2 * math.tan(HALF - math.radians(0.1))
+    others = box("crate", f"2.5 {edge + 0.5} 1 0 0 0", "1 1 4") + pole(f"{math.hypot(2, edge) + 0.101} 0 1 0 0 0", 0.1)
+    message, hit, _ = reading(world(sonar(), others=others, pose="0 0 1 0.3 0 0"))
+    assert message.range == pytest.approx(math.hypot(2, edge), abs=2e-4)
+    assert hit == "crate::l::c"
 
 
 def test_a_ball_beside_the_cone_is_not_detected() -> None:
