@@ -51,7 +51,7 @@ MIN_SPEED_ON_BASE: Final = 0.01
 MAX_FLYING_MODELS: Final = 8
 """Largest number of models with collisions whose tumbling is integrated here.
 
-With more, some fly nearly always in a heap: 30 capsules that fall would take a tenth longer, for flights that are short.
+With more, some fly nearly always in a heap, for a short time: 30 capsules that fall would take a tenth longer.
 """
 
 _STATE: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
