@@ -108,7 +108,7 @@ class ContactLaw:
         self._least_reference = (DEEP_PENETRATION / (constant * constant)) ** 2
         self._fields = HeightFieldContacts(model)
         self._wheels, self._carried = WheelContacts(model), CentripetalFriction(model)
-        self._points = ContactPointMotion(model)
+        self._points = ContactPointMotion.of(model)
         self._always_merges = bool(self._wheels) and model.opt.timestep > MAX_STEP_WITH_EDGES
         trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last item is for contacts without a geom
         collides = (model.geom_contype | model.geom_conaffinity) != 0
@@ -137,8 +137,9 @@ class ContactLaw:
             return False
         if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._needs_correction(data))):
             return True
-        is_fast = self._has_flying(data) or self._has_fast(data)
-        return is_fast or bool(self._carried.find(data)) or bool(self._points.find(data))
+        if self._has_flying(data) or self._has_fast(data) or self._carried.find(data):
+            return True
+        return self._points is not None and bool(self._points.find(data))
 
     def solve(
         self, data: mujoco.MjData, closing: list[float] | None, *, keeps_references: bool = False, probes: bool = False
@@ -165,7 +166,9 @@ class ContactLaw:
             has_to_look = not self._is_quiet(data)
         else:
             has_to_look = not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data))
-        motion = self._points.correct(data, [number for number, _, _ in carried])
+        motion = None
+        if self._points is not None:
+            motion = self._points.correct(data, [number for number, _, _ in carried])
         if probes:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             residual = data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force

@@ -147,7 +147,6 @@ class ContactPointMotion:
         joints = np.flatnonzero(model.jnt_type == _FREE)
         trees = model.body_treeid[model.jnt_bodyid[joints]]
         alone = model.tree_dofnum[trees] == 6
-        is_used = model.opt.cone == _ELLIPTIC and not model.nflex
         self._joints: dict[int, int] = dict(zip(trees[alone].tolist(), joints[alone].tolist(), strict=True))
         trees_of_geoms = model.body_treeid[model.geom_bodyid]
         self._tree_of = np.append(trees_of_geoms, -1)  # the last item is for contacts without a geom
@@ -157,9 +156,17 @@ class ContactPointMotion:
             reach = (np.linalg.norm(model.geom_pos[geoms], axis=1) + model.geom_rbound[geoms]).max(initial=0.0)
             limits.append(MIN_ACCELERATION / float(reach) if reach > 0.0 else math.inf)
         self._limits, self._trees = np.array(limits), np.array(list(self._joints), np.intp)
-        self._least = min(limits, default=math.inf) if is_used else math.inf
+        self._least = min(limits, default=math.inf)
         firsts = model.jnt_dofadr[list(self._joints.values())].astype(np.intp)
         self._spins = (firsts[:, None] + np.arange(3, 6)).reshape(-1)
+
+    @classmethod
+    def of(cls, model: mujoco.MjModel) -> ContactPointMotion | None:
+        """Return the contact points of a model; None if no free body can have the term."""
+        if model.opt.cone != _ELLIPTIC or model.nflex or not (model.jnt_type == _FREE).any():
+            return None
+        found = cls(model)
+        return found if found._least < math.inf else None
 
     def find(self, data: mujoco.MjData) -> list[int]:
         """Return the numbers of the contacts to correct.
@@ -167,7 +174,7 @@ class ContactPointMotion:
         Args:
             data: MuJoCo's data with velocities up to date.
         """
-        if self._least == math.inf or not data.ncon:
+        if not data.ncon:
             return []
         spins = data.qvel.take(self._spins)
         if squared_length(spins, self._least) <= self._least:

@@ -27,6 +27,9 @@ from simkit.linear_algebra import squared_length
 MIN_CHAIN_LENGTH: Final = 2
 """Least number of passive joints in a row that make a tree a chain."""
 
+MAX_SHORT_CHAIN_LENGTH: Final = 7
+"""Largest number of passive joints in a row without substeps: seven links keep their energy within 0.001 % at 4 ms."""
+
 MIN_SQUARED_TURN_RATE: Final = 0.002
 """Least squared angular velocity times the step [rad²/s] at which this module integrates a body that is not in a chain.
 
@@ -90,12 +93,16 @@ class PassiveTree:
         base: degrees of freedom of a free joint that carries all other joints; None without such a joint.
         mechanism: all joints except that of the base.
         min_speed: angular velocity [rad/s] above which the tree is integrated here; -1 for always.
+        is_short_chain: True for a chain that needs no substeps for its angular velocities.
         may_touch: True for a tree that is integrated here only while it flies.
         substeps: least number of substeps, for its springs and its damping.
     """
 
-    def __init__(self, model: mujoco.MjModel, number: int, min_speed: float, may_touch: bool) -> None:
+    def __init__(
+        self, model: mujoco.MjModel, number: int, min_speed: float, is_short_chain: bool, may_touch: bool
+    ) -> None:
         self.number, self.min_speed, self.may_touch = number, min_speed, may_touch
+        self.is_short_chain = is_short_chain
         dofs = _index_range(model.tree_dofadr, model.tree_dofnum, number)
         joints = model.dof_jntid[dofs]
         self.turning = dofs.start + np.flatnonzero(_turning_dofs(model)[dofs])
@@ -147,10 +154,12 @@ class FreeMotionIntegrator:
             if number in driven or not turning[dofs].any():
                 continue
             is_chain = lengths.get(number, 0) >= MIN_CHAIN_LENGTH
-            if is_chain or _may_spin(model, number):
+            may_spin = _may_spin(model, number)
+            if is_chain or may_spin:
                 own = collides[model.body_treeid[model.geom_bodyid] == number]
                 may_touch = not is_chain and bool(own.any()) and collides.sum() > 1
-                tree = PassiveTree(model, number, -1.0 if is_chain else min_speed, may_touch)
+                is_short = is_chain and not may_spin and lengths[number] <= MAX_SHORT_CHAIN_LENGTH
+                tree = PassiveTree(model, number, -1.0 if is_chain else min_speed, is_short, may_touch)
                 if tree.substeps <= MAX_SUBSTEPS:
                     found.append(tree)
         if sum(tree.may_touch for tree in found) > MAX_FLYING_MODELS:
@@ -167,6 +176,18 @@ class FreeMotionIntegrator:
             return False
         return bool(np.abs(velocities).max() > least)
 
+    def is_alone(self) -> bool:
+        """Check whether every step integrates all trees of the model here in one substep, as nothing else can act."""
+        model, trees = self.model, self.trees
+        has_constraints = model.neq or model.ntendon or model.jnt_limited.any()
+        are_simple = all(tree.is_short_chain and tree.substeps <= 1 for tree in trees)
+        return len(trees) == model.ntree and are_simple and not has_constraints
+
+    def advance(self, data: mujoco.MjData, count: int) -> None:
+        """Make steps in a model for which `is_alone` is True, with the bits of `integrate` and in less time."""
+        self._count, self._bases = 1, []
+        self._runge_kutta(data, count)
+
     def integrate(self, model: mujoco.MjModel, data: mujoco.MjData, integrate: Integrator) -> None:
         """Integrate over a step, from data with a complete forward pass.
 
@@ -180,13 +201,13 @@ class FreeMotionIntegrator:
             integrate(model, data)
         elif len(moving) == model.ntree and not self._bases:
             end = data.time + model.opt.timestep
-            self._runge_kutta(data, is_fresh=True)
+            self._runge_kutta(data, 1, is_fresh=True)
             data.time = end
         else:
             own = self._data
             mujoco.mj_getState(model, data, self._state, _STATE)
             mujoco.mj_setState(model, own, self._state, _STATE)
-            self._runge_kutta(own, is_fresh=False)
+            self._runge_kutta(own, 1)
             integrate(model, data)
             for dofs, at in moving:
                 velocities, positions = own.qvel[dofs], own.qpos[at]
@@ -216,15 +237,17 @@ class FreeMotionIntegrator:
                 self._bases.append(tree.base)
             else:
                 continue
-            count = max(count, tree.substeps, math.ceil(speed * step / MAX_SUBSTEP_TURN))
+            turn = 0.0 if tree.is_short_chain else speed * step
+            count = max(count, tree.substeps, math.ceil(turn / MAX_SUBSTEP_TURN))
         self._count = min(MAX_SUBSTEPS, count)
         return moving
 
-    def _runge_kutta(self, data: mujoco.MjData, *, is_fresh: bool) -> None:
-        """Advance data by a step without constraints, in substeps.
+    def _runge_kutta(self, data: mujoco.MjData, steps: int, *, is_fresh: bool = False) -> None:
+        """Advance data by steps without constraints, in substeps.
 
         Args:
             data: data of the model.
+            steps: number of steps.
             is_fresh: True for data with a forward pass.
         """
         model, option, count = self.model, self.model.opt, self._count
@@ -238,9 +261,8 @@ class FreeMotionIntegrator:
                 model.dof_armature[base] = _HOLDING_ARMATURE
             if is_fresh:
                 mujoco.mj_RungeKutta(model, data, _ORDER)
-                count -= 1
-            if count:
-                mujoco.mj_step(model, data, count)
+            if count * steps > is_fresh:
+                mujoco.mj_step(model, data, count * steps - is_fresh)
         finally:
             for base, armature in zip(self._bases, armatures, strict=True):
                 model.dof_armature[base] = armature

@@ -210,6 +210,7 @@ class PhysicsState:
         self._analysed, self._is_analysed = _step_fields(model), True
         # without contacts that the law may change, no step has to check anything
         self._is_plain = not (self.law.is_on or self.fast_bodies.can_be_fast)
+        self._is_free = self._is_plain and self.free_motion is not None and self.free_motion.is_alone()
 
     def _open_space(self) -> OpenSpace:
         timestep = float(self.model.opt.timestep)
