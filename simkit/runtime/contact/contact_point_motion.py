@@ -42,7 +42,8 @@ A point that travels farther has jumped to another end of the body.
 MAX_SLIP: Final = 2.0
 """Largest reference of the tangents, as a multiple of the term, that comes from the term and not from sliding.
 
-The friction of a sliding contact is opposite to its slip, also if the slip turns.
+With a larger one, the tangents stay as they are, because the friction of a sliding contact is opposite to its slip,
+also if the slip turns.
 """
 
 MARGIN: Final = 1e-3
@@ -103,35 +104,45 @@ class ContactPointCorrection:
     """
 
     def __init__(self, data: mujoco.MjData, terms: list[ContactPointTerm], step: float) -> None:
-        self._terms, self._aref, self._velocity = terms, data.efc_aref, data.efc_vel
-        self._before: list[tuple[float, float]] = []
-        self._shares = []
-        for row, (along_normal, _, _) in terms:
-            share = max(0.0, 1.0 - 0.5 * step * data.efc_KBIP.item(row, 1))
-            reference, velocity = self._aref.item(row), self._velocity.item(row)
-            self._before.append((reference, velocity))
-            self._shares.append(share)
-            self._aref[row] = reference - share * along_normal
+        self._aref, self._velocity = data.efc_aref, data.efc_vel
+        self._before: list[tuple[int, float]] = []
+        self._velocities: list[tuple[int, float]] = []
+        self._tangents: list[tuple[int, float]] = []
+        for row, (along_normal, across, along) in terms:
+            rest = min(1.0, 0.5 * step * data.efc_KBIP.item(row, 1))
+            velocity = self._velocity.item(row)
+            self._velocities.append((row, velocity))
             self._velocity[row] = velocity + 0.5 * step * along_normal
+            self._before.append((row, self._shift(row, (rest - 1.0) * along_normal)))
+            slip = math.hypot(self._aref.item(row + 1), self._aref.item(row + 2))
+            if slip <= MAX_SLIP * math.hypot(across, along):
+                for place, term in ((row + 1, across), (row + 2, along)):
+                    self._before.append((place, self._shift(place, rest * term)))
+                    self._tangents.append((place, term))
 
     def shift_tangents(self) -> list[tuple[int, float]]:
-        """Shift the references of the tangents that hardly slip; return the rows with their previous references."""
-        before = []
-        for (row, (_, across, along)), share in zip(self._terms, self._shares, strict=True):
-            if math.hypot(self._aref.item(row + 1), self._aref.item(row + 2)) > MAX_SLIP * math.hypot(across, along):
-                continue
-            for place, change in ((row + 1, across), (row + 2, along)):
-                old = self._aref.item(place)
-                before.append((place, old))
-                self._aref[place] = old - share * change
-        return before
+        """Subtract the terms from the tangents, whose references are -b w until then; return the rows to restore.
+
+        The contact law decides before this by -b w whether a contact slides.
+
+        Returns:
+            Rows with their previous references.
+        """
+        return [(row, self._shift(row, -term)) for row, term in self._tangents]
 
     def restore(self, *, keeps_references: bool) -> None:
-        """Restore the velocities of the normals, and their references unless they are kept."""
-        for (row, _), (reference, velocity) in zip(self._terms, self._before, strict=True):
+        """Restore the velocities of the normals, and the references unless they are kept."""
+        for row, velocity in self._velocities:
             self._velocity[row] = velocity
-            if not keeps_references:
+        if not keeps_references:
+            for row, reference in self._before:
                 self._aref[row] = reference
+
+    def _shift(self, row: int, change: float) -> float:
+        """Add to the reference of a row; return the previous one."""
+        before: float = self._aref.item(row)
+        self._aref[row] = before + change
+        return before
 
 
 class ContactPointMotion:
@@ -209,15 +220,16 @@ class ContactPointMotion:
         """
         step, contact, later = float(self._model.opt.timestep), data.contact, self._at_end_of_step(data)
         places, motions = later.contact.pos.tolist(), self._motions(data, later, numbers)
+        rows, dims, geoms = contact.efc_address.tolist(), contact.dim.tolist(), contact.geom.tolist()
         candidates: dict[tuple[int, int], list[int]] = {}
         for number, (first, second) in enumerate(later.contact.geom.tolist()):
             candidates.setdefault((first, second), []).append(number)
         found = []
         for number in numbers:
-            row, (first, second) = int(contact.efc_address[number]), contact.geom[number].tolist()
+            row, (first, second) = rows[number], geoms[number]
             same = candidates.get((first, second))
             bounces = contact.solref.item(number, 0) <= 0.0
-            if row < 0 or contact.dim[number] < 3 or contact.dist[number] > MARGIN or bounces or not same:
+            if row < 0 or dims[number] < 3 or contact.dist.item(number) > MARGIN or bounces or not same:
                 continue
             place = contact.pos[number].tolist()
             nearest = min(same, key=lambda k: math.dist(places[k], place))
