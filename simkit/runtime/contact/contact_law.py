@@ -168,7 +168,7 @@ class ContactLaw:
             has_to_look = not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data))
         motion = None
         if self._points is not None:
-            motion = self._points.correct(data, [number for number, _, _ in carried])
+            motion = self._points.correct(data, carried)
         if probes:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             residual = data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force

@@ -23,12 +23,19 @@ from typing import Final, NamedTuple
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.linear_algebra import squared_length
 
 MIN_ACCELERATION: Final = 0.05
-"""Least squared angular velocity times radius of a body [m/s²] for the correction; it makes a contact slip by 0.1 mm/s.
+"""Least acceleration of the surface of a body by its spin [m/s²] for the correction; a contact slips by 0.1 mm/s.
+
+It is the size of the body times the angular velocity times its part across the axis of symmetry: a cylinder that rolls
+straight ahead has no term.
 """
+
+MAX_REFERENCE: Final = 100.0
+"""Largest reference of the tangents [m/s²] for the correction: a contact that slips faster than 0.2 m/s slides."""
 
 MAX_CONTACTS: Final = 8
 """Largest number of corrected contacts; heaps, whose bodies hit each other, stay as they are."""
@@ -53,6 +60,8 @@ _SLEEP: Final = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 _OVERRIDE: Final = int(mujoco.mjtEnableBit.mjENBL_OVERRIDE)
 _FREE: Final = int(mujoco.mjtJoint.mjJNT_FREE)
 _SPHERE: Final = int(mujoco.mjtGeom.mjGEOM_SPHERE)
+_ROUND: Final = (int(mujoco.mjtGeom.mjGEOM_CYLINDER), int(mujoco.mjtGeom.mjGEOM_CAPSULE))
+_FEW: Final = 4  # free bodies
 _ELLIPTIC: Final = mujoco.mjtCone.mjCONE_ELLIPTIC
 
 Point = tuple[float, float, float]
@@ -161,15 +170,18 @@ class ContactPointMotion:
         self._joints: dict[int, int] = dict(zip(trees[alone].tolist(), joints[alone].tolist(), strict=True))
         trees_of_geoms = model.body_treeid[model.geom_bodyid]
         self._tree_of = np.append(trees_of_geoms, -1)  # the last item is for contacts without a geom
-        limits = []
+        limits, axes = [], []
         for tree in self._joints:
             geoms = np.flatnonzero((trees_of_geoms == tree) & (model.geom_type != _SPHERE))
             reach = (np.linalg.norm(model.geom_pos[geoms], axis=1) + model.geom_rbound[geoms]).max(initial=0.0)
             limits.append(MIN_ACCELERATION / float(reach) if reach > 0.0 else math.inf)
+            axes.append(_axis_of_symmetry(model, geoms))
         self._limits, self._trees = np.array(limits), np.array(list(self._joints), np.intp)
+        self._axes = np.array(axes).T
         self._least = min(limits, default=math.inf)
         firsts = model.jnt_dofadr[list(self._joints.values())].astype(np.intp)
         self._spins = (firsts[:, None] + np.arange(3, 6)).reshape(-1)
+        self._plain = list(zip(self._joints, (firsts + 3).tolist(), limits, axes, strict=True))
 
     @classmethod
     def of(cls, model: mujoco.MjModel) -> ContactPointMotion | None:
@@ -185,34 +197,65 @@ class ContactPointMotion:
         Args:
             data: MuJoCo's data with velocities up to date.
         """
-        if not data.ncon:
+        spinning = self._spinning(data) if data.ncon else None
+        if spinning is None:
             return []
-        spins = data.qvel.take(self._spins)
-        if squared_length(spins, self._least) <= self._least:
+        trees, contact = self._tree_of[data.contact.geom], data.contact
+        numbers = spinning[trees].any(axis=1).nonzero()[0].tolist()
+        if len(numbers) > MAX_CONTACTS:
             return []
-        x, y, z = spins.reshape(-1, 3).T
-        is_spinning = np.zeros(self._model.ntree + 1, bool)  # the last item is for static bodies
-        is_spinning[self._trees] = x * x + y * y + z * z > self._limits
-        trees = self._tree_of[data.contact.geom]
-        numbers = is_spinning[trees].any(axis=1).nonzero()[0]
-        if numbers.size > MAX_CONTACTS:
-            return []
-        free = self._joints.keys() | {-1}
-        return [number for number in numbers.tolist() if free.issuperset(trees[number].tolist())]
+        free, rows, aref = self._joints.keys() | {-1}, contact.efc_address, data.efc_aref
+        found = []
+        for number in numbers:
+            row = rows.item(number)
+            if row < 0 or contact.dim[number] < 3 or not free.issuperset(trees[number].tolist()):
+                continue
+            if math.hypot(aref.item(row + 1), aref.item(row + 2)) <= MAX_REFERENCE:
+                found.append(number)
+        return found
 
-    def correct(self, data: mujoco.MjData, carried: Collection[int]) -> ContactPointCorrection | None:
+    def _spinning(self, data: mujoco.MjData) -> npt.NDArray[np.bool_] | None:
+        """Return a mask of the trees that spin fast, with False for static bodies at its end; None if there are none.
+
+        Most worlds have few free bodies, and none that spins. Plain numbers then take half the time of arrays.
+        """
+        if len(self._plain) <= _FEW:
+            velocities, fast = data.qvel.tolist(), []
+            for tree, start, limit, (a, b, c) in self._plain:
+                x, y, z = velocities[start : start + 3]
+                square, along = x * x + y * y + z * z, x * a + y * b + z * c
+                if square * (square - along * along) > limit * limit:
+                    fast.append(tree)
+        else:
+            spins = data.qvel.take(self._spins)
+            if squared_length(spins, self._least) <= self._least:
+                return None
+            (x, y, z), (a, b, c) = spins.reshape(-1, 3).T, self._axes
+            square, along = x * x + y * y + z * z, x * a + y * b + z * c
+            fast = self._trees[square * (square - along * along) > self._limits * self._limits].tolist()
+        if not fast:
+            return None
+        found = np.zeros(self._model.ntree + 1, bool)
+        found[fast] = True
+        return found
+
+    def correct(self, data: mujoco.MjData, carried: Collection[tuple[int, int, int]]) -> ContactPointCorrection | None:
         """Shift the normals of the contacts that need it; None if there are none.
 
         Args:
             data: MuJoCo's data with velocities up to date.
-            carried: numbers of the contacts between bodies that rotate together, which have a term already.
+            carried: contacts of `CentripetalFriction.find`, which have a term already.
         """
-        numbers = [number for number in self.find(data) if number not in carried]
+        numbers = self.find(data)
+        if not numbers:
+            return None
+        own = {number for number, _, _ in carried}
+        numbers = [number for number in numbers if number not in own]
         terms = self._terms(data, numbers) if numbers else []
         return ContactPointCorrection(data, terms, float(self._model.opt.timestep)) if terms else None
 
     def _terms(self, data: mujoco.MjData, numbers: list[int]) -> list[ContactPointTerm]:
-        """Return the terms of contacts that `find` returned; a contact without rows or without a successor has none.
+        """Return the terms of contacts that `find` returned; a contact without a successor has none.
 
         Args:
             data: MuJoCo's data with velocities up to date.
@@ -220,7 +263,7 @@ class ContactPointMotion:
         """
         step, contact, later = float(self._model.opt.timestep), data.contact, self._at_end_of_step(data)
         places, motions = later.contact.pos.tolist(), self._motions(data, later, numbers)
-        rows, dims, geoms = contact.efc_address.tolist(), contact.dim.tolist(), contact.geom.tolist()
+        rows, geoms = contact.efc_address.tolist(), contact.geom.tolist()
         candidates: dict[tuple[int, int], list[int]] = {}
         for number, (first, second) in enumerate(later.contact.geom.tolist()):
             candidates.setdefault((first, second), []).append(number)
@@ -229,7 +272,7 @@ class ContactPointMotion:
             row, (first, second) = rows[number], geoms[number]
             same = candidates.get((first, second))
             bounces = contact.solref.item(number, 0) <= 0.0
-            if row < 0 or dims[number] < 3 or contact.dist.item(number) > MARGIN or bounces or not same:
+            if contact.dist.item(number) > MARGIN or bounces or not same:
                 continue
             place = contact.pos[number].tolist()
             nearest = min(same, key=lambda k: math.dist(places[k], place))
@@ -285,6 +328,21 @@ class ContactPointMotion:
                     both.append(_Motion((px, py, pz), (a, b, c), spin))
                 found[tree] = both[0], both[1]
         return found
+
+
+def _axis_of_symmetry(model: mujoco.MjModel, geoms: npt.NDArray[np.intp]) -> list[float]:
+    """Return the axis of a single cylinder or capsule in the frame of its body; zero for other geoms.
+
+    Args:
+        model: MuJoCo's model.
+        geoms: numbers of the geoms of a body without its spheres.
+    """
+    if len(geoms) != 1 or model.geom_type[geoms[0]] not in _ROUND:
+        return [0.0, 0.0, 0.0]
+    axes = np.empty(9)
+    mujoco.mju_quat2Mat(axes, model.geom_quat[geoms[0]])
+    found: list[float] = axes[2::3].tolist()
+    return found
 
 
 def _difference(one: Point, other: Point) -> Point:

@@ -94,28 +94,35 @@ class PassiveTree:
         mechanism: all joints except that of the base.
         min_speed: angular velocity [rad/s] above which the tree is integrated here; -1 for always.
         is_short_chain: True for a chain that needs no substeps for its angular velocities.
+        needs_accuracy: True for a long chain and for a ball joint, with which the engine's integrator may diverge.
+        bodies: numbers of the bodies.
         may_touch: True for a tree that is integrated here only while it flies.
         substeps: least number of substeps, for its springs and its damping.
     """
 
-    def __init__(
-        self, model: mujoco.MjModel, number: int, min_speed: float, is_short_chain: bool, may_touch: bool
-    ) -> None:
-        self.number, self.min_speed, self.may_touch = number, min_speed, may_touch
-        self.is_short_chain = is_short_chain
+    def __init__(self, model: mujoco.MjModel, number: int, length: int, may_touch: bool) -> None:
+        """Create the tree `number`, in which `length` passive joints follow each other."""
+        step = float(model.opt.timestep)
+        self.number, self.may_touch = number, may_touch
+        self.bodies = np.flatnonzero(model.body_treeid == number)
         dofs = _index_range(model.tree_dofadr, model.tree_dofnum, number)
         joints = model.dof_jntid[dofs]
+        kinds = model.jnt_type[joints]
+        is_hinged = not (kinds == _BALL).any() and not (kinds == _FREE).any()
+        self.min_speed = -1.0 if length >= MIN_CHAIN_LENGTH else math.sqrt(MIN_SQUARED_TURN_RATE / step)
+        self.is_short_chain = MIN_CHAIN_LENGTH <= length <= MAX_SHORT_CHAIN_LENGTH and is_hinged
+        self.needs_accuracy = length > MAX_SHORT_CHAIN_LENGTH or bool((kinds == _BALL).any())
         self.turning = dofs.start + np.flatnonzero(_turning_dofs(model)[dofs])
         first, last = int(joints[0]), int(joints[-1])
-        width, _ = JOINT_WIDTHS.get(int(model.jnt_type[last]), (1, 1))
+        width, _ = JOINT_WIDTHS.get(int(kinds[-1]), (1, 1))
         start, end = int(model.jnt_qposadr[first]), int(model.jnt_qposadr[last]) + width
         self.whole = self.mechanism = JointGroup(dofs, slice(start, end))
         self.base: slice | None = None
-        if model.jnt_type[first] == _FREE and first != last:
+        if kinds[0] == _FREE and first != last:
             inner = int(model.jnt_dofadr[first + 1])
             self.base = slice(dofs.start, inner)
             self.mechanism = JointGroup(slice(inner, dofs.stop), slice(int(model.jnt_qposadr[first + 1]), end))
-        step, weights = float(model.opt.timestep), model.dof_invweight0[dofs]
+        weights = model.dof_invweight0[dofs]
         frequency = math.sqrt(max(0.0, float((model.jnt_stiffness[joints] * weights).max())))
         decay = float((model.dof_damping[dofs] * weights).max())
         self.substeps = math.ceil(step * max(frequency / MAX_SUBSTEP_TURN, decay / MAX_SUBSTEP_DECAY))
@@ -148,18 +155,14 @@ class FreeMotionIntegrator:
         """Return the integrator of a model; None if no tree needs it."""
         driven, lengths = _driven_trees(model), _chain_lengths(model)
         turning, collides = _turning_dofs(model), (model.geom_contype | model.geom_conaffinity) != 0
-        found, min_speed = [], math.sqrt(MIN_SQUARED_TURN_RATE / float(model.opt.timestep))
+        found = []
         for number in range(model.ntree):
-            dofs = _index_range(model.tree_dofadr, model.tree_dofnum, number)
-            if number in driven or not turning[dofs].any():
-                continue
-            is_chain = lengths.get(number, 0) >= MIN_CHAIN_LENGTH
-            may_spin = _may_spin(model, number)
-            if is_chain or may_spin:
+            length = lengths.get(number, 0)
+            is_chain = length >= MIN_CHAIN_LENGTH
+            turns = turning[_index_range(model.tree_dofadr, model.tree_dofnum, number)].any()
+            if number not in driven and turns and (is_chain or _may_spin(model, number)):
                 own = collides[model.body_treeid[model.geom_bodyid] == number]
-                may_touch = not is_chain and bool(own.any()) and collides.sum() > 1
-                is_short = is_chain and not may_spin and lengths[number] <= MAX_SHORT_CHAIN_LENGTH
-                tree = PassiveTree(model, number, -1.0 if is_chain else min_speed, is_short, may_touch)
+                tree = PassiveTree(model, number, length, not is_chain and bool(own.any()) and collides.sum() > 1)
                 if tree.substeps <= MAX_SUBSTEPS:
                     found.append(tree)
         if sum(tree.may_touch for tree in found) > MAX_FLYING_MODELS:
@@ -183,10 +186,17 @@ class FreeMotionIntegrator:
         are_simple = all(tree.is_short_chain and tree.substeps <= 1 for tree in trees)
         return len(trees) == model.ntree and are_simple and not has_constraints
 
-    def advance(self, data: mujoco.MjData, count: int) -> None:
-        """Make steps in a model for which `is_alone` is True, with the bits of `integrate` and in less time."""
+    def advance(self, data: mujoco.MjData, count: int) -> bool:
+        """Make steps in a model for which `is_alone` is True, with the bits of `integrate` and in less time.
+
+        Returns:
+            True if the steps were made; False if forces are applied, which `integrate` considers.
+        """
+        if data.qfrc_applied.any() or data.xfrc_applied.any():
+            return False
         self._count, self._bases = 1, []
         self._runge_kutta(data, count)
+        return True
 
     def integrate(self, model: mujoco.MjModel, data: mujoco.MjData, integrate: Integrator) -> None:
         """Integrate over a step, from data with a complete forward pass.
@@ -224,9 +234,12 @@ class FreeMotionIntegrator:
         if data.nefc:
             loaded = np.logical_or.reduceat(forces.take(self._dofs) != 0.0, self._first_dofs).tolist()
         asleep = data.tree_asleep.tolist() if self._can_sleep else None
+        is_pushed = data.qfrc_applied.any() or data.xfrc_applied.any()
         moving, count, self._bases = [], 1, []
         for tree, speed, is_loaded in zip(self.trees, speeds, loaded, strict=True):
             if not tree.min_speed < speed < math.inf or (asleep is not None and asleep[tree.number] >= 0):
+                continue
+            if is_pushed and not tree.needs_accuracy and self._is_pushed(data, tree):
                 continue
             if not is_loaded:
                 moving.append(tree.whole)
@@ -241,6 +254,15 @@ class FreeMotionIntegrator:
             count = max(count, tree.substeps, math.ceil(turn / MAX_SUBSTEP_TURN))
         self._count = min(MAX_SUBSTEPS, count)
         return moving
+
+    @staticmethod
+    def _is_pushed(data: mujoco.MjData, tree: PassiveTree) -> bool:
+        """Check whether a force is applied to a tree.
+
+        Such forces are constant during a step. Springs and drives that plugins compute in this way, such as buoyancy,
+        keep their energy with the engine's integrator only.
+        """
+        return bool(data.qfrc_applied[tree.whole.dofs].any() or data.xfrc_applied[tree.bodies].any())
 
     def _runge_kutta(self, data: mujoco.MjData, steps: int, *, is_fresh: bool = False) -> None:
         """Advance data by steps without constraints, in substeps.

@@ -128,8 +128,8 @@ class Physics(ForwardPass):
         if not self._is_analysed:
             self._analyse_if_changed()
         end = self.tick + count
-        if self._is_free and self.free_motion is not None and self.stage == STALE:
-            self.free_motion.advance(self.data, count)
+        free_motion = self.free_motion if self._is_free and self.stage == STALE else None
+        if free_motion is not None and free_motion.advance(self.data, count):
             self.tick = end
         while self.tick < end:
             if has_shaper or self._uses_law or self._probes or self.tick >= self._until or self._corrects_all:

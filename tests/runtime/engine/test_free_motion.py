@@ -151,6 +151,18 @@ def test_a_limit_stops_a_mechanism_and_gives_it_no_energy() -> None:
     assert energy(sim) < start - 0.5 * MASS * 9.8 * 0.3  # the limits have braked it
 
 
+def test_the_engine_integrates_a_mechanism_to_which_a_force_is_applied() -> None:
+    """Buoyancy and springs of plugins are such forces; with an explicit method they would gain energy."""
+    sim, plain = simkit.load(chain(2, 0.3)), simkit.load(chain(2, 0.3))
+    motion = FreeMotionIntegrator.of(sim.mj_model)
+    for data in (sim.mj_data, plain.mj_data):
+        data.qfrc_applied[1] = 0.01
+    for _ in range(100):
+        step(sim.mj_model, sim.mj_data, motion)
+        step(plain.mj_model, plain.mj_data, None)
+    assert sim.mj_data.qpos.tolist() == plain.mj_data.qpos.tolist()
+
+
 def test_a_mechanism_has_the_same_bits_in_one_run_in_parts_and_after_a_restore() -> None:
     whole, parts = simkit.load(chain(3, 0.3)), simkit.load(chain(3, 0.3))
     whole.run(0.5)
