@@ -165,7 +165,7 @@ class FreeMotionIntegrator:
                 tree = PassiveTree(model, number, length, not is_chain and bool(own.any()) and collides.sum() > 1)
                 if tree.substeps <= MAX_SUBSTEPS:
                     found.append(tree)
-        if sum(tree.may_touch for tree in found) > MAX_FLYING_MODELS:
+        if len([tree for tree in found if tree.may_touch]) > MAX_FLYING_MODELS:
             found = [tree for tree in found if not tree.may_touch]
         return cls(model, found) if found else None
 
