@@ -37,8 +37,14 @@ straight ahead has no term.
 MAX_REFERENCE: Final = 100.0
 """Largest reference of the tangents [m/s²] for the correction: a contact that slips faster than 0.2 m/s slides."""
 
+MAX_BODIES: Final = 8
+"""Largest number of free bodies that turn at all: more of them make a heap, where some spin in nearly all steps.
+
+A body that sleeps has no velocity. The data of a reader do not contain the sleep itself.
+"""
+
 MAX_CONTACTS: Final = 8
-"""Largest number of corrected contacts; heaps, whose bodies hit each other, stay as they are."""
+"""Largest number of corrected contacts."""
 
 MAX_TURN: Final = 0.25
 """Largest travel of a contact point in a step, as a fraction of its distance from the body's origin.
@@ -61,7 +67,6 @@ _OVERRIDE: Final = int(mujoco.mjtEnableBit.mjENBL_OVERRIDE)
 _FREE: Final = int(mujoco.mjtJoint.mjJNT_FREE)
 _SPHERE: Final = int(mujoco.mjtGeom.mjGEOM_SPHERE)
 _ROUND: Final = (int(mujoco.mjtGeom.mjGEOM_CYLINDER), int(mujoco.mjtGeom.mjGEOM_CAPSULE))
-_FEW: Final = 4  # free bodies
 _ELLIPTIC: Final = mujoco.mjtCone.mjCONE_ELLIPTIC
 
 Point = tuple[float, float, float]
@@ -219,7 +224,7 @@ class ContactPointMotion:
 
         Most worlds have few free bodies, and none that spins. Plain numbers then take half the time of arrays.
         """
-        if len(self._plain) <= _FEW:
+        if len(self._plain) <= MAX_BODIES:
             velocities, fast = data.qvel.tolist(), []
             for tree, start, limit, (a, b, c) in self._plain:
                 x, y, z = velocities[start : start + 3]
@@ -232,6 +237,8 @@ class ContactPointMotion:
                 return None
             (x, y, z), (a, b, c) = spins.reshape(-1, 3).T, self._axes
             square, along = x * x + y * y + z * z, x * a + y * b + z * c
+            if np.count_nonzero(square) > MAX_BODIES:
+                return None
             fast = self._trees[square * (square - along * along) > self._limits * self._limits].tolist()
         if not fast:
             return None

@@ -170,3 +170,21 @@ def test_a_box_on_a_turntable_stays_where_it_is(step: float) -> None:
     angle, (x, y, _) = sim.joint("table::j").position, sim.model("m").pose.position
     now = math.cos(angle) * x + math.sin(angle) * y, math.cos(angle) * y - math.sin(angle) * x
     assert math.dist(now, before[:2]) < 3e-5  # without the centripetal term: 5 mm
+
+
+@pytest.mark.parametrize(("count", "found"), [(8, 1), (9, 0)])
+def test_a_heap_has_no_term_and_bodies_that_sleep_make_no_heap(count: int, found: int) -> None:
+    extra = "".join(
+        f'<model name="m{i}"><pose>{i + 2} 0 0.1 0 0 0</pose><link name="l"><collision name="c"><geometry><box><size>'
+        "0.2 0.2 0.2</size></box></geometry></collision></link></model>"
+        for i in range(12)
+    )
+    shape = "<cylinder><radius>0.1</radius><length>0.01</length></cylinder>"
+    sim = simkit.load(world(0.001, shape, (0.0025, 0.0025, 0.005)).replace("</world>", extra + "</world>"))
+    data = mujoco.MjData(sim.mj_model)
+    data.qpos[2], data.qpos[3:7] = 0.039, (math.cos(0.2), math.sin(0.2), 0.0, 0.0)
+    for place in range(count):
+        data.qvel[6 * place + 5] = 1e-3
+    data.qvel[3:6] = (0.0, 1.0, 0.5)
+    mujoco.mj_forward(sim.mj_model, data)
+    assert len(ContactPointMotion(sim.mj_model).find(data)) == found
