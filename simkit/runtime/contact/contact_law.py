@@ -29,6 +29,7 @@ from simkit.linear_algebra import squared_length
 from simkit.runtime.contact.centripetal_friction import CentripetalFriction
 from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD, DEEP_PENETRATION, ContactConditions
 from simkit.runtime.contact.contact_correction import AnyContactCorrection, find_array_correction, find_correction
+from simkit.runtime.contact.contact_point_motion import ContactPointMotion
 from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
 from simkit.runtime.contact.wheel_contacts import WheelContacts
 
@@ -107,6 +108,7 @@ class ContactLaw:
         self._least_reference = (DEEP_PENETRATION / (constant * constant)) ** 2
         self._fields = HeightFieldContacts(model)
         self._wheels, self._carried = WheelContacts(model), CentripetalFriction(model)
+        self._points = ContactPointMotion.of(model)
         self._always_merges = bool(self._wheels) and model.opt.timestep > MAX_STEP_WITH_EDGES
         trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last item is for contacts without a geom
         collides = (model.geom_contype | model.geom_conaffinity) != 0
@@ -135,7 +137,9 @@ class ContactLaw:
             return False
         if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._needs_correction(data))):
             return True
-        return self._has_flying(data) or self._has_fast(data) or bool(self._carried.find(data))
+        if self._has_flying(data) or self._has_fast(data) or self._carried.find(data):
+            return True
+        return self._points is not None and bool(self._points.find(data))
 
     def solve(
         self, data: mujoco.MjData, closing: list[float] | None, *, keeps_references: bool = False, probes: bool = False
@@ -162,6 +166,9 @@ class ContactLaw:
             has_to_look = not self._is_quiet(data)
         else:
             has_to_look = not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data))
+        motion = None
+        if self._points is not None:
+            motion = self._points.correct(data, carried)
         if probes:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             residual = data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force
@@ -169,15 +176,19 @@ class ContactLaw:
         elif has_to_look:
             found = self._find(data, closing)
         before = self._carried.correct(data, carried) if carried else []
+        if motion is not None:
+            before += motion.shift_tangents()
         if found is not None:
             self._repeat(data, found)
         elif before or not probes:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
         if not keeps_references:
-            if found is not None:
-                found.restore()
             for row, reference in before:
                 data.efc_aref[row] = reference
+            if found is not None:
+                found.restore()
+        if motion is not None:
+            motion.restore(keeps_references=keeps_references)
         return found is not None
 
     def _needs_correction(self, data: mujoco.MjData) -> bool:

@@ -105,6 +105,10 @@ class ForwardPass(PhysicsState):
         window = OPEN_WINDOWS * self._window if is_open else self._window
         return (self.tick // window + 1) * window
 
+    def _tumbles(self) -> bool:
+        """Check whether a flying body needs the integrator of free motion, which acts in steps by the contact law."""
+        return self.free_motion is not None and self.free_motion.is_needed(self.data)
+
     @property
     def _closing(self) -> list[float] | None:
         """Limits of the approach speeds of geoms in this window; None without speculative contacts."""
@@ -133,7 +137,7 @@ class ForwardPass(PhysicsState):
             self._update_velocities()
         has_new_forces = self._probes or self.tick >= self._until
         if self.tick >= self._until:
-            self._is_open = not data.ncon and self._space.is_open(data)
+            self._is_open = not (data.ncon or self._tumbles()) and self._space.is_open(data)
             self._until = self._end_of_window(self._is_open)
             self._uses_law = not self._is_open and (self._is_fast or self.law.is_needed(data))
         if self._probes:

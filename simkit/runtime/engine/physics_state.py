@@ -206,9 +206,11 @@ class PhysicsState:
         self._space = self._open_space()
         is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         self.free_motion = FreeMotionIntegrator.of(model) if is_implicit and not has_engine_contacts(model) else None
+        self._corrects_all = self.free_motion is not None and self.free_motion.acts_always
         self._analysed, self._is_analysed = _step_fields(model), True
         # without contacts that the law may change, no step has to check anything
         self._is_plain = not (self.law.is_on or self.fast_bodies.can_be_fast)
+        self._is_free = self._is_plain and self.free_motion is not None and self.free_motion.is_alone()
 
     def _open_space(self) -> OpenSpace:
         timestep = float(self.model.opt.timestep)
@@ -372,8 +374,11 @@ class PhysicsState:
 
 def _step_fields(model: mujoco.MjModel) -> list[bytes]:
     """Return the fields of a model that a run may write to and that decide the step method."""
-    joints = model.jnt_range, model.jnt_limited, model.dof_damping, model.dof_frictionloss, model.dof_armature
-    return [field.tobytes() for field in (model.geom_contype, model.geom_conaffinity, model.geom_solref, *joints)]
+    geoms = model.geom_contype, model.geom_conaffinity, model.geom_solref
+    joints = model.jnt_range, model.jnt_limited, model.jnt_stiffness
+    dofs = model.dof_damping, model.dof_frictionloss, model.dof_armature, model.dof_invweight0
+    bodies = model.body_inertia, model.body_ipos
+    return [field.tobytes() for field in (*geoms, *joints, *dofs, *bodies)]
 
 
 def set_speculative(model: mujoco.MjModel, is_on: bool) -> None:

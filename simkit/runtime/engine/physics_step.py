@@ -8,13 +8,13 @@ bits as k steps.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 
 import mujoco
 import numpy as np
 
 from simkit.runtime.engine.control_callback import call_before_forces
 from simkit.runtime.engine.forward_pass import SKIPPED_STAGE, ForwardPass
+from simkit.runtime.engine.free_motion import Integrator
 from simkit.runtime.engine.physics_state import CONTROL, FRESH, STALE, VELOCITY
 from simkit.runtime.engine.simulated_time import Clock
 
@@ -27,10 +27,6 @@ mj_check_pos, mj_check_vel, mj_check_acc = mujoco.mj_checkPos, mujoco.mj_checkVe
 
 _WALL_LIMIT = 0.04  # [s] of one call into the engine, so that an interrupt is handled soon
 _SHORT_RUN = 16  # steps; fewer steps are not timed, because timing costs as much as a small step
-
-
-Integrator = Callable[[mujoco.MjModel, mujoco.MjData], None]
-"""Function of MuJoCo that integrates over a step."""
 
 
 class Physics(ForwardPass):
@@ -86,7 +82,7 @@ class Physics(ForwardPass):
     def single(self) -> None:
         """Make one step."""
         is_special = self._uses_law or self._probes or self.one_shot or self.shows_applied or self.sleep.watches
-        is_special = is_special or self.shaper is not None or self.free_motion is not None
+        is_special = is_special or self.shaper is not None or self._corrects_all
         if not is_special and self.stage == STALE and self.tick < self._until:
             mj_step(self.model, self.data)
             self.tick += 1
@@ -131,9 +127,12 @@ class Physics(ForwardPass):
             return
         if not self._is_analysed:
             self._analyse_if_changed()
-        end, is_corrected = self.tick + count, self.free_motion is not None
+        end = self.tick + count
+        free_motion = self.free_motion if self._is_free and self.stage == STALE else None
+        if free_motion is not None and free_motion.advance(self.data, count):
+            self.tick = end
         while self.tick < end:
-            if is_corrected or has_shaper or self._uses_law or self._probes or self.tick >= self._until:
+            if has_shaper or self._uses_law or self._probes or self.tick >= self._until or self._corrects_all:
                 self._step_by_law(integrate)
             else:
                 self._plain_steps(min(end, self._until) - self.tick, integrate)
@@ -168,15 +167,13 @@ class Physics(ForwardPass):
             self._forward()
         mj_check_acc(model, data)
         self.stage = STALE
-        if free_motion is not None:  # after the forward pass, which wakes bodies
-            free_motion.prepare(data)
-        if self._has_stages and (self._uses_law or self._acting_shaper is not None):
+        if free_motion is not None and (self._uses_law or self._corrects_all):
+            free_motion.integrate(model, data, integrate)  # after the forward pass, which wakes bodies
+        elif self._has_stages and (self._uses_law or self._acting_shaper is not None):
             with call_before_forces(data, self._correct_stage):
                 integrate(model, data)
         else:
             integrate(model, data)
-        if free_motion is not None:
-            free_motion.correct(data)
         self.tick += 1
 
     def _correct_stage(self) -> None:
