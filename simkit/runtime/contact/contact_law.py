@@ -100,6 +100,7 @@ class ContactLaw:
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self.model = model
+        self._window = float(model.opt.timestep) * window_length(float(model.opt.timestep))
         self._gravity = model.opt.gravity  # a view, because gravity may change during a run
         self._product = np.empty(0)
         constant = contact_time_constant(float(model.opt.timestep))
@@ -134,7 +135,7 @@ class ContactLaw:
         """
         if not self.is_on:
             return False
-        if data.ncon and self.lines.correct(data):
+        if self.lines and data.ncon and (self.lines.correct(data) or self.lines.reaches_edge(data, self._window)):
             return True
         if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._needs_correction(data))):
             return True

@@ -7,18 +7,21 @@ constraints again.
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final, NamedTuple
 
 import mujoco
 import numpy as np
 
-from simkit.runtime.contact.line_geometry import LineContact, Rod, Vector, edge_contacts, rod_contacts
+from simkit.runtime.contact.line_geometry import LineContact, Rod, Vector, edge_contacts, is_near_edge, rod_contacts
 
 _CYLINDER: Final = int(mujoco.mjtGeom.mjGEOM_CYLINDER)
 _CAPSULE: Final = int(mujoco.mjtGeom.mjGEOM_CAPSULE)
 _BOX: Final = int(mujoco.mjtGeom.mjGEOM_BOX)
 _NO_ISLANDS: Final = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
 _MOST_LISTS: Final = 64
+_SLOW: Final = 1e-3  # [m/s]
+_MARGIN: Final = 2.0  # a cylinder may become faster
 
 Matrix = list[float]
 
@@ -28,14 +31,18 @@ class LinePair(NamedTuple):
 
     Attributes:
         one, other: places of the two geoms in the list of all such geoms.
-        is_box: True if the second geom is a box.
+        box: geom id of the second geom if it is a box, else -1.
         numbers: numbers of their contacts.
     """
 
     one: int
     other: int
-    is_box: bool
+    box: int
     numbers: list[int]
+
+
+ExactContacts = tuple[list[int], list[LineContact]]
+"""Numbers of the engine's contacts of a pair of geoms, and the exact contacts of this pair."""
 
 
 class LineContacts:
@@ -51,10 +58,13 @@ class LineContacts:
         collides = (model.geom_contype | model.geom_conaffinity) != 0
         self._kind: list[int] = [*np.where(collides, model.geom_type, -1).tolist(), -1]
         self._size: list[list[float]] = model.geom_size.tolist()
+        self._shapes = [
+            (size[0], size[1], kind == _CAPSULE) for size, kind in zip(self._size, self._kind, strict=False)
+        ]  # radius, half the length, and whether there are hemispheres
         self._known: dict[bytes, tuple[list[LinePair], list[int]]] = {}
         rods = self._kind.count(_CYLINDER) + self._kind.count(_CAPSULE)
-        has_edges = _CYLINDER in self._kind and _BOX in self._kind
-        self._can_meet = model.nflex == 0 and (rods > 1 or has_edges)
+        self._has_edges = model.nflex == 0 and _CYLINDER in self._kind and _BOX in self._kind
+        self._can_meet = self._has_edges or (model.nflex == 0 and rods > 1)
 
     def __bool__(self) -> bool:
         return self._can_meet
@@ -70,14 +80,7 @@ class LineContacts:
         """
         if not self._can_meet:
             return False
-        geoms = data.contact.geom
-        content = geoms.tobytes()
-        known = self._known.get(content)
-        if known is None:
-            if len(self._known) >= _MOST_LISTS:
-                self._known.clear()
-            known = self._known[content] = self._find_pairs(geoms.tolist())
-        pairs, ids = known
+        pairs, ids = self._pairs(data)
         if not pairs:
             return False
         found = self._exact_contacts(data, pairs, ids)
@@ -90,6 +93,48 @@ class LineContacts:
             mujoco.mj_projectConstraint(self._model, data)
             mujoco.mj_referenceConstraint(self._model, data)
         return True
+
+    def reaches_edge(self, data: mujoco.MjData, seconds: float) -> bool:
+        """Check whether a cylinder on a box may reach an edge of it.
+
+        Args:
+            data: MuJoCo's data with contacts and velocities.
+            seconds: time in which the cylinder may reach the edge.
+        """
+        if not self._has_edges:
+            return False
+        pairs, ids = self._pairs(data)
+        for one, _, box, _ in pairs:
+            if box >= 0:
+                cylinder = ids[one]
+                speed = self._speed(data, cylinder) + self._speed(data, box)
+                if speed > _SLOW:
+                    turn: Matrix = data.geom_xmat[cylinder].tolist()
+                    rod = Rod(data.geom_xpos[cylinder].tolist(), (turn[2], turn[5], turn[8]), *self._shapes[cylinder])
+                    rod = _in_frame(rod, data.geom_xpos[box].tolist(), data.geom_xmat[box].tolist())
+                    if is_near_edge(rod, self._size[box], _MARGIN * speed * seconds):
+                        return True
+        return False
+
+    def _speed(self, data: mujoco.MjData, geom: int) -> float:
+        """Return the speed of the centre of a geom [m/s]."""
+        model = self._model
+        body = int(model.geom_bodyid[geom])
+        x, y, z = (data.geom_xpos[geom] - data.subtree_com[model.body_rootid[body]]).tolist()
+        a, b, c, u, v, w = data.cvel[body].tolist()
+        u, v, w = u + b * z - c * y, v + c * x - a * z, w + a * y - b * x
+        return math.sqrt(u * u + v * v + w * w)
+
+    def _pairs(self, data: mujoco.MjData) -> tuple[list[LinePair], list[int]]:
+        """Return the pairs in contact that may touch along a line, and their geoms."""
+        geoms = data.contact.geom
+        content = geoms.tobytes()
+        known = self._known.get(content)
+        if known is None:
+            if len(self._known) >= _MOST_LISTS:
+                self._known.clear()
+            known = self._known[content] = self._find_pairs(geoms.tolist())
+        return known
 
     def _find_pairs(self, geoms: list[list[int]]) -> tuple[list[LinePair], list[int]]:
         """Return the pairs of two rods, or of a cylinder and a box, and their geoms.
@@ -106,53 +151,54 @@ class LineContacts:
         ids = sorted({geom for pair in groups for geom in pair})
         place = {geom: number for number, geom in enumerate(ids)}
         return [
-            LinePair(place[one], place[other], kind[other] == _BOX, numbers) for (one, other), numbers in groups.items()
+            LinePair(place[one], place[other], other if kind[other] == _BOX else -1, numbers)
+            for (one, other), numbers in groups.items()
         ], ids
 
-    def _exact_contacts(
-        self, data: mujoco.MjData, pairs: list[LinePair], ids: list[int]
-    ) -> list[tuple[list[int], list[LineContact]]]:
-        """Return the numbers of the engine's contacts and the exact contacts of each pair that touches along a line."""
+    def _exact_contacts(self, data: mujoco.MjData, pairs: list[LinePair], ids: list[int]) -> list[ExactContacts]:
+        """Return the exact contacts of each pair that touches along a line."""
         centres: list[Vector] = data.geom_xpos[ids].tolist()
         turns: list[Matrix] = data.geom_xmat[ids].tolist()
-        rods = [self._rod(geom, centre, turn) for geom, centre, turn in zip(ids, centres, turns, strict=True)]
+        rods = [
+            Rod(centre, (turn[2], turn[5], turn[8]), *shape)
+            for centre, turn, shape in zip(centres, turns, [self._shapes[geom] for geom in ids], strict=True)
+        ]
         found = []
-        for one, other, is_box, numbers in pairs:
-            if is_box:
-                exact = self._edge(data, rods[one], ids[other], centres[other], turns[other], numbers)
-            else:
+        for one, other, box, numbers in pairs:
+            if box < 0:
                 exact = rod_contacts(rods[one], rods[other])
+            else:
+                exact = self._edge(data, rods[one], self._size[box], centres[other], turns[other], numbers)
             if exact is not None:
                 found.append((numbers, exact))
         return found
 
-    def _rod(self, geom: int, centre: Vector, turn: Matrix) -> Rod:
-        radius, half, _ = self._size[geom]
-        return Rod(centre, (turn[2], turn[5], turn[8]), radius, half, self._kind[geom] == _CAPSULE)
-
     def _edge(
-        self, data: mujoco.MjData, rod: Rod, box: int, centre: Vector, turn: Matrix, numbers: list[int]
+        self, data: mujoco.MjData, rod: Rod, sizes: list[float], centre: Vector, turn: Matrix, numbers: list[int]
     ) -> list[LineContact] | None:
         """Return the contacts of a cylinder with an edge of a box; None elsewhere on the box."""
-        p, q, r = centre
-        (x, y, z), axis, radius, half, _ = rod
-        a, b, c = self._size[box]
-        local = _turned_back(turn, (x - p, y - q, z - r))
-        contact = data.contact
-        present = [
-            LineContact(0.0, _turned_back(turn, (u - p, v - q, w - r)), _turned_back(turn, (d, e, f)))
-            for (u, v, w), (d, e, f) in zip(
-                contact.pos[numbers].tolist(), contact.frame[numbers, :3].tolist(), strict=True
-            )
-        ]
-        exact = edge_contacts(Rod(local, _turned_back(turn, axis), radius, half, False), (a, b, c), present)
+        contact, (p, q, r) = data.contact, centre
+        places = [_turned_back(turn, (x - p, y - q, z - r)) for x, y, z in contact.pos[numbers].tolist()]
+        normals = [_turned_back(turn, (x, y, z)) for x, y, z, *_ in contact.frame[numbers].tolist()]
+        exact = edge_contacts(_in_frame(rod, centre, turn), sizes, places, normals)
         if exact is None:
             return None
-        result = []
-        for distance, position, normal in exact:
-            u, v, w = _turned(turn, position)
-            result.append(LineContact(distance, (p + u, q + v, r + w), _turned(turn, normal)))
+        k, contacts = exact
+        a, b, c = turn[k], turn[3 + k], turn[6 + k]  # along the edge
+        result: list[LineContact] = []
+        for distance, place, normal in contacts:
+            u, v, w = _turned(turn, place)
+            x, y, z = _turned(turn, normal)
+            frame = x, y, z, a, b, c, y * c - z * b, z * a - x * c, x * b - y * a
+            result.append((distance, (p + u, q + v, r + w), frame))
         return result
+
+
+def _in_frame(rod: Rod, centre: Vector, turn: Matrix) -> Rod:
+    """Return a rod in the frame of a box."""
+    (x, y, z), axis, radius, half, has_balls = rod
+    p, q, r = centre
+    return Rod(_turned_back(turn, (x - p, y - q, z - r)), _turned_back(turn, axis), radius, half, has_balls)
 
 
 def _turned(turn: Matrix, vector: Vector) -> Vector:
@@ -167,53 +213,38 @@ def _turned_back(turn: Matrix, vector: Vector) -> Vector:
     return a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z
 
 
-def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[tuple[list[int], list[LineContact]]]) -> bool:
+def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContacts]) -> bool:
     """Write exact contacts over the engine's contacts; return False if they were already there."""
     contact: Any = data.contact
-    distances, margins = contact.dist.tolist(), contact.includemargin.tolist()
-    excluded, positions = contact.exclude.tolist(), contact.pos.tolist()
+    distances: list[float] = contact.dist.tolist()
     places: list[int] = []
     values: list[LineContact] = []
     surplus: list[int] = []
-    is_changed, total = False, data.ncon
+    is_new = False
     for numbers, exact in found:
-        margin = margins[numbers[0]]
-        exact = [one for one in exact if one.distance < margin]
+        margin = 0.0
+        exact = [one for one in exact if one[0] < margin]
         for number, one in zip(numbers, exact, strict=False):
             places.append(number)
             values.append(one)
-            if distances[number] != one.distance or tuple(positions[number]) != one.position or excluded[number]:
-                is_changed = True
+            is_new = is_new or distances[number] != one[0]
         for one in exact[len(numbers) :]:
-            if mujoco.mj_addContact(model, data, data.contact[numbers[0]]):
-                break  # the engine's memory is full
-            places.append(total)
-            values.append(one)
-            total += 1
-            is_changed = True
-        for number in numbers[len(exact) :]:
-            surplus.append(number)
-            is_changed = is_changed or not excluded[number]
-    if not is_changed:
+            if not mujoco.mj_addContact(model, data, contact[numbers[0]]):  # else the engine's memory is full
+                places.append(len(distances))
+                values.append(one)
+                distances.append(one[0])
+                is_new = True
+        surplus += numbers[len(exact) :]
+    if surplus and not is_new:
+        is_new = not all(contact.exclude[surplus].tolist())
+    if not is_new:
         return False
     contact = data.contact
-    contact.exclude[surplus], contact.efc_address[surplus] = 1, -1
-    if not places:
-        return True
-    contact.dist[places] = [one.distance for one in values]
-    contact.pos[places] = [one.position for one in values]
-    contact.frame[places] = [_frame(one.normal) for one in values]
-    contact.exclude[places] = 0
+    if surplus:
+        contact.exclude[surplus], contact.efc_address[surplus] = 1, -1
+    if places:
+        contact.dist[places] = [one[0] for one in values]
+        contact.pos[places] = [one[1] for one in values]
+        contact.frame[places] = [one[2] for one in values]
+        contact.exclude[places] = 0
     return True
-
-
-def _frame(normal: Vector) -> list[float]:
-    """Return a normal and two tangents of a contact."""
-    x, y, z = normal
-    if -0.5 < y < 0.5:  # as the engine does
-        size = (1.0 - y * y) ** 0.5
-        a, b, c = -x * y / size, size, -z * y / size
-    else:
-        size = (1.0 - z * z) ** 0.5
-        a, b, c = -x * z / size, -y * z / size, size
-    return [x, y, z, a, b, c, y * c - z * b, z * a - x * c, x * b - y * a]

@@ -11,6 +11,7 @@ All points and vectors are in one frame. Lengths are in metres.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 PARALLEL: Final = math.cos(math.radians(2.0))
@@ -19,13 +20,23 @@ PARALLEL: Final = math.cos(math.radians(2.0))
 _MIN_LENGTH: Final = 0.02
 """Least common length in units of the radii; at a shorter one, the bodies may touch with their caps."""
 
+_MOST_OVERLAP: Final = 0.5
+"""Largest penetration in units of the radii; deeper than that, the normal depends on small errors."""
+
 _CROSSING: Final = 1e-6
 """Least additional depth [m] of the point where two axes cross; without it, that point jumps for parallel axes."""
 
 _WRONG_NORMAL: Final = 0.9995
 """Cosine of the least error of a normal (1.8°) at an edge that is oblique to the axis."""
 
+_ALONG_EDGE: Final = 0.9
+"""Least cosine between an axis and an edge that a cylinder rolls over."""
+
+_SQUARE_OF_CROSSING: Final = 1e-10
+"""Square of the least angle between axes that cross, so that the crossing is well determined."""
+
 Vector = tuple[float, float, float]
+Frame = tuple[float, float, float, float, float, float, float, float, float]
 
 
 class Rod(NamedTuple):
@@ -46,18 +57,13 @@ class Rod(NamedTuple):
     has_balls: bool
 
 
-class LineContact(NamedTuple):
-    """Contact point.
+LineContact = tuple[float, Vector, Frame]
+"""Contact point of two bodies.
 
-    Attributes:
-        distance: distance of the surfaces [m]; negative for a penetration.
-        position: point half way between the surfaces.
-        normal: unit vector from the first body to the second one.
-    """
-
-    distance: float
-    position: Vector
-    normal: Vector
+- Distance of the surfaces [m]; negative for a penetration.
+- Point half way between the surfaces.
+- Unit vector from the first body to the second one, and two tangents.
+"""
 
 
 def rod_contacts(one: Rod, other: Rod) -> list[LineContact] | None:
@@ -67,10 +73,10 @@ def rod_contacts(one: Rod, other: Rod) -> list[LineContact] | None:
         one: first rod.
         other: second rod.
     """
-    (p, q, r), (a, b, c), radius, half, balls = one
-    (u, v, w), (d, e, f), other_radius, other_half, other_balls = other
+    (p, q, r), (a, b, c), radius, half, _ = one
+    (u, v, w), (d, e, f), other_radius, other_half, _ = other
     cosine = a * d + b * e + c * f
-    if abs(cosine) < PARALLEL:
+    if -PARALLEL < cosine < PARALLEL:
         return None
     x, y, z = u - p, v - q, w - r
     middle, span = x * a + y * b + z * c, other_half * abs(cosine)
@@ -85,30 +91,25 @@ def rod_contacts(one: Rod, other: Rod) -> list[LineContact] | None:
         else:
             t = sign * other_half if cosine > 0.0 else -sign * other_half
             found.append(_end_contact((u + t * d, v + t * e, w + t * f), other, one, -1.0))
-    least = min(found[0].distance, found[1].distance)
-    square = 1.0 - cosine * cosine
-    if square > 1e-12:
-        along, across = x * a + y * b + z * c, x * d + y * e + z * f
+    least, square = min(found[0][0], found[1][0]), 1.0 - cosine * cosine
+    if square > _SQUARE_OF_CROSSING:
+        along, across = middle, x * d + y * e + z * f
         t, s = (along - cosine * across) / square, (cosine * along - across) / square
-        if low < t < high and abs(s) < other_half:
-            x, y, z = x + s * d - t * a, y + s * e - t * b, z + s * f - t * c
-            size = math.sqrt(x * x + y * y + z * z)
-            distance = size - radius - other_radius
-            if size > 0.0 and distance < least - _CROSSING:
-                x, y, z, reach = x / size, y / size, z / size, radius + distance / 2.0
-                point = p + t * a + reach * x, q + t * b + reach * y, r + t * c + reach * z
-                found.append(LineContact(distance, point, (x, y, z)))
-                least = distance
-    return found if -least < high - low else None
+        if low < t < high and -other_half < s < other_half:
+            crossing = _end_contact((p + t * a, q + t * b, r + t * c), one, other, 1.0)
+            if crossing[0] < least - _CROSSING:
+                found.append(crossing)
+                least = crossing[0]
+    return found if -least < min(high - low, _MOST_OVERLAP * (radius + other_radius)) else None
 
 
 def _end_contact(end: Vector, one: Rod, other: Rod, sign: float) -> LineContact:
-    """Return the contact between the end of a rod and the side of another rod.
+    """Return the contact between the rim around a point of a rod's axis and the side of another rod.
 
     Args:
-        end: centre of the end.
-        one: rod that ends.
-        other: rod whose side the end touches.
+        end: point on the axis.
+        one: rod of the point.
+        other: rod whose side is touched.
         sign: -1 to reverse the normal.
     """
     p, q, r = end
@@ -118,102 +119,162 @@ def _end_contact(end: Vector, one: Rod, other: Rod, sign: float) -> LineContact:
     x, y, z = u - p, v - q, w - r
     size = max(math.sqrt(x * x + y * y + z * z), 1e-12)
     x, y, z = x / size, y / size, z / size
-    a, b, c = one.axis
-    tilt = 0.0 if one.has_balls else a * x + b * y + c * z
-    distance = size - side - one.radius * math.sqrt(max(0.0, 1.0 - tilt * tilt))
+    _, (a, b, c), radius, _, has_balls = one
+    if not has_balls:
+        tilt = a * x + b * y + c * z
+        radius *= math.sqrt(max(0.0, 1.0 - tilt * tilt))
+    distance = size - side - radius
     reach = side + distance / 2.0
-    return LineContact(distance, (u - reach * x, v - reach * y, w - reach * z), (sign * x, sign * y, sign * z))
+    point = u - reach * x, v - reach * y, w - reach * z
+    x, y, z = sign * x, sign * y, sign * z
+    return distance, point, (x, y, z, d, e, f, y * f - z * e, z * d - x * f, x * e - y * d)
 
 
-def edge_contacts(rod: Rod, sizes: Vector, contacts: list[LineContact]) -> list[LineContact] | None:
+def is_near_edge(rod: Rod, sizes: Sequence[float], reach: float) -> bool:
+    """Check whether a cylinder lies on a face of a box and within a distance of an edge along its axis.
+
+    Args:
+        rod: cylinder in the frame of the box.
+        sizes: half the lengths of the box.
+        reach: distance [m].
+    """
+    centre, axis, _, half, _ = rod
+    a, b, c = abs(axis[0]), abs(axis[1]), abs(axis[2])
+    k = 0 if a > b and a > c else 1 if b > c else 2
+    i, j = (k + 1) % 3, (k + 2) % 3
+    if abs(axis[k]) < _ALONG_EDGE:
+        return False
+    n = i if abs(centre[i]) - sizes[i] < abs(centre[j]) - sizes[j] else j  # across the axis, on the face
+    return abs(abs(centre[n]) - sizes[n]) < reach + half * abs(axis[n])
+
+
+EdgeContact = tuple[float, Vector, Vector]
+"""Contact point with an edge of a box, in the frame of the box: distance, position and normal as in `LineContact`."""
+
+
+def edge_contacts(
+    rod: Rod, sizes: Sequence[float], positions: list[Vector], normals: list[Vector]
+) -> tuple[int, list[EdgeContact]] | None:
     """Return the contacts of a cylinder with an edge of a box, in the frame of the box; None elsewhere on the box.
 
     Args:
         rod: cylinder.
         sizes: half the lengths of the box.
-        contacts: the engine's contacts of both.
+        positions: positions of the engine's contacts.
+        normals: normals of the engine's contacts.
+
+    Returns:
+        Number of the coordinate along the edge, and the contacts.
     """
-    centre, axis, radius, half, _ = rod
-    k = max(range(3), key=lambda i: abs(axis[i]))
-    if abs(axis[k]) >= PARALLEL:
-        return _parallel_edge(rod, sizes, k)
-    position = contacts[0].position
-    k = max(range(3), key=lambda i: sizes[i] - abs(position[i]))
-    i, j = (k + 1) % 3, (k + 2) % 3
-    corner = math.copysign(sizes[i], position[i]), math.copysign(sizes[j], position[j])
-    t = _nearest(rod, corner, k)
-    if not (abs(t) < half and abs(centre[k] + t * axis[k]) < sizes[k]):
+    a, b, c = abs(rod.axis[0]), abs(rod.axis[1]), abs(rod.axis[2])
+    k = 0 if a > b and a > c else 1 if b > c else 2
+    if max(a, b, c) >= PARALLEL:
+        found = _parallel_edge(rod, sizes, k)
+        return None if found is None else (k, found)
+    place = positions[0]
+    _, k = max((sizes[n] - abs(place[n]), n) for n in range(3))
+    one = _oblique_edge(rod, sizes, k, place)
+    if one is None or all(_cosine(normal, one[2]) > _WRONG_NORMAL for normal in normals):
         return None
-    x, y = centre[i] + t * axis[i] - corner[0], centre[j] + t * axis[j] - corner[1]
-    if not (x * corner[0] > 0.0 and y * corner[1] > 0.0):
-        return None
-    exact = _point_contact(rod, sizes, k, t, radius)
-    if exact is None or all(_cosine(one.normal, exact.normal) > _WRONG_NORMAL for one in contacts):
-        return None
-    return [exact]
+    return k, [one]
 
 
 def _cosine(one: Vector, other: Vector) -> float:
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
-def _nearest(rod: Rod, corner: tuple[float, float], k: int) -> float:
-    """Return the place along the axis of a rod that is nearest to an edge [m].
+def _oblique_edge(rod: Rod, sizes: Sequence[float], k: int, place: Vector) -> EdgeContact | None:
+    """Return the contact of a cylinder with an edge of a box that is not parallel to its axis.
 
     Args:
-        rod: rod that is not parallel to the edge.
-        corner: both other coordinates of the edge.
+        rod: cylinder in the frame of the box.
+        sizes: half the lengths of the box.
         k: number of the coordinate along the edge.
+        place: point near the edge.
+
+    Returns:
+        The contact; None if another part of the box or an end of the cylinder is nearer.
+    """
+    i, j = (k + 1) % 3, (k + 2) % 3
+    centre, axis, _, half, _ = rod
+    t = _nearest(rod, k, math.copysign(sizes[i], place[i]), math.copysign(sizes[j], place[j]))
+    if not (-half < t < half and abs(centre[k] + t * axis[k]) < sizes[k]):
+        return None
+    x, y = centre[i] + t * axis[i], centre[j] + t * axis[j]
+    if abs(x) <= sizes[i] or abs(y) <= sizes[j] or x * place[i] < 0.0 or y * place[j] < 0.0:
+        return None
+    return _point_contact(rod, sizes, k, t, True)
+
+
+def _nearest(rod: Rod, k: int, x: float, y: float) -> float:
+    """Return the place along the axis of a rod that is nearest to an edge [m]; infinity if both are parallel.
+
+    Args:
+        rod: rod in the frame of a box.
+        k: number of the coordinate along the edge.
+        x: the next coordinate of the edge.
+        y: the coordinate of the edge after that.
     """
     i, j = (k + 1) % 3, (k + 2) % 3
     centre, axis = rod.centre, rod.axis
     square = axis[i] * axis[i] + axis[j] * axis[j]
-    if square < 1e-12:
+    if square < _SQUARE_OF_CROSSING:
         return math.inf
-    return ((corner[0] - centre[i]) * axis[i] + (corner[1] - centre[j]) * axis[j]) / square
+    return ((x - centre[i]) * axis[i] + (y - centre[j]) * axis[j]) / square
 
 
-def _parallel_edge(rod: Rod, sizes: Vector, k: int) -> list[LineContact] | None:
+def common_length(rod: Rod, size: float, k: int) -> tuple[float, float]:
+    """Return the part of a rod's axis that lies within a box along one coordinate, from the centre of the rod [m].
+
+    Args:
+        rod: rod in the frame of the box.
+        size: half the length of the box.
+        k: number of the coordinate, along which the axis points.
+    """
+    one, other = (-size - rod.centre[k]) / rod.axis[k], (size - rod.centre[k]) / rod.axis[k]
+    return max(-rod.half, min(one, other)), min(rod.half, max(one, other))
+
+
+def _parallel_edge(rod: Rod, sizes: Sequence[float], k: int) -> list[EdgeContact] | None:
     """Return the contacts of a cylinder whose axis is nearly parallel to an edge along coordinate k."""
-    centre, axis, radius, half, _ = rod
     i, j = (k + 1) % 3, (k + 2) % 3
-    ends = sorted(((-sizes[k] - centre[k]) / axis[k], (sizes[k] - centre[k]) / axis[k]))
-    low, high = max(-half, ends[0]), min(half, ends[1])
+    centre, axis, radius, half, _ = rod
+    low, high = common_length(rod, sizes[k], k)
     if high - low < _MIN_LENGTH * radius:
         return None
     x, y = centre[i] + low * axis[i], centre[j] + low * axis[j]
     u, v = centre[i] + high * axis[i], centre[j] + high * axis[j]
-    at_low, at_high = abs(x) > sizes[i] and abs(y) > sizes[j], abs(u) > sizes[i] and abs(v) > sizes[j]
-    if not (at_low or at_high) or x * u < 0.0 or y * v < 0.0:
+    is_low, is_high = abs(x) > sizes[i] and abs(y) > sizes[j], abs(u) > sizes[i] and abs(v) > sizes[j]
+    if not (is_low or is_high) or x * u < 0.0 or y * v < 0.0:
         return None
-    found: list[LineContact] = []
-    for t, is_own in ((low, low == -half), (high, high == half)):
-        one = _point_contact(rod, sizes, k, t, radius, at_own_end=is_own)
+    found: list[EdgeContact] = []
+    for t, is_rim in ((low, low == -half), (high, high == half)):
+        one = _point_contact(rod, sizes, k, t, is_rim)
         if one is None:
             return None
         found.append(one)
-    least = min(found[0].distance, found[1].distance)
-    t = _nearest(rod, (math.copysign(sizes[i], x), math.copysign(sizes[j], y)), k)
+    least = min(found[0][0], found[1][0])
+    t = _nearest(rod, k, math.copysign(sizes[i], x), math.copysign(sizes[j], y))
     if low < t < high:
-        one = _point_contact(rod, sizes, k, t, radius)
-        if one is not None and one.distance < least - _CROSSING:
+        one = _point_contact(rod, sizes, k, t, True)
+        if one is not None and one[0] < least - _CROSSING:
             found.append(one)
-            least = one.distance
-    return found if -least < high - low else None
+            least = one[0]
+    return found if -least < min(high - low, _MOST_OVERLAP * radius) else None
 
 
-def _point_contact(
-    rod: Rod, sizes: Vector, k: int, t: float, radius: float, *, at_own_end: bool = False
-) -> LineContact | None:
-    """Return the contact of a box with the circle around a point of a cylinder's axis; None if the point is inside.
+def _point_contact(rod: Rod, sizes: Sequence[float], k: int, t: float, is_rim: bool) -> EdgeContact | None:
+    """Return the contact of a box with the section of a cylinder around a point of its axis.
 
     Args:
         rod: cylinder in the frame of the box.
         sizes: half the lengths of the box.
         k: number of the coordinate along the nearest edge.
-        t: place on the axis [m].
-        radius: radius [m].
-        at_own_end: True for the rim of the cylinder.
+        t: place of the point on the axis [m].
+        is_rim: True for a section across the cylinder, False for one across the edge.
+
+    Returns:
+        The contact; None if the point is inside the box.
     """
     i, j = (k + 1) % 3, (k + 2) % 3
     centre, axis = rod.centre, rod.axis
@@ -224,13 +285,16 @@ def _point_contact(
     if x > 0.0 and y > 0.0:
         size = math.sqrt(x * x + y * y)
         x, y = x / size, y / size
+    elif x > y:
+        size, x, y = x, 1.0, 0.0
     else:
-        size, x, y = (x, 1.0, 0.0) if x > y else (y, 0.0, 1.0)
-    outwards = [0.0, 0.0, 0.0]
-    outwards[i], outwards[j] = math.copysign(x, point[i]), math.copysign(y, point[j])
-    tilt = outwards[i] * axis[i] + outwards[j] * axis[j]
+        size, x, y = y, 0.0, 1.0
+    normal = [0.0, 0.0, 0.0]  # from the cylinder to the box
+    normal[i], normal[j] = -math.copysign(x, point[i]), -math.copysign(y, point[j])
+    tilt = normal[i] * axis[i] + normal[j] * axis[j]
     cosine = math.sqrt(1.0 - tilt * tilt)
-    reach = radius * cosine if at_own_end else radius / cosine
+    reach = rod.radius * cosine if is_rim else rod.radius / cosine
     distance = size - reach
-    a, b, c = (point[n] - outwards[n] * (reach + distance / 2.0) for n in range(3))
-    return LineContact(distance, (a, b, c), (-outwards[0], -outwards[1], -outwards[2]))
+    reach += distance / 2.0
+    place = point[0] + reach * normal[0], point[1] + reach * normal[1], point[2] + reach * normal[2]
+    return distance, place, (normal[0], normal[1], normal[2])
