@@ -61,6 +61,7 @@ class LineContacts:
         self._shapes = [
             (size[0], size[1], kind == _CAPSULE) for size, kind in zip(self._size, self._kind, strict=False)
         ]  # radius, half the length, and whether there are hemispheres
+        self._has_margins = bool(model.geom_margin.any() or model.pair_margin.any())
         self._known: dict[bytes, tuple[list[LinePair], list[int]]] = {}
         rods = self._kind.count(_CYLINDER) + self._kind.count(_CAPSULE)
         self._has_edges = model.nflex == 0 and _CYLINDER in self._kind and _BOX in self._kind
@@ -163,14 +164,20 @@ class LineContacts:
             Rod(centre, (turn[2], turn[5], turn[8]), *shape)
             for centre, turn, shape in zip(centres, turns, [self._shapes[geom] for geom in ids], strict=True)
         ]
+        margins: list[float] = data.contact.includemargin.tolist() if self._has_margins else []
         found = []
         for one, other, box, numbers in pairs:
-            if box < 0:
-                exact = rod_contacts(rods[one], rods[other])
-            else:
+            if box >= 0:
                 exact = self._edge(data, rods[one], self._size[box], centres[other], turns[other], numbers)
-            if exact is not None:
-                found.append((numbers, exact))
+            elif len(numbers) == 2 and rods[one].has_balls and rods[other].has_balls:
+                continue  # the engine reports both ends of capsules that are parallel up to rounding
+            else:
+                exact = rod_contacts(rods[one], rods[other])
+            if exact:
+                margin = margins[numbers[0]] if margins else 0.0
+                touching = [point for point in exact if point[0] < margin]
+                if touching:  # otherwise the engine's contacts stop bodies before they touch
+                    found.append((numbers, touching))
         return found
 
     def _edge(
@@ -222,8 +229,6 @@ def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContac
     surplus: list[int] = []
     is_new = False
     for numbers, exact in found:
-        margin = 0.0
-        exact = [one for one in exact if one[0] < margin]
         for number, one in zip(numbers, exact, strict=False):
             places.append(number)
             values.append(one)
@@ -242,9 +247,8 @@ def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContac
     contact = data.contact
     if surplus:
         contact.exclude[surplus], contact.efc_address[surplus] = 1, -1
-    if places:
-        contact.dist[places] = [one[0] for one in values]
-        contact.pos[places] = [one[1] for one in values]
-        contact.frame[places] = [one[2] for one in values]
-        contact.exclude[places] = 0
+    contact.dist[places] = [one[0] for one in values]
+    contact.pos[places] = [one[1] for one in values]
+    contact.frame[places] = [one[2] for one in values]
+    contact.exclude[places] = 0
     return True
