@@ -12,18 +12,31 @@ from typing import Any, Final, NamedTuple
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
-from simkit.runtime.contact.line_geometry import LineContact, Rod, Vector, edge_contacts, is_near_edge, rod_contacts
+from simkit.runtime.contact.line_geometry import (
+    PARALLEL,
+    LineContact,
+    Rod,
+    Vector,
+    is_near_edge,
+    longest_coordinate,
+    oblique_edge_contact,
+    parallel_edge_contacts,
+    rod_contacts,
+)
 
 _CYLINDER: Final = int(mujoco.mjtGeom.mjGEOM_CYLINDER)
 _CAPSULE: Final = int(mujoco.mjtGeom.mjGEOM_CAPSULE)
 _BOX: Final = int(mujoco.mjtGeom.mjGEOM_BOX)
+_KINDS: Final = (_CYLINDER, _CAPSULE, _BOX)
 _NO_ISLANDS: Final = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
 _MOST_LISTS: Final = 64
 _SLOW: Final = 1e-3  # [m/s]
 _MARGIN: Final = 2.0  # a cylinder may become faster
 
 Matrix = list[float]
+Ints = npt.NDArray[np.intp]
 
 
 class LinePair(NamedTuple):
@@ -46,7 +59,7 @@ ExactContacts = tuple[list[int], list[LineContact]]
 
 
 class LineContacts:
-    """Cylinders, capsules and boxes of one compiled model.
+    """Cylinders, capsules and boxes of one compiled model, on different kinematic trees.
 
     Args:
         model: MuJoCo's model.
@@ -62,10 +75,13 @@ class LineContacts:
             (size[0], size[1], kind == _CAPSULE) for size, kind in zip(self._size, self._kind, strict=False)
         ]  # radius, half the length, and whether there are hemispheres
         self._has_margins = bool(model.geom_margin.any() or model.pair_margin.any())
-        self._known: dict[bytes, tuple[list[LinePair], list[int]]] = {}
-        rods = self._kind.count(_CYLINDER) + self._kind.count(_CAPSULE)
-        self._has_edges = model.nflex == 0 and _CYLINDER in self._kind and _BOX in self._kind
-        self._can_meet = self._has_edges or (model.nflex == 0 and rods > 1)
+        self._known: dict[bytes, tuple[list[LinePair], Ints]] = {}
+        self._tree: list[int] = [*model.body_treeid[model.geom_bodyid].tolist(), -1]
+        trees = {kind: {t for t, k in zip(self._tree, self._kind, strict=True) if k == kind} for kind in _KINDS}
+        rods = trees[_CYLINDER] | trees[_CAPSULE]
+        # only bodies of different trees, because a robot with two wheels would need a search in every step
+        self._has_edges = model.nflex == 0 and _differ(trees[_CYLINDER], trees[_BOX])
+        self._can_meet = self._has_edges or (model.nflex == 0 and _differ(rods, rods))
 
     def __bool__(self) -> bool:
         return self._can_meet
@@ -107,7 +123,7 @@ class LineContacts:
         pairs, ids = self._pairs(data)
         for one, _, box, _ in pairs:
             if box >= 0:
-                cylinder = ids[one]
+                cylinder = int(ids[one])
                 speed = self._speed(data, cylinder) + self._speed(data, box)
                 if speed > _SLOW:
                     turn: Matrix = data.geom_xmat[cylinder].tolist()
@@ -126,7 +142,7 @@ class LineContacts:
         u, v, w = u + b * z - c * y, v + c * x - a * z, w + a * y - b * x
         return math.sqrt(u * u + v * v + w * w)
 
-    def _pairs(self, data: mujoco.MjData) -> tuple[list[LinePair], list[int]]:
+    def _pairs(self, data: mujoco.MjData) -> tuple[list[LinePair], Ints]:
         """Return the pairs in contact that may touch along a line, and their geoms."""
         geoms = data.contact.geom
         content = geoms.tobytes()
@@ -137,15 +153,17 @@ class LineContacts:
             known = self._known[content] = self._find_pairs(geoms.tolist())
         return known
 
-    def _find_pairs(self, geoms: list[list[int]]) -> tuple[list[LinePair], list[int]]:
+    def _find_pairs(self, geoms: list[list[int]]) -> tuple[list[LinePair], Ints]:
         """Return the pairs of two rods, or of a cylinder and a box, and their geoms.
 
         Args:
             geoms: both geoms of each contact.
         """
-        kind, groups = self._kind, dict[tuple[int, int], list[int]]()
+        kind, tree, groups = self._kind, self._tree, dict[tuple[int, int], list[int]]()
         for number, (one, other) in enumerate(geoms):
             first, second = kind[one], kind[other]
+            if tree[one] == tree[other]:
+                continue
             is_rod = second in (_CYLINDER, _CAPSULE) and first in (_CYLINDER, _CAPSULE)
             if is_rod or (first == _CYLINDER and second == _BOX):
                 groups.setdefault((one, other), []).append(number)
@@ -154,15 +172,17 @@ class LineContacts:
         return [
             LinePair(place[one], place[other], other if kind[other] == _BOX else -1, numbers)
             for (one, other), numbers in groups.items()
-        ], ids
+        ], np.array(ids, np.intp)
 
-    def _exact_contacts(self, data: mujoco.MjData, pairs: list[LinePair], ids: list[int]) -> list[ExactContacts]:
+    def _exact_contacts(self, data: mujoco.MjData, pairs: list[LinePair], ids: Ints) -> list[ExactContacts]:
         """Return the exact contacts of each pair that touches along a line."""
-        centres: list[Vector] = data.geom_xpos[ids].tolist()
         turns: list[Matrix] = data.geom_xmat[ids].tolist()
+        if not any(box >= 0 or _are_parallel(turns[one], turns[other]) for one, other, box, _ in pairs):
+            return []
+        centres: list[Vector] = data.geom_xpos[ids].tolist()
         rods = [
             Rod(centre, (turn[2], turn[5], turn[8]), *shape)
-            for centre, turn, shape in zip(centres, turns, [self._shapes[geom] for geom in ids], strict=True)
+            for centre, turn, shape in zip(centres, turns, [self._shapes[geom] for geom in ids.tolist()], strict=True)
         ]
         margins: list[float] = data.contact.includemargin.tolist() if self._has_margins else []
         found = []
@@ -184,13 +204,18 @@ class LineContacts:
         self, data: mujoco.MjData, rod: Rod, sizes: list[float], centre: Vector, turn: Matrix, numbers: list[int]
     ) -> list[LineContact] | None:
         """Return the contacts of a cylinder with an edge of a box; None elsewhere on the box."""
-        contact, (p, q, r) = data.contact, centre
-        places = [_turned_back(turn, (x - p, y - q, z - r)) for x, y, z in contact.pos[numbers].tolist()]
-        normals = [_turned_back(turn, (x, y, z)) for x, y, z, *_ in contact.frame[numbers].tolist()]
-        exact = edge_contacts(_in_frame(rod, centre, turn), sizes, places, normals)
-        if exact is None:
+        (p, q, r), local = centre, _in_frame(rod, centre, turn)
+        k = longest_coordinate(local.axis)
+        if abs(local.axis[k]) >= PARALLEL:
+            contacts = parallel_edge_contacts(local, sizes, k)
+        else:
+            contact = data.contact
+            x, y, z = contact.pos[numbers[0]].tolist()
+            normals = [_turned_back(turn, (x, y, z)) for x, y, z, *_ in contact.frame[numbers].tolist()]
+            crossing = oblique_edge_contact(local, sizes, _turned_back(turn, (x - p, y - q, z - r)), normals)
+            k, contacts = (k, None) if crossing is None else (crossing[0], [crossing[1]])
+        if contacts is None:
             return None
-        k, contacts = exact
         a, b, c = turn[k], turn[3 + k], turn[6 + k]  # along the edge
         result: list[LineContact] = []
         for distance, place, normal in contacts:
@@ -199,6 +224,16 @@ class LineContacts:
             frame = x, y, z, a, b, c, y * c - z * b, z * a - x * c, x * b - y * a
             result.append((distance, (p + u, q + v, r + w), frame))
         return result
+
+
+def _are_parallel(one: Matrix, other: Matrix) -> bool:
+    """Check whether the axes of two rods are nearly parallel."""
+    return not -PARALLEL < one[2] * other[2] + one[5] * other[5] + one[8] * other[8] < PARALLEL
+
+
+def _differ(some: set[int], others: set[int]) -> bool:
+    """Check whether two different trees can be chosen, one from each set."""
+    return any(one != other for one in some for other in others)
 
 
 def _in_frame(rod: Rod, centre: Vector, turn: Matrix) -> Rod:
@@ -224,6 +259,7 @@ def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContac
     """Write exact contacts over the engine's contacts; return False if they were already there."""
     contact: Any = data.contact
     distances: list[float] = contact.dist.tolist()
+    excluded: list[int] = contact.exclude.tolist()
     places: list[int] = []
     values: list[LineContact] = []
     surplus: list[int] = []
@@ -239,9 +275,9 @@ def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContac
                 values.append(one)
                 distances.append(one[0])
                 is_new = True
-        surplus += numbers[len(exact) :]
-    if surplus and not is_new:
-        is_new = not all(contact.exclude[surplus].tolist())
+        for number in numbers[len(exact) :]:
+            surplus.append(number)
+            is_new = is_new or not excluded[number]
     if not is_new:
         return False
     contact = data.contact
@@ -250,5 +286,6 @@ def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContac
     contact.dist[places] = [one[0] for one in values]
     contact.pos[places] = [one[1] for one in values]
     contact.frame[places] = [one[2] for one in values]
-    contact.exclude[places] = 0
+    if any(excluded):
+        contact.exclude[places] = 0
     return True

@@ -139,8 +139,7 @@ def is_near_edge(rod: Rod, sizes: Sequence[float], reach: float) -> bool:
         reach: distance [m].
     """
     centre, axis, _, half, _ = rod
-    a, b, c = abs(axis[0]), abs(axis[1]), abs(axis[2])
-    k = 0 if a > b and a > c else 1 if b > c else 2
+    k = longest_coordinate(axis)
     i, j = (k + 1) % 3, (k + 2) % 3
     if abs(axis[k]) < _ALONG_EDGE:
         return False
@@ -152,49 +151,28 @@ EdgeContact = tuple[float, Vector, Vector]
 """Contact point with an edge of a box, in the frame of the box: distance, position and normal as in `LineContact`."""
 
 
-def edge_contacts(
-    rod: Rod, sizes: Sequence[float], positions: list[Vector], normals: list[Vector]
-) -> tuple[int, list[EdgeContact]] | None:
-    """Return the contacts of a cylinder with an edge of a box, in the frame of the box; None elsewhere on the box.
-
-    Args:
-        rod: cylinder.
-        sizes: half the lengths of the box.
-        positions: positions of the engine's contacts.
-        normals: normals of the engine's contacts.
-
-    Returns:
-        Number of the coordinate along the edge, and the contacts.
-    """
-    a, b, c = abs(rod.axis[0]), abs(rod.axis[1]), abs(rod.axis[2])
-    k = 0 if a > b and a > c else 1 if b > c else 2
-    if max(a, b, c) >= PARALLEL:
-        found = _parallel_edge(rod, sizes, k)
-        return None if found is None else (k, found)
-    place = positions[0]
-    _, k = max((sizes[n] - abs(place[n]), n) for n in range(3))
-    one = _oblique_edge(rod, sizes, k, place)
-    if one is None or all(_cosine(normal, one[2]) > _WRONG_NORMAL for normal in normals):
-        return None
-    return k, [one]
+def longest_coordinate(vector: Vector) -> int:
+    """Return the number of the coordinate with the largest amount."""
+    a, b, c = abs(vector[0]), abs(vector[1]), abs(vector[2])
+    return 0 if a > b and a > c else 1 if b > c else 2
 
 
-def _cosine(one: Vector, other: Vector) -> float:
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
-
-
-def _oblique_edge(rod: Rod, sizes: Sequence[float], k: int, place: Vector) -> EdgeContact | None:
+def oblique_edge_contact(
+    rod: Rod, sizes: Sequence[float], place: Vector, normals: list[Vector]
+) -> tuple[int, EdgeContact] | None:
     """Return the contact of a cylinder with an edge of a box that is not parallel to its axis.
 
     Args:
         rod: cylinder in the frame of the box.
         sizes: half the lengths of the box.
-        k: number of the coordinate along the edge.
-        place: point near the edge.
+        place: position of one of the engine's contacts.
+        normals: normals of the engine's contacts.
 
     Returns:
-        The contact; None if another part of the box or an end of the cylinder is nearer.
+        Number of the coordinate along the edge, and the contact. None if another part of the box or an end of the
+        cylinder is nearer, or if the engine's normals are right.
     """
+    _, k = max((sizes[n] - abs(place[n]), n) for n in range(3))
     i, j = (k + 1) % 3, (k + 2) % 3
     centre, axis, _, half, _ = rod
     t = _nearest(rod, k, math.copysign(sizes[i], place[i]), math.copysign(sizes[j], place[j]))
@@ -203,7 +181,14 @@ def _oblique_edge(rod: Rod, sizes: Sequence[float], k: int, place: Vector) -> Ed
     x, y = centre[i] + t * axis[i], centre[j] + t * axis[j]
     if abs(x) <= sizes[i] or abs(y) <= sizes[j] or x * place[i] < 0.0 or y * place[j] < 0.0:
         return None
-    return _point_contact(rod, sizes, k, t, True)
+    one = _point_contact(rod, sizes, k, t, True)
+    if one is None or all(_cosine(normal, one[2]) > _WRONG_NORMAL for normal in normals):
+        return None
+    return k, one
+
+
+def _cosine(one: Vector, other: Vector) -> float:
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
 def _nearest(rod: Rod, k: int, x: float, y: float) -> float:
@@ -235,8 +220,18 @@ def common_length(rod: Rod, size: float, k: int) -> tuple[float, float]:
     return max(-rod.half, min(one, other)), min(rod.half, max(one, other))
 
 
-def _parallel_edge(rod: Rod, sizes: Sequence[float], k: int) -> list[EdgeContact] | None:
-    """Return the contacts of a cylinder whose axis is nearly parallel to an edge along coordinate k."""
+def parallel_edge_contacts(rod: Rod, sizes: Sequence[float], k: int) -> list[EdgeContact] | None:
+    """Return the contacts of a cylinder with an edge of a box that is nearly parallel to its axis.
+
+    Args:
+        rod: cylinder in the frame of the box.
+        sizes: half the lengths of the box.
+        k: number of the coordinate along the edge.
+
+    Returns:
+        One contact at each end of the common length, and one where the axis crosses the edge, if it is the deepest.
+        None if a face of the box or an end of the cylinder is nearer.
+    """
     i, j = (k + 1) % 3, (k + 2) % 3
     centre, axis, radius, half, _ = rod
     low, high = common_length(rod, sizes[k], k)
