@@ -270,11 +270,11 @@ def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContac
             values.append(one)
             is_new = is_new or distances[number] != one[0]
         for one in exact[len(numbers) :]:
-            if not mujoco.mj_addContact(model, data, contact[numbers[0]]):  # else the engine's memory is full
+            is_new = True  # the call deletes the constraints, also if the engine's memory is full
+            if not mujoco.mj_addContact(model, data, contact[numbers[0]]):
                 places.append(len(distances))
                 values.append(one)
                 distances.append(one[0])
-                is_new = True
         for number in numbers[len(exact) :]:
             surplus.append(number)
             is_new = is_new or not excluded[number]
