@@ -221,7 +221,11 @@ class LineContacts:
         for distance, place, normal in contacts:
             u, v, w = _turned(turn, place)
             x, y, z = _turned(turn, normal)
-            frame = x, y, z, a, b, c, y * c - z * b, z * a - x * c, x * b - y * a
+            tilt = x * a + y * b + z * c
+            d, e, f = a - tilt * x, b - tilt * y, c - tilt * z
+            size = math.sqrt(d * d + e * e + f * f)
+            d, e, f = d / size, e / size, f / size
+            frame = x, y, z, d, e, f, y * f - z * e, z * d - x * f, x * e - y * d
             result.append((distance, (p + u, q + v, r + w), frame))
         return result
 

@@ -29,6 +29,8 @@ _CROSSING: Final = 1e-6
 _WRONG_NORMAL: Final = 0.9995
 """Cosine of the least error of a normal (1.8°) at an edge that is oblique to the axis."""
 
+_NEWTON_STEPS: Final = 4
+
 _ALONG_EDGE: Final = 0.9
 """Least cosine between an axis and an edge that a cylinder rolls over."""
 
@@ -172,22 +174,90 @@ def oblique_edge_contact(
         Number of the coordinate along the edge, and the contact. None if another part of the box or an end of the
         cylinder is nearer, or if the engine's normals are right.
     """
-    _, k = max((sizes[n] - abs(place[n]), n) for n in range(3))
+    centre, axis, half = rod.centre, rod.axis, rod.half
+    candidates = []
+    k = longest_coordinate(axis)
+    if abs(axis[k]) >= _ALONG_EDGE:  # the engine's contact may be far from the edge
+        t = max(-half, min(half, -centre[k] / axis[k]))
+        candidates.append((k, (centre[0] + t * axis[0], centre[1] + t * axis[1], centre[2] + t * axis[2])))
+    candidates.append((max((sizes[n] - abs(place[n]), n) for n in range(3))[1], place))
+    for k, near in candidates:
+        found = _edge_contact(rod, sizes, k, near)
+        if found is not None:
+            return None if all(_product(normal, found[2]) > _WRONG_NORMAL for normal in normals) else (k, found)
+    return None
+
+
+def _edge_contact(rod: Rod, sizes: Sequence[float], k: int, place: Vector) -> EdgeContact | None:
+    """Return the contact of a cylinder with an edge of a box; None if the edge is not the nearest part of the box.
+
+    Args:
+        rod: cylinder in the frame of the box.
+        sizes: half the lengths of the box.
+        k: number of the coordinate along the edge.
+        place: point on the side of the edge.
+    """
+    centre, axis, radius, half, _ = rod
     i, j = (k + 1) % 3, (k + 2) % 3
-    centre, axis, _, half, _ = rod
-    t = _nearest(rod, k, math.copysign(sizes[i], place[i]), math.copysign(sizes[j], place[j]))
-    if not (-half < t < half and abs(centre[k] + t * axis[k]) < sizes[k]):
+    one, other = math.copysign(1.0, place[i]), math.copysign(1.0, place[j])
+    t = max(-half, min(half, _nearest(rod, k, one * sizes[i], other * sizes[j])))
+    x, y = one * (centre[i] + t * axis[i]) - sizes[i], other * (centre[j] + t * axis[j]) - sizes[j]
+    a, b = one * axis[i], other * axis[j]
+    if x <= 0.0 or y <= 0.0:
         return None
-    x, y = centre[i] + t * axis[i], centre[j] + t * axis[j]
-    if abs(x) <= sizes[i] or abs(y) <= sizes[j] or x * place[i] < 0.0 or y * place[j] < 0.0:
+    x, y, distance = _farthest_direction(x, y, a, b, radius)
+    tilt = x * a + y * b
+    along = centre[k] + t * axis[k] + radius * tilt / math.sqrt(1.0 - tilt * tilt) * axis[k]
+    outwards, corner = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+    outwards[i], outwards[j] = one * x, other * y
+    corner[i], corner[j], corner[k] = one * sizes[i], other * sizes[j], max(-sizes[k], min(sizes[k], along))
+    if corner[k] != along:  # beyond the end of the edge
+        t = _product((corner[0] - centre[0], corner[1] - centre[1], corner[2] - centre[2]), axis)
+        outwards = [centre[n] + t * axis[n] - corner[n] for n in range(3)]
+        size = math.sqrt(outwards[0] * outwards[0] + outwards[1] * outwards[1] + outwards[2] * outwards[2])
+        if not -half < t < half or size <= 0.0:
+            return None
+        outwards, distance = [value / size for value in outwards], size - radius
+    if outwards[i] * one <= 0.0 or outwards[j] * other <= 0.0 or -distance > _MOST_OVERLAP * radius:
         return None
-    one = _point_contact(rod, sizes, k, t, True)
-    if one is None or all(_cosine(normal, one[2]) > _WRONG_NORMAL for normal in normals):
-        return None
-    return k, one
+    normal = (-outwards[0], -outwards[1], -outwards[2])
+    reach = distance / 2.0  # half way between the edge and the deepest point of the cylinder
+    position = corner[0] + reach * outwards[0], corner[1] + reach * outwards[1], corner[2] + reach * outwards[2]
+    return distance, position, normal
 
 
-def _cosine(one: Vector, other: Vector) -> float:
+def _farthest_direction(x: float, y: float, a: float, b: float, radius: float) -> tuple[float, float, float]:
+    """Return the direction from an edge in which a disc is farthest, and its distance [m].
+
+    The direction is that of the shortest way to separate both. The distance along a unit vector n is n·p - r sqrt(1 -
+    (n·v)²), for the centre p and the axis v of the disc. Newton's method finds the maximum.
+
+    Args:
+        x: first coordinate of the centre across the edge [m].
+        y: second coordinate of the centre across the edge [m].
+        a: first coordinate of the axis across the edge.
+        b: second coordinate of the axis across the edge.
+        radius: radius of the disc [m].
+    """
+    size = math.sqrt(x * x + y * y)
+    u, v = x / size, y / size
+    for _ in range(_NEWTON_STEPS):
+        tilt, change = u * a + v * b, u * b - v * a
+        root = math.sqrt(max(1.0 - tilt * tilt, 1e-6))
+        slope = u * y - v * x + radius * tilt * change / root
+        bend = -(u * x + v * y) + radius * ((change * change - tilt * tilt) / root + (tilt * change / root) ** 2 / root)
+        if bend >= 0.0:
+            break
+        turn = -slope / bend
+        u, v = u - turn * v, v + turn * u
+        size = math.sqrt(u * u + v * v)
+        u, v = u / size, v / size
+    tilt = u * a + v * b
+    return u, v, u * x + v * y - radius * math.sqrt(1.0 - tilt * tilt)
+
+
+def _product(one: Vector, other: Vector) -> float:
+    """Return the scalar product of two vectors."""
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.runtime.contact.line_contacts import LineContacts
 from simkit.runtime.contact.line_geometry import LineContact, Rod, rod_contacts
 from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG
 
@@ -272,3 +273,45 @@ def test_a_log_that_starts_too_deep_in_a_groove_comes_out_slowly(spacing: float,
         assert fastest < 0.105  # 5 cm/s along the normals
         sim.run(0.1)
         assert sim.mj_data.qpos[2] == pytest.approx(height, abs=5e-5)
+
+
+PAIR = """<mujoco><option><flag multiccd="{flag}"/></option><worldbody>
+  <body><freejoint/><geom type="cylinder" size="0.05 {half}" mass="1"/></body>
+  <body><freejoint/><geom type="{shape}" size="{sizes}" mass="1"/></body></worldbody></mujoco>"""
+
+
+def spun(axis: tuple[float, float, float], angle: float) -> np.ndarray:
+    turn = np.empty(4)
+    mujoco.mju_axisAngle2Quat(turn, np.array(axis), angle)
+    return turn
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-3, 0.03, 0.1, 0.5])
+@pytest.mark.parametrize("shape", ["cylinder", "box"])
+def test_the_deepest_contact_agrees_with_that_of_mujoco_without_multiccd(shape: str, angle: float) -> None:
+    """MuJoCo's single contacts are exact; only the place of a contact on a line is arbitrary."""
+    draw, compared = random.Random(1), 0
+    for _ in range(40):
+        half, other = draw.uniform(0.03, 0.3), draw.uniform(0.03, 0.3)
+        sizes = f"0.05 {other}" if shape == "cylinder" else f"0.1 0.2 {other}"
+        models = [
+            mujoco.MjModel.from_xml_string(PAIR.format(flag=flag, half=half, shape=shape, sizes=sizes))
+            for flag in ("enable", "disable")
+        ]
+        ours, exact = mujoco.MjData(models[0]), mujoco.MjData(models[1])
+        side, shift = draw.uniform(0.1, 1.4), draw.uniform(-0.7, 0.7) * (half + other)
+        normal = np.array((math.cos(side), math.sin(side), 0.0))
+        corner = np.zeros(3) if shape == "cylinder" else np.array((0.1, 0.2, 0.0))
+        reach = 0.05 + (0.05 if shape == "cylinder" else 0.0) - draw.choice((1e-5, 1e-4, 1e-3))
+        ours.qpos[:3], ours.qpos[3:7] = corner + reach * normal + (0, 0, shift), spun(tuple(normal), angle)
+        exact.qpos[:] = ours.qpos
+        for model, data in zip(models, (ours, exact), strict=True):
+            mujoco.mj_forward(model, data)
+        if not (ours.ncon and exact.ncon):
+            continue
+        LineContacts(models[0]).correct(ours)
+        deepest = min((c for c in ours.contact if not c.exclude), key=lambda c: c.dist)
+        compared += 1
+        assert deepest.dist == pytest.approx(exact.contact[0].dist, rel=0.03, abs=3e-6)
+        assert deepest.frame[:3] @ exact.contact[0].frame[:3] > math.cos(math.radians(3.0))
+    assert compared > 15
