@@ -13,6 +13,9 @@ solution."""
 _MAX_EXTRAPOLATION: Final = 100.0
 """Largest ratio of the squared extrapolation to the squared residual; above it, the plain iterate is used."""
 
+_MAX_OVERSHOOT: Final = 10.0
+"""Largest growth of the square of the residual in a step past the solution; with more, contacts have opened."""
+
 
 class AndersonAcceleration:
     """Anderson acceleration of a fixed-point iteration, with the last two differences.
@@ -46,7 +49,7 @@ class AndersonAcceleration:
         size = math.fsum(value * value for value in residual)
         if size < self._least:
             self._least, self.best = size, iterate
-        if self._residuals and size > math.fsum(value * value for value in self._residuals[-1]):
+        if self._residuals and _has_grown(residual, size, self._residuals[-1]):
             self._residuals, self._results = [], []  # contacts have opened or closed: earlier results do not apply
         self._residuals, self._results = [*self._residuals[-2:], residual], [*self._results[-2:], result]
         if len(self._residuals) < 2:
@@ -60,6 +63,23 @@ class AndersonAcceleration:
         if math.fsum(value * value for value in further) > _MAX_EXTRAPOLATION * size:
             return result
         return [g + one for g, one in zip(result, further, strict=True)]
+
+
+def _has_grown(residual: list[float], size: float, before: list[float]) -> bool:
+    """Check whether a residual is larger than the one before it, and not a moderate step past the solution.
+
+    In a narrow groove, plain iteration steps past the solution, farther each time. The residuals are then opposite, and
+    the solution lies between both iterates.
+
+    Args:
+        residual: present residual.
+        size: its square.
+        before: residual before it.
+    """
+    last = math.fsum(value * value for value in before)
+    if size <= last:
+        return False
+    return size > _MAX_OVERSHOOT * last or math.fsum(x * y for x, y in zip(residual, before, strict=True)) >= 0.0
 
 
 def _difference(a: list[float], b: list[float]) -> list[float]:

@@ -203,7 +203,7 @@ def find_correction(
         if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
             impedance = data.efc_KBIP.item(row, 2)
             tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
-        if total > tolerance * tolerance:
+        if total > tolerance * tolerance or (goal == goal and not closes):  # bodies slide as they separate
             found.append((row, mus[: dim - 1], normal, goal, rebounds, tolerance))
         elif goal == goal:
             found.append((row, [], normal, goal, rebounds, tolerance))
@@ -368,10 +368,10 @@ def find_array_correction(
         bearable = LIFT_FACTOR * around.tolerance * (1.0 - impedance) / impedance
         tolerances[pressed] = np.minimum(around.tolerance, bearable)
     slides: npt.NDArray[np.bool_] = _lift((aref if residual is None else residual)[places], mu, is_pyramid) > tolerances
-    slides &= goals != NO_FORCE
     chosen = slides | ~np.isnan(goals)
     if not chosen.any():
         return None
+    slides = (slides | ~closes) & (goals != NO_FORCE)
     mu = np.where(slides[:, None], mu, 0.0)[chosen]
     rest = (edges[chosen], normals[chosen], goals[chosen], bounces[chosen], tolerances[chosen], changed)
     return ArrayContactCorrection(data, is_pyramid, rows[chosen], places[chosen], mu, *rest)

@@ -31,6 +31,7 @@ from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD, DEEP_PENE
 from simkit.runtime.contact.contact_correction import AnyContactCorrection, find_array_correction, find_correction
 from simkit.runtime.contact.contact_point_motion import ContactPointMotion
 from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
+from simkit.runtime.contact.line_contacts import LineContacts
 from simkit.runtime.contact.wheel_contacts import WheelContacts
 
 TOLERANCE: Final = 0.02
@@ -100,13 +101,14 @@ class ContactLaw:
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self.model = model
+        self._window = float(model.opt.timestep) * window_length(float(model.opt.timestep))
         self._gravity = model.opt.gravity  # a view, because gravity may change during a run
         self._product = np.empty(0)
         constant = contact_time_constant(float(model.opt.timestep))
         softest = constant * (1.0 + 1e-9)
         self._around = ContactConditions(float(model.opt.timestep), [], 0.0, None, softest=softest)
         self._least_reference = (DEEP_PENETRATION / (constant * constant)) ** 2
-        self._fields = HeightFieldContacts(model)
+        self._fields, self.lines = HeightFieldContacts(model), LineContacts(model)
         self._wheels, self._carried = WheelContacts(model), CentripetalFriction(model)
         self._points = ContactPointMotion.of(model)
         self._always_merges = bool(self._wheels) and model.opt.timestep > MAX_STEP_WITH_EDGES
@@ -123,7 +125,7 @@ class ContactLaw:
     @property
     def changes_contacts(self) -> bool:
         """True if `solve` may change the constraints, so that other velocities need new constraints."""
-        return bool(self._wheels)
+        return bool(self._wheels) or bool(self.lines)
 
     def is_needed(self, data: mujoco.MjData) -> bool:
         """Check whether a contact slides, hits or overlaps, or whether a flying or fast model may hit something.
@@ -135,6 +137,8 @@ class ContactLaw:
         """
         if not self.is_on:
             return False
+        if self.lines and data.ncon and (self.lines.correct(data) or self.lines.reaches_edge(data, self._window)):
+            return True
         if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._needs_correction(data))):
             return True
         if self._has_flying(data) or self._has_fast(data) or self._carried.find(data):
@@ -160,6 +164,7 @@ class ContactLaw:
         if not (data.ncon and self.is_on):
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             return False
+        self.lines.correct(data)
         found, carried = None, self._carried.find(data)
         if self._always_merges:
             self._wheels.merge(data)

@@ -87,6 +87,7 @@ class ForwardPass(PhysicsState):
                 mj_fwd_position(model, data)
             mj_fwd_velocity(model, data)
         if shaper is not None:
+            self.law.lines.correct(data)
             shaper.shape(data)
         self.stage = CONTROL
 
@@ -229,6 +230,7 @@ class ForwardPass(PhysicsState):
             mujoco.mj_forward(held.model, data)
             if self._integrate is not None:
                 if shaper is not None:
+                    law.lines.correct(data)
                     shaper.shape(data, held.request)
                 closing = fast.closing if is_fast else None
                 if held.probes:

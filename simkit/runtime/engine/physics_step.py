@@ -180,6 +180,7 @@ class Physics(ForwardPass):
         """Change the contacts in an inner stage of an integrator; the engine then solves for them."""
         shaper = self._acting_shaper
         if shaper is not None:
+            self.law.lines.correct(self.data)
             shaper.shape(self.data)
         self.law.solve(self.data, self._closing, keeps_references=True)
 

@@ -7,7 +7,8 @@ this module decides. A tree may sleep under these conditions, which make sleep i
 
 - The tree is in contact, or held by another constraint, and nothing drives or measures it.
 - The tree has stayed within 1 nm (1 nrad) for 0.1 s, twice, and moved no more the second time than the first. A tree
-  that has stayed within 10 µm for 1 s, twice, also counts, because the solver makes a pile tremble.
+  that has stayed within 20 µm for 1 s, twice, also counts, because the solver makes a pile tremble. A free body may
+  turn by 0.4 mrad in this time, because logs and balls of a pile roll as they creep.
 - Every tree that it touches meets the same conditions.
 
 The windows lie on the grid of simulated time, so that chunks of steps, readers and processes make no difference.
@@ -29,14 +30,16 @@ RATE: Final = 10.0
 """Rate at which trees are observed [Hz]."""
 
 _STILL, _STILL_FLOOR = 1e-9, 1e-10  # largest motion at rest [m or rad] between two observations
-_CALM, _CALM_FLOOR = 1e-5, 2e-6  # largest motion at rest [m or rad] over `_LONG` observations
+_CALM, _CALM_FLOOR = 2e-5, 2e-6  # largest motion at rest [m or rad] over `_LONG` observations
 _LONG = 10  # observations in the long window
+_TURN_SHARE = 0.1  # weight of quaternions in the long window: 20 µm count as 0.4 mrad, for a radius of 5 cm
 _TWICE = 2
 
 _LEAST_SPEED = 1e-3  # [m/s] below this speed the engine puts the selected trees to sleep
 _NO_SPEED = -1.0  # with 0 the engine would still put exactly motionless trees to sleep
 _AWAKE = -(1 + mujoco.mjMINAWAKE)
 _READY = -1
+_FREE, _BALL = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
 _FLAG = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 _NO_ISLANDS = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
 _MAY = (int(mujoco.mjtSleepPolicy.mjSLEEP_AUTO_ALLOWED), int(mujoco.mjtSleepPolicy.mjSLEEP_ALLOWED))
@@ -91,6 +94,11 @@ class Sleep:
         self._can_rest = self.enabled and bool(self._may.all()) and (self.watches or not model.ntree)
         first_joint = model.dof_jntid[model.tree_dofadr] if model.ntree else np.zeros(0, int)
         self.counts = self.watches or self._can_rest
+        self._weights = np.ones(model.nq)
+        for kind, start in zip(model.jnt_type.tolist(), model.jnt_qposadr.tolist(), strict=True):
+            if kind in (_FREE, _BALL):
+                first = start + (3 if kind == _FREE else 0)
+                self._weights[first : first + 4] = _TURN_SHARE
         self._starts = model.jnt_qposadr[first_joint] if model.ntree else first_joint
         self._begin()
 
@@ -115,13 +123,13 @@ class Sleep:
         qpos = data.qpos.copy()
         asleep = data.tree_asleep >= 0
         self._looks += 1
-        moved = self._distance(qpos, self._last)
+        moved, calm = self._distance(qpos, self._last), self._distance(self._weights * qpos, self._weights * self._last)
         is_still = (moved <= _STILL) & (moved <= np.maximum(self._moved, _STILL_FLOOR))
         self._still = np.where(is_still, self._still + 1, 0)
-        self._calm[moved > _CALM] = 0
+        self._calm[calm > _CALM] = 0
         self._moved, self._last = moved, qpos
         if self._looks % _LONG == 0:
-            moved = self._distance(qpos, self._long_ago)
+            moved = self._distance(self._weights * qpos, self._weights * self._long_ago)
             is_calm = (moved <= _CALM) & (moved <= np.maximum(2.0 * self._moved_long, _CALM_FLOOR))
             self._calm = np.where(is_calm, self._calm + 1, 0)
             self._moved_long, self._long_ago = moved, qpos

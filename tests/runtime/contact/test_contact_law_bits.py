@@ -117,7 +117,27 @@ def turning() -> simkit.Simulation:
     return sim
 
 
-WORLDS = {"sliding": sliding, "bouncing": bouncing, "fast": fast, "swinging": swinging, "turning": turning}
+LOG = "<cylinder><radius>0.05</radius><length>0.3</length></cylinder>"
+TABLE = """<model name="table"><static>true</static><pose>1 0 0.1 0 0 0</pose><link name="l"><collision name="c">
+<geometry><box><size>0.4 1 0.2</size></box></geometry></collision></link></model>"""
+
+
+def logs() -> simkit.Simulation:
+    places = ("-0.05 0 0.05 1.5708 0 0.002", "0.05 0.01 0.05 1.5708 0 0", "0 0 0.137 1.5708 0 -0.003")
+    pile = [body(f"log_{i}", place, shape=LOG) for i, place in enumerate(places)]
+    sim = simkit.load(world(TABLE, body("a", "1.19 0 0.25 1.5708 0 0.01", shape=LOG, sensors=SENSORS), *pile))
+    sim.model("a").set_velocity((0.3, 0, 0), (0, 6, 0))
+    return sim
+
+
+WORLDS = {
+    "logs": logs,
+    "sliding": sliding,
+    "bouncing": bouncing,
+    "fast": fast,
+    "swinging": swinging,
+    "turning": turning,
+}
 STEPS = 120
 
 
