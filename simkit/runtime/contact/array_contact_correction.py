@@ -78,9 +78,10 @@ class ArrayContactCorrection:
         self._islands: list[int] = []
         self._iterations: IslandIterations | None = None
 
-    def creeps(self, moves: Floats) -> bool:
+    def creeps(self, moves: Floats, forces: Floats | None = None) -> bool:
         """Check the contacts as `ContactCorrection.creeps` does."""
-        lift = _squared_lift(self._engine[self._places] - moves[self._places], self._mu, self._is_pyramid)
+        required = self._engine if forces is None else self._engine - self._softness * forces
+        lift = _squared_lift(required[self._places] - moves[self._places], self._mu, self._is_pyramid)
         return not (lift > self._tolerances * self._tolerances).any()
 
     def stop_slip(self) -> None:

@@ -68,18 +68,27 @@ class ContactCorrection:
         self._softness: list[float] | None = None
         self._iterations: IslandIterations | None = None
 
-    def creeps(self, moves: Floats) -> bool:
+    def creeps(self, moves: Floats, forces: Floats | None = None) -> bool:
         """Check whether friction may give what the velocities of all contacts require, as under a wheel that creeps.
 
         Args:
-            moves: J a (Jacobian times acceleration) of the previous step, shape (nefc,).
+            moves: J a (Jacobian times acceleration) of the previous step or of the engine's solution, shape (nefc,).
+            forces: constraint forces of the solution, shape (nefc,).
         """
         aref, accelerations = self._before, moves.tolist()
+        if forces is not None:
+            yields = (self._data.efc_R * forces).tolist()
+            aref = [one - other for one, other in zip(aref, yields, strict=True)]
         for row, mus, _, _, _, tolerance in self._contacts:
-            total = 0.0
-            for place, mu in enumerate(mus, row + 1):
-                one = mu * (aref[place] - accelerations[place])
-                total += one * one
+            if len(mus) == 2:
+                one = mus[0] * (aref[row + 1] - accelerations[row + 1])
+                other = mus[1] * (aref[row + 2] - accelerations[row + 2])
+                total = one * one + other * other
+            else:
+                total = 0.0
+                for place, mu in enumerate(mus, row + 1):
+                    one = mu * (aref[place] - accelerations[place])
+                    total += one * one
             if total > tolerance * tolerance:
                 return False
         return True

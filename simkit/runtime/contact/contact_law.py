@@ -203,7 +203,8 @@ class ContactLaw:
         found = self._find(data, closing)
         if found is None or not found.may_creep or not found.creeps(self._multiplied(data, data.qacc_warmstart)):
             return found, False
-        return self._find(data, closing, self._residual(data)), True
+        mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+        return (None if found.creeps(self._multiplied(data, data.qacc), data.efc_force) else found), True
 
     def _residual(self, data: mujoco.MjData) -> Any:
         """Return aref - J a - R f of the engine's solution, shape (nefc,)."""
