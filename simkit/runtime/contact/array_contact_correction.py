@@ -13,9 +13,12 @@ import numpy.typing as npt
 
 from simkit.runtime.contact.anderson_acceleration import IslandIterations
 from simkit.runtime.contact.contact_conditions import (
+    AT_LEAST,
+    AT_MOST,
     CLOSING_SPEED,
     CREEP_LIMIT,
     DEEP_PENETRATION,
+    EXACTLY,
     EXIT_SPEED,
     LIFT_FACTOR,
     MIN_PENETRATION,
@@ -46,7 +49,7 @@ class ArrayContactCorrection:
         edges: rows that carry the normal, shape (k, n); missing rows repeat the first one.
         normals: references of the normals [m/s²], shape (k,), as in `ContactCorrection`.
         goals: requested accelerations [m/s²] or NaN, shape (k,), as in `ContactCorrection`.
-        rebounds: True for exact rebounds, shape (k,), as in `ContactCorrection`.
+        kinds: kinds of these requests, shape (k,), as in `ContactCorrection`.
         tolerances: tolerances of the references [m/s²], shape (k,), as in `ContactCorrection`.
         references: references of all rows, as in `ContactCorrection`.
         may_creep: True if no contact closes, opens, overlaps or slips fast.
@@ -61,14 +64,14 @@ class ArrayContactCorrection:
         edges: Ints,
         normals: Floats,
         goals: Floats,
-        rebounds: npt.NDArray[np.bool_],
+        kinds: Ints,
         tolerances: Floats,
         references: Floats,
         may_creep: bool,
     ) -> None:
         self._data, self._aref, self._softness, self._is_pyramid = data, data.efc_aref, data.efc_R, is_pyramid
         self._places, self._mu, self._edges, self._normals = places, mu, edges, normals
-        self._goals, self._rebounds, self._tolerances, self._references = goals, rebounds, tolerances, references
+        self._goals, self._kinds, self._tolerances, self._references = goals, kinds, tolerances, references
         self._has_goal = ~np.isnan(goals)
         self._has_goals = bool(self._has_goal.any())
         self._engine, self.may_creep = self._aref.copy(), may_creep
@@ -102,7 +105,7 @@ class ArrayContactCorrection:
         if self._has_goals:
             impedance = self._data.efc_KBIP[self._edges[:, 0], 2]
             yields = (1.0 - impedance) / impedance * np.maximum(0.0, self._goals - accelerations)
-            closes = self._has_goal & (normals < self._goals)
+            closes = self._has_goal & (self._kinds != AT_MOST)
             largest = np.where(closes, np.maximum(largest, self._goals), largest)
             normals = self._limited(yields)
         self._islands = islands_of(self._data, self._edges[:, 0].tolist())
@@ -111,7 +114,7 @@ class ArrayContactCorrection:
 
     def correct(self, moves: Floats, forces: Floats) -> bool:
         """Set references as `ContactCorrection.correct` does."""
-        places, edges, normals = self._places, self._edges, self._normals
+        places, normals = self._places, self._normals
         residual = self._tangents - moves[places] - self._softness[places] * forces[places]
         if self._has_goals:
             normals = self._limited(self._along(self._softness * forces))
@@ -120,13 +123,25 @@ class ArrayContactCorrection:
         wrong = (np.abs(now - self._requested) > self._tolerances).nonzero()[0].tolist()
         if not wrong:
             return True
-        islands = self._islands
+        unsettled = dict.fromkeys(self._islands[place] for place in wrong)
         if self._iterations is None:
-            mus = self._mu[:, 0].tolist() if self._mu.shape[1] else [0.0] * len(edges)
+            now, islands = self._leave(unsettled, now), self._islands
+            mus = self._mu[:, 0].tolist() if self._mu.shape[1] else [0.0] * len(islands)
             self._iterations = IslandIterations(islands, relaxation(islands, self._goals.tolist(), mus))
-        unsettled = dict.fromkeys(islands[place] for place in wrong)
         self._set_references(np.array(self._iterations.next(self._requested.tolist(), now.tolist(), unsettled)))
         return False
+
+    def _leave(self, unsettled: dict[int, None], results: Floats) -> Floats:
+        """Leave only some contacts as `ContactCorrection._leave` does."""
+        kept = [place for place, island in enumerate(self._islands) if island in unsettled]
+        if len(kept) < len(self._islands):
+            self._islands = [self._islands[place] for place in kept]
+            self._places, self._edges, self._mu = self._places[kept], self._edges[kept], self._mu[kept]
+            self._normals, self._goals, self._kinds = self._normals[kept], self._goals[kept], self._kinds[kept]
+            self._tangents, self._before = self._tangents[kept], self._before[kept]
+            self._tolerances, self._requested = self._tolerances[kept], self._requested[kept]
+            self._has_goal, results = self._has_goal[kept], results[kept]
+        return results
 
     def settle(self) -> None:
         """Choose references as `ContactCorrection.settle` does."""
@@ -148,9 +163,10 @@ class ArrayContactCorrection:
 
     def _limited(self, yields: Floats) -> Floats:
         """Return the normal references with requested accelerations, as `contact_correction._limited` does."""
-        normals, wanted = self._normals, self._goals + yields
-        limited = np.where(normals < self._goals, np.maximum(normals, wanted), np.minimum(normals, wanted))
-        return np.where(self._has_goal, np.where(self._rebounds, wanted, limited), normals)
+        normals, wanted, kinds = self._normals, self._goals + yields, self._kinds
+        limited = np.where(kinds == AT_MOST, np.minimum(normals, wanted), wanted)
+        limited = np.where(kinds == AT_LEAST, np.maximum(normals, wanted), limited)
+        return np.where(self._has_goal, limited, normals)
 
     def _set_references(self, normals: Floats) -> None:
         self._requested = normals
@@ -208,7 +224,7 @@ def find_array_correction(
     if found is None:
         return None
     _, there, places, mu, edges, normals, speed, depth, lift = found
-    goals, rebounds = _goals(data, around, found)
+    goals, kinds = _goals(data, around, found)
     stops = (speed < CLOSING_SPEED) | (lift > around.tolerance * around.tolerance)
     stops &= there.any(axis=1) & (goals != NO_FORCE)
     references = data.efc_aref.copy()
@@ -238,7 +254,7 @@ def find_array_correction(
     mu = np.where(slides[:, None], mu, 0.0)[chosen]
     fast = CREEP_LIMIT * CREEP_LIMIT * (around.tolerance * around.tolerance)
     may_creep = not (lift > fast).any() and bool(np.isnan(goals).all())
-    rest = (edges[chosen], normals[chosen], goals[chosen], rebounds[chosen], tolerances[chosen], references, may_creep)
+    rest = (edges[chosen], normals[chosen], goals[chosen], kinds[chosen], tolerances[chosen], references, may_creep)
     return ArrayContactCorrection(data, is_pyramid, places[chosen], mu, *rest)
 
 
@@ -277,26 +293,28 @@ def _candidates(
     return _Candidates(*(each[matters] for each in every))
 
 
-def _goals(data: mujoco.MjData, around: ContactConditions, found: _Candidates) -> tuple[Floats, npt.NDArray[np.bool_]]:
-    """Return the requested accelerations of contacts [m/s²] or NaN, and whether they rebound, each of shape (k,)."""
+def _goals(data: mujoco.MjData, around: ContactConditions, found: _Candidates) -> tuple[Floats, Ints]:
+    """Return the requested accelerations of contacts [m/s²] or NaN, and their kinds, each of shape (k,)."""
     contact, step, numbers, normals, speed = data.contact, around.step, found.numbers, found.normals, found.speed
     closes, after = speed < CLOSING_SPEED, speed
     if around.closing is not None:
         geoms = np.array(around.closing)[contact.geom[numbers]]
         left = geoms[:, 0] + geoms[:, 1]
         after = np.where(closes & (speed < -left), speed + left, speed)
-    is_late = closes & (normals < -after / step)
-    wanted = np.where(is_late, -after / step, np.maximum(0.0, (EXIT_SPEED - after) / step))
+    wanted = np.maximum(0.0, (EXIT_SPEED - after) / step)
+    is_late = closes & (normals <= wanted)
     is_fast = (normals > wanted) & (closes | (speed > OPENING_SPEED) | (found.depth > DEEP_PENETRATION))
     constants = contact.solref[numbers, 0]
     is_rigid = (constants > 0.0) & (constants <= around.softest)
     goals = np.where(np.where(is_late, found.depth >= 0.0, is_fast) & is_rigid, wanted, np.nan)
+    goals = np.where(is_late & (goals == wanted), -after / step, goals)
+    kinds = np.where(is_late, AT_LEAST, AT_MOST)
     if around.inner:
         goals = np.where(np.isin(numbers, list(around.inner)), NO_FORCE, goals)
-    rebounds = closes & (constants <= 0.0)
-    for index in rebounds.nonzero()[0].tolist():
-        goals[index] = rebound(data, int(numbers[index]), float(speed[index]), around)
-    return goals, rebounds
+        kinds = np.where(goals == NO_FORCE, AT_MOST, kinds)
+    for index in (closes & (constants <= 0.0)).nonzero()[0].tolist():
+        goals[index], kinds[index] = rebound(data, int(numbers[index]), float(speed[index]), around), EXACTLY
+    return goals, kinds
 
 
 AnyContactCorrection = ContactCorrection | ArrayContactCorrection

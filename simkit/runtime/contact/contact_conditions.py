@@ -24,6 +24,15 @@ OPENING_SPEED: Final = 0.2 * EXIT_SPEED
 CLOSING_SPEED: Final = -EXIT_SPEED
 """Speed along the normal [m/s] below which a contact counts as closing fast."""
 
+EXACTLY: Final = 0
+"""Kind of a requested acceleration: the contact gets it exactly, in a rebound."""
+
+AT_LEAST: Final = 1
+"""Kind of a requested acceleration: a closing contact gets at least this, so that it stops."""
+
+AT_MOST: Final = -1
+"""Kind of a requested acceleration: an opening contact gets at most this."""
+
 HIT_ACCURACY: Final = 0.01
 """Accuracy of the correction, in units of the largest acceleration along a normal of the island.
 

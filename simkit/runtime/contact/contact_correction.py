@@ -14,9 +14,12 @@ import numpy.typing as npt
 
 from simkit.runtime.contact.anderson_acceleration import IslandIterations
 from simkit.runtime.contact.contact_conditions import (
+    AT_LEAST,
+    AT_MOST,
     CLOSING_SPEED,
     CREEP_LIMIT,
     DEEP_PENETRATION,
+    EXACTLY,
     EXIT_SPEED,
     HIT_ACCURACY,
     LIFT_FACTOR,
@@ -32,14 +35,14 @@ from simkit.runtime.contact.contact_conditions import (
 
 Floats = npt.NDArray[np.float64]
 
-CorrectedContact = tuple[int, list[float], float, float, bool, float]
+CorrectedContact = tuple[int, list[float], float, float, int, float]
 """Contact whose normal reference is corrected.
 
 - Row of the normal.
 - Friction coefficients; empty if the contact does not slide.
 - Reference of the normal [m/s²].
 - Requested acceleration along the normal [m/s²]; NaN keeps the reference.
-- True for an exact rebound.
+- Kind of this request: `EXACTLY`, `AT_LEAST` or `AT_MOST`.
 - Tolerance of the reference [m/s²].
 """
 
@@ -109,7 +112,7 @@ class ContactCorrection:
         """
         accelerations, before = moves.tolist(), self._references
         after, requested, largest = before.copy(), [], []
-        for row, mus, normal, goal, rebounds, _ in self._contacts:
+        for row, mus, normal, goal, kind, _ in self._contacts:
             if len(mus) == 2:  # unrolled for the usual two tangents: saves a third of the loop's time
                 one = mus[0] * (before[row + 1] - accelerations[row + 1])
                 other = mus[1] * (before[row + 2] - accelerations[row + 2])
@@ -124,9 +127,9 @@ class ContactCorrection:
             if goal == goal:
                 impedance = self._data.efc_KBIP.item(row, 2)
                 yields = (1.0 - impedance) / impedance * max(0.0, goal - acceleration)
-                if normal < goal:  # it closes
+                if kind != AT_MOST:  # it closes
                     most = max(most, goal)
-                normal = _limited(normal, goal, goal + yields, rebounds)
+                normal = _limited(normal, goal + yields, kind)
             after[row] = now = normal - math.sqrt(total)
             requested.append(now)
             largest.append(most)
@@ -151,11 +154,11 @@ class ContactCorrection:
             self._softness = softness = self._data.efc_R.tolist()
         results: list[float] = []
         wrong: list[int] = []
-        for (row, mus, normal, goal, rebounds, _), last, most in zip(
+        for (row, mus, normal, goal, kind, _), last, most in zip(
             self._contacts, self._requested, self._tolerances, strict=True
         ):
             if goal == goal:
-                normal = _limited(normal, goal, goal + softness[row] * force[row], rebounds)
+                normal = _limited(normal, goal + softness[row] * force[row], kind)
             if force[row] <= 0.0 and accelerations[row] >= normal:
                 results.append(last)  # open, and open with every smaller reference
                 continue
@@ -176,15 +179,26 @@ class ContactCorrection:
                 wrong.append(len(results) - 1)
         if not wrong:
             return True
-        islands = self._islands
+        unsettled = dict.fromkeys(self._islands[place] for place in wrong)
         if self._iterations is None:
+            results = self._leave(unsettled, results)
             goals = [contact[3] for contact in self._contacts]
             first = [contact[1][0] if contact[1] else 0.0 for contact in self._contacts]
-            weights = relaxation(islands, goals, first)
-            self._iterations = IslandIterations(islands, weights)
-        unsettled = dict.fromkeys(islands[place] for place in wrong)
+            weights = relaxation(self._islands, goals, first)
+            self._iterations = IslandIterations(self._islands, weights)
         self._set_references(self._iterations.next(self._requested, results, unsettled))
         return False
+
+    def _leave(self, unsettled: dict[int, None], results: list[float]) -> list[float]:
+        """Leave only the contacts of islands that have not converged, and return their results."""
+        kept = [place for place, island in enumerate(self._islands) if island in unsettled]
+        if len(kept) < len(self._islands):
+            self._contacts = [self._contacts[place] for place in kept]
+            self._requested = [self._requested[place] for place in kept]
+            self._tolerances = [self._tolerances[place] for place in kept]
+            self._islands = [self._islands[place] for place in kept]
+            results = [results[place] for place in kept]
+        return results
 
     def settle(self) -> None:
         """Use the references with the smallest residual, or the engine's references if this residual is large."""
@@ -213,20 +227,17 @@ def restore_islands(data: mujoco.MjData, references: Floats, islands: list[int])
         data.efc_aref[rows] = references[rows]
 
 
-def _limited(normal: float, goal: float, wanted: float, rebounds: bool) -> float:
+def _limited(normal: float, wanted: float, kind: int) -> float:
     """Return the reference of a contact with a requested acceleration.
-
-    A closing contact may get a larger reference, so that it stops; an opening contact only a smaller one.
 
     Args:
         normal: reference of the engine [m/s²].
-        goal: requested acceleration along the normal [m/s²].
         wanted: requested acceleration plus the part that the softness of the contact takes [m/s²].
-        rebounds: True for an exact rebound.
+        kind: kind of the request.
     """
-    if rebounds:
-        return wanted
-    return max(normal, wanted) if normal < goal else min(normal, wanted)
+    if kind == AT_LEAST:
+        return max(normal, wanted)
+    return min(normal, wanted) if kind == AT_MOST else wanted
 
 
 def find_correction(
@@ -254,7 +265,7 @@ def find_correction(
         if row < 0:
             continue
         if number in inner:
-            found.append((row, [], aref[row], NO_FORCE, False, around.tolerance))
+            found.append((row, [], aref[row], NO_FORCE, AT_MOST, around.tolerance))
             may_creep = False
             continue
         dim, mus = dims[number], friction[number]
@@ -280,30 +291,29 @@ def find_correction(
                 total *= share * share
             for place in range(row + 1, row + dim):
                 references[place] = share * aref[place]
-        normal, goal, after, rebounds = aref[row], nothing, speed, False
+        normal, goal, after, kind = aref[row], nothing, speed, AT_MOST
         if not is_quiet:
             if closes and closing is not None:  # a geom that is stopped before the surface approaches it slowly
                 first, second = contact.geom[number].tolist()
                 left = closing[first] + closing[second]
                 after = speed + left if speed < -left else speed
-            if closes and normal < -after / step:
-                wanted, is_wrong = -after / step, depth >= 0.0
+            wanted = max(0.0, (EXIT_SPEED - after) / step)
+            if closes and normal <= wanted:
+                wanted, is_wrong, kind = -after / step, depth >= 0.0, AT_LEAST
             else:
-                wanted = max(0.0, (EXIT_SPEED - after) / step)
                 is_wrong = normal > wanted and (closes or speed > OPENING_SPEED or depth > DEEP_PENETRATION)
             constant = contact.solref.item(number, 0) if closes or is_wrong else 0.0
             if constant > 0.0:
                 goal = wanted if is_wrong and constant <= around.softest else nothing
             elif closes:
-                goal = rebound(data, number, speed, around)
-                rebounds = goal == goal
+                goal, kind = rebound(data, number, speed, around), EXACTLY
             if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
                 impedance = data.efc_KBIP.item(row, 2)
                 tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
         if total > fast or goal == goal:
             may_creep = False
         if total > tolerance * tolerance:
-            found.append((row, mus[: dim - 1], normal, goal, rebounds, tolerance))
+            found.append((row, mus[: dim - 1], normal, goal, kind, tolerance))
         elif goal == goal:
-            found.append((row, [], normal, goal, rebounds, tolerance))
+            found.append((row, [], normal, goal, kind, tolerance))
     return ContactCorrection(data, found, aref, references, may_creep) if found else None
