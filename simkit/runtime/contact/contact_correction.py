@@ -35,7 +35,7 @@ from simkit.runtime.contact.contact_conditions import (
 
 Floats = npt.NDArray[np.float64]
 
-CorrectedContact = tuple[int, list[float], float, float, int, float]
+CorrectedContact = tuple[int, list[float], float, float, int]
 """Contact whose normal reference is corrected.
 
 - Row of the normal.
@@ -43,7 +43,6 @@ CorrectedContact = tuple[int, list[float], float, float, int, float]
 - Reference of the normal [m/s²].
 - Requested acceleration along the normal [m/s²]; NaN keeps the reference.
 - Kind of this request: `EXACTLY`, `AT_LEAST` or `AT_MOST`.
-- Tolerance of the reference [m/s²].
 """
 
 
@@ -53,23 +52,27 @@ class ContactCorrection:
     Args:
         data: MuJoCo's data.
         contacts: corrected contacts; see `CorrectedContact`.
+        tolerances: tolerances of their references [m/s²].
         before: references of the engine, of all rows.
         references: the same, but the friction of sliding and closing contacts stops their slip within the step.
         may_creep: True if no contact closes, opens, overlaps or slips fast.
     """
 
+    _softness: list[float] | None = None
+    _iterations: IslandIterations | None = None
+
     def __init__(
         self,
         data: mujoco.MjData,
         contacts: list[CorrectedContact],
+        tolerances: list[float],
         before: list[float],
         references: list[float],
         may_creep: bool,
     ) -> None:
-        self._data, self._aref, self._contacts, self.may_creep = data, data.efc_aref, contacts, may_creep
+        self._data, self._aref, self._contacts, self._tolerances = data, data.efc_aref, contacts, tolerances
+        self.may_creep = may_creep
         self._before, self._references, self._engine = before, references, self._aref.copy()
-        self._softness: list[float] | None = None
-        self._iterations: IslandIterations | None = None
 
     def creeps(self, moves: Floats, forces: Floats | None = None) -> bool:
         """Check whether friction may give what the velocities of all contacts require, as under a wheel that creeps.
@@ -82,7 +85,7 @@ class ContactCorrection:
         if forces is not None:
             yields = (self._data.efc_R * forces).tolist()
             aref = [one - other for one, other in zip(aref, yields, strict=True)]
-        for row, mus, _, _, _, tolerance in self._contacts:
+        for (row, mus, _, _, _), tolerance in zip(self._contacts, self._tolerances, strict=True):
             if len(mus) == 2:
                 one = mus[0] * (aref[row + 1] - accelerations[row + 1])
                 other = mus[1] * (aref[row + 2] - accelerations[row + 2])
@@ -112,7 +115,8 @@ class ContactCorrection:
         """
         accelerations, before = moves.tolist(), self._references
         after, requested, largest = before.copy(), [], []
-        for row, mus, normal, goal, kind, _ in self._contacts:
+        contacts, data = self._contacts, self._data
+        for row, mus, normal, goal, kind in contacts:
             if len(mus) == 2:  # unrolled for the usual two tangents: saves a third of the loop's time
                 one = mus[0] * (before[row + 1] - accelerations[row + 1])
                 other = mus[1] * (before[row + 2] - accelerations[row + 2])
@@ -125,7 +129,7 @@ class ContactCorrection:
             acceleration = accelerations[row]
             most = abs(acceleration)
             if goal == goal:
-                impedance = self._data.efc_KBIP.item(row, 2)
+                impedance = data.efc_KBIP.item(row, 2)
                 yields = (1.0 - impedance) / impedance * max(0.0, goal - acceleration)
                 if kind != AT_MOST:  # it closes
                     most = max(most, goal)
@@ -134,12 +138,12 @@ class ContactCorrection:
             requested.append(now)
             largest.append(most)
         self._aref[:], self._requested = after, requested
-        self._tolerances = [contact[5] for contact in self._contacts]
-        if self._data.nisland < 2 and HIT_ACCURACY * max(largest) <= min(self._tolerances):
+        tolerances = self._tolerances
+        if data.nisland < 2 and HIT_ACCURACY * max(largest) <= min(tolerances):
             self._islands = [0] * len(largest)
         else:
-            self._islands = islands_of(self._data, [contact[0] for contact in self._contacts])
-            self._tolerances = raise_tolerances(self._tolerances, self._islands, largest)
+            self._islands = islands_of(data, [contact[0] for contact in contacts])
+            self._tolerances = raise_tolerances(tolerances, self._islands, largest)
 
     def correct(self, moves: Floats, forces: Floats) -> bool:
         """Set references from a solution; return True if they stay within the tolerances.
@@ -154,7 +158,7 @@ class ContactCorrection:
             self._softness = softness = self._data.efc_R.tolist()
         results: list[float] = []
         wrong: list[int] = []
-        for (row, mus, normal, goal, kind, _), last, most in zip(
+        for (row, mus, normal, goal, kind), last, most in zip(
             self._contacts, self._requested, self._tolerances, strict=True
         ):
             if goal == goal:
@@ -214,7 +218,7 @@ class ContactCorrection:
 
     def _set_references(self, normals: list[float]) -> None:
         self._requested, aref = normals, self._aref
-        for (row, _, _, _, _, _), now in zip(self._contacts, normals, strict=True):
+        for (row, _, _, _, _), now in zip(self._contacts, normals, strict=True):
             aref[row] = now
 
 
@@ -257,6 +261,7 @@ def find_correction(
     slip: list[float] = aref if residual is None else residual.tolist()
     distance: list[float] = contact.dist.tolist()
     found: list[CorrectedContact] = []
+    tolerances: list[float] = []
     references = aref.copy()
     nothing, square, least = math.nan, around.tolerance * around.tolerance, around.least_damping
     damping: list[float] | None = None
@@ -265,7 +270,8 @@ def find_correction(
         if row < 0:
             continue
         if number in inner:
-            found.append((row, [], aref[row], NO_FORCE, AT_MOST, around.tolerance))
+            found.append((row, [], aref[row], NO_FORCE, AT_MOST))
+            tolerances.append(around.tolerance)
             may_creep = False
             continue
         dim, mus = dims[number], friction[number]
@@ -285,35 +291,44 @@ def find_correction(
         if damping is None:
             damping = data.efc_KBIP[:, 1].tolist()
         # a tangent with a damping of its own slips by its compliance
-        if dim > 1 and (closes or total > square) and least <= damping[row] == damping[row + 1]:
-            share = 1.0 / (damping[row] * step)
+        rate = damping[row]
+        if (closes or total > square) and rate >= least and dim > 1 and rate == damping[row + 1]:
+            share = 1.0 / (rate * step)
             if residual is None:
                 total *= share * share
-            for place in range(row + 1, row + dim):
-                references[place] = share * aref[place]
-        normal, goal, after, kind = aref[row], nothing, speed, AT_MOST
-        if not is_quiet:
-            if closes and closing is not None:  # a geom that is stopped before the surface approaches it slowly
-                first, second = contact.geom[number].tolist()
-                left = closing[first] + closing[second]
-                after = speed + left if speed < -left else speed
-            wanted = max(0.0, (EXIT_SPEED - after) / step)
-            if closes and normal <= wanted:
-                wanted, is_wrong, kind = -after / step, depth >= 0.0, AT_LEAST
+            if dim == 3:
+                references[row + 1], references[row + 2] = share * aref[row + 1], share * aref[row + 2]
             else:
-                is_wrong = normal > wanted and (closes or speed > OPENING_SPEED or depth > DEEP_PENETRATION)
-            constant = contact.solref.item(number, 0) if closes or is_wrong else 0.0
-            if constant > 0.0:
-                goal = wanted if is_wrong and constant <= around.softest else nothing
-            elif closes:
-                goal, kind = rebound(data, number, speed, around), EXACTLY
-            if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
-                impedance = data.efc_KBIP.item(row, 2)
-                tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
-        if total > fast or goal == goal:
+                references[row + 1 : row + dim] = [share * one for one in aref[row + 1 : row + dim]]
+        if total > fast:
             may_creep = False
-        if total > tolerance * tolerance:
-            found.append((row, mus[: dim - 1], normal, goal, kind, tolerance))
-        elif goal == goal:
-            found.append((row, [], normal, goal, kind, tolerance))
-    return ContactCorrection(data, found, aref, references, may_creep) if found else None
+        if is_quiet:
+            if total > square:
+                found.append((row, mus[: dim - 1], aref[row], nothing, AT_MOST))
+                tolerances.append(tolerance)
+            continue
+        normal, goal, after, kind = aref[row], nothing, speed, AT_MOST
+        if closes and closing is not None:  # a geom that is stopped before the surface approaches it slowly
+            first, second = contact.geom[number].tolist()
+            left = closing[first] + closing[second]
+            after = speed + left if speed < -left else speed
+        wanted = max(0.0, (EXIT_SPEED - after) / step)
+        if closes and normal <= wanted:
+            wanted, is_wrong, kind = -after / step, depth >= 0.0, AT_LEAST
+        else:
+            is_wrong = normal > wanted and (closes or speed > OPENING_SPEED or depth > DEEP_PENETRATION)
+        constant = contact.solref.item(number, 0) if closes or is_wrong else 0.0
+        if constant > 0.0:
+            goal = wanted if is_wrong and constant <= around.softest else nothing
+        elif closes:
+            goal, kind = rebound(data, number, speed, around), EXACTLY
+        if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
+            impedance = data.efc_KBIP.item(row, 2)
+            tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
+        if goal == goal:
+            may_creep = False
+        if total > tolerance * tolerance or goal == goal:
+            mus = mus[: dim - 1] if total > tolerance * tolerance else []
+            found.append((row, mus, normal, goal, kind))
+            tolerances.append(tolerance)
+    return ContactCorrection(data, found, tolerances, aref, references, may_creep) if found else None
