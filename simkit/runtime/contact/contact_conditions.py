@@ -33,11 +33,11 @@ AT_LEAST: Final = 1
 AT_MOST: Final = -1
 """Kind of a requested acceleration: an opening contact gets at most this."""
 
-HIT_ACCURACY: Final = 0.01
+HIT_ACCURACY: Final = 0.002
 """Accuracy of the correction, in units of the largest acceleration along a normal of the island.
 
-It applies during a hit and in the step after it. A hit at 1 m/s then leaves at most 1 cm/s along the normal, which
-lifts a body by 5 µm.
+It applies during a hit and in the step after it. A hit at 1 m/s then leaves at most 2 mm/s along the normal, which
+lifts a body by 0.2 µm.
 """
 
 CREEP_LIMIT: Final = 50.0
