@@ -266,6 +266,7 @@ def find_correction(
     nothing, square, least = math.nan, around.tolerance * around.tolerance, around.least_damping
     damping: list[float] | None = None
     fast, may_creep = CREEP_LIMIT * CREEP_LIMIT * square, True
+    last, share = math.nan, 1.0
     for number, row in enumerate(all_rows):
         if row < 0:
             continue
@@ -293,13 +294,16 @@ def find_correction(
         # a tangent with a damping of its own slips by its compliance
         rate = damping[row]
         if (closes or total > square) and rate >= least and dim > 1 and rate == damping[row + 1]:
-            share = 1.0 / (rate * step)
+            if rate != last:
+                last, share = rate, 1.0 / (rate * step)
             if residual is None:
                 total *= share * share
-            if dim == 3:
-                references[row + 1], references[row + 2] = share * aref[row + 1], share * aref[row + 2]
-            else:
-                references[row + 1 : row + dim] = [share * one for one in aref[row + 1 : row + dim]]
+            place = row + 1
+            references[place] = share * aref[place]
+            place += 1
+            references[place] = share * aref[place]
+            for place in range(row + 3, row + dim):
+                references[place] = share * aref[place]
         if total > fast:
             may_creep = False
         if is_quiet:
