@@ -244,6 +244,45 @@ def _limited(normal: float, wanted: float, kind: int) -> float:
     return min(normal, wanted) if kind == AT_MOST else wanted
 
 
+def _request(
+    data: mujoco.MjData, around: ContactConditions, number: int, row: int, normal: float, speed: float
+) -> tuple[float, int, float]:
+    """Return the requested acceleration of a contact that closes, opens or overlaps.
+
+    Args:
+        data: MuJoCo's data.
+        around: conditions of the correction.
+        number: number of the contact.
+        row: row of its normal.
+        normal: reference of this row [m/s²].
+        speed: speed along the normal [m/s].
+
+    Returns:
+        Acceleration [m/s²] or NaN, kind of the request, and tolerance of the reference [m/s²].
+    """
+    contact, step, closing = data.contact, around.step, around.closing
+    depth, closes, after = -contact.dist.item(number), speed < CLOSING_SPEED, speed
+    goal, kind, tolerance = math.nan, AT_MOST, around.tolerance
+    if closes and closing is not None:  # a geom that is stopped before the surface still approaches it slowly
+        first, second = contact.geom[number].tolist()
+        left = closing[first] + closing[second]
+        after = speed + left if speed < -left else speed
+    wanted = max(0.0, (EXIT_SPEED - after) / step)
+    if closes and normal <= wanted:
+        wanted, is_wrong, kind = -after / step, depth >= 0.0, AT_LEAST
+    else:
+        is_wrong = normal > wanted and (closes or speed > OPENING_SPEED or depth > DEEP_PENETRATION)
+    constant = contact.solref.item(number, 0) if closes or is_wrong else 0.0
+    if constant > 0.0:
+        goal = wanted if is_wrong and constant <= around.softest else math.nan
+    elif closes:
+        goal, kind = rebound(data, number, speed, around), EXACTLY
+    if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
+        impedance = data.efc_KBIP.item(row, 2)
+        tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
+    return goal, kind, tolerance
+
+
 def find_correction(
     data: mujoco.MjData, around: ContactConditions, residual: Floats | None = None
 ) -> ContactCorrection | None:
@@ -255,7 +294,7 @@ def find_correction(
         residual: aref - J a - R f of a solution, shape (nefc,), for contacts that only begin to slide. Without it, the
             velocity decides whether a contact slides.
     """
-    contact, step, closing, inner = data.contact, around.step, around.closing, around.inner
+    contact, step, inner = data.contact, around.step, around.inner
     all_rows, dims, friction = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
     aref, velocity = data.efc_aref.tolist(), data.efc_vel.tolist()
     slip: list[float] = aref if residual is None else residual.tolist()
@@ -284,55 +323,28 @@ def find_correction(
             for place in range(1, dim):
                 one = mus[place - 1] * slip[row + place]
                 total += one * one
-        speed, depth = velocity[row], -distance[number]
-        is_quiet = CLOSING_SPEED <= speed <= OPENING_SPEED and depth <= MIN_PENETRATION
+        speed = velocity[row]
+        is_quiet = CLOSING_SPEED <= speed <= OPENING_SPEED and -distance[number] <= MIN_PENETRATION
         if is_quiet and total <= square:  # the most frequent case
             continue
-        closes, tolerance = speed < CLOSING_SPEED, around.tolerance
         if damping is None:
             damping = data.efc_KBIP[:, 1].tolist()
         # a tangent with a damping of its own slips by its compliance
         rate = damping[row]
-        if (closes or total > square) and rate >= least and dim > 1 and rate == damping[row + 1]:
+        if (total > square or speed < CLOSING_SPEED) and rate >= least and dim > 1 and rate == damping[row + 1]:
             if rate != last:
                 last, share = rate, 1.0 / (rate * step)
             if residual is None:
                 total *= share * share
-            place = row + 1
-            references[place] = share * aref[place]
-            place += 1
-            references[place] = share * aref[place]
-            for place in range(row + 3, row + dim):
+            for place in range(row + 1, row + dim):
                 references[place] = share * aref[place]
-        if total > fast:
+        goal, kind, tolerance = nothing, AT_MOST, around.tolerance
+        if not is_quiet:
+            goal, kind, tolerance = _request(data, around, number, row, aref[row], speed)
+        if total > fast or goal == goal:
             may_creep = False
-        if is_quiet:
-            if total > square:
-                found.append((row, mus[: dim - 1], aref[row], nothing, AT_MOST))
-                tolerances.append(tolerance)
-            continue
-        normal, goal, after, kind = aref[row], nothing, speed, AT_MOST
-        if closes and closing is not None:  # a geom that is stopped before the surface approaches it slowly
-            first, second = contact.geom[number].tolist()
-            left = closing[first] + closing[second]
-            after = speed + left if speed < -left else speed
-        wanted = max(0.0, (EXIT_SPEED - after) / step)
-        if closes and normal <= wanted:
-            wanted, is_wrong, kind = -after / step, depth >= 0.0, AT_LEAST
-        else:
-            is_wrong = normal > wanted and (closes or speed > OPENING_SPEED or depth > DEEP_PENETRATION)
-        constant = contact.solref.item(number, 0) if closes or is_wrong else 0.0
-        if constant > 0.0:
-            goal = wanted if is_wrong and constant <= around.softest else nothing
-        elif closes:
-            goal, kind = rebound(data, number, speed, around), EXACTLY
-        if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
-            impedance = data.efc_KBIP.item(row, 2)
-            tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
-        if goal == goal:
-            may_creep = False
-        if total > tolerance * tolerance or goal == goal:
-            mus = mus[: dim - 1] if total > tolerance * tolerance else []
-            found.append((row, mus, normal, goal, kind))
+        slides = total > tolerance * tolerance
+        if slides or goal == goal:
+            found.append((row, mus[: dim - 1] if slides else [], aref[row], goal, kind))
             tolerances.append(tolerance)
     return ContactCorrection(data, found, tolerances, aref, references, may_creep) if found else None
