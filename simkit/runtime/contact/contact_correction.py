@@ -1,4 +1,4 @@
-"""Correction of the normal references of contacts by the contact law, on plain numbers or arrays.
+"""Correction of the normal references of contacts by the contact law, on plain numbers.
 
 `ArrayContactCorrection` is the same law on arrays, with the same bits. Plain numbers are faster for up to about 60
 contacts: an array of four numbers costs as much as one of four hundred.
@@ -7,38 +7,42 @@ contacts: an array of four numbers costs as much as one of four hundred.
 from __future__ import annotations
 
 import math
-from typing import Any, Final
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.runtime.contact.anderson_acceleration import AndersonAcceleration
+from simkit.runtime.contact.anderson_acceleration import IslandIterations
 from simkit.runtime.contact.contact_conditions import (
-    CLOSING_ACCURACY,
+    AT_LEAST,
+    AT_MOST,
     CLOSING_SPEED,
+    CREEP_LIMIT,
     DEEP_PENETRATION,
+    EXACTLY,
     EXIT_SPEED,
+    HIT_ACCURACY,
     LIFT_FACTOR,
     MIN_PENETRATION,
     NO_FORCE,
     OPENING_SPEED,
     ContactConditions,
+    islands_of,
+    raise_tolerances,
     rebound,
+    relaxation,
 )
 
 Floats = npt.NDArray[np.float64]
 
-
-CorrectedContact = tuple[int, list[float], float, float, bool, float]
+CorrectedContact = tuple[int, list[float], float, float, int]
 """Contact whose normal reference is corrected.
 
 - Row of the normal.
 - Friction coefficients; empty if the contact does not slide.
 - Reference of the normal [m/s²].
 - Requested acceleration along the normal [m/s²]; NaN keeps the reference.
-- True for an exact rebound.
-- Tolerance of the reference [m/s²].
+- Kind of this request: `EXACTLY`, `AT_LEAST` or `AT_MOST`.
 """
 
 
@@ -48,15 +52,60 @@ class ContactCorrection:
     Args:
         data: MuJoCo's data.
         contacts: corrected contacts; see `CorrectedContact`.
-        changed: other changed rows with their previous references.
+        tolerances: tolerances of their references [m/s²].
+        before: references of the engine, of all rows.
+        references: the same, but the friction of sliding and closing contacts stops their slip within the step.
+        may_creep: True if no contact closes, opens, overlaps or slips fast.
     """
 
-    def __init__(self, data: mujoco.MjData, contacts: list[CorrectedContact], changed: list[tuple[int, float]]) -> None:
-        self._data, self._aref, self._contacts, self._changed = data, data.efc_aref, contacts, changed
-        self._before: list[float] = []
-        self._softness: list[float] = []
-        self._requested: list[float] = []
-        self._sequence: AndersonAcceleration | None = None
+    _softness: list[float] | None = None
+    _iterations: IslandIterations | None = None
+
+    def __init__(
+        self,
+        data: mujoco.MjData,
+        contacts: list[CorrectedContact],
+        tolerances: list[float],
+        before: list[float],
+        references: list[float],
+        may_creep: bool,
+    ) -> None:
+        self._data, self._aref, self._contacts, self._tolerances = data, data.efc_aref, contacts, tolerances
+        self.may_creep = may_creep
+        self._before, self._references, self._engine = before, references, self._aref.copy()
+
+    def creeps(self, moves: Floats, forces: Floats | None = None) -> bool:
+        """Check whether friction may give what the velocities of all contacts require, as under a wheel that creeps.
+
+        Args:
+            moves: J a (Jacobian times acceleration) of the previous step or of the engine's solution, shape (nefc,).
+            forces: constraint forces of the solution, shape (nefc,).
+        """
+        aref, accelerations = self._before, moves.tolist()
+        if forces is not None:
+            yields = (self._data.efc_R * forces).tolist()
+            aref = [one - other for one, other in zip(aref, yields, strict=True)]
+        for (row, mus, _, _, _), tolerance in zip(self._contacts, self._tolerances, strict=True):
+            if len(mus) == 2:
+                one = mus[0] * (aref[row + 1] - accelerations[row + 1])
+                other = mus[1] * (aref[row + 2] - accelerations[row + 2])
+                total = one * one + other * other
+            else:
+                total = 0.0
+                for place, mu in enumerate(mus, row + 1):
+                    one = mu * (aref[place] - accelerations[place])
+                    total += one * one
+            if total > tolerance * tolerance:
+                return False
+        return True
+
+    def stop_slip(self) -> None:
+        """Set the references of the tangents, so that other rules can change them; `read_references` must follow."""
+        self._aref[:] = self._references
+
+    def read_references(self) -> None:
+        """Read the references that other rules have changed."""
+        self._references = self._aref.tolist()
 
     def guess(self, moves: Floats) -> None:
         """Set references from an estimate of J a (Jacobian times acceleration), before any forces are known.
@@ -64,9 +113,10 @@ class ContactCorrection:
         Args:
             moves: estimate of J a, shape (nefc,).
         """
-        accelerations, aref, requested = moves.tolist(), self._aref, self._requested
-        self._before = before = aref.tolist()
-        for row, mus, normal, goal, _, _ in self._contacts:
+        accelerations, before = moves.tolist(), self._references
+        after, requested, largest = before.copy(), [], []
+        contacts, data = self._contacts, self._data
+        for row, mus, normal, goal, kind in contacts:
             if len(mus) == 2:  # unrolled for the usual two tangents: saves a third of the loop's time
                 one = mus[0] * (before[row + 1] - accelerations[row + 1])
                 other = mus[1] * (before[row + 2] - accelerations[row + 2])
@@ -76,9 +126,24 @@ class ContactCorrection:
                 for place, mu in enumerate(mus, row + 1):
                     one = mu * (before[place] - accelerations[place])
                     total += one * one
-            now = (normal if goal != goal else goal) - math.sqrt(total)
-            aref[row] = now
+            acceleration = accelerations[row]
+            most = abs(acceleration)
+            if goal == goal:
+                impedance = data.efc_KBIP.item(row, 2)
+                yields = (1.0 - impedance) / impedance * max(0.0, goal - acceleration)
+                if kind != AT_MOST:  # it closes
+                    most = max(most, goal)
+                normal = _limited(normal, goal + yields, kind)
+            after[row] = now = normal - math.sqrt(total)
             requested.append(now)
+            largest.append(most)
+        self._aref[:], self._requested = after, requested
+        tolerances = self._tolerances
+        if data.nisland < 2 and HIT_ACCURACY * max(largest) <= min(tolerances):
+            self._islands = [0] * len(largest)
+        else:
+            self._islands = islands_of(data, [contact[0] for contact in contacts])
+            self._tolerances = raise_tolerances(tolerances, self._islands, largest)
 
     def correct(self, moves: Floats, forces: Floats) -> bool:
         """Set references from a solution; return True if they stay within the tolerances.
@@ -87,11 +152,20 @@ class ContactCorrection:
             moves: J a of the solution, shape (nefc,).
             forces: constraint forces of the solution, shape (nefc,).
         """
-        accelerations, force, before, softness = moves.tolist(), forces.tolist(), self._before, self._softness
-        if not softness:
+        accelerations, force, before = moves.tolist(), forces.tolist(), self._references
+        softness = self._softness
+        if softness is None:
             self._softness = softness = self._data.efc_R.tolist()
-        results, stays = [], True
-        for (row, mus, normal, goal, rebounds, most), last in zip(self._contacts, self._requested, strict=True):
+        results: list[float] = []
+        wrong: list[int] = []
+        for (row, mus, normal, goal, kind), last, most in zip(
+            self._contacts, self._requested, self._tolerances, strict=True
+        ):
+            if goal == goal:
+                normal = _limited(normal, goal + softness[row] * force[row], kind)
+            if force[row] <= 0.0 and accelerations[row] >= normal:
+                results.append(last)  # open, and open with every smaller reference
+                continue
             if len(mus) == 2:
                 place = row + 1
                 one = mus[0] * (before[place] - accelerations[place] - softness[place] * force[place])
@@ -103,38 +177,110 @@ class ContactCorrection:
                 for place, mu in enumerate(mus, row + 1):
                     one = mu * (before[place] - accelerations[place] - softness[place] * force[place])
                     total += one * one
-            if goal == goal:
-                # a closing contact may get a larger reference, so that it stops; an opening contact only a smaller one
-                wanted = goal + softness[row] * force[row]
-                normal = wanted if rebounds else max(normal, wanted) if normal < goal else min(normal, wanted)
-                most = max(most, CLOSING_ACCURACY * goal)
             now = normal - math.sqrt(total)
             results.append(now)
             if abs(now - last) > most:
-                stays = False
-        if not stays:
-            if self._sequence is None:
-                self._sequence = AndersonAcceleration()
-            self._requested, aref = self._sequence.next(self._requested, results), self._aref
-            for (row, _, _, _, _, _), now in zip(self._contacts, self._requested, strict=True):
-                aref[row] = now
-        return stays
+                wrong.append(len(results) - 1)
+        if not wrong:
+            return True
+        unsettled = dict.fromkeys(self._islands[place] for place in wrong)
+        if self._iterations is None:
+            results = self._leave(unsettled, results)
+            goals = [contact[3] for contact in self._contacts]
+            first = [contact[1][0] if contact[1] else 0.0 for contact in self._contacts]
+            weights = relaxation(self._islands, goals, first)
+            self._iterations = IslandIterations(self._islands, weights)
+        self._set_references(self._iterations.next(self._requested, results, unsettled))
+        return False
+
+    def _leave(self, unsettled: dict[int, None], results: list[float]) -> list[float]:
+        """Leave only the contacts of islands that have not converged, and return their results."""
+        kept = [place for place, island in enumerate(self._islands) if island in unsettled]
+        if len(kept) < len(self._islands):
+            self._contacts = [self._contacts[place] for place in kept]
+            self._requested = [self._requested[place] for place in kept]
+            self._tolerances = [self._tolerances[place] for place in kept]
+            self._islands = [self._islands[place] for place in kept]
+            results = [results[place] for place in kept]
+        return results
 
     def settle(self) -> None:
         """Use the references with the smallest residual, or the engine's references if this residual is large."""
-        if self._sequence is not None and not self._sequence.has_come_near(self._contacts[0][5]):
-            self.restore()
-        elif self._sequence is not None:
-            for (row, _, _, _, _, _), best in zip(self._contacts, self._sequence.best, strict=True):
-                self._aref[row] = best
+        if self._iterations is not None:
+            best, failed = self._iterations.settle(self._requested, self._tolerances)
+            self._set_references(best)
+            if failed:
+                restore_islands(self._data, self._engine, failed)
 
     def restore(self) -> None:
         """Restore the previous references."""
-        aref = self._aref
-        for row, _, normal, _, _, _ in self._contacts:
-            aref[row] = normal
-        for row, reference in self._changed:
-            aref[row] = reference
+        self._aref[:] = self._engine
+
+    def _set_references(self, normals: list[float]) -> None:
+        self._requested, aref = normals, self._aref
+        for (row, _, _, _, _), now in zip(self._contacts, normals, strict=True):
+            aref[row] = now
+
+
+def restore_islands(data: mujoco.MjData, references: Floats, islands: list[int]) -> None:
+    """Restore the references of all rows of some islands."""
+    if data.nisland < 2:
+        data.efc_aref[:] = references
+    else:
+        rows = np.isin(data.efc_island, islands)
+        data.efc_aref[rows] = references[rows]
+
+
+def _limited(normal: float, wanted: float, kind: int) -> float:
+    """Return the reference of a contact with a requested acceleration.
+
+    Args:
+        normal: reference of the engine [m/s²].
+        wanted: requested acceleration plus the part that the softness of the contact takes [m/s²].
+        kind: kind of the request.
+    """
+    if kind == AT_LEAST:
+        return max(normal, wanted)
+    return min(normal, wanted) if kind == AT_MOST else wanted
+
+
+def _request(
+    data: mujoco.MjData, around: ContactConditions, number: int, row: int, normal: float, speed: float
+) -> tuple[float, int, float]:
+    """Return the requested acceleration of a contact that closes, opens or overlaps.
+
+    Args:
+        data: MuJoCo's data.
+        around: conditions of the correction.
+        number: number of the contact.
+        row: row of its normal.
+        normal: reference of this row [m/s²].
+        speed: speed along the normal [m/s].
+
+    Returns:
+        Acceleration [m/s²] or NaN, kind of the request, and tolerance of the reference [m/s²].
+    """
+    contact, step, closing = data.contact, around.step, around.closing
+    depth, closes, after = -contact.dist.item(number), speed < CLOSING_SPEED, speed
+    goal, kind, tolerance = math.nan, AT_MOST, around.tolerance
+    if closes and closing is not None:  # a geom that is stopped before the surface still approaches it slowly
+        first, second = contact.geom[number].tolist()
+        left = closing[first] + closing[second]
+        after = speed + left if speed < -left else speed
+    wanted = max(0.0, (EXIT_SPEED - after) / step)
+    if closes and normal <= wanted:
+        wanted, is_wrong, kind = -after / step, depth >= 0.0, AT_LEAST
+    else:
+        is_wrong = normal > wanted and (closes or speed > OPENING_SPEED or depth > DEEP_PENETRATION)
+    constant = contact.solref.item(number, 0) if closes or is_wrong else 0.0
+    if constant > 0.0:
+        goal = wanted if is_wrong and constant <= around.softest else math.nan
+    elif closes:
+        goal, kind = rebound(data, number, speed, around), EXACTLY
+    if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
+        impedance = data.efc_KBIP.item(row, 2)
+        tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
+    return goal, kind, tolerance
 
 
 def find_correction(
@@ -148,19 +294,25 @@ def find_correction(
         residual: aref - J a - R f of a solution, shape (nefc,), for contacts that only begin to slide. Without it, the
             velocity decides whether a contact slides.
     """
-    contact, step, closing, inner = data.contact, around.step, around.closing, around.inner
+    contact, step, inner = data.contact, around.step, around.inner
     all_rows, dims, friction = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
     aref, velocity = data.efc_aref.tolist(), data.efc_vel.tolist()
     slip: list[float] = aref if residual is None else residual.tolist()
     distance: list[float] = contact.dist.tolist()
     found: list[CorrectedContact] = []
-    changed: list[tuple[int, float]] = []
-    nothing, square = math.nan, around.tolerance * around.tolerance
+    tolerances: list[float] = []
+    references = aref.copy()
+    nothing, square, least = math.nan, around.tolerance * around.tolerance, around.least_damping
+    damping: list[float] | None = None
+    fast, may_creep = CREEP_LIMIT * CREEP_LIMIT * square, True
+    last, share = math.nan, 1.0
     for number, row in enumerate(all_rows):
         if row < 0:
             continue
         if number in inner:
-            found.append((row, [], aref[row], NO_FORCE, False, around.tolerance))
+            found.append((row, [], aref[row], NO_FORCE, AT_MOST))
+            tolerances.append(around.tolerance)
+            may_creep = False
             continue
         dim, mus = dims[number], friction[number]
         if dim == 3:
@@ -171,207 +323,30 @@ def find_correction(
             for place in range(1, dim):
                 one = mus[place - 1] * slip[row + place]
                 total += one * one
-        speed, depth = velocity[row], -distance[number]
-        # neither closing nor opening: the most frequent case
-        if CLOSING_SPEED <= speed <= OPENING_SPEED and depth <= MIN_PENETRATION:
-            if total > square:
-                found.append((row, mus[: dim - 1], aref[row], nothing, False, around.tolerance))
+        speed = velocity[row]
+        is_quiet = CLOSING_SPEED <= speed <= OPENING_SPEED and -distance[number] <= MIN_PENETRATION
+        if is_quiet and total <= square:  # the most frequent case
             continue
-        normal, goal, after, rebounds = aref[row], nothing, speed, False
-        closes, tolerance = speed < CLOSING_SPEED, around.tolerance
-        if closes and closing is not None:  # a geom that is stopped before the surface still approaches it slowly
-            first, second = contact.geom[number].tolist()
-            left = closing[first] + closing[second]
-            after = speed + left if speed < -left else speed
-        if closes and normal < -after / step:
-            wanted, is_wrong = -after / step, depth >= 0.0
-        else:
-            wanted = max(0.0, (EXIT_SPEED - after) / step)
-            is_wrong = normal > wanted and (closes or speed > OPENING_SPEED or depth > DEEP_PENETRATION)
-        if is_wrong or closes:
-            constant = contact.solref.item(number, 0)
-            if constant > 0.0:
-                goal = wanted if is_wrong and constant <= around.softest else nothing
-            elif closes:
-                goal, slower = rebound(data, number, speed, around)
-                if goal == goal:
-                    rebounds = True
-                    total *= slower * slower
-                    for place in range(row + 1, row + dim):
-                        changed.append((place, aref[place]))
-                        data.efc_aref[place] = slower * aref[place]
-        if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
-            impedance = data.efc_KBIP.item(row, 2)
-            tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
-        if total > tolerance * tolerance or (goal == goal and not closes):  # bodies slide as they separate
-            found.append((row, mus[: dim - 1], normal, goal, rebounds, tolerance))
-        elif goal == goal:
-            found.append((row, [], normal, goal, rebounds, tolerance))
-    return ContactCorrection(data, found, changed) if found else None
-
-
-_PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
-
-Ints = npt.NDArray[np.integer[Any]]
-
-
-class ArrayContactCorrection:
-    """Contacts under either cone, on arrays.
-
-    Args:
-        data: MuJoCo's data.
-        is_pyramid: True for the pyramidal cone.
-        rows: row of the normal of each contact, or the first of its edges, shape (k,).
-        places: rows of the friction, shape (k, most), or pairs of edges, shape (k, most, 2).
-        mu: coefficients of these rows, shape (k, most); zero for missing rows and for contacts that do not slide.
-        edges: rows that carry the normal, shape (k, n); missing rows repeat the first one.
-        normals: references of the normals [m/s²], shape (k,), as in `ContactCorrection`.
-        goals: requested accelerations [m/s²] or NaN, shape (k,), as in `ContactCorrection`.
-        rebounds: True for exact rebounds, shape (k,), as in `ContactCorrection`.
-        tolerances: tolerances of the references [m/s²], shape (k,), as in `ContactCorrection`.
-        changed: other changed rows with their previous references.
-    """
-
-    def __init__(
-        self,
-        data: mujoco.MjData,
-        is_pyramid: bool,
-        rows: Ints,
-        places: Ints,
-        mu: Floats,
-        edges: Ints,
-        normals: Floats,
-        goals: Floats,
-        rebounds: npt.NDArray[np.bool_],
-        tolerances: Floats,
-        changed: list[tuple[int, float]],
-    ) -> None:
-        self._aref, self._softness, self._is_pyramid = data.efc_aref, data.efc_R, is_pyramid
-        self._rows, self._places, self._mu, self._edges, self._normals = rows, places, mu, edges, normals
-        self._goals, self._rebounds, self._tolerances, self._changed = goals, rebounds, tolerances, changed
-        self._has_goal = ~np.isnan(goals)
-        self._before: Floats = self._aref[edges]
-        self._tangents: Floats = self._before
-        self._compliance: Floats = self._softness[places]
-        self._requested: Floats = normals
-        self._sequence = AndersonAcceleration()
-
-    def guess(self, moves: Floats) -> None:
-        """Set references as `ContactCorrection.guess` does."""
-        self._tangents = self._aref[self._places]
-        normals = np.where(self._has_goal, self._goals, self._normals)
-        self._set_references(normals - _lift(self._tangents - moves[self._places], self._mu, self._is_pyramid))
-
-    def correct(self, moves: Floats, forces: Floats) -> bool:
-        """Set references as `ContactCorrection.correct` does."""
-        places = self._places
-        residual = self._tangents - moves[places] - self._compliance * forces[places]
-        size = _lift(residual, self._mu, self._is_pyramid)
-        normals, most = self._normals, self._tolerances
-        if self._has_goal.any():
-            yields = (self._softness[self._edges] * forces[self._edges]).mean(axis=1)
-            wanted = self._goals + yields
-            limited = np.where(normals < self._goals, np.maximum(normals, wanted), np.minimum(normals, wanted))
-            normals = np.where(self._has_goal, np.where(self._rebounds, wanted, limited), normals)
-            most = np.where(self._has_goal, np.maximum(most, CLOSING_ACCURACY * self._goals), most)
-        now = normals - size
-        if (np.abs(now - self._requested) <= most).all():
-            return True
-        now = np.array(self._sequence.next(self._requested.tolist(), now.tolist()))
-        self._set_references(now)
-        return False
-
-    def settle(self) -> None:
-        """Choose references as `ContactCorrection.settle` does."""
-        if self._sequence.has_come_near(float(self._tolerances[0])):
-            self._set_references(np.array(self._sequence.best))
-        else:
-            self.restore()
-
-    def restore(self) -> None:
-        """Restore the previous references."""
-        self._aref[self._edges] = self._before
-        for row, reference in self._changed:
-            self._aref[row] = reference
-
-    def _set_references(self, normals: Floats) -> None:
-        self._requested = normals
-        changes = self._before + (normals - self._normals)[:, None]
-        self._aref[self._edges] = changes if self._is_pyramid else normals[:, None]
-
-
-def _lift(residual: Floats, mu: Floats, is_pyramid: bool) -> Floats:
-    """Return the lift of contacts for residuals along their friction rows or pairs of edges [m/s²], shape (k,)."""
-    if is_pyramid:
-        apart = np.abs(residual[..., 0] - residual[..., 1]) / 2.0
-        found: Floats = np.where(mu > 0.0, apart, 0.0).max(axis=1, initial=0.0)
-        return found
-    total: Floats = np.zeros(len(mu))
-    for one in (mu * residual).T:
-        total += one * one
-    lengths: Floats = np.sqrt(total)
-    return lengths
-
-
-AnyContactCorrection = ContactCorrection | ArrayContactCorrection
-
-
-def find_array_correction(
-    model: mujoco.MjModel, data: mujoco.MjData, around: ContactConditions, residual: Floats | None = None
-) -> ArrayContactCorrection | None:
-    """Return the contacts to correct as `find_correction` does, for either cone."""
-    contact, is_pyramid, step = data.contact, bool(model.opt.cone == _PYRAMID), around.step
-    numbers = (contact.efc_address >= 0).nonzero()[0]
-    if not numbers.size:
-        return None
-    which: slice | Ints = slice(None) if numbers.size == data.ncon else numbers
-    rows, dims = contact.efc_address[which], contact.dim[which]
-    most = int(dims.max()) - 1
-    there = np.arange(most) < (dims - 1)[:, None]
-    mu = np.where(there, contact.friction[which, :most], 0.0)
-    if is_pyramid:
-        pairs = rows[:, None, None] + np.arange(2 * most).reshape(most, 2)
-        places = np.where(there[..., None], pairs, rows[:, None, None])
-        edges = places.reshape(len(rows), -1) if most else rows[:, None]
-    else:
-        places, edges = np.where(there, rows[:, None] + 1 + np.arange(most), rows[:, None]), rows[:, None]
-    aref, velocity = data.efc_aref, data.efc_vel
-    pair = edges[:, :2] if is_pyramid else edges
-    normals, speed = aref[pair], velocity[pair]
-    normals, speed = (normals.mean(axis=1), speed.mean(axis=1)) if is_pyramid else (normals[:, 0], speed[:, 0])
-    depth, closes = -contact.dist[which], speed < CLOSING_SPEED
-    after = speed
-    if around.closing is not None:
-        geoms = np.array(around.closing)[contact.geom[which]]
-        left = geoms[:, 0] + geoms[:, 1]
-        after = np.where(closes & (speed < -left), speed + left, speed)
-    is_late = closes & (normals < -after / step)
-    wanted = np.where(is_late, -after / step, np.maximum(0.0, (EXIT_SPEED - after) / step))
-    is_fast = (normals > wanted) & (closes | (speed > OPENING_SPEED) | (depth > DEEP_PENETRATION))
-    constants = contact.solref[which, 0]
-    is_rigid, bounces = (constants > 0.0) & (constants <= around.softest), constants <= 0.0
-    goals = np.where(np.where(is_late, depth >= 0.0, is_fast) & is_rigid, wanted, np.nan)
-    if around.inner:
-        goals = np.where(np.isin(numbers, list(around.inner)), NO_FORCE, goals)
-    changed: list[tuple[int, float]] = []
-    for index in (closes & bounces).nonzero()[0].tolist():
-        goals[index], slower = rebound(data, int(numbers[index]), float(speed[index]), around)
-        if goals[index] == goals[index]:
-            middle = normals[index] if is_pyramid else 0.0
-            for row in places[index][there[index]].reshape(-1).tolist():
-                changed.append((row, aref.item(row)))
-                aref[row] = middle + slower * (aref[row] - middle)
-    tolerances: Floats = np.full(len(rows), around.tolerance)
-    pressed = (depth > MIN_PENETRATION).nonzero()[0]
-    if pressed.size:
-        impedance = data.efc_KBIP[rows[pressed], 2]
-        bearable = LIFT_FACTOR * around.tolerance * (1.0 - impedance) / impedance
-        tolerances[pressed] = np.minimum(around.tolerance, bearable)
-    slides: npt.NDArray[np.bool_] = _lift((aref if residual is None else residual)[places], mu, is_pyramid) > tolerances
-    chosen = slides | ~np.isnan(goals)
-    if not chosen.any():
-        return None
-    slides = (slides | ~closes) & (goals != NO_FORCE)
-    mu = np.where(slides[:, None], mu, 0.0)[chosen]
-    rest = (edges[chosen], normals[chosen], goals[chosen], bounces[chosen], tolerances[chosen], changed)
-    return ArrayContactCorrection(data, is_pyramid, rows[chosen], places[chosen], mu, *rest)
+        if damping is None:
+            damping = data.efc_KBIP[:, 1].tolist()
+        # a tangent with a damping of its own slips by its compliance
+        rate = damping[row]
+        if (total > square or speed < CLOSING_SPEED) and rate >= least and dim > 1 and rate == damping[row + 1]:
+            if rate != last:
+                last, share = rate, 1.0 / (rate * step)
+            if residual is None:
+                total *= share * share
+            for place in range(row + 1, row + dim):
+                references[place] = share * aref[place]
+        goal, kind, tolerance = nothing, AT_MOST, around.tolerance
+        if not is_quiet:
+            goal, kind, tolerance = _request(data, around, number, row, aref[row], speed)
+        if total > fast or goal == goal:
+            may_creep = False
+        slides = total > tolerance * tolerance
+        if slides or goal == goal:
+            if not slides and speed < CLOSING_SPEED:
+                mus = []  # bodies that separate begin to slide, bodies that close do not
+            found.append((row, mus[: dim - 1], aref[row], goal, kind))
+            tolerances.append(tolerance)
+    return ContactCorrection(data, found, tolerances, aref, references, may_creep) if found else None

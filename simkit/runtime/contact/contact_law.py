@@ -26,9 +26,10 @@ import numpy as np
 
 from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
 from simkit.linear_algebra import squared_length
+from simkit.runtime.contact.array_contact_correction import AnyContactCorrection, find_array_correction
 from simkit.runtime.contact.centripetal_friction import CentripetalFriction
 from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD, DEEP_PENETRATION, ContactConditions
-from simkit.runtime.contact.contact_correction import AnyContactCorrection, find_array_correction, find_correction
+from simkit.runtime.contact.contact_correction import find_correction
 from simkit.runtime.contact.contact_point_motion import ContactPointMotion
 from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
 from simkit.runtime.contact.line_contacts import LineContacts
@@ -62,6 +63,7 @@ _AFTER_VELOCITIES: Final = int(mujoco.mjtStage.mjSTAGE_VEL)
 _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
 
 mj_forward_skip, mj_mul_jac_vec = mujoco.mj_forwardSkip, mujoco.mj_mulJacVec
+mj_fwd_constraint = mujoco.mj_fwdConstraint
 
 
 def window_length(timestep: float) -> int:
@@ -106,7 +108,8 @@ class ContactLaw:
         self._product = np.empty(0)
         constant = contact_time_constant(float(model.opt.timestep))
         softest = constant * (1.0 + 1e-9)
-        self._around = ContactConditions(float(model.opt.timestep), [], 0.0, None, softest=softest)
+        step = float(model.opt.timestep)
+        self._around = ContactConditions(step, [], 0.0, None, softest=softest, least_damping=2.0 / softest)
         self._least_reference = (DEEP_PENETRATION / (constant * constant)) ** 2
         self._fields, self.lines = HeightFieldContacts(model), LineContacts(model)
         self._wheels, self._carried = WheelContacts(model), CentripetalFriction(model)
@@ -137,13 +140,15 @@ class ContactLaw:
         """
         if not self.is_on:
             return False
-        if self.lines and data.ncon and (self.lines.correct(data) or self.lines.reaches_edge(data, self._window)):
+        if data.ncon and self._always_merges:
             return True
-        if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._needs_correction(data))):
+        if self.lines and data.ncon and (self.lines.correct(data) or self.lines.reaches_edge(data, self._window)):
             return True
         if self._has_flying(data) or self._has_fast(data) or self._carried.find(data):
             return True
-        return self._points is not None and bool(self._points.find(data))
+        if self._points is not None and self._points.find(data):
+            return True
+        return bool(data.ncon) and not self._is_quiet(data) and self._needs_correction(data)
 
     def solve(
         self, data: mujoco.MjData, closing: list[float] | None, *, keeps_references: bool = False, probes: bool = False
@@ -165,7 +170,7 @@ class ContactLaw:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             return False
         self.lines.correct(data)
-        found, carried = None, self._carried.find(data)
+        found, carried, is_solved = None, self._carried.find(data), False
         if self._always_merges:
             self._wheels.merge(data)
             has_to_look = not self._is_quiet(data)
@@ -175,17 +180,21 @@ class ContactLaw:
         if self._points is not None:
             motion = self._points.correct(data, carried)
         if probes:
-            mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
-            residual = data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force
-            found = self._find(data, closing, residual)
+            found, is_solved = self._find(data, closing, self._residual(data)), True
         elif has_to_look:
-            found = self._find(data, closing)
-        before = self._carried.correct(data, carried) if carried else []
-        if motion is not None:
-            before += motion.shift_tangents()
+            found, is_solved = self._found(data, closing)
+        before: list[tuple[int, float]] = []
+        if carried or motion is not None:
+            if found is not None:
+                found.stop_slip()
+            before = self._carried.correct(data, carried) if carried else []
+            if motion is not None:
+                before += motion.shift_tangents()
+            if found is not None:
+                found.read_references()
         if found is not None:
             self._repeat(data, found)
-        elif before or not probes:
+        elif before or not is_solved:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
         if not keeps_references:
             for row, reference in before:
@@ -197,12 +206,26 @@ class ContactLaw:
         return found is not None
 
     def _needs_correction(self, data: mujoco.MjData) -> bool:
-        """Check whether a contact needs a correction; the references stay unchanged."""
-        found = self._find(data, None)
-        if found is None:
-            return False
-        found.restore()
-        return True
+        """Check whether a contact needs a correction."""
+        return self._found(data, None)[0] is not None
+
+    def _found(self, data: mujoco.MjData, closing: list[float] | None) -> tuple[AnyContactCorrection | None, bool]:
+        """Return the contacts to correct, and True if the engine's solution was computed for the decision.
+
+        The velocities alone do not tell whether a contact slides: under a wheel that creeps, friction may give what the
+        velocities require. The acceleration of the previous step tells most cases apart, the engine's solution the
+        rest.
+        """
+        found = self._find(data, closing)
+        if found is None or not found.may_creep or not found.creeps(self._multiplied(data, data.qacc_warmstart)):
+            return found, False
+        mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+        return (None if found.creeps(self._multiplied(data, data.qacc), data.efc_force) else found), True
+
+    def _residual(self, data: mujoco.MjData) -> Any:
+        """Return aref - J a - R f of the engine's solution, shape (nefc,)."""
+        mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+        return data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force
 
     def _has_flying(self, data: mujoco.MjData) -> bool:
         """Check whether an awake tree with collisions touches nothing, so that it may land within the window."""
@@ -248,15 +271,21 @@ class ContactLaw:
 
     def _repeat(self, data: mujoco.MjData, found: AnyContactCorrection) -> None:
         """Solve, correct the normal references by the solution, and repeat until they converge."""
-        model = self.model
-        found.guess(self._multiplied(data, data.qacc_warmstart))
+        model, start, before = self.model, data.qacc_warmstart, None
+        found.guess(self._multiplied(data, start))
+        mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
         for _ in range(MAX_SOLUTIONS - 1):
-            mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
             if found.correct(self._multiplied(data, data.qacc), data.efc_force):
                 break
+            if before is None:
+                before = start.copy()
+            start[:] = data.qacc  # only references have changed: most islands are solved already
+            mj_fwd_constraint(model, data)
         else:
             found.settle()
-            mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
+            mj_fwd_constraint(model, data)
+        if before is not None:
+            start[:] = before  # part of the state: a forward pass must not change it
 
     def _multiplied(self, data: mujoco.MjData, acceleration: Any) -> Any:
         """Return J a, shape (nefc,); the next call reuses the array."""

@@ -15,7 +15,7 @@ import pytest
 import simkit
 from simkit.errors import SimulationDiverged
 from simkit.runtime.contact import centripetal_friction, contact_law
-from simkit.runtime.contact.contact_correction import ArrayContactCorrection
+from simkit.runtime.contact.array_contact_correction import ArrayContactCorrection
 from simkit.runtime.contact.contact_law import window_length
 from simkit.runtime.engine.physics_step import STALE, VELOCITY
 
@@ -130,8 +130,21 @@ def logs() -> simkit.Simulation:
     return sim
 
 
+def heaping() -> simkit.Simulation:
+    """Bodies that fall on each other, in several islands, while one slides."""
+    boxes = [body("abcd"[i], f"{0.05 * i} {0.03 * i} {0.2 + 0.25 * i} {0.4 * i} 0.3 0", 0.15) for i in range(4)]
+    boxes[0] = body("a", "0 0 0.2 0 0.3 0", 0.15, sensors=SENSORS)
+    balls = [body(f"ball_{i}", f"{1.0 + 0.03 * i} 1 {0.15 + 0.22 * i} 0 0 0", shape=BALL) for i in range(3)]
+    sim = simkit.load(world(*boxes, *balls, body("slider", "0 -2 0.1 0 0 0")))
+    sim.model("slider").set_velocity((3, 1, 0))
+    sim.model("d").set_velocity((0.3, 0, -3), (2, 1, 0))
+    sim.model("ball_2").set_velocity((0, 0.2, -2))
+    return sim
+
+
 WORLDS = {
     "logs": logs,
+    "heaping": heaping,
     "sliding": sliding,
     "bouncing": bouncing,
     "fast": fast,
@@ -278,7 +291,7 @@ def test_a_stored_state_has_the_controls_of_its_tick() -> None:
 # ---------------------------------------------------------------------- plain numbers, arrays and fleets
 
 
-@pytest.mark.parametrize("name", ["sliding", "bouncing", "fast"])
+@pytest.mark.parametrize("name", ["sliding", "bouncing", "fast", "heaping"])
 def test_plain_numbers_and_arrays_give_the_same_bits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     found = set()
     for many in (0, 10**9):
