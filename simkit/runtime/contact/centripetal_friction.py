@@ -82,14 +82,18 @@ class CentripetalFriction:
                 found.append((number, one, other))
         return found
 
-    def correct(self, data: mujoco.MjData, carried: list[tuple[int, int, int]]) -> list[tuple[int, float]]:
+    def correct(
+        self, data: mujoco.MjData, carried: list[tuple[int, int, int]], engine: npt.NDArray[np.float64]
+    ) -> list[tuple[int, float]]:
         """Subtract the centripetal term from the references of the tangents.
 
-        All contacts of a pair of bodies use the term at the position of their first contact.
+        All contacts of a pair of bodies use the term at the position of their first contact. Friction that stops the
+        slip within the step has the damping 1 / step.
 
         Args:
             data: MuJoCo's data.
             carried: contacts from `find`.
+            engine: references before the contact law changed them, shape (nefc,).
 
         Returns:
             Changed rows, each with its previous reference.
@@ -110,7 +114,8 @@ class CentripetalFriction:
                 bias = known[one, other] = x, y, z
             x, y, z = bias
             _, _, _, a, b, c, d, e, f = frames[number]
-            share = max(0.0, 1.0 - half * damping.item(row + 1, 1))
+            stops = any(aref.item(place) != engine.item(place) for place in (row + 1, row + 2))
+            share = 0.5 if stops else max(0.0, 1.0 - half * damping.item(row + 1, 1))
             for place, along in ((row + 1, a * x + b * y + c * z), (row + 2, d * x + e * y + f * z)):
                 old = aref.item(place)
                 before.append((place, old))

@@ -169,7 +169,7 @@ class ContactLaw:
         if not (data.ncon and self.is_on):
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             return False
-        self.lines.correct(data)
+        has_lines = self.lines.correct(data)
         found, carried, is_solved = None, self._carried.find(data), False
         if self._always_merges:
             self._wheels.merge(data)
@@ -177,7 +177,7 @@ class ContactLaw:
         else:
             has_to_look = not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data))
         motion = None
-        if self._points is not None:
+        if self._points is not None and not has_lines:  # it computes the contacts of the next step without lines
             motion = self._points.correct(data, carried)
         if probes:
             found, is_solved = self._find(data, closing, self._residual(data)), True
@@ -185,9 +185,10 @@ class ContactLaw:
             found, is_solved = self._found(data, closing)
         before: list[tuple[int, float]] = []
         if carried or motion is not None:
+            engine = data.efc_aref.copy()
             if found is not None:
                 found.stop_slip()
-            before = self._carried.correct(data, carried) if carried else []
+            before = self._carried.correct(data, carried, engine) if carried else []
             if motion is not None:
                 before += motion.shift_tangents()
             if found is not None:
