@@ -200,5 +200,5 @@ def _neighbours(half_angle: float) -> npt.NDArray[np.intp]:
     for i, direction in enumerate(directions):
         distance = ((directions - direction) ** 2).sum(axis=1)
         distance[i] = np.inf
-        found[i] = distance.argpartition(most - 1)[:most]
+        found[i] = np.argsort(distance, kind="stable")[:most]
     return np.ascontiguousarray(found.T)
