@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Final
 
 _NEAR_FACTOR: Final = 50.0
@@ -26,12 +26,16 @@ class AndersonAcceleration:
     Plain iteration removes a tenth of the error per iteration with light wheels. If four wheels share the load of a
     stiff vehicle, it removes only 2 %, because load that changes from one wheel to another moves nothing.
 
+    Args:
+        may_overshoot: True to keep the history after a moderate step past the solution.
+
     Attributes:
         best: iterate with the smallest residual. It is used if the iteration does not converge. This happens if
             friction on a lever increases its own normal force.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, may_overshoot: bool) -> None:
+        self._may_overshoot = may_overshoot
         self.best: list[float] = []
         self._least = math.inf
         self._size = math.inf
@@ -74,6 +78,8 @@ class AndersonAcceleration:
             residual: present residual.
             size: its square.
         """
+        if not self._may_overshoot:
+            return True
         return size > _MAX_OVERSHOOT * self._size or _product(residual, self._residuals[-1]) >= 0.0
 
     def _extrapolation(self) -> list[float]:
@@ -99,14 +105,15 @@ class IslandIterations:
     Args:
         islands: number of the island of each contact.
         weights: factor of over-relaxation of each contact.
+        hits: islands with a closing contact, in which a step past the solution means that contacts have opened.
     """
 
-    def __init__(self, islands: Sequence[int], weights: Sequence[float]) -> None:
+    def __init__(self, islands: Sequence[int], weights: Sequence[float], hits: Collection[int]) -> None:
         self._members: dict[int, list[int]] = {}
         for place, island in enumerate(islands):
             self._members.setdefault(island, []).append(place)
         self._weights = weights
-        self._sequences = {island: AndersonAcceleration() for island in self._members}
+        self._sequences = {island: AndersonAcceleration(island not in hits) for island in self._members}
         self._unsettled: list[int] = []
 
     def next(self, iterates: list[float], results: list[float], unsettled: Iterable[int]) -> list[float]:

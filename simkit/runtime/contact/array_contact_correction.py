@@ -25,6 +25,7 @@ from simkit.runtime.contact.contact_conditions import (
     NO_FORCE,
     OPENING_SPEED,
     ContactConditions,
+    hit_islands,
     islands_of,
     raise_tolerances,
     rebound,
@@ -127,7 +128,9 @@ class ArrayContactCorrection:
         if self._iterations is None:
             now, islands = self._leave(unsettled, now), self._islands
             mus = self._mu[:, 0].tolist() if self._mu.shape[1] else [0.0] * len(islands)
-            self._iterations = IslandIterations(islands, relaxation(islands, self._goals.tolist(), mus))
+            weights = relaxation(islands, self._goals.tolist(), mus)
+            speeds = self._data.efc_vel[self._edges[:, :2]].mean(axis=1)
+            self._iterations = IslandIterations(islands, weights, hit_islands(islands, speeds.tolist()))
         self._set_references(np.array(self._iterations.next(self._requested.tolist(), now.tolist(), unsettled)))
         return False
 

@@ -132,6 +132,16 @@ def islands_of(data: mujoco.MjData, rows: list[int]) -> list[int]:
     return islands
 
 
+def hit_islands(islands: list[int], speeds: list[float]) -> set[int]:
+    """Return the islands in which a contact closes fast.
+
+    Args:
+        islands: number of the island of each contact.
+        speeds: speed of each contact along its normal [m/s].
+    """
+    return {island for island, speed in zip(islands, speeds, strict=True) if speed < CLOSING_SPEED}
+
+
 def relaxation(islands: list[int], goals: list[float], mus: list[float]) -> list[float]:
     """Return the factor of over-relaxation of each contact.
 

@@ -27,6 +27,7 @@ from simkit.runtime.contact.contact_conditions import (
     NO_FORCE,
     OPENING_SPEED,
     ContactConditions,
+    hit_islands,
     islands_of,
     raise_tolerances,
     rebound,
@@ -189,7 +190,8 @@ class ContactCorrection:
             goals = [contact[3] for contact in self._contacts]
             first = [contact[1][0] if contact[1] else 0.0 for contact in self._contacts]
             weights = relaxation(self._islands, goals, first)
-            self._iterations = IslandIterations(self._islands, weights)
+            hits = hit_islands(self._islands, self._data.efc_vel[[contact[0] for contact in self._contacts]].tolist())
+            self._iterations = IslandIterations(self._islands, weights, hits)
         self._set_references(self._iterations.next(self._requested, results, unsettled))
         return False
 

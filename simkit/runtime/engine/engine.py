@@ -35,8 +35,8 @@ _FASTEST_WHEEL, _LARGEST_TURN = 150.0, 0.2
 """Largest speed [rad/s] of a drive's joint without a velocity limit, and its largest rotation in a step [rad].
 
 Six vehicles of 1 to 60 kg, with two or four wheels of unlimited torque, were driven straight and on the spot and then
-reversed, at steps of 0.5, 1 and 2 ms. None of them diverged up to these speeds. At 200 rad/s and 1 ms, one run of twelve
-did. At 4 ms, one vehicle was tried: it was stable at 50 and 75 rad/s.
+reversed, at steps of 0.5, 1 and 2 ms. None of them diverged up to these speeds. At 200 rad/s and 1 ms, one run of
+twelve did. At 4 ms, one vehicle was tried: it was stable at 50 and 75 rad/s.
 """
 
 

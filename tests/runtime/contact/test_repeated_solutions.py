@@ -71,7 +71,7 @@ def test_the_iteration_of_an_island_does_not_depend_on_other_islands() -> None:
     slopes, islands = [0.9, -0.8, 0.5, 0.7], [4, 2, 4, 2]
 
     def iterate(chosen: list[int]) -> list[float]:
-        together = IslandIterations([islands[k] for k in chosen], [1.0] * len(chosen))
+        together = IslandIterations([islands[k] for k in chosen], [1.0] * len(chosen), ())
         values = [0.0] * len(chosen)
         for _ in range(6):
             results = [slopes[k] * x + 1.0 for k, x in zip(chosen, values, strict=True)]
