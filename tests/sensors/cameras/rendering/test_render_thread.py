@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import subprocess
 import sys
 import textwrap
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -288,6 +289,16 @@ def test_the_interpreter_ends_while_images_are_being_drawn(end: str) -> None:
     assert not problems or "KeyboardInterrupt" in done.stderr
 
 
+@pytest.fixture
+def no_garbage_collection() -> Iterator[None]:
+    """Keep finalizers of older objects out of a test: Python drops the exceptions that are raised in them."""
+    gc.collect()
+    gc.disable()
+    yield
+    gc.enable()
+
+
+@pytest.mark.usefixtures("no_garbage_collection")
 def test_an_interrupt_is_raised_and_the_run_can_continue() -> None:
     before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
     try:
