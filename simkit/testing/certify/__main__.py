@@ -8,8 +8,10 @@ import traceback
 from pathlib import Path
 
 from simkit.child_process import exit_immediately, exit_with_parent
+from simkit.errors import InputError
+from simkit.memory_error import find_memory_error
 from simkit.testing.certify.child_run import ChildRequest, run_child
-from simkit.testing.certify.outcome import STACK_FILE, read_pickle, write_pickle
+from simkit.testing.certify.outcome import STACK_FILE, RunOutcome, read_pickle, write_pickle
 
 
 def main(request: str, result: str) -> None:
@@ -28,7 +30,10 @@ def main(request: str, result: str) -> None:
         except BaseException as ended:  # includes SystemExit, which a plugin may raise
             frames = reversed(traceback.extract_tb(ended.__traceback__))
             stack.writelines(f'  File "{f.filename}", line {f.lineno} in {f.name}\n' for f in frames)
-            raise
+            out_of_memory = find_memory_error(ended)
+            if out_of_memory is None:
+                raise
+            write_pickle(Path(result), RunOutcome(failure=InputError(str(out_of_memory), out_of_memory.code)))
         faulthandler.cancel_dump_traceback_later()
         faulthandler.disable()
     exit_immediately(0)

@@ -17,6 +17,7 @@ from simkit import progress
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
 from simkit.home_folder import expand_home
+from simkit.memory_error import OutOfMemory
 from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject, LoadOptions, RunSpec, change_package_paths
 from simkit.testing.certify.certificate import Certificate, Difference, Row, streams_hash
 from simkit.testing.certify.child_run import ChildRequest, run_child
@@ -110,11 +111,12 @@ def _outcome_of_stopped_process(ended: ProcessResult, limit: float | None, stack
         reason = f"still running after {limit:g} s of wall time, stopped; use --wall-timeout for a longer limit"
         return RunOutcome(stopped=reason, stack=places)
     last = (ended.last_lines(1) or ["no output"])[0]
-    code = f"with {ended.code}"
+    code, is_killed = f"with {ended.code}", False
     if ended.code < 0:
         known = -ended.code in set(signal.Signals)
+        is_killed = known and signal.Signals(-ended.code).name == "SIGKILL"  # Windows does not have this signal
         code = f"by signal {signal.Signals(-ended.code).name if known else -ended.code}"
-    return RunOutcome(stopped=f"the process ended {code}: {last}", stack=places)
+    return RunOutcome(stopped=f"the process ended {code}: {last}", stack=places, is_killed=is_killed)
 
 
 def _plugin_file(scenario: RunSpec) -> Path | None:
@@ -214,6 +216,7 @@ def certify(
     Raises:
         InputError: SK-CERT-001 fewer than two runs; SK-CERT-002 plugins that cannot be transferred to another process;
             SK-CERT-004 the first process ended early or timed out.
+        OutOfMemory: A process ended for lack of memory.
         LoadError: The world has errors, or SK-SCEN-008 the scenario needs code that is not allowed.
         PluginError: A plugin raised an exception during loading.
     """
@@ -236,6 +239,7 @@ def certify(
         try:
             outcomes = pool.map(lambda variation: runner.run(variation, ticks), chosen[1:])
             for variation, outcome in zip(chosen[1:], outcomes, strict=True):
+                _check_memory(variation, outcome)
                 rows.append(Row(variation, outcome, streams_hash(outcome), not differences(first, outcome)))
                 on_row(rows[-1])
                 task.advance()
@@ -257,6 +261,7 @@ def _run_reference(runner: ProcessRunner, variation: Variation) -> RunOutcome:
     """Run the reference run and return its outcome; raise an error if the run gave no result."""
     with progress.task("running the reference run in its own process"):
         first = runner.first(variation)
+    _check_memory(variation, first)
     if first.failure is not None:
         raise first.failure
     if first.stopped:
@@ -264,6 +269,14 @@ def _run_reference(runner: ProcessRunner, variation: Variation) -> RunOutcome:
         message = f"SK-CERT-004 the run {variation.name!r} gave no result: {first.stopped}{position}"
         raise InputError(message, "SK-CERT-004")
     return first
+
+
+def _check_memory(variation: Variation, outcome: RunOutcome) -> None:
+    """Raise OutOfMemory if a run ended for lack of memory: such an end says nothing about the run's bits."""
+    if outcome.failure is not None and outcome.failure.code == OutOfMemory.code:
+        raise OutOfMemory(f"the run {variation.name!r} did not fit into it")
+    if outcome.is_killed:
+        raise OutOfMemory(f"the system killed the process of the run {variation.name!r}")
 
 
 # ---------------------------------------------------------------------- causes

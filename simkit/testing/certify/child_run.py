@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from simkit import msgs
 from simkit.errors import InputError, RenderError, SimkitError
+from simkit.memory_error import OutOfMemory
 from simkit.run_spec import RunSpec
 from simkit.runtime import Simulation
 from simkit.runtime.engine.snapshot import state_hash
@@ -120,7 +121,7 @@ class _ChildRun:
                 run_scenario(self._scenario, self._sim, self._collect_messages)
             else:
                 self._run_to(self._end)
-        except (InputError, RenderError) as error:  # the scenario does not fit the world or the machine
+        except (InputError, RenderError, OutOfMemory) as error:  # the scenario does not fit the world or the machine
             outcome.failure = _picklable_error(error)
             return
         except SimkitError as error:

@@ -84,6 +84,7 @@ class RunOutcome:
     Attributes:
         failure: Error of loading the world; None if it was loaded.
         stopped: Reason why the process gave no result; empty if it gave one.
+        is_killed: True if the system killed the process, as Linux does when memory runs out.
         stack: Code positions when the process was stopped, innermost function first.
         end: Error that ended the run; empty for a regular end.
         ticks: Number of steps.
@@ -103,6 +104,7 @@ class RunOutcome:
 
     failure: SimkitError | None = None
     stopped: str = ""
+    is_killed: bool = False
     stack: list[CodePosition] = field(default_factory=list)
     end: str = ""
     ticks: int = 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from typer.testing import CliRunner
 from simkit.child_process import ProcessResult
 from simkit.cli import app
 from simkit.errors import InputError
+from simkit.memory_error import OutOfMemory
 from simkit.run_spec import RunSpec
 from simkit.testing.certify import Certificate, Difference, certify
 from simkit.testing.certify.certificate import streams_hash
@@ -179,6 +181,18 @@ def test_a_process_that_exits_is_a_difference_with_its_code_position(tmp_path: P
     made = certified(tmp_path, "if not self.out.wanted:\n    os._exit(7)", "not received", apart=True)
     (found,) = made.differences
     assert found.words == "the process ended with 7: no output"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not have this signal")
+def test_a_process_that_the_system_kills_is_no_difference(tmp_path: Path) -> None:
+    with pytest.raises(OutOfMemory, match="SK-CORE-008 .*killed the process of the run 'not received'"):
+        certified(tmp_path, "if not self.out.wanted:\n    os.kill(os.getpid(), 9)", "not received", apart=True)
+
+
+def test_a_run_without_enough_memory_is_no_difference(tmp_path: Path) -> None:
+    body = "from simkit.memory_error import OutOfMemory\nif not self.out.wanted:\n    raise OutOfMemory('no map')"
+    with pytest.raises(OutOfMemory, match="SK-CORE-008 .*the run 'not received' did not fit"):
+        certified(tmp_path, body, "not received", apart=True)
 
 
 def test_a_run_that_hangs_names_the_running_code(tmp_path: Path) -> None:
