@@ -86,6 +86,7 @@ class CommandOption:
         metavar: placeholder of the value in a help text; empty for a flag.
         help: help text. `{default}` is the default of the command.
         part: part of a run that the option belongs to.
+        usual: text for `{default}` in the help text, for a command without another one.
         default: value without the option, if a help text shows it.
         least, most: limits of a number.
         parser: name of the text conversion in `simkit.cli.run_options`; empty for none.
@@ -97,6 +98,7 @@ class CommandOption:
     metavar: str
     help: str
     part: OptionPart = "run"
+    usual: str = ""
     default: object = None
     least: float | None = None
     most: float | None = None

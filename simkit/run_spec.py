@@ -187,8 +187,9 @@ class RunSpec:
         CommandOption(
             "--world",
             "NAME|none|FILE",
-            "World of a bare model: a file, a name, or none for empty space; default: level ground and a sun.",
+            "World of a bare model: a file, a name, or none for empty space; default: {default}.",
             "world",
+            usual="level ground and a sun",
             completion="worlds",
         ),
         packed="first",
@@ -223,7 +224,9 @@ class RunSpec:
     wall_timeout: float | None = run_field(
         None,
         Number(above=0.0),
-        CommandOption("--wall-timeout", "S", "Wall time limit of the run; then exit 5.", parser="seconds"),
+        CommandOption(
+            "--wall-timeout", "S", "Wall time limit of a run; default: {default}.", parser="seconds", usual="none"
+        ),
     )
     checks: tuple[Check, ...] = run_field(
         (),
@@ -255,7 +258,13 @@ class RunSpec:
     pace: float | None = run_field(
         None,
         Number(above=0.0),
-        CommandOption("--rtf", "X", "Highest real-time factor; default: {pace}.", "session", least=1e-3),
+        CommandOption(
+            "--rtf",
+            "X",
+            "Highest real-time factor; default: no limit, 1 with --teleop, --view or --web.",
+            "session",
+            least=1e-3,
+        ),
         key=None,
     )
     paused: bool = run_field(

@@ -25,6 +25,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
 from simkit.errors import InputError
+from simkit.run_values import validate_word
 
 if TYPE_CHECKING:
     from simkit.live import Client, LivePublisher
@@ -77,9 +78,9 @@ def export(
     """Export a bag as tables, images and point clouds."""
     from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions, export_bag
 
-    options.validate_word("--format", format_, FORMATS)
-    options.validate_word("--images", images, IMAGES)
-    options.validate_word("--clouds", clouds, CLOUDS)
+    validate_word("--format", format_, FORMATS)
+    validate_word("--images", images, IMAGES)
+    validate_word("--clouds", clouds, CLOUDS)
     target = output or Path(f"{recording.resolve().stem}_export")
     export_options = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
     exports = export_bag(recording, target, export_options)
