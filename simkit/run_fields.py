@@ -11,18 +11,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal, TypedDict, get_args
 
-from simkit.run_values import (
-    Choice,
-    FilePath,
-    Flag,
-    Folders,
-    NamedTexts,
-    NamedValues,
-    PackagePaths,
-    Packages,
-    ParameterFiles,
-    ValueKind,
-)
+from simkit.run_files import FilePath, PackagePaths
+from simkit.run_values import Choice, Flag, Folders, NamedTexts, NamedValues, Packages, ParameterFiles, ValueKind
 
 PluginErrorPolicy = Literal["stop", "disable"]
 """Policy for a plugin that raises: end the run, or continue without the plugin."""

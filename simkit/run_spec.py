@@ -29,17 +29,14 @@ from simkit.run_fields import (
     described_fields,
     run_field,
 )
+from simkit.run_files import ChangeFile, FileName, FilePath, PackagePaths
 from simkit.run_values import (
     BagText,
-    ChangeFile,
     Expression,
-    FileName,
-    FilePath,
     Flag,
     NamedValues,
     Number,
     OneFile,
-    PackagePaths,
     Spawns,
     Text,
     Texts,

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, ClassVar, Final, Literal, Protocol, cast
+from typing import Any, ClassVar, Final, Protocol, cast
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.home_folder import expand_home
+from simkit.run_files import (
+    ChangeFile,
+    FileName,
+    model_and_file,
+    split_package_paths,
+    split_spawn,
+)
 
-FilePath = str | os.PathLike[str]
 NamedValues = Mapping[str, str] | Sequence[str]
 """Values by name, or texts `NAME:=VALUE` or `NAME=VALUE`."""
-PackagePaths = Mapping[str, FilePath] | Sequence[FilePath]
-"""Folders of ROS packages by name, or a list of workspaces and of texts `NAME=DIR`."""
 _INVALID: Final = "SK-CLI-018"
-_NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_NUMBERS: Final = rf"\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)*"
-SPAWN_TEXT: Final = re.compile(rf"(?P<model>.+?):(?P<numbers>{_NUMBERS})(?::(?P<name>[^:/,]+))?")
-"""Text of a model to spawn: `MODEL:x,y,yaw[:name]`."""
 
 
 def named_values(values: NamedValues | None, option: str) -> dict[str, str]:
@@ -58,77 +57,6 @@ def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
         text = f"{_INVALID} {name}: found {word!r}; expected {', '.join(allowed)}"
         raise InputError(text + (f"; {hint}" if hint else ""), _INVALID)
     return word
-
-
-def split_package_paths(paths: PackagePaths | None) -> tuple[dict[str, Path], list[Path]]:
-    """Return the folders of packages by name, and the workspaces, which are folders without a name."""
-    if isinstance(paths, Mapping):
-        return {name: expand_home(path) for name, path in paths.items()}, []
-    named: dict[str, Path] = {}
-    workspaces: list[Path] = []
-    for item in (paths,) if isinstance(paths, str) else paths or ():
-        name, equals, path = str(item).partition("=")
-        name = name.strip().removesuffix(":").strip()
-        if isinstance(item, str) and equals and name and "/" not in name:
-            named[name] = expand_home(path)
-        else:
-            workspaces.append(expand_home(item))
-    return named, workspaces
-
-
-def model_and_file(named: FilePath | tuple[str, FilePath]) -> tuple[str, str]:
-    """Split `[MODEL=]FILE` into the name of a model and the path of a file; an empty name means all models."""
-    if isinstance(named, tuple):
-        return str(named[0]), os.fspath(named[1])
-    text = os.fspath(named)
-    model, equals, file = text.partition("=")
-    if not equals or not model.strip() or "/" in model or is_there(Path(text)):
-        return "", text
-    return model.strip(), file
-
-
-def split_spawn(text: str) -> tuple[str, str]:
-    """Split `MODEL:x,y,yaw[:name]` into the model and the rest, which is empty for a model alone."""
-    found = SPAWN_TEXT.fullmatch(text.strip())
-    model = text.strip() if found is None else found["model"]
-    return model, text.strip()[len(model) :]
-
-
-def is_there(path: Path) -> bool:
-    """Check whether a path exists; a text that cannot be the name of a file does not."""
-    try:
-        return path.exists()
-    except (OSError, ValueError):
-        return False
-
-
-@dataclass(frozen=True)
-class FileName:
-    """Name of a file in the value of a field.
-
-    Attributes:
-        text: path; a world or a model can also be a bare name, a URI or XML text.
-        role: what the name means. A world is a file, a model is a file or a folder. A bag is relative to the folder
-            of the run.
-        keys: field and position in it, such as `("spawn", 0)`.
-    """
-
-    text: str
-    role: Literal["world", "model", "bag", "file", "folder"]
-    keys: tuple[str | int, ...]
-
-    def path_in(self, folder: Path) -> Path | None:
-        """Return the path in a folder; None for the name of a world or model that is not a file there."""
-        path = folder / self.text
-        if self.role == "world":
-            is_path = "<" not in self.text and os.path.isfile(path)  # noqa: PTH113 (a long name is no error)
-        else:
-            is_path = self.role != "model" or ("<" not in self.text and bool(self.text) and is_there(path))
-        return path if is_path else None
-
-
-ChangeFile = Callable[[FileName], Any]
-"""Function that returns another name for a file, as a text or path."""
 
 
 class ValueSource(Protocol):

@@ -16,7 +16,7 @@ from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError
-from simkit.run_values import FilePath
+from simkit.run_files import FilePath
 from simkit.writers.atomic_output import check_file
 
 

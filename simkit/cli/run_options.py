@@ -16,8 +16,8 @@ from simkit.cli.terminal import completion
 from simkit.cli.terminal.given_interfaces import interface_folders
 from simkit.cli.terminal.options import option
 from simkit.run_fields import CommandOption, LoadArguments, OptionPart, RunField
+from simkit.run_files import FileName
 from simkit.run_spec import FilePath, LoadOptions, RunSpec, SourceOptions, run_fields
-from simkit.run_values import FileName
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 PARTS: Final = get_args(OptionPart)

@@ -13,7 +13,8 @@ from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, find_document
 from simkit.loaders.resources.model_list import client_models
 from simkit.pose import Pose
-from simkit.run_values import SPAWN_TEXT, NamedValues
+from simkit.run_files import SPAWN_TEXT
+from simkit.run_values import NamedValues
 from simkit.scene import Scene, SceneModel
 
 __all__ = ["SpawnedModel", "add_spawned_models", "client_models", "parse_spawn"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.plugins.ros_parameter_files import ParameterFile, read_parameter_file
-from simkit.run_values import is_there, model_and_file
+from simkit.run_files import is_there, model_and_file
 
 if TYPE_CHECKING:
     from simkit.params import Params

@@ -18,7 +18,7 @@ from simkit.linear_algebra import matmul
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.inertia_text import WrittenInertia, find_inertias, replace_numbers
 from simkit.loaders.sdf.inertial import MOMENT_NAMES
-from simkit.run_values import FilePath
+from simkit.run_files import FilePath
 from simkit.scene import Inertial, Scene, SceneLink
 
 _SLACK = 1e-6  # relative to the largest moment; tolerance for rounded values in files

@@ -21,8 +21,8 @@ from simkit.errors import InputError, LoadError, SimkitError
 from simkit.loaders import Resolver
 from simkit.loaders.spawned_models import parse_spawn
 from simkit.msgs import own_interfaces
+from simkit.run_files import FileName
 from simkit.run_spec import FilePath, RunSpec, SourceOptions
-from simkit.run_values import FileName
 from simkit.testing.bundles.manifest import packed_fields, packed_folder
 from simkit.writers.vendored_folder import vendor
 
@@ -202,10 +202,10 @@ class WorldStager:
         return path
 
     def _copied(self, name: FileName, target: str) -> str:
-        path = Path(name.text)
+        path = name.used_path(self._spec.folder) or Path(name.text)
         place = self._stage / target / path.name
         place.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(self._spec.folder / path, place)
+        shutil.copyfile(path, place)
         return f"{target}/{path.name}"
 
     def _compare(self, found: StagedWorld, keeper: BundleRecorder) -> None:

@@ -16,9 +16,8 @@ from typing import Final
 from simkit import progress
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
-from simkit.home_folder import expand_home
+from simkit.run_files import FileName, is_there
 from simkit.run_spec import RunSpec
-from simkit.run_values import FileName
 from simkit.testing.certify.certificate import Certificate, Difference, Row, streams_hash
 from simkit.testing.certify.child_run import ChildRequest, run_child
 from simkit.testing.certify.code_hints import hints_in
@@ -47,7 +46,7 @@ class ProcessRunner:
     """
 
     def __init__(self, scenario: RunSpec, *, apart: bool, limit: float | None) -> None:
-        self._plugins_from, self._scenario = _plugin_file(scenario), _with_absolute_paths(scenario)
+        self._plugins_from, self._scenario = _plugin_file(scenario), with_absolute_paths(scenario)
         self._processes = ChildProcesses() if apart else None
         self._limit = limit
 
@@ -128,15 +127,14 @@ def _plugin_file(scenario: RunSpec) -> Path | None:
     raise InputError(f"SK-CERT-002 {message}\n    help: {hint}", "SK-CERT-002")
 
 
-def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
+def with_absolute_paths(scenario: RunSpec) -> RunSpec:
     """Return the scenario with absolute paths, which are valid in every working directory."""
 
     def absolute(name: FileName) -> str:
-        if name.role in ("world", "model"):
-            path = name.path_in(scenario.folder) or name.path_in(Path())
-            return name.text if path is None else str(path.absolute())
-        place = (scenario.folder if name.role == "bag" else Path()).joinpath(expand_home(name.text))
-        return str(place.absolute()) if name.role != "file" or place.exists() else name.text
+        path = name.used_path(scenario.folder)
+        if path is None or (name.role == "file" and not is_there(path)):  # a parameter file can be a URI
+            return name.text
+        return str(path.absolute())
 
     source = scenario.source
     moved = scenario.with_files(absolute)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, fields, is_dataclass, replace
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any, Final, cast
 
@@ -13,7 +13,8 @@ import numpy as np
 
 from simkit.code_requests import CodeRequest, folder_request
 from simkit.diagnostic_record import NOWHERE, Where
-from simkit.run_fields import RunField
+from simkit.run_fields import LOAD_FIELDS, RunField
+from simkit.run_files import FileName
 from simkit.run_spec import (
     EMPTY_SPACE,
     Check,
@@ -24,7 +25,6 @@ from simkit.run_spec import (
     Tolerance,
     run_fields,
 )
-from simkit.run_values import FileName
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker, pack_words, unpack_words
 from simkit.testing.golden.compare.tolerances import storage_step
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
@@ -44,7 +44,7 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
     """
 
     def place(name: FileName) -> str:
-        path = name.path_in(scenario.folder)
+        path = name.used_path(scenario.folder)
         return name.text if path is None else relative_path(path, folder)
 
     found: dict[str, object] = {"world": relative_world(scenario, folder)}
@@ -105,7 +105,7 @@ def decode_scenario(plain: JsonMapping, folder: Path, where: Callable[[str], Whe
     checks = (_known_fields(one, Check) for one in plain.get("checks", ()))
     given["checks"] = tuple(Check(**{**one, "models": tuple(one.get("models", ()))}) for one in checks)
     given["plugins"] = tuple(map(str, plain.get("plugins", ())))
-    given["options"] = _known_fields(plain.get("options", {}), LoadOptions)
+    given["options"] = {str(name): one for name, one in plain.get("options", {}).items() if name in LOAD_FIELDS}
     file = folder / str(plain["file"]) if plain.get("file") else None
     world = "" if isinstance(plain["world"], Mapping) else str(plain["world"])
     found = RunSpec(world, folder=folder, file=file, **given).with_files(place)
@@ -186,8 +186,8 @@ def _non_default_fields(value: Any, default: Any) -> dict[str, object]:
     return {name: _plain_value(one) for name, one in asdict(value).items() if name != "where" and one != usual[name]}
 
 
-def _known_fields(plain: Mapping[str, object], kind: type) -> JsonObject:
-    names = {field.name for field in fields(kind)} if is_dataclass(kind) else kind.__annotations__.keys()
+def _known_fields(plain: Mapping[str, object], kind: type[Check | Tolerance]) -> JsonObject:
+    names = {field.name for field in fields(kind)}
     return {str(name): value for name, value in plain.items() if name in names}
 
 

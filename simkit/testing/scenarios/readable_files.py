@@ -17,8 +17,8 @@ from simkit.diagnostics import shorten
 from simkit.errors import InputError
 from simkit.home_folder import expand_home
 from simkit.project_folder import enclosing_project, is_top_folder
+from simkit.run_files import FileName, split_spawn
 from simkit.run_spec import FilePath, RunSpec
-from simkit.run_values import FileName, split_spawn
 from simkit.trusted_folders import TrustedFolders
 
 OUTSIDE: Final = "SK-URI-003"

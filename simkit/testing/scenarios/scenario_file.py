@@ -16,6 +16,7 @@ from simkit.errors import InputError, LoadError
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.command_script import script_items, validate_items
 from simkit.run_fields import RunField
+from simkit.run_files import FileName
 from simkit.run_spec import (
     Check,
     CheckKind,
@@ -26,7 +27,6 @@ from simkit.run_spec import (
     named_values,
     run_fields,
 )
-from simkit.run_values import FileName
 from simkit.testing.scenarios.code_permission import permit_code
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import (
@@ -160,6 +160,8 @@ class ScenarioReader(ValueReader):
     def _value(self, described: RunField, duration: float) -> object:
         """Return the value of a key; problems are added to the diagnostics."""
         assert described.key is not None
+        if described.name == "play":  # `_bag_duration` reports another value than a text
+            return str(self._fields["play"])
         if described.name == "overrides":
             return self._overrides()
         if described.name == "xacro_args":

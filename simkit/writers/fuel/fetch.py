@@ -31,7 +31,8 @@ from simkit.loaders.resources.fuel_cache import (
     read_lock,
 )
 from simkit.loaders.sdf.load_context import MAX_INCLUDE_DEPTH
-from simkit.run_values import FilePath, NamedValues, PackagePaths
+from simkit.run_files import FilePath, PackagePaths
+from simkit.run_values import NamedValues
 from simkit.writers.atomic_output import write_atomically
 from simkit.writers.fuel.cache_entry import STAGE, Record, archive_record, exclusive_file, read_record, store
 from simkit.writers.fuel.download import (
