@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, Final, Literal, TypedDict, get_args
+from typing import Any, Final, Literal, NamedTuple, TypedDict, get_args
 
 from simkit.run_files import FilePath, PackagePaths
 from simkit.run_values import Choice, Flag, Folders, NamedTexts, NamedValues, Packages, ParameterFiles, ValueKind
@@ -67,8 +66,7 @@ OptionPart = Literal["file", "world", "run", "session"]
 """
 
 
-@dataclass(frozen=True)
-class CommandOption:
+class CommandOption(NamedTuple):
     """Command-line option of a field.
 
     Attributes:
@@ -102,8 +100,7 @@ class CommandOption:
         return self.name.removeprefix("--").replace("-", "_") + "_"
 
 
-@dataclass(frozen=True)
-class RunField:
+class RunField(NamedTuple):
     """Description of one field of a run.
 
     Attributes:
@@ -184,7 +181,7 @@ def described_fields(run_class: type) -> dict[str, RunField]:
 
 
 def _load_options(*rows: RunField) -> dict[str, RunField]:
-    return {row.name: dataclasses.replace(row, is_loaded=True, is_load_option=True) for row in rows}
+    return {row.name: row._replace(is_loaded=True, is_load_option=True) for row in rows}
 
 
 LOAD_FIELDS: Final = _load_options(

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, NamedTuple
 
 from simkit.home_folder import expand_home
 
@@ -62,8 +61,7 @@ def is_there(path: Path) -> bool:
         return False
 
 
-@dataclass(frozen=True)
-class FileName:
+class FileName(NamedTuple):
     """Name of a file in the value of a field.
 
     Attributes:

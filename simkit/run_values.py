@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar, Final, Protocol, cast
 
-from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.home_folder import expand_home
 from simkit.run_files import (
@@ -44,19 +44,6 @@ def named_values(values: NamedValues | None, option: str) -> dict[str, str]:
             raise InputError(f"{_INVALID} {option}: found {text!r}; expected NAME:=VALUE or NAME=VALUE", _INVALID)
         found[name] = value
     return found
-
-
-def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
-    """Validate the value of an option with fixed choices.
-
-    Raises:
-        InputError: SK-CLI-018 the value is not allowed; the message suggests the closest choice.
-    """
-    if word not in allowed:
-        hint = did_you_mean(word, allowed)
-        text = f"{_INVALID} {name}: found {word!r}; expected {', '.join(allowed)}"
-        raise InputError(text + (f"; {hint}" if hint else ""), _INVALID)
-    return word
 
 
 class ValueSource(Protocol):
@@ -136,54 +123,56 @@ class Flag(ValueKind):
         return source.flag(key, default)
 
 
-@dataclass(frozen=True)
 class Whole(ValueKind):
     """Whole number.
 
-    Attributes:
+    Args:
         least: lowest allowed number.
     """
 
-    least: int = 0
     option_type = int | None
 
+    def __init__(self, least: int = 0) -> None:
+        self._least = least
+
     def read(self, source: ValueSource, key: str, default: Any) -> Any:
-        return source.whole(key, default, self.least)
+        return source.whole(key, default, self._least)
 
 
-@dataclass(frozen=True)
 class Number(ValueKind):
     """Number, or None.
 
-    Attributes:
+    Args:
         least: lowest allowed number.
         above: number that the value must exceed.
     """
 
-    least: float = float("-inf")
-    above: float = float("-inf")
     option_type = float | None
 
+    def __init__(self, least: float = -math.inf, above: float = -math.inf) -> None:
+        self._least, self._above = least, above
+
     def read(self, source: ValueSource, key: str, default: Any) -> Any:
-        return source.number(key, default, least=self.least, above=self.above)
+        return source.number(key, default, least=self._least, above=self._above)
 
 
-@dataclass(frozen=True)
 class Choice(ValueKind):
     """One word of several.
+
+    Args:
+        words: allowed words.
 
     Attributes:
         words: allowed words.
     """
 
-    words: Sequence[str]
     option_type = str | None
+
+    def __init__(self, words: Sequence[str]) -> None:
+        self.words = words
 
     def read(self, source: ValueSource, key: str, default: Any) -> Any:
         return source.word(key, default, self.words)
-
-    def from_option(self, value: Any, option: str) -> Any:
-        return validate_word(option, value, self.words)
 
 
 class Texts(ValueKind):
@@ -207,19 +196,20 @@ class NamedTexts(ValueKind):
         return named_values(value, option)
 
 
-@dataclass(frozen=True)
 class WorldName(Text):
     """World: a file, a bare name, XML text, or a word with a meaning of its own.
 
-    Attributes:
+    Args:
         words: these words.
     """
 
-    words: Sequence[str] = ()
     has_files = True
 
+    def __init__(self, words: Sequence[str] = ()) -> None:
+        self._words = words
+
     def move(self, value: Any, name: str, change: ChangeFile) -> Any:
-        return value if value in self.words or "<" in value else change(FileName(value, "world", (name,)))
+        return value if value in self._words or "<" in value else change(FileName(value, "world", (name,)))
 
 
 class BagText(Text):
@@ -267,21 +257,22 @@ def spawns_in(folder: Path, spawn: Sequence[str]) -> tuple[str, ...]:
     return cast("tuple[str, ...]", Spawns().move(spawn, "spawn", lambda name: name.path_in(folder) or name.text))
 
 
-@dataclass(frozen=True)
 class Folders(Texts):
     """Folders.
 
-    Attributes:
+    Args:
         must_exist: True to reject the option for a folder that does not exist.
     """
 
-    must_exist: bool = False
     option_type = list[Path]
     has_files = True
 
+    def __init__(self, must_exist: bool = False) -> None:
+        self._must_exist = must_exist
+
     def from_option(self, value: Any, option: str) -> Any:
         for folder in value:
-            if self.must_exist and not expand_home(folder).is_dir():
+            if self._must_exist and not expand_home(folder).is_dir():
                 raise InputError(f"{_INVALID} {option}: there is no folder {str(folder)!r}", _INVALID)
         return tuple(value)
 

@@ -13,7 +13,7 @@ from simkit.cli.bag_record import record
 from simkit.cli.bag_video import video
 from simkit.cli.plot_sources import PlotRequest, draw_chart, is_bag, split_sources_and_fields
 from simkit.cli.terminal import options
-from simkit.cli.terminal.options import argument, option
+from simkit.cli.terminal.options import argument, option, validate_word
 from simkit.cli.terminal.output import (
     absolute_name,
     print_json,
@@ -25,7 +25,6 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
 from simkit.errors import InputError
-from simkit.run_values import validate_word
 
 if TYPE_CHECKING:
     from simkit.live import Client, LivePublisher

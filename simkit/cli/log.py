@@ -10,11 +10,10 @@ from typing import Annotated, Any, Final
 import typer
 
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.options import Ros2Command, argument, option
+from simkit.cli.terminal.options import Ros2Command, argument, option, validate_word
 from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import find_topic, open_source
 from simkit.errors import InputError
-from simkit.run_values import validate_word
 
 COMMAND = Ros2Command
 ROSOUT: Final = "/rosout"

@@ -8,16 +8,17 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Final, TypeVar, cast, get_args
+from typing import Annotated, Any, Final, NamedTuple, TypeVar, cast, get_args
 
 import typer
 
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.given_interfaces import interface_folders
-from simkit.cli.terminal.options import option
+from simkit.cli.terminal.options import option, validate_word
 from simkit.run_fields import CommandOption, LoadArguments, OptionPart, RunField
 from simkit.run_files import FileName
 from simkit.run_spec import FilePath, LoadOptions, RunSpec, SourceOptions, run_fields
+from simkit.run_values import Choice
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 PARTS: Final = get_args(OptionPart)
@@ -105,8 +106,7 @@ def _from_working_folder(name: FileName) -> str:
     return name.text if path is None else str(path)
 
 
-@dataclass(frozen=True)
-class OfferedOptions:
+class OfferedOptions(NamedTuple):
     """Options of a run that a command offers.
 
     Attributes:
@@ -145,6 +145,8 @@ def with_run_options(
                 assert described.option is not None
                 value = arguments.pop(described.option.parameter, described.option.default)
                 if value is not None and value is not False and value not in ([], described.option.default):
+                    if isinstance(described.kind, Choice):
+                        validate_word(described.option.name, value, described.kind.words)
                     values[name] = described.kind.from_option(value, described.option.name)
             return command(**arguments, given=GivenOptions(values))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,6 +12,8 @@ from typer.models import ArgumentInfo, OptionInfo
 
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.output import P, report_errors_quietly
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError
 
 
 def option(
@@ -105,6 +107,21 @@ Against = Annotated[str | None, option("Field for the x axis instead of time.", 
 Start = Annotated[float | None, option("Start time.", "S", "--start")]
 End = Annotated[float | None, option("End time.", "S", "--end")]
 Title = Annotated[str, option("Title of the chart.", "TEXT", show_default=False)]
+
+
+def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
+    """Validate the value of an option with fixed choices.
+
+    Raises:
+        InputError: SK-CLI-018 the value is not allowed; the message suggests the closest choice.
+    """
+    if word not in allowed:
+        hint = did_you_mean(word, allowed)
+        text = f"SK-CLI-018 {name}: found {word!r}; expected {', '.join(allowed)}"
+        raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
+    return word
+
+
 _FLAGS = frozenset({"--no-daemon", "--use-sim-time"})
 _QOS = ("profile", "reliability", "durability", "history", "depth", "liveliness", "liveliness-lease-duration-seconds")
 _WITH_VALUE = frozenset({"--spin-time", "--node-name", *(f"--qos-{name}" for name in _QOS)})
