@@ -77,7 +77,8 @@ class FileName(NamedTuple):
 
     def path_in(self, folder: Path) -> Path | None:
         """Return the path in a folder; None for the name of a world or model that is not a file there."""
-        path = folder / expand_home(self.text)
+        is_expanded = self.role in ("file", "folder")  # as where these are read
+        path = folder / (expand_home(self.text) if is_expanded else self.text)
         if self.role == "world":
             is_path = "<" not in self.text and os.path.isfile(path)  # noqa: PTH113 (a long name is no error)
         else:
@@ -95,8 +96,9 @@ class FileName(NamedTuple):
         found, working = self.path_in(folder), self.path_in(Path())
         if self.role in ("world", "bag"):
             return found or working
-        is_used = working is not None and is_there(working)
-        is_used &= self.role != "model" or "/" in self.text or Path(self.text).is_file()
+        if working is None or not is_there(working):
+            return found
+        is_used = self.role != "model" or "/" in self.text or working.is_file()
         return working if is_used else found
 
 

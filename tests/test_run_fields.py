@@ -207,6 +207,16 @@ def test_a_file_of_an_option_starts_from_the_working_directory(folder: Path) -> 
     assert encode_scenario(spec, folder / "g")["model_world"] == "../lab.sdf"
 
 
+def test_a_world_in_the_home_folder_is_no_file_of_a_scenario(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(folder))
+    (folder / "lab.sdf").write_text(BALL)
+    for key, value in (("model_world", "~/lab.sdf"), ("spawn", "~/lab.sdf:1,0,0"), ("play", "~/lab.sdf")):
+        spec = RunSpec("turtlebot3_burger", folder=folder / "place")
+        spec = spec.with_values({key: (value,) if key == "spawn" else value})
+        assert str(folder / "lab.sdf") not in map(str, (name.used_path(spec.folder) for name in spec.files()))
+        assert spec.model_world_source != str(folder / "lab.sdf")
+
+
 def test_a_process_of_a_certificate_finds_the_script_and_the_bag(folder: Path) -> None:
     (folder / "go.yaml").write_text("[]\n")
     spec = with_absolute_paths(RunSpec("ball.sdf", folder=Path("place"), script=Path("go.yaml"), play="b.mcap"))
