@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Unpack, cast
 
 from simkit import progress
 from simkit.argument_checks import check_folders
@@ -35,6 +35,7 @@ from simkit.plugins.gz.sensors import with_sensors_colours
 from simkit.pose import Pose
 from simkit.run_spec import (
     EMPTY_SPACE,
+    LoadArguments,
     LoadOptions,
     NamedValues,
     PackagePaths,
@@ -259,25 +260,18 @@ def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tupl
     return sensor, None if kind is None else kind(sensor, diagnostics).describe()
 
 
-def check(
-    source: Source,
-    *,
-    resource_paths: Sequence[Source] = (),
-    plugin_paths: Sequence[Source] = (),
-    xacro_args: NamedValues | None = None,
-    package_paths: PackagePaths | None = None,
-    base: str = "auto",
-    interfaces: Sequence[Source] = (),
-) -> Diagnostics:
-    """Return every problem of a file, also of compiling it and of loading its plugins; the file raises no exception."""
+def check(source: Source, **arguments: Unpack[LoadArguments]) -> Diagnostics:
+    """Return every problem of a file, also of compiling it and of loading its plugins; the file raises no exception.
+
+    Args:
+        source: see `load`.
+        arguments: further arguments of `load`.
+    """
     from simkit.compiler.lint import lint_world
 
     diagnostics = Diagnostics()
     try:
-        with load(
-            source, resource_paths=resource_paths, plugin_paths=plugin_paths, xacro_args=xacro_args,
-            package_paths=package_paths, base=base, interfaces=interfaces,
-        ) as simulation:  # fmt: skip
+        with load(source, **arguments) as simulation:
             diagnostics.extend(simulation.diagnostics)
             diagnostics.extend(lint_world(simulation.world, simulation.engine.compiled))
     except LoadError as error:

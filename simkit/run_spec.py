@@ -9,24 +9,51 @@ from __future__ import annotations
 import fnmatch
 import math
 import os
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final, Literal, Protocol, TypedDict, cast, get_args
+from typing import Any, Final, Protocol, cast
 
 from simkit.code_requests import CodeRequest, code_refusal
-from simkit.errors import InputError
-from simkit.home_folder import expand_home
+from simkit.run_checks import Check, CheckKind, FinalConditions, Tolerance
+from simkit.run_fields import (
+    LOAD_FIELDS,
+    RENDERERS,
+    CommandOption,
+    LoadArguments,
+    LoadOptions,
+    PluginErrorPolicy,
+    RendererName,
+    RunField,
+    SourceOptions,
+    described_fields,
+    run_field,
+)
+from simkit.run_files import ChangeFile, FileName, FilePath, PackagePaths
+from simkit.run_values import (
+    BagText,
+    Expression,
+    Flag,
+    NamedValues,
+    Number,
+    OneFile,
+    Spawns,
+    Text,
+    Texts,
+    Whole,
+    WorldName,
+    named_values,
+)
 
-FilePath = str | os.PathLike[str]
+__all__ = [
+    "EMPTY_SPACE", "GROUND", "RENDERERS", "Check", "CheckKind", "FilePath", "JsonMapping", "JsonObject",
+    "LoadArguments", "LoadOptions", "NamedValues", "PackagePaths", "PluginErrorPolicy", "Recording", "RendererName",
+    "RunSpec", "SourceOptions", "SpawnRequest", "Tolerance", "named_values", "run_fields",
+]  # fmt: skip
+
 JsonObject = dict[str, Any]
 JsonMapping = Mapping[str, Any]
 """Object of JSON or YAML: texts, numbers, truth values, lists and objects by name."""
-PluginErrorPolicy = Literal["stop", "disable"]
-"""Policy for a plugin that raises: end the run, or continue without the plugin."""
-RendererName = Literal["auto", "gl", "software"]
-"""Renderer of images: OpenGL, simkit's software renderer, or OpenGL if this machine has it and else software."""
-RENDERERS: Final[tuple[str, ...]] = get_args(RendererName)
 
 GROUND: Final = "ground"
 """World of a bare model: level ground and a sun."""
@@ -34,95 +61,8 @@ GROUND: Final = "ground"
 EMPTY_SPACE: Final = "none"
 """World of a bare model: nothing."""
 
-NO_FILE_POSITION: Final = ""
-"""Position of an item that does not come from a file."""
-
 _MODEL_FILE_SUFFIXES: Final = frozenset((".config", ".sdf", ".urdf", ".xacro", ".xml"))
 """Suffixes of the files that make a folder a model."""
-
-CheckKind = Literal["goal", "always", "final", "apart", "rate"]
-"""Kind of a check.
-
-- "goal", "always", "final": an expression holds once, at all times, or at the end.
-- "apart": models never touch.
-- "rate": a topic has the required rate.
-"""
-
-
-@dataclass(frozen=True)
-class Check:
-    """One condition that a run must meet.
-
-    Attributes:
-        kind: kind of the condition. The kinds goal, always and final use `expression`, apart uses `models`, and rate
-            uses `topic`, `rate` and `tolerance`.
-        name: name in a report.
-        expression: expression in the language of `docs/conditions.md`.
-        by: simulated time by which a goal must be reached [s]; None for the end of the run.
-        after: simulated time from which "always" and "apart" are checked [s].
-        models: scoped names of models or links: two names that must not touch each other, or one name that may touch
-            only the ground.
-        rate: required rate [Hz] of simulated time; None for the rate that is set for the sensor or plugin.
-        tolerance: allowed relative deviation of the rate.
-        points: points for meeting the condition in an exercise.
-        hint: text of a report if the condition does not hold.
-        where: `file:line`, or NOWHERE.
-    """
-
-    kind: CheckKind
-    name: str = ""
-    expression: str = ""
-    by: float | None = None
-    after: float = 0.0
-    models: tuple[str, ...] = ()
-    topic: str = ""
-    rate: float | None = None
-    tolerance: float = 0.05
-    points: float = 1.0
-    hint: str = ""
-    where: str = NO_FILE_POSITION
-
-    @property
-    def title(self) -> str:
-        """Name of the check, or its condition as text."""
-        if self.name:
-            return self.name
-        if self.kind == "apart":
-            return " and ".join(self.models) + (" do not touch" if len(self.models) > 1 else " touches nothing")
-        if self.kind == "rate":
-            return f"{self.topic} ticks" + (f" at {self.rate:g} Hz" if self.rate is not None else "")
-        return self.expression
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """Allowed difference between readings and golden readings, for runs that need not be equal bit by bit.
-
-    Fields that are None use the default of the message type.
-
-    Attributes:
-        pattern: topic, field (`/imu.linear_acceleration`), or shell pattern of either.
-        absolute: absolute tolerance in the field's unit.
-        relative: tolerance as a fraction of the golden value.
-        share: fraction of the values of one message (rays, points, pixels) that may exceed the tolerance.
-        image: mean difference of an image's values, 0 to 255.
-        ssim: least structural similarity of images, at most 1.
-        statistics: compare mean, deviation and distribution of the noise instead of samples.
-        ignore: skip the comparison.
-        exact: require equal bits on every machine.
-        where: `file:line`, or NOWHERE.
-    """
-
-    pattern: str
-    absolute: float | None = None
-    relative: float | None = None
-    share: float | None = None
-    image: float | None = None
-    ssim: float | None = None
-    statistics: bool | None = None
-    ignore: bool = False
-    exact: bool = False
-    where: str = NO_FILE_POSITION
 
 
 class SpawnRequest(Protocol):
@@ -140,94 +80,6 @@ class SpawnRequest(Protocol):
     def place(self) -> tuple[float, ...] | None: ...
     @property
     def name(self) -> str | None: ...
-
-
-NamedValues = Mapping[str, str] | Sequence[str]
-"""Values by name, or texts `NAME:=VALUE` or `NAME=VALUE`."""
-
-
-def named_values(values: NamedValues | None, option: str) -> dict[str, str]:
-    """Return values by name; `NAME:=VALUE` is the form of ROS.
-
-    Args:
-        values: mapping, texts, or None for no values.
-        option: name of the option for an error message.
-
-    Raises:
-        InputError: SK-CLI-018 a text has another form.
-    """
-    if values is None or isinstance(values, Mapping):
-        return dict(values or {})
-    found: dict[str, str] = {}
-    for text in (values,) if isinstance(values, str) else values:
-        name, equals, value = str(text).partition("=")
-        name = name.strip().removesuffix(":").strip()
-        if not equals or not name:
-            message = f"SK-CLI-018 {option}: found {text!r}; expected NAME:=VALUE or NAME=VALUE"
-            raise InputError(message, "SK-CLI-018")
-        found[name] = value
-    return found
-
-
-PackagePaths = Mapping[str, FilePath] | Sequence[FilePath]
-"""Folders of ROS packages by name, or a list of workspaces and of texts `NAME=DIR`."""
-
-
-def split_package_paths(paths: PackagePaths | None) -> tuple[dict[str, Path], list[Path]]:
-    """Return the folders of packages by name, and the workspaces, which are folders without a name."""
-    if isinstance(paths, Mapping):
-        return {name: expand_home(path) for name, path in paths.items()}, []
-    named: dict[str, Path] = {}
-    workspaces: list[Path] = []
-    for item in (paths,) if isinstance(paths, str) else paths or ():
-        name, equals, path = str(item).partition("=")
-        name = name.strip().removesuffix(":").strip()
-        if isinstance(item, str) and equals and name and "/" not in name:
-            named[name] = expand_home(path)
-        else:
-            workspaces.append(expand_home(item))
-    return named, workspaces
-
-
-def change_package_paths(paths: PackagePaths, change: Callable[[FilePath], FilePath]) -> PackagePaths:
-    """Return the same packages and workspaces with every folder replaced."""
-    if isinstance(paths, Mapping):
-        return {name: change(path) for name, path in paths.items()}
-    named, workspaces = split_package_paths(paths)
-    return [*(f"{name}={change(path)}" for name, path in named.items()), *map(change, workspaces)]
-
-
-class SourceOptions(TypedDict, total=False):
-    """Options for reading a file, shared by `simkit.load`, `check` and `describe`."""
-
-    resource_paths: Sequence[FilePath]
-    package_paths: PackagePaths
-    xacro_args: NamedValues
-    base: str
-
-
-class LoadOptions(SourceOptions, total=False):
-    """Arguments of `simkit.load` that a run passes and that are not fields of `RunSpec`."""
-
-    plugin_paths: Sequence[FilePath]
-    interfaces: Sequence[FilePath]
-    params_files: FilePath | Sequence[FilePath | tuple[str, FilePath]]
-    strict: bool
-    sleep: bool
-    render_thread: bool | None
-    on_error: PluginErrorPolicy | None
-    renderer: RendererName | None
-
-
-class LoadArguments(LoadOptions, total=False):
-    """All keyword arguments of `simkit.load`."""
-
-    seed: int
-    overrides: Sequence[str]
-    spawn: Sequence[Any]
-    model_world: str
-    plugins: Sequence[object]
-    change_world: Callable[[Any], Any] | None
 
 
 @dataclass(frozen=True)
@@ -288,49 +140,184 @@ class RunSpec:
     """
 
     world: str
-    duration: float = 10.0
-    seed: int = 0
-    name: str = ""
-    overrides: tuple[str, ...] = ()
-    spawn: tuple[str | SpawnRequest, ...] = ()
-    model_world: str = GROUND
+    duration: float = run_field(
+        10.0,
+        Number(least=0.0),
+        CommandOption("--duration", "S", "Simulated seconds to run; default: {default}.", least=0),
+    )
+    seed: int = run_field(
+        0,
+        Whole(0),
+        CommandOption("--seed", "N", "Seed of all random streams.", "world", least=0, most=2**64 - 1),
+        packed="first",
+        is_loaded=True,
+    )
+    name: str = run_field(
+        "", Text(), CommandOption("--name", "NAME", "Name of the run; default: the world's or file's name.")
+    )
+    overrides: tuple[str, ...] = run_field(
+        (),
+        Texts(),
+        CommandOption("--set", "PATH=VALUE", "Override one value: scoped::name.element=VALUE; repeatable.", "world"),
+        key="set",
+        packed="first",
+        is_appended=True,
+        is_loaded=True,
+    )
+    spawn: tuple[str | SpawnRequest, ...] = run_field(
+        (),
+        Spawns(),
+        CommandOption(
+            "--spawn",
+            "MODEL:x,y,yaw[:name]",
+            "Spawn a model, by name or file; repeatable.",
+            "world",
+            completion="worlds",
+        ),
+        packed="first",
+        is_appended=True,
+        is_loaded=True,
+    )
+    model_world: str = run_field(
+        GROUND,
+        WorldName((GROUND, EMPTY_SPACE)),
+        CommandOption(
+            "--world",
+            "NAME|none|FILE",
+            "World of a bare model: a file, a name, or none for empty space; default: {default}.",
+            "world",
+            usual="level ground and a sun",
+            completion="worlds",
+        ),
+        packed="first",
+        is_loaded=True,
+    )
     commands: tuple[JsonMapping, ...] = ()
     plugins: tuple[object, ...] = ()
-    topics: tuple[str, ...] = ()
-    skip: tuple[str, ...] = ()
+    topics: tuple[str, ...] = run_field(
+        (), Texts(), CommandOption("--topic", "PATTERN", "Record or compare only topics of this pattern; repeatable.")
+    )
+    skip: tuple[str, ...] = run_field(
+        (),
+        Texts(),
+        CommandOption("--skip", "PATTERN", "Leave out topics of this pattern; repeatable."),
+        packed="changed",
+        is_appended=True,
+    )
     tolerances: tuple[Tolerance, ...] = ()
-    state: bool = True
-    model: bool = True
-    picture: int = 64
-    until: str = ""
-    timeout: float | None = None
-    wall_timeout: float | None = None
-    checks: tuple[Check, ...] = ()
+    state: bool = run_field(True, Flag())
+    model: bool = run_field(True, Flag())
+    picture: int = run_field(64, Whole(8))
+    until: str = run_field(
+        "",
+        Expression(),
+        CommandOption("--until", "EXPR", "End as soon as this condition holds: \"pose('tb3').x > 2\"."),
+    )
+    timeout: float | None = run_field(
+        None,
+        Number(above=0.0),
+        CommandOption("--timeout", "S", "Simulated time limit for --until; then exit 5.", parser="seconds"),
+    )
+    wall_timeout: float | None = run_field(
+        None,
+        Number(above=0.0),
+        CommandOption(
+            "--wall-timeout", "S", "Wall time limit of a run; default: {default}.", parser="seconds", usual="none"
+        ),
+    )
+    checks: tuple[Check, ...] = run_field(
+        (),
+        FinalConditions(),
+        CommandOption("--assert", "EXPR", "Condition that must hold at the end, else exit 5; repeatable."),
+        key=None,
+        is_appended=True,
+    )
     options: LoadOptions = field(default_factory=LoadOptions)
     folder: Path = field(default_factory=Path)
     file: Path | None = None
-    test: str = ""
-    bits: bool = True
-    play: str = ""
-    play_topics: tuple[str, ...] = ()
-    velocity: str | None = None
-    script: Path | None = None
+    test: str = run_field("", Text(), key=None, is_stored=True)
+    bits: bool = run_field(True, Flag(), key=None, is_stored=True)
+    play: str = run_field(
+        "", BagText(), CommandOption("--play", "BAG", "Bag with commands, which are played at their ticks.")
+    )
+    play_topics: tuple[str, ...] = run_field(
+        (),
+        Texts(),
+        CommandOption("--play-topic", "TOPIC[:=NEW]", "Topic to play, optionally under a new name; repeatable."),
+    )
+    velocity: str | None = run_field(
+        None, Text(), CommandOption("--cmd-vel", "V,W", "Send a constant velocity: m/s forward, rad/s left."), key=None
+    )
+    script: Path | None = run_field(  # noqa: RUF009
+        None, OneFile(), CommandOption("--script", "FILE.yaml", "Script of timed commands."), key=None
+    )
     recording: Recording | None = None
-    pace: float | None = None
-    paused: bool = False
-    steps: int | None = None
+    pace: float | None = run_field(
+        None,
+        Number(above=0.0),
+        CommandOption(
+            "--rtf",
+            "X",
+            "Highest real-time factor; default: no limit, 1 with --teleop, --view or --web.",
+            "session",
+            least=1e-3,
+        ),
+        key=None,
+    )
+    paused: bool = run_field(
+        False,
+        Flag(),
+        CommandOption("--paused", "", "Start paused; space or a service resumes the run.", "session"),
+        key=None,
+    )
+    steps: int | None = run_field(
+        None, Whole(0), CommandOption("--step", "N", "Pause after N steps.", "session", least=0), key=None
+    )
     change_world: Callable[[Any], Any] | None = None
     code_requests: tuple[CodeRequest, ...] = ()
+
+    def value_of(self, described: RunField) -> Any:
+        """Return the value of a field or load option; the default for a load option that is not given."""
+        if described.is_load_option:
+            return self.options.get(described.name, described.default)
+        return getattr(self, described.name)
+
+    def with_values(self, values: Mapping[str, Any]) -> RunSpec:
+        """Return a specification with other values of fields and load options."""
+        fields = run_fields()
+        options = {name: value for name, value in values.items() if fields[name].is_load_option}
+        rest = {name: value for name, value in values.items() if name not in options}
+        return replace(self, **rest, options=cast(LoadOptions, {**self.options, **options}))
+
+    def with_files(self, change: ChangeFile) -> RunSpec:
+        """Return a specification in which each name of a file is changed, except that of the world itself."""
+        values = {}
+        for name, described in run_fields().items():
+            value = self.value_of(described)
+            if value and not (described.is_load_option and name not in self.options):
+                values[name] = described.kind.move(value, name, change)
+        return self.with_values(values)
+
+    def files(self) -> Iterator[FileName]:
+        """Iterate over the names of files in all fields, except the world itself."""
+        found: list[FileName] = []
+
+        def note(name: FileName) -> str:
+            found.append(name)
+            return name.text
+
+        self.with_files(note)
+        return iter(found)
 
     def load_arguments(self) -> LoadArguments:
         """Return the keyword arguments of `simkit.load` for `source`; raise LoadError for code that is not allowed."""
         if self.code_requests:
             raise code_refusal(self.code_requests)
-        arguments = LoadArguments(
-            seed=self.seed, overrides=self.overrides, spawn=self.spawn, model_world=self.model_world_source,
-            plugins=self.plugins, change_world=self.change_world,
-        )  # fmt: skip
-        return cast(LoadArguments, {**arguments, **self.options})
+        loaded = {
+            name: getattr(self, name) for name, one in run_fields().items() if one.is_loaded and not one.is_load_option
+        }
+        loaded |= {"model_world": self.model_world_source, "plugins": self.plugins, "change_world": self.change_world}
+        return cast(LoadArguments, {**loaded, **self.options})
 
     def source_options(self) -> SourceOptions:
         """Return those load options that are used for reading the world's file."""
@@ -369,10 +356,8 @@ class RunSpec:
     @property
     def model_world_source(self) -> str:
         """Argument `model_world` of `simkit.load`: the path of a file in `folder` if it exists, else `model_world`."""
-        if self.model_world in (GROUND, EMPTY_SPACE) or "<" in self.model_world:
-            return self.model_world
-        path = self.folder / self.model_world
-        return str(path) if os.path.isfile(path) else self.model_world  # noqa: PTH113 (a long name is no error)
+        kind = run_fields()["model_world"].kind
+        return str(kind.move(self.model_world, "model_world", lambda name: name.path_in(self.folder) or name.text))
 
     @property
     def beside(self) -> Path | None:
@@ -396,3 +381,11 @@ class RunSpec:
         ]
         of_topic = [t for t in self.tolerances if "." not in t.pattern and fnmatch.fnmatchcase(topic, t.pattern)]
         return [*of_field, *of_topic]
+
+
+_FIELDS: Final = described_fields(RunSpec)
+
+
+def run_fields() -> dict[str, RunField]:
+    """Return the descriptions of the fields of a run and of its load options by name."""
+    return {**_FIELDS, **LOAD_FIELDS}

@@ -51,7 +51,8 @@ SMALL_MODULES = frozenset(
         "process_control",
     }
     | {"hidden_text", "json_reader", "linked_files", "project_folder"}
-    | {"progress", "registry", "run_spec", "save_path", "topic_logger", "trusted_folders", "version", "yaml_reader"}
+    | {"run_checks", "run_fields", "run_files", "run_spec", "run_values"}
+    | {"progress", "registry", "save_path", "topic_logger", "trusted_folders", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""
 

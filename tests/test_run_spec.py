@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import simkit
-from simkit.cli.run_options import load_options, scenario_spec
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, scenario_spec
 from simkit.run_spec import Check, Recording, RunSpec
 from simkit.testing.bundles import keep, open_bundle, write_bundle
 from simkit.testing.scenarios.scenario_file import read_scenario
@@ -48,10 +48,10 @@ def test_a_simulation_has_the_run_spec_that_it_was_loaded_from(world: Path) -> N
 def test_command_line_options_override_a_scenario_file(world: Path) -> None:
     file = world.with_name("fall.yaml")
     file.write_text("world: ball.sdf\nduration: 0.3\nseed: 5\nset: [ball::l.inertial.mass=2]\nbase: fixed\n")
-    found = scenario_spec(str(file), load_options((), (), (), "auto"))
-    assert found == read_scenario(file)
-    options = load_options((), (), ("a=1",), "auto", (Path("plugins"),))
-    over = scenario_spec(str(file), options, duration=0.1, overrides=["gravity=0 0 0"], cmd_vel="1,0")
+    assert scenario_spec(str(file), NONE_GIVEN) == read_scenario(file)
+    given = {"duration": 0.1, "overrides": ("gravity=0 0 0",), "velocity": "1,0"}
+    options = {"xacro_args": {"a": "1"}, "plugin_paths": (Path("plugins"),)}
+    over = scenario_spec(str(file), GivenOptions({**given, **options}))
     assert (over.duration, over.seed, over.velocity) == (0.1, 5, "1,0")
     assert over.overrides == ("ball::l.inertial.mass=2", "gravity=0 0 0")
     assert over.options == {"base": "fixed", "xacro_args": {"a": "1"}, "plugin_paths": (Path("plugins"),)}

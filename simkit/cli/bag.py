@@ -13,7 +13,7 @@ from simkit.cli.bag_record import record
 from simkit.cli.bag_video import video
 from simkit.cli.plot_sources import PlotRequest, draw_chart, is_bag, split_sources_and_fields
 from simkit.cli.terminal import options
-from simkit.cli.terminal.options import argument, option
+from simkit.cli.terminal.options import argument, option, validate_word
 from simkit.cli.terminal.output import (
     absolute_name,
     print_json,
@@ -77,9 +77,9 @@ def export(
     """Export a bag as tables, images and point clouds."""
     from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions, export_bag
 
-    options.validate_word("--format", format_, FORMATS)
-    options.validate_word("--images", images, IMAGES)
-    options.validate_word("--clouds", clouds, CLOUDS)
+    validate_word("--format", format_, FORMATS)
+    validate_word("--images", images, IMAGES)
+    validate_word("--clouds", clouds, CLOUDS)
     target = output or Path(f"{recording.resolve().stem}_export")
     export_options = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
     exports = export_bag(recording, target, export_options)

@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Annotated
 
 from simkit.cli.run_loop import Interrupts
-from simkit.cli.run_options import load_options
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import completion, film_options, options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note, report_errors_quietly
 
 
 @report_errors_quietly
+@with_run_options("file", "world", usual={"model_world": "empty space"})
 def video(
     recording: options.Recording,
     world: Annotated[str, argument("World of the recorded run.", "WORLD", completion.worlds)],
@@ -24,12 +25,7 @@ def video(
     camera: film_options.FilmCamera = "auto",
     start: options.Start = None,
     end: options.End = None,
-    set_: options.Overrides = [],
-    spawn: options.Spawns = [],
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
-    renderer: options.Renderer = None,
+    given: GivenOptions = NONE_GIVEN,
     json_: options.Json = False,
 ) -> int:
     """Film a bag: its poses or odometry, joint states and scans, drawn in its world."""
@@ -43,9 +39,8 @@ def video(
     is_gif = output.suffix.lower() == ".gif"
     found = read_options(output if is_gif else None, None if is_gif else output, resolution, fps, camera)
     assert found is not None
-    loading = load_options(resource_path, package_path, [], "auto", plugin_path, renderer=renderer)
     with open_bag_to_read(recording) as bag, Interrupts() as interrupts:
-        with load(world, overrides=tuple(set_), spawn=tuple(spawn), **loading) as sim:
+        with load(world, **given.load_arguments()) as sim:
             check_renderer(sim)
             print_diagnostics(sim.diagnostics, verbose=False)
             count, moved = film_bag(sim, bag, found, render_view, (start, end), lambda: interrupts.exit_code != 0)

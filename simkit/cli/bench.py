@@ -6,29 +6,29 @@ from typing import Annotated
 
 from typer import Option
 
-from simkit.cli.run_options import load_options
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import stdout_console
-from simkit.run_spec import GROUND, RunSpec
 
 _HOUR = 3600.0
 
 
 @report_errors_and_json
+@with_run_options(
+    *("file", "world"),
+    without={
+        "run": "the comparison sends no commands, and chooses the durations and topics",
+        "session": "the comparison runs at full speed",
+    },
+)
 def bench(
     world: options.World,
     rounds: Annotated[int, option("Number of measurements of simkit and of MuJoCo.", "N", min=1)] = 9,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     full: Annotated[bool, Option("--full", help="Measure memory over a simulated hour, not a minute.")] = False,
-    resource_path: options.ResourcePaths = [],
-    plugin_path: options.PluginPaths = [],
-    package_path: options.PackagePaths = [],
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
-    renderer: options.Renderer = None,
-    model_world: options.ModelWorld = None,
+    given: GivenOptions = NONE_GIVEN,
 ) -> None:
     """Compare the speed of a world with bare MuJoCo."""
     from simkit.mujoco_import import import_mujoco
@@ -37,11 +37,7 @@ def bench(
     from simkit.build import load
     from simkit.cli.bench_figures import compare_with_bare_mujoco, measure_import_time, measure_memory_growth
 
-    spec = RunSpec(
-        world,
-        model_world=model_world or GROUND,
-        options=load_options(resource_path, package_path, xacro_arg, base, plugin_path, renderer=renderer),
-    )
+    spec = given.run_spec(world)
     stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'goal':>8}")
     figures = []
     for figure in compare_with_bare_mujoco(spec, rounds=rounds):

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from typer import Option
 
-from simkit.cli.run_options import load_options, scenario_spec
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, scenario_spec, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
@@ -16,30 +16,23 @@ from simkit.writers.atomic_output import check_file
 
 
 @report_errors
+@with_run_options(
+    *("file", "world", "run"),
+    usual={"duration": "the scenario's, else 10"},
+    without={
+        "topics": "--topic chooses the image topics that the bundle keeps",
+        "session": "nobody follows the run of a bundle",
+    },
+)
 def bundle(
     world: options.Scenario,
     output: Annotated[Path, option("Bundle to write.", "FILE.zip", "--output", "-o")],
-    duration: Annotated[
-        float | None, option("Simulated seconds to run; default: the scenario's, else 10.", "S", min=0)
-    ] = None,
-    seed: options.Seed = None,
-    cmd_vel: options.CmdVel = None,
-    script: options.Script = None,
-    set_: options.Overrides = [],
-    spawn: options.Spawns = [],
-    model_world: options.ModelWorld = None,
-    params_file: options.ParamsFiles = [],
+    given: GivenOptions = NONE_GIVEN,
     last: Annotated[float, option("Seconds of messages to keep before the end.", "S", min=0)] = 10.0,
     topic: Annotated[list[str], option("Keep image topics that match this pattern, too; repeatable.", "PATTERN")] = [],
     no_code: Annotated[bool, Option("--no-code", help="Leave out the code of plugins.")] = False,
     force: options.Force = False,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
     allow_code: options.AllowCode = False,
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
-    renderer: options.Renderer = None,
 ) -> None:
     """Run a world or scenario and pack it into a repeatable bundle.
 
@@ -51,14 +44,10 @@ def bundle(
     from simkit.testing.scenarios.scenario_run import open_scenario, resolve_commands, run_scenario
 
     check_file(output, overwrite=force)
-    scenario = scenario_spec(
-        world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer),
-        duration=duration, seed=seed, overrides=set_, spawn=spawn, cmd_vel=cmd_vel, script=script,
-        model_world=model_world, allow_code=allow_code,
-    )  # fmt: skip
+    scenario = scenario_spec(world, given, allow_code=allow_code)
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
-        recorder = BundleRecorder(sim, last, topic)
+        recorder = BundleRecorder(sim, last, topic, scenario)
         scenario = resolve_commands(scenario, sim.communication.bus.topics())
         failure = None
         try:

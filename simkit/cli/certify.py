@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
-from simkit.cli.run_options import load_options, scenario_spec
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, scenario_spec, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.options import option
@@ -18,31 +19,20 @@ _DEFAULT_DURATION = 5.0  # [s] for a world without a scenario
 
 
 @report_errors_and_json
+@with_run_options(
+    *("file", "world", "run"),
+    usual={"duration": "the scenario's, else 5", "wall_timeout": "ten times the first run's, at least 60"},
+    without={
+        "checks": "a certificate compares runs and tells nothing about conditions",
+        "session": "nobody follows the runs of a certificate",
+    },
+)
 def certify(
     world: options.Scenario,
-    duration: Annotated[float | None, option("Simulated seconds; default: the scenario's, else 5.", "S", min=0)] = None,
-    seed: options.Seed = None,
+    given: GivenOptions = NONE_GIVEN,
     runs: Annotated[int, option("Number of runs, each in a fresh process.", "N")] = 6,
     jobs: Annotated[int, option("Number of parallel processes.", "N", "--jobs", "-j", min=1)] = 1,
-    wall_timeout: Annotated[
-        float | None,
-        option("Wall time limit of each run; default: ten times the first run's, at least 60.", "S", min=0.1),
-    ] = None,
-    topic: Annotated[list[str], option("Compare only topics that match this pattern; repeatable.", "PATTERN")] = [],
-    skip: Annotated[list[str], option("Leave out topics that match this pattern; repeatable.", "PATTERN")] = [],
-    cmd_vel: options.CmdVel = None,
-    script: options.Script = None,
-    set_: options.Overrides = [],
-    spawn: options.Spawns = [],
-    model_world: options.ModelWorld = None,
-    params_file: options.ParamsFiles = [],
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
     allow_code: options.AllowCode = False,
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
-    renderer: options.Renderer = None,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     output: Annotated[Path | None, option("Certificate to write, as JSON.", "FILE.json", "--out", "-o")] = None,
 ) -> int:
@@ -52,20 +42,16 @@ def certify(
     from simkit.testing.scenarios.scenario_run import open_scenario, resolve_commands
 
     check_writable(output)
-    scenario = scenario_spec(
-        world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer),
-        allow_code=allow_code, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
-        cmd_vel=cmd_vel, model_world=model_world, script=script, usual_duration=_DEFAULT_DURATION,
-    )  # fmt: skip
+    scenario = scenario_spec(world, given, allow_code=allow_code, usual_duration=_DEFAULT_DURATION)
     if scenario.velocity is not None or scenario.script is not None:
         with open_scenario(scenario) as sim:
             scenario = resolve_commands(scenario, sim.communication.bus.topics())
     stdout_console().print(certificate.table_header())
     report = certify_scenario(
-        scenario,
+        replace(scenario, wall_timeout=None),  # the limit of a process, which does not end a run early
         runs=runs,
         jobs=jobs,
-        wall_timeout=scenario.wall_timeout if wall_timeout is None else wall_timeout,
+        wall_timeout=scenario.wall_timeout,
         on_row=lambda row: stdout_console().print(certificate.table_row(row)),
     )
     for line in certificate.conclusion_text(report):

@@ -10,15 +10,28 @@ from typing import Annotated
 
 from typer import Option
 
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError
+from simkit.run_files import FilePath
 from simkit.writers.atomic_output import check_file
 
 
 @report_errors
+@with_run_options(
+    *("file", "world"),
+    usual={"model_world": "empty space"},
+    without={
+        "seed": "a check makes no step",
+        "strict": "--strict of a check changes the exit code alone",
+        "on_error": "a check reports a plugin that raises",
+        "run": "a check makes no step",
+        "session": "a check makes no step",
+    },
+)
 def check(
     file: options.File,
     json_: options.Json = False,
@@ -31,21 +44,16 @@ def check(
         Path | None, option("With --fix-inertia: corrected file to write.", "OUT", "--output", "-o")
     ] = None,
     force: options.Force = False,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
+    given: GivenOptions = NONE_GIVEN,
 ) -> int:
     """Print all problems of a file without running it."""
     from simkit.build import check as check_file
 
     if fix_inertia:
-        return _fix_inertia(file, output, force, resource_path, json_)
+        return _fix_inertia(file, output, force, given.source_options().get("resource_paths", ()), json_)
     if output is not None:
         raise InputError("SK-CLI-018 --output needs --fix-inertia", "SK-CLI-018")
-    source = options.source_arguments(resource_path, package_path, xacro_arg, base)
-    found = list(check_file(file, plugin_paths=plugin_path, **source))
+    found = list(check_file(file, **given.load_arguments()))
     if json_:
         stdout_console().file.write(json.dumps([d.as_dict() for d in found], indent=2) + "\n")
     else:
@@ -60,7 +68,7 @@ def _counts(found: Sequence[Diagnostic]) -> str:
     return ", ".join(f"{counts[s]} {s}{'' if counts[s] == 1 else 's'}" for s in ("error", "warning", "note"))
 
 
-def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: list[Path], json_: bool) -> int:
+def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: Sequence[FilePath], json_: bool) -> int:
     from simkit.writers.fix_inertia import find_inertia_fixes
 
     found = find_inertia_fixes(Path(file), resource_paths)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from typer import Option
 
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
@@ -17,6 +18,7 @@ from simkit.writers.atomic_output import check_target
 
 
 @report_errors
+@with_run_options("file")
 def convert(
     file: options.File,
     output: Annotated[
@@ -33,15 +35,12 @@ def convert(
         bool, Option("--keep-uris", help="SDF: keep model:// and package:// URIs and copy no files.")
     ] = False,
     strict: options.Strict = False,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
+    given: GivenOptions = NONE_GIVEN,
     force: options.Force = False,
     verbose: options.Verbose = False,
 ) -> None:
     """Convert a world or model to MJCF or to a single SDF file."""
-    source = options.source_arguments(resource_path, package_path, xacro_arg, base)
+    source = given.source_options()
     ending = output.suffix.lower()
     if ending in (".sdf", ".world"):
         count = _to_sdf(file, output, source, keep_uris=keep_uris, strict=strict, force=force, verbose=verbose)

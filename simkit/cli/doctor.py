@@ -11,6 +11,7 @@ from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 from typing import Any
 
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.output import stdout_console
@@ -80,8 +81,9 @@ _USE_SOFTWARE = "    help: draw with --renderer software, or switch OpenGL off: 
 
 
 @report_errors_and_json
+@with_run_options("renderer")
 def doctor(
-    renderer: options.Renderer = None,
+    given: GivenOptions = NONE_GIVEN,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> int:
     """Check the installation and print a remedy for each problem.
@@ -89,7 +91,7 @@ def doctor(
     The exit code is 1 if a required part or the renderer fails. A machine without OpenGL is a note, because the
     software renderer draws there.
     """
-    requested = options.renderer_argument(renderer).get("renderer") or "auto"
+    requested = given.values.get("renderer", "auto")
     found: dict[str, str] = {}
     notes = list(filter(None, [find_conflict()]))
     problems, engine = _versions(found), _engine(found)

@@ -46,7 +46,7 @@ class FailureBundle:
         if self._folder is not None:
             from simkit.testing.bundles import BundleRecorder
 
-            self._recorder = BundleRecorder(sim)
+            self._recorder = BundleRecorder(sim, run=self._spec)
 
     def __enter__(self) -> FailureBundle:
         return self

@@ -8,7 +8,8 @@ from urllib.parse import urlsplit
 
 from typer import Option
 
-from simkit.cli.terminal import completion, options
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
+from simkit.cli.terminal import completion
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_diagnostics, print_line, print_note, report_errors
 from simkit.errors import InputError
@@ -17,6 +18,7 @@ _SERVER = "GZ_FUEL_SERVER"
 
 
 @report_errors
+@with_run_options("file", without={"base": "models do not depend on the base"})
 def fetch(
     world: Annotated[
         str, argument("World or model file, bare name, or Fuel URL.", "WORLD", complete=completion.worlds)
@@ -39,9 +41,7 @@ def fetch(
     allow_http: Annotated[
         bool, Option("--allow-http", help="Allow servers without encryption on other computers.")
     ] = False,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    xacro_arg: options.XacroArgs = [],
+    given: GivenOptions = NONE_GIVEN,
 ) -> int:
     """Download the models that a world names on Fuel servers."""
     from simkit.writers.fuel.download import Connection
@@ -57,12 +57,13 @@ def fetch(
         update=update,
         dry_run=dry_run,
     )
+    source = given.source_options()
     report: FetchReport = run(
         world,
         chosen,
-        resource_paths=resource_path,
-        package_paths=package_path,
-        xacro_args=options.parse_pairs(xacro_arg, "--xacro-arg"),
+        resource_paths=source.get("resource_paths", ()),
+        package_paths=source.get("package_paths", ()),
+        xacro_args=source.get("xacro_args"),
     )
     for found in report.resources:
         version = f", version {found.version}" if found.version else ""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer import Option
 
-from simkit.cli.run_options import load_options, read_run, scenario_spec
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, read_run, scenario_spec, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report, error_diagnostics, report_errors_and_json
 from simkit.cli.terminal.options import argument, option
@@ -26,6 +26,7 @@ from simkit.cli.terminal.output import (
     stdout_console,
 )
 from simkit.errors import InputError, RegressionError
+from simkit.run_spec import run_fields
 from simkit.testing.golden.parallel_check import CheckResult
 from simkit.testing.scenarios.code_permission import without_permissions
 from simkit.testing.scenarios.readable_files import HELP
@@ -201,38 +202,24 @@ golden = typer.Typer(help="Record and compare golden runs (reference sensor outp
 
 @golden.command()
 @report_errors_and_json
+@with_run_options(
+    *("file", "world", "run"),
+    usual={"duration": "the scenario's, else 10"},
+    without={"session": "nobody follows the run of a golden run"},
+)
 def record(
     world: options.Scenario,
     out_: Annotated[Path, option("Folder to write.", "DIR", "--out", "-o")],
-    duration: Annotated[float | None, option("Simulated seconds; default: the scenario's, or 10.", "S", min=0)] = None,
-    seed: options.Seed = None,
-    topic: Annotated[list[str], option("Record only topics that match this pattern; repeatable.", "PATTERN")] = [],
-    skip: Annotated[list[str], option("Leave out topics that match this pattern; repeatable.", "PATTERN")] = [],
-    set_: options.Overrides = [],
-    spawn: options.Spawns = [],
-    model_world: options.ModelWorld = None,
-    params_file: options.ParamsFiles = [],
-    cmd_vel: options.CmdVel = None,
-    script: options.Script = None,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
+    given: GivenOptions = NONE_GIVEN,
     allow_code: options.AllowCode = False,
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
-    renderer: options.Renderer = None,
     force: options.Force = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
     """Run a scenario and store the result as a golden run."""
-    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file, renderer=renderer)
-    source = read_run(world, folders=resource_path)
-    spec = scenario_spec(
-        source, loading, allow_code=allow_code, duration=duration, seed=seed, topics=topic, skip=skip,
-        overrides=set_, spawn=spawn, model_world=model_world, cmd_vel=cmd_vel, script=script,
-    )  # fmt: skip
-    is_changed = duration is not None or seed is not None or bool(without_permissions(source, loading))
-    if is_changed or any((topic, skip, set_, spawn, model_world, cmd_vel, script)):
+    loading = given.load_options()
+    source = read_run(world, folders=loading.get("resource_paths", ()))
+    spec = scenario_spec(source, given, allow_code=allow_code)
+    if without_permissions(source, loading) or any(not run_fields()[name].is_load_option for name in given.values):
         spec = replace(spec, file=None)  # the golden run itself keeps the changes to the scenario file
     found = record_golden(spec, out_, force=force)
     if found.simulation is not None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from typer import Option
 
-from simkit.cli.run_options import load_options
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.frame_tree import receive_transforms
 from simkit.cli.terminal.options import argument, option
@@ -24,6 +24,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError
+from simkit.run_fields import LoadArguments
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ _COLLECTION_TIME = 1.0  # [s] of wall time for the transforms of a running simul
 
 
 @report_errors_quietly
+@with_run_options("file", "world", usual={"model_world": "empty space"})
 def graph(
     source: Annotated[str, argument("World, model, or name of a running simulation.", "WORLD|SIM", completion.worlds)],
     output: Annotated[Path, option("Chart to write: OUT.svg.", "OUT.svg", "--output", "-o")] = Path("graph.svg"),
@@ -41,13 +43,7 @@ def graph(
     hidden: Annotated[
         bool, Option("--all", "-a", help="Include hidden names, simkit's own nodes, and topics such as /clock.")
     ] = False,
-    set_: options.Overrides = [],
-    spawn: options.Spawns = [],
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
+    given: GivenOptions = NONE_GIVEN,
     json_: options.Json = False,
 ) -> None:
     """Draw the nodes and topics, or the frames, of a world or a running simulation."""
@@ -63,9 +59,7 @@ def graph(
     if is_running:
         nodes, frames = _of_simulation(source, tf=tf)
     else:
-        loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
-        arguments = {"overrides": tuple(set_), "spawn": tuple(spawn), **loading}
-        nodes, frames = _of_world(source, arguments, tf=tf)
+        nodes, frames = _of_world(source, given.load_arguments(), tf=tf)
     boxes, edges = frame_graph(frames) if tf else node_graph(nodes, hidden=hidden)
     if not boxes:
         print_note(f"note: {source} has no {'frames' if tf else 'nodes with topics, services or actions'}")
@@ -95,16 +89,14 @@ def _of_simulation(name: str, *, tf: bool) -> tuple[Mapping[str, JsonObject], Tr
         return client.ask("nodes"), frames
 
 
-def _of_world(
-    source: str, arguments: Mapping[str, object], *, tf: bool
-) -> tuple[Mapping[str, JsonObject], TransformTree]:
+def _of_world(source: str, arguments: LoadArguments, *, tf: bool) -> tuple[Mapping[str, JsonObject], TransformTree]:
     """Return the nodes of a world, and with `tf` the frames that it sends at the beginning of a run."""
     from simkit.bridges.live.introspection import node_list
     from simkit.build import load
     from simkit.msgs.transform_tree import TransformTree
 
     frames = TransformTree()
-    with load(source, **arguments) as sim:  # type: ignore[arg-type]
+    with load(source, **arguments) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
         if tf:
             for topic, type_name in sim.topics().items():

@@ -10,6 +10,7 @@ from typing import Annotated
 
 from typer import Option
 
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, printable, report_errors, stdout_console
 from simkit.diagnostics import Diagnostic, did_you_mean
@@ -18,26 +19,23 @@ from simkit.run_spec import SourceOptions
 
 
 @report_errors
+@with_run_options("file", "plugin_paths")
 def inspect(
     file: options.File,
     json_: options.Json = False,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
+    given: GivenOptions = NONE_GIVEN,
     paths: Annotated[bool, Option("--paths", help="List all values that --set can change, with their units.")] = False,
     pattern: Annotated[str, options.argument("Part of a path, or a shell pattern; only with --paths.")] = "",
 ) -> int:
     """Show the resolved content of a file."""
     from simkit.build import describe
 
-    source = options.source_arguments(resource_path, package_path, xacro_arg, base)
+    source = given.source_options()
     if paths:
         return _print_paths(file, source, pattern, json_)
     if pattern:
         raise InputError(f"SK-CLI-018 found the argument {pattern!r}; it needs the option --paths", "SK-CLI-018")
-    found = describe(file, plugin_paths=plugin_path, **source)
+    found = describe(file, plugin_paths=given.values.get("plugin_paths", ()), **source)
     if json_:
         stdout_console().file.write(json.dumps(found, indent=2) + "\n")
     else:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from typer import Option
 
-from simkit.cli.run_options import load_options
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
@@ -31,6 +31,7 @@ _SUFFIXES = (".pgm", ".yaml")
 
 
 @report_errors_quietly
+@with_run_options("file", "world", usual={"model_world": "empty space"})
 def map(
     world: Annotated[str, argument("World or model.", "WORLD", completion.worlds)],
     output: Annotated[Path, option("Map to write: OUT.pgm and OUT.yaml.", "OUT", "--output", "-o")] = Path("map"),
@@ -40,13 +41,7 @@ def map(
         str | None, option("Free place; what cannot be reached from it is unknown (default: the robot).", "X,Y")
     ] = None,
     everywhere: Annotated[bool, Option("--everywhere", help="Make every cell free that is not occupied.")] = False,
-    set_: options.Overrides = [],
-    spawn: options.Spawns = [],
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
+    given: GivenOptions = NONE_GIVEN,
     json_: options.Json = False,
 ) -> None:
     """Write the true occupancy map of a world as PGM and YAML."""
@@ -62,8 +57,7 @@ def map(
     image, description = (stem.with_name(stem.name + suffix) for suffix in _SUFFIXES)
     for path in (image, description):
         check_writable(path)
-    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
-    with load(world, overrides=tuple(set_), spawn=tuple(spawn), **loading) as sim:
+    with load(world, **given.load_arguments()) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
         found = _make(sim, height, resolution, place, everywhere=everywhere)
     text = found.description(image.name).encode()  # before the image: the name may not be valid UTF-8

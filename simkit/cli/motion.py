@@ -7,17 +7,19 @@ import re
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 from typer import Argument, Option
 
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.run_pictures import check_renderer
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
+from simkit.run_fields import LoadArguments
 
 if TYPE_CHECKING:
     from simkit.plugins.play_motion.motion import Motion
@@ -34,6 +36,7 @@ OfModel = Annotated[str | None, option("Robot that plays the motions, if the wor
 
 @motion.command("list")
 @report_errors
+@with_run_options("file", "plugin_paths", without={"base": "motions do not depend on the base"})
 def list_motions(
     file: Annotated[
         str,
@@ -42,10 +45,7 @@ def list_motions(
     motions: Motions = [],
     model: OfModel = None,
     json_: options.Json = False,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
-    xacro_arg: options.XacroArgs = [],
+    given: GivenOptions = NONE_GIVEN,
 ) -> None:
     """List motions: name, duration, points, joints and description."""
     if Path(file).suffix.lower() in (".yaml", ".yml"):
@@ -53,8 +53,7 @@ def list_motions(
     else:
         from simkit.plugins.play_motion.motion_session import choose_player, motion_players
 
-        source = options.source_arguments(resource_path, package_path, xacro_arg)
-        with _open_world(file, None, motions, 0, plugin_path, source, verbose=False) as sim:
+        with _open_world(file, None, motions, given.load_arguments(), verbose=False) as sim:
             found = list(choose_player(motion_players(sim), model).motions.values())
     if json_:
         shown = [{**m.as_message(), "duration": m.duration, "file": m.where.file} for m in found]
@@ -72,6 +71,15 @@ def list_motions(
 
 @motion.command("play")
 @report_errors
+@with_run_options(
+    *("file", "world"),
+    without={
+        "base": "the robot stands in a world",
+        "model_world": "--world is the world of the robot",
+        "run": "the motions decide what happens, and when it ends",
+        "session": "nobody follows the motions",
+    },
+)
 def play(
     names: Annotated[list[str], argument("Motions to play, one after another.", "MOTION...")],
     world: Annotated[
@@ -88,18 +96,12 @@ def play(
     skip_planning: Annotated[
         bool, Option("--skip-planning", help="Do not check for collisions on the way to the first point.")
     ] = False,
-    seed: Annotated[int, option("Seed of all random streams.", "N", min=0)] = 0,
     record: Annotated[Path | None, option("Bag to write: NAME.mcap, else a rosbag2 folder.", "OUT")] = None,
     force: options.Force = False,
     picture: Annotated[Path | None, option("Picture of the scene at the end, to write.", "OUT.png")] = None,
     json_: options.Json = False,
     verbose: options.Verbose = False,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
-    xacro_arg: options.XacroArgs = [],
-    params_file: options.ParamsFiles = [],
-    renderer: options.Renderer = None,
+    given: GivenOptions = NONE_GIVEN,
 ) -> None:
     """Play motions: at a safe speed to the first point, then with the timing of the motion file."""
     from simkit.plugins.play_motion.motion_session import choose_player, motion_players, play_motions
@@ -110,11 +112,9 @@ def play(
         pictures.check_target(picture)
     if record is not None:
         writer.check_target(record, overwrite=force)
-    source: Any = {**options.source_arguments(resource_path, package_path, xacro_arg), "params_files": params_file}
-    source |= options.renderer_argument(renderer)
     shown = []
     with ExitStack() as stack:
-        sim = stack.enter_context(_open_world(world, robot, motions, seed, plugin_path, source, verbose=verbose))
+        sim = stack.enter_context(_open_world(world, robot, motions, given.load_arguments(), verbose=verbose))
         if picture is not None:
             check_renderer(sim)
         if record is not None:
@@ -135,9 +135,7 @@ def _open_world(
     world: str | None,
     robot: str | None,
     motions: Sequence[Path],
-    seed: int,
-    plugin_paths: Sequence[Path],
-    source: Any,
+    arguments: LoadArguments,
     *,
     verbose: bool,
 ) -> Simulation:
@@ -150,8 +148,8 @@ def _open_world(
     text = world
     if text is None:
         text, folders = empty_world_with(robot or ROBOT)
-        source = {**source, "resource_paths": [*source["resource_paths"], *folders]}
-    sim = load(text, seed=seed, plugin_paths=plugin_paths, **source)
+        arguments = {**arguments, "resource_paths": [*arguments.get("resource_paths", ()), *folders]}
+    sim = load(text, **arguments)
     spawned = _spawn_robot(sim, robot) if world is not None and robot is not None else None
     players = motion_players(sim)
     for player in players.values():
@@ -165,7 +163,7 @@ def _open_world(
             message = f"SK-MOTION-010 --motions needs exactly one robot with a controller manager; {detail}"
             raise InputError(message, "SK-MOTION-010")
         player_plugin = PlayMotion(motions=[str(path.resolve()) for path in motions])
-        sim = load(text, seed=seed, plugin_paths=plugin_paths, plugins=[(hosts[0], player_plugin)], **source)
+        sim = load(text, **cast(LoadArguments, {**arguments, "plugins": [(hosts[0], player_plugin)]}))
     print_diagnostics(sim.diagnostics, verbose=verbose)
     return sim
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from simkit.cli.run_options import scenario_spec
+from simkit.cli.run_options import GivenOptions, scenario_spec
 from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note
 from simkit.errors import InputError
-from simkit.run_spec import LoadOptions, RunSpec
+from simkit.run_spec import RunSpec
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ _TOPICS_LISTED: Final = 20  # topics in the error message for a plot without fie
 
 
 def _world_spec(world: str) -> RunSpec:
-    return scenario_spec(world, LoadOptions())
+    return scenario_spec(world, GivenOptions())
 
 
 @dataclass(frozen=True)

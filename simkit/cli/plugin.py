@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer import Option
 
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, report_errors, stdout_console
@@ -25,9 +26,10 @@ plugin = typer.Typer(help="List, describe and create plugins.", no_args_is_help=
 
 @plugin.command("list")
 @report_errors
+@with_run_options("plugin_paths")
 def list_plugins(
     words: Annotated[list[str] | None, argument("List only names that contain one of these words.")] = None,
-    plugin_path: options.PluginPaths = [],
+    given: GivenOptions = NONE_GIVEN,
     json_: options.Json = False,
 ) -> None:
     """List all names that a world can use for a plugin, with the elements that can have the plugin."""
@@ -35,7 +37,7 @@ def list_plugins(
 
     search_words = [word.casefold() for word in words or ()]
     problems = Diagnostics()
-    entries = known_plugins(plugin_path, problems)
+    entries = known_plugins(given.values.get("plugin_paths", ()), problems)
     print_diagnostics(problems, verbose=True)
     if json_:
         shown = [_as_dict(e) for e in entries if _matching(e, search_words) or not search_words]
@@ -65,15 +67,16 @@ def _matching(entry: Entry, search_words: list[str]) -> list[str]:
 
 @plugin.command("info")
 @report_errors
+@with_run_options("plugin_paths")
 def show_info(
     name: Annotated[str, argument("Name in any spelling, class, MODULE:CLASS or FILE.py.")],
-    plugin_path: options.PluginPaths = [],
+    given: GivenOptions = NONE_GIVEN,
     json_: options.Json = False,
 ) -> None:
     """Print the parameters, topics, services and actions of a plugin."""
     from simkit.plugins.authoring.catalogue import common_facts, facts_of, find_entry
 
-    entry = find_entry(name, plugin_path)
+    entry = find_entry(name, given.values.get("plugin_paths", ()))
     facts = facts_of(entry.cls)
     if json_:
         found = {**_as_dict(entry), **_facts_as_dict(facts), "common": _facts_as_dict(common_facts())["parameters"]}
@@ -97,6 +100,7 @@ def show_info(
 
 @plugin.command("new")
 @report_errors
+@with_run_options("file", "plugin_paths", without={"base": "plugins do not depend on the base"})
 def new_plugin(
     name: Annotated[str | None, argument("Name of the plugin: wheel_brake, WheelBrake or libwheel_brake.so.")] = None,
     from_: Annotated[
@@ -111,10 +115,7 @@ def new_plugin(
     on: Annotated[str, Option(help="Parent element of the plugin: world, model, visual or sensor.")] = "model",
     folder: Annotated[Path, option("Folder for the new files.", "DIR")] = Path(),
     force: options.Force = False,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
-    xacro_arg: options.XacroArgs = [],
+    given: GivenOptions = NONE_GIVEN,
 ) -> None:
     """Create a plugin with typed parameters, and a test that passes."""
     from simkit.plugins.authoring.new_plugins import plugin_named, plugins_missing_in
@@ -128,9 +129,8 @@ def new_plugin(
     else:
         from simkit.build import read_scene
 
-        source = options.source_arguments(resource_path, package_path, xacro_arg)
-        scene, _ = read_scene(from_, missing_meshes=True, **source)
-        new_plugins = plugins_missing_in(scene, plugin_path)
+        scene, _ = read_scene(from_, missing_meshes=True, **given.source_options())
+        new_plugins = plugins_missing_in(scene, given.values.get("plugin_paths", ()))
         if not new_plugins:
             print_status("every plugin of this file is known; nothing to write")
             return

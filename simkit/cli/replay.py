@@ -107,7 +107,7 @@ def _extract(bundle: Bundle, folder: Path) -> None:
         _extract_whole(bundle, folder.absolute())
     except OSError as error:
         raise InputError(f"SK-CLI-016 cannot write {folder}: {error.strerror or error}", "SK-CLI-016") from None
-    text = f"{folder / bundle.manifest.world} and {len(bundle.manifest.files) - 1} other files"
+    text = f"{folder / bundle.manifest.run.world} and {len(bundle.manifest.files) - 1} other files"
     stdout_console().print(printable(text))
 
 
@@ -135,9 +135,9 @@ def _print_contents(bundle: Bundle, *, as_json: bool) -> None:
         return
     print_ = stdout_console().print
     end = manifest.end
-    title = f"{manifest.name}: {end.time_ns / 1e9:g} s, seed {manifest.seed}"
+    title = f"{manifest.name}: {end.time_ns / 1e9:g} s, seed {manifest.run.seed}"
     print_(printable(f"{title}, {manifest.commands} commands"))
-    print_(printable(f"world {manifest.world}" + "".join(f" --set {override}" for override in manifest.overrides)))
+    print_(printable(f"world {manifest.run.world}" + "".join(f" --set {one}" for one in manifest.run.overrides)))
     print_(printable("created by " + ", ".join(f"{k} {v}" for k, v in manifest.fingerprint.items() if v)))
     print_(f"state {printable(end.state)}")
     if end.failure is not None:

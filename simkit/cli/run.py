@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +17,8 @@ from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
 from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.gazebo_options import remove_gazebo_options
-from simkit.cli.run_options import RunDisplay, load_options
+from simkit.cli.run_display import RunDisplay
+from simkit.cli.run_options import NONE_GIVEN, PARTS, GivenOptions, with_run_options
 from simkit.cli.terminal import film_options, options, page_options, ros_options, web_options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, report_errors_and_json
@@ -25,10 +27,8 @@ from simkit.cli.terminal.output import print_diagnostics, print_status
 from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
 from simkit.garbage_collection import permanent_imports
-from simkit.run_spec import GROUND, Check, PluginErrorPolicy, Recording, RunSpec
+from simkit.run_spec import Recording, RunSpec
 
-_TIME = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|min|)")
-_UNITS = {"": 1.0, "s": 1.0, "ms": 1e-3, "min": 60.0}
 _TOPIC = re.compile(r"/[A-Za-z0-9_/]*")
 
 
@@ -83,55 +83,22 @@ class RunCommand(TyperCommand):
 COMMAND = RunCommand
 
 
-def _seconds(text: str) -> float:
-    """Parse a time: `30`, `30s`, `500ms` or `2min`."""
-    match = _TIME.fullmatch(text.strip())
-    if match is None or not float(match[1]) > 0:
-        raise typer.BadParameter(f"{text!r} is not a time; expected times above 0 such as 30, 30s, 500ms or 2min")
-    return float(match[1]) * _UNITS[match[2]]
-
-
-_RTF_HELP = "Highest real-time factor; default: no limit, 1 with --teleop, --view or --web."
 _KEY_TIMEOUT_HELP = "Simulated seconds without a key after which --teleop stops; inf: never."
-_NAME_HELP = "Name of the run for other terminals; default: the world's or file's name."
-_PLAY_TOPIC_HELP = "Topic to play, optionally under a new name; repeatable."
-_ERROR_HELP = "Action if a plugin raises an error: stop ends the run (exit 4), disable continues without the plugin."
 _BUNDLE_HELP = "Write a bundle for simkit replay into this folder if the run fails; default: bundles/."
-_TIMEOUT_HELP = "Simulated time limit for --until; then exit 5."
-_WALL_TIMEOUT_HELP = "Wall time limit of the run; then exit 5."
-_ASSERT_HELP = "Condition that must hold at the end, else exit 5; repeatable."
 
-RealTimeFactor = Annotated[float | None, option(_RTF_HELP, "X", min=1e-3)]
 KeyTimeout = Annotated[float, option(_KEY_TIMEOUT_HELP, "S")]
-Name = Annotated[str | None, option(_NAME_HELP, "NAME")]
-PlayTopics = Annotated[list[str], option(_PLAY_TOPIC_HELP, "TOPIC[:=NEW]", "--play-topic")]
-OnPluginError = Annotated[str | None, option(_ERROR_HELP, "stop|disable")]
 BundleFolder = Annotated[Path | None, option(_BUNDLE_HELP, "[DIR]")]
-Timeout = Annotated[float | None, option(_TIMEOUT_HELP, "S", parser=_seconds)]
-WallTimeout = Annotated[float | None, option(_WALL_TIMEOUT_HELP, "S", parser=_seconds)]
-Conditions = Annotated[list[str], option(_ASSERT_HELP, "EXPR", "--assert")]
 
 
 @report_errors_and_json
+@with_run_options(*PARTS, usual={"duration": "until Ctrl-C"})
 def run(
     world: options.World,
-    duration: Annotated[float | None, option("Simulated seconds to run; default: until Ctrl-C.", "S", min=0)] = None,
-    seed: Annotated[int, option("Seed of all random streams.", "N", min=0)] = 0,
+    given: GivenOptions = NONE_GIVEN,
     record: Annotated[Path | None, option("Bag to write: NAME.mcap, else a rosbag2 folder.", "OUT")] = None,
-    topic: Annotated[list[str], option("Record only topics that match this pattern; repeatable.", "PATTERN")] = [],
-    skip: Annotated[list[str], option("Do not record topics that match this pattern; repeatable.", "PATTERN")] = [],
     force: options.Force = False,
-    rtf: RealTimeFactor = None,
     teleop: Annotated[str | None, option("Drive with the keyboard, on this velocity topic.", "[TOPIC]")] = None,
     key_timeout: KeyTimeout = KEY_TIMEOUT,
-    paused: Annotated[bool, Option("--paused", help="Start paused; space or a service resumes the run.")] = False,
-    step: Annotated[int | None, option("Pause after N steps.", "N", min=0)] = None,
-    name: Name = None,
-    set_: options.Overrides = [],
-    spawn: options.Spawns = [],
-    model_world: options.ModelWorld = None,
-    params_file: options.ParamsFiles = [],
-    strict: options.Strict = False,
     view: Annotated[bool, Option("--view", help="Show the run in a viewer window.")] = False,
     picture: Annotated[Path | None, option("Picture of the end to write, with path and scan.", "OUT.png")] = None,
     gif: film_options.Gif = None,
@@ -139,26 +106,11 @@ def run(
     resolution: film_options.Resolution = None,
     fps: film_options.Fps = None,
     camera: film_options.FilmCamera = "auto",
-    cmd_vel: options.CmdVel = None,
-    script: options.Script = None,
-    play: Annotated[Path | None, option("Bag with commands, which are played at their ticks.", "BAG")] = None,
-    play_topic: PlayTopics = [],
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
     watch: Annotated[bool, Option("--watch", help="Reload a plugin when its file changes.")] = False,
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
-    renderer: options.Renderer = None,
-    on_plugin_error: OnPluginError = None,
     bundle_on_failure: BundleFolder = None,
     verbose: options.Verbose = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print no table of topics at the end.")] = False,
-    until: Annotated[str | None, option("End as soon as this condition holds: \"pose('tb3').x > 2\".", "EXPR")] = None,
-    timeout: Timeout = None,
-    wall_timeout: WallTimeout = None,
-    assert_: Conditions = [],
     junit: Annotated[Path | None, option("JUnit XML report to write.", "FILE.xml")] = None,
     ros: ros_options.Ros = False,
     ros_python: ros_options.RosPython = None,
@@ -173,34 +125,12 @@ def run(
     no_open: page_options.NoOpen = False,
 ) -> int:
     """Run a world without a window, as fast as possible."""
-    policy, checks = _on_error(on_plugin_error), tuple(Check("final", expression=e, where="--assert") for e in assert_)
-    loading = load_options(
-        resource_path, package_path, xacro_arg, base, plugin_path, params_file, on_error=policy, strict=strict,
-        renderer=renderer,
-    )  # fmt: skip
-    spec = RunSpec(
-        world,
-        duration=duration if duration is not None and math.isfinite(duration) else math.inf,
-        seed=seed,
-        name=name or "",
-        overrides=tuple(set_),
-        spawn=tuple(spawn),
-        model_world=model_world or GROUND,
-        topics=tuple(topic),
-        skip=tuple(skip),
-        until=_expression(until),
-        timeout=_until_when(timeout, until),
-        wall_timeout=wall_timeout,
-        checks=checks,
-        options=loading,
-        play="" if play is None else str(play),
-        play_topics=tuple(play_topic),
-        velocity=cmd_vel,
-        script=script,
+    spec = given.run_spec(world, duration=math.inf)
+    spec = replace(
+        spec,
+        duration=spec.duration if math.isfinite(spec.duration) else math.inf,
         recording=None if record is None else Recording(record, overwrite=force),
-        pace=highest_pace(rtf, is_watched=view or teleop is not None or web is not None),
-        paused=paused,
-        steps=step,
+        pace=highest_pace(spec.pace, is_watched=view or teleop is not None or web is not None),
     )
     key_timeout = _timeout(key_timeout)
     bridge = ros_options.run_ros_options(ros, ros_python, ros_domain, ros_namespace, ros_network, ros_args)
@@ -217,33 +147,11 @@ def run(
     return execute(spec, display)
 
 
-def _on_error(word: str | None) -> PluginErrorPolicy | None:
-    """Validate the value of --on-plugin-error."""
-    if word not in (None, "stop", "disable"):
-        raise typer.BadParameter(f"{word!r} is not stop or disable", param_hint="--on-plugin-error")
-    return word  # type: ignore[return-value]
-
-
 def _timeout(seconds: float) -> float:
     """Validate the value of --key-timeout."""
     if not seconds > 0:
         raise typer.BadParameter(f"{seconds} is not greater than 0", param_hint="--key-timeout")
     return seconds
-
-
-def _expression(until: str | None) -> str:
-    """Validate a condition. An empty text is rejected: its usual cause is an unset variable of a shell script."""
-    if until is not None and not until.strip():
-        raise typer.BadParameter("the expression is empty", param_hint="--until")
-    return until or ""
-
-
-def _until_when(timeout: float | None, until: str | None) -> float | None:
-    """Validate the time limit of a condition."""
-    if timeout is not None and not until:
-        message = "--timeout needs --until; limit the run with --duration S"
-        raise typer.BadParameter(message, param_hint="--timeout")
-    return timeout
 
 
 def highest_pace(rtf: float | None, *, is_watched: bool) -> float | None:

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
+from simkit.cli.run_display import RunDisplay
 from simkit.cli.run_loop import Interrupts, RunLoop
-from simkit.cli.run_options import RunDisplay
 from simkit.cli.terminal.output import print_status
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simkit.cli.run_bridges import start_bridges
+from simkit.cli.run_display import RunDisplay
 from simkit.cli.run_loop import Interrupts, RunLoop
-from simkit.cli.run_options import RunDisplay
 from simkit.cli.run_pictures import check_renderer, draw_picture, film_run, note_missing_gl
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins

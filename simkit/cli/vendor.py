@@ -5,24 +5,22 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument
 from simkit.cli.terminal.output import report_errors, stdout_console
 
 
 @report_errors
+@with_run_options("file")
 def vendor(
     file: options.File,
     folder: Annotated[Path, argument("New or empty folder to write.")],
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
+    given: GivenOptions = NONE_GIVEN,
 ) -> None:
     """Copy a world and all files that it uses into one folder."""
     from simkit.build import describe
     from simkit.writers.vendored_folder import vendor as write
 
-    source = options.source_arguments(resource_path, package_path, xacro_arg, base)
-    main, count = write(file, folder, describe, **source)
+    main, count = write(file, folder, describe, **given.source_options())
     stdout_console().print(f"{folder / main} and {count - 1} other files")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -12,12 +13,12 @@ from typer import Option
 
 from simkit.cli.plot_sources import is_bag
 from simkit.cli.run import execute
+from simkit.cli.run_display import RunDisplay
 from simkit.cli.run_loop import Interrupts
-from simkit.cli.run_options import RunDisplay, load_options
-from simkit.cli.terminal import completion, options, page_options
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
+from simkit.cli.terminal import completion, page_options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import report_errors
-from simkit.run_spec import GROUND, RunSpec
 
 _PORT_HELP = "Port of the page on this machine; default: a free one."
 Target = Annotated[
@@ -27,20 +28,21 @@ Port = Annotated[int | None, option(_PORT_HELP, "PORT", min=0, max=65535)]
 
 
 @report_errors
+@with_run_options(
+    *("file", "world", "run"),
+    usual={"duration": "until Ctrl-C"},
+    without={
+        "topics": "nothing is recorded",
+        "skip": "nothing is recorded",
+        "session": "the page starts the run, at the speed of real time",
+    },
+)
 def view(
     target: Target,
     port: Port = None,
     host: page_options.Host = None,
     no_open: page_options.NoOpen = False,
-    set_: options.Overrides = [],
-    spawn: options.Spawns = [],
-    model_world: options.ModelWorld = None,
-    resource_path: options.ResourcePaths = [],
-    package_path: options.PackagePaths = [],
-    plugin_path: options.PluginPaths = [],
-    xacro_arg: options.XacroArgs = [],
-    base: options.Base = "auto",
-    renderer: options.Renderer = None,
+    given: GivenOptions = NONE_GIVEN,
     html: Annotated[Path | None, option("HTML file to write instead: a bag that plays without simkit.", "OUT")] = None,
     verbose: Annotated[bool, Option("--verbose", "-v", help="Show every note instead of their number.")] = False,
 ) -> int:
@@ -49,38 +51,21 @@ def view(
     A world and a robot are paused; a robot has a slider for each joint.
     """
     page = page_options.PageOptions(port or 0, host or "127.0.0.1", not no_open)
-    scene: dict[str, object] = {"--set": set_, "--spawn": spawn}
     server: dict[str, object] = {"--port": port, "--host": host}
-    loads: dict[str, object] = {
-        "--world": model_world,
-        "--resource-path": resource_path,
-        "--package-path": package_path,
-    }
-    loads |= {"--plugin-path": plugin_path, "--xacro-arg": xacro_arg, "--base": base if base != "auto" else None}
-    loads["--renderer"] = renderer
     if html is not None:
         _refuse({**server, "--no-open": no_open}, "no page is served with --html; open the file")
     if is_bag(Path(target)) or html is not None:
-        _refuse(scene, "a bag plays as it was recorded; --world WORLD names its world")
+        loading = given.load_options()
+        others = dict.fromkeys(given.names(excluded=("model_world", *loading)), True)
+        _refuse(others, "a bag plays as it was recorded; --world WORLD names its world")
         from simkit.cli.bag_view import show_bag
 
-        loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, renderer=renderer)
-        return show_bag(Path(target), model_world, loading, page, html)
+        return show_bag(Path(target), given.values.get("model_world"), loading, page, html)
     if not Path(target).exists() and target in _running():
         text = f"{target} runs already; start it with these options, such as `simkit run WORLD --web PORT`"
-        _refuse(server | scene | loads, text)
+        _refuse(server | dict.fromkeys(given.names(), True), text)
         return _show_running(target, page)
-    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, renderer=renderer)
-    spec = RunSpec(
-        target,
-        duration=math.inf,
-        overrides=tuple(set_),
-        spawn=tuple(spawn),
-        model_world=model_world or GROUND,
-        options=loading,
-        pace=1.0,
-        paused=True,
-    )
+    spec = replace(given.run_spec(target, duration=math.inf), pace=1.0, paused=True)
     return execute(spec, RunDisplay(quiet=True, verbose=verbose, page=page))
 
 

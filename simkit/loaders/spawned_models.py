@@ -13,14 +13,12 @@ from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, find_document
 from simkit.loaders.resources.model_list import client_models
 from simkit.pose import Pose
-from simkit.run_spec import NamedValues
+from simkit.run_files import SPAWN_TEXT
+from simkit.run_values import NamedValues
 from simkit.scene import Scene, SceneModel
 
 __all__ = ["SpawnedModel", "add_spawned_models", "client_models", "parse_spawn"]
 
-_NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_NUMBERS: Final = rf"\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)*"
-_TEXT: Final = re.compile(rf"(?P<model>.+?):(?P<numbers>{_NUMBERS})(?::(?P<name>[^:/,]+))?")
 _POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*)?$")
 _FORM: Final = "MODEL:x,y,yaw[:name], as in tiago:1,0,1.57 or robot.urdf:0,2,0:second; or MODEL alone"
 _FARTHEST: Final = 1e15  # [m, rad]; sums of larger numbers lose their precision or overflow
@@ -65,7 +63,7 @@ class SpawnedModel:
 
 def parse_spawn(text: str, diagnostics: Diagnostics) -> SpawnedModel | None:
     """Parse a text such as `tiago:1,0,1.57:robot`; return None, with an error recorded, if the text is invalid."""
-    found = _TEXT.fullmatch(text.strip())
+    found = SPAWN_TEXT.fullmatch(text.strip())
     if found is None:
         if not text.strip() or _POSED.search(text):
             diagnostics.error("SK-SPAWN-001", f"--spawn: invalid value {text!r}", hint=f"write {_FORM}")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.plugins.ros_parameter_files import ParameterFile, read_parameter_file
+from simkit.run_files import is_there, model_and_file
 
 if TYPE_CHECKING:
     from simkit.params import Params
@@ -75,32 +76,14 @@ def read_run_parameter_files(
     return tuple(found)
 
 
-def model_and_file(named: ParameterFileArgument) -> tuple[str, str]:
-    """Return the name of the model and the path of the file; an empty name means all models."""
-    if isinstance(named, tuple):
-        return str(named[0]), os.fspath(named[1])
-    text = os.fspath(named)
-    model, equals, file = text.partition("=")
-    if not equals or not model.strip() or "/" in model or _exists(Path(text)):
-        return "", text
-    return model.strip(), file
-
-
 def _find_file(text: str, find: Callable[[str], Path | None]) -> Path | None:
-    if text and _exists(Path(text)):
+    if text and is_there(Path(text)):
         return Path(text)
     try:
         found = find(text) if text else None
         return found if found is not None and found.is_file() else None
     except (OSError, ValueError):  # the text is not a valid file name
         return None
-
-
-def _exists(path: Path) -> bool:
-    try:
-        return path.exists()
-    except (OSError, ValueError):
-        return False
 
 
 def _closest_file_name(text: str) -> str:

@@ -18,6 +18,7 @@ from simkit.linear_algebra import matmul
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.inertia_text import WrittenInertia, find_inertias, replace_numbers
 from simkit.loaders.sdf.inertial import MOMENT_NAMES
+from simkit.run_files import FilePath
 from simkit.scene import Inertial, Scene, SceneLink
 
 _SLACK = 1e-6  # relative to the largest moment; tolerance for rounded values in files
@@ -89,7 +90,7 @@ class InertiaFixes:
         return len(changes)
 
 
-def find_inertia_fixes(source: Path, resource_paths: Sequence[Path] = ()) -> InertiaFixes:
+def find_inertia_fixes(source: Path, resource_paths: Sequence[FilePath] = ()) -> InertiaFixes:
     """Find all impossible inertias in a file and in its included files.
 
     Raises:

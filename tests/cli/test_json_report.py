@@ -94,7 +94,7 @@ def test_a_file_that_is_not_there_is_a_diagnostic(words: str, world: Path) -> No
         ("run ball.sdf --durration 3", "No such option: --durration"),
         ("run", "Missing argument"),
         ("run ball.sdf --seed x", "Invalid value for '--seed'"),
-        ("run ball.sdf --on-plugin-error maybe", "'maybe' is not stop or disable"),
+        ("run ball.sdf --timeout 3", "--timeout needs --until"),
         ("golden check", "Missing argument"),
         ("doctor everything", "unexpected extra argument"),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Any, cast
+from typing import Annotated, Any
 
 from typer import Argument, Option, Typer
 from typer.core import TyperCommand
@@ -14,8 +14,6 @@ from simkit.cli.terminal import completion
 from simkit.cli.terminal.output import P, report_errors_quietly
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.home_folder import expand_home
-from simkit.run_spec import RENDERERS, LoadOptions, RendererName, SourceOptions, named_values
 
 
 def option(
@@ -72,28 +70,11 @@ File = Annotated[str, argument("World or model file, or a bare name.", complete=
 Scenario = Annotated[
     str, argument("Scenario (.yaml, .py), world or bare name.", "WORLD|SCENARIO", completion.scenarios)
 ]
-ResourcePaths = Annotated[
-    list[Path],
-    option("Search folder for model://, package:// and relative URIs; repeatable.", "DIR", "--resource-path"),
-]
 ReadableFolders = Annotated[
     list[Path],
     option(
         "Folder in which the file may name files, beside its own and its project; repeatable.", "DIR", "--resource-path"
     ),
-]
-PackagePaths = Annotated[
-    list[str],
-    option("Workspace of ROS packages, or folder of the package NAME; repeatable.", "[NAME=]DIR", "--package-path"),
-]
-XacroArgs = Annotated[list[str], option("Argument of a xacro file; repeatable.", "NAME:=VALUE", "--xacro-arg")]
-Base = Annotated[
-    str,
-    option("Base of a bare model: fixed, floating, or auto (floating unless joined to the world).", "BASE", "--base"),
-]
-PluginPaths = Annotated[
-    list[Path],
-    Option("--plugin-path", help="Folder of Python plugins to allow; repeatable.", metavar="DIR", exists=True),
 ]
 AllowCode = Annotated[
     bool, Option("--allow-code", help="Run the code that the file names, with all your rights; read it first.")
@@ -101,43 +82,6 @@ AllowCode = Annotated[
 CodePaths = Annotated[
     list[Path],
     Option("--plugin-path", help="Run only the code in this folder; repeatable.", metavar="DIR", exists=True),
-]
-ParamsFiles = Annotated[
-    list[str],
-    option(
-        "Controller parameter file, for all control plugins or for those of one model; repeatable.",
-        "[MODEL=]FILE.yaml",
-        "--params-file",
-    ),
-]
-Overrides = Annotated[
-    list[str], option("Override one value: scoped::name.element=VALUE; repeatable.", "PATH=VALUE", "--set")
-]
-Spawns = Annotated[
-    list[str],
-    option(
-        "Spawn a model, by name or file; repeatable.", "MODEL:x,y,yaw[:name]", "--spawn", complete=completion.worlds
-    ),
-]
-ModelWorld = Annotated[
-    str | None,
-    option(
-        "World of a bare model: a file, a name, or none for empty space; default: level ground and a sun.",
-        "NAME|none|FILE",
-        "--world",
-        complete=completion.worlds,
-    ),
-]
-CmdVel = Annotated[str | None, option("Send a constant velocity: m/s forward, rad/s left.", "V,W", "--cmd-vel")]
-Script = Annotated[Path | None, option("Script of timed commands.", "FILE.yaml", "--script")]
-Seed = Annotated[int | None, option("Seed of all random streams.", "N", "--seed", min=0, max=2**64 - 1)]
-Renderer = Annotated[
-    str | None,
-    option(
-        "Renderer of images: gl, software, or auto (OpenGL if this machine has it); default: the world's, else auto.",
-        "auto|gl|software",
-        "--renderer",
-    ),
 ]
 Strict = Annotated[bool, Option("--strict", help="Treat warnings as errors.")]
 Json = Annotated[bool, Option("--json", help="Print JSON.")]
@@ -163,16 +107,6 @@ Against = Annotated[str | None, option("Field for the x axis instead of time.", 
 Start = Annotated[float | None, option("Start time.", "S", "--start")]
 End = Annotated[float | None, option("End time.", "S", "--end")]
 Title = Annotated[str, option("Title of the chart.", "TEXT", show_default=False)]
-_BASES = ("auto", "fixed", "floating")
-
-
-def parse_pairs(texts: Sequence[str], option: str) -> dict[str, str]:
-    """Parse `NAME=VALUE` or `NAME:=VALUE` texts to a mapping; ROS writes the second form.
-
-    Raises:
-        InputError: SK-CLI-018 a text has another form.
-    """
-    return named_values(texts, option)
 
 
 def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
@@ -186,36 +120,6 @@ def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
         text = f"SK-CLI-018 {name}: found {word!r}; expected {', '.join(allowed)}"
         raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
     return word
-
-
-def source_arguments(
-    resource_paths: Sequence[Path], package_paths: Sequence[str], xacro_args: Sequence[str], base: str = "auto"
-) -> SourceOptions:
-    """Return the options for reading a file as keyword arguments.
-
-    Raises:
-        InputError: SK-CLI-018 a folder does not exist, or another value is not allowed.
-    """
-    for folder in resource_paths:
-        if not expand_home(folder).is_dir():
-            raise InputError(f"SK-CLI-018 --resource-path: there is no folder {str(folder)!r}", "SK-CLI-018")
-    return {
-        "resource_paths": resource_paths,
-        "package_paths": tuple(package_paths),
-        "xacro_args": parse_pairs(xacro_args, "--xacro-arg"),
-        "base": validate_word("--base", base, _BASES),
-    }
-
-
-def renderer_argument(name: str | None) -> LoadOptions:
-    """Return the option --renderer as a keyword argument of `simkit.load`; empty without the option.
-
-    Raises:
-        InputError: SK-CLI-018 the renderer is unknown.
-    """
-    if name is None:
-        return {}
-    return {"renderer": cast(RendererName, validate_word("--renderer", name, RENDERERS))}
 
 
 _FLAGS = frozenset({"--no-daemon", "--use-sim-time"})

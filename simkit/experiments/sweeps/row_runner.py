@@ -139,7 +139,7 @@ class RowRunner:
                 pack_load_failure(spec, target.parent, failure_from_error(error)).replace(target)
             return result
         failure: Failure | None = None
-        recorder = BundleRecorder(sim)
+        recorder = BundleRecorder(sim, run=spec)
         bag = self._open_bag(sim, target.with_suffix(".mcap"))
         try:
             self._measure(spec, sim, result)

@@ -80,14 +80,14 @@ class _SweepReader(ValueReader):
 
     def sweep(self, run: RunSpec, *, runs_code: bool) -> SweepSpec | None:
         metrics, keep = self._metrics(runs_code=runs_code), self._keep()
-        bags = self._texts("bags")
+        bags = self.texts("bags")
         design = self._design(run.seed)
         files = self._document.files
         return None if design is None else SweepSpec(run, design, metrics, keep, bags, files=files)
 
     def _design(self, seed: int) -> Any:
-        samples = self._whole("samples", 0, 1) if "samples" in self._fields else None
-        sampling = self._text("sampling", "random")
+        samples = self.whole("samples", 0, 1) if "samples" in self._fields else None
+        sampling = self.text("sampling", "random")
         if sampling not in SAMPLINGS:
             self._wrong(sampling, f"one of {', '.join(SAMPLINGS)}", "sampling")
             sampling = "random"
@@ -108,7 +108,7 @@ class _SweepReader(ValueReader):
             return None
         try:
             return make_design(
-                found, seeds, samples=samples, sampling=sampling, design_seed=self._whole("design_seed", 0, 0)
+                found, seeds, samples=samples, sampling=sampling, design_seed=self.whole("design_seed", 0, 0)
             )
         except InputError as error:
             self._report(error, "parameters")

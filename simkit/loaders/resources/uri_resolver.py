@@ -32,7 +32,7 @@ from simkit.loaders.resources.uris import (
     sibling_names,
     split_rest,
 )
-from simkit.run_spec import PackagePaths, split_package_paths
+from simkit.run_files import PackagePaths, split_package_paths
 from simkit.trusted_folders import OutsideError, join_below, join_within
 
 _SCHEMES = ("model", "package", "file")

@@ -9,22 +9,34 @@ import hashlib
 import os
 import zipfile
 import zlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
 from simkit.errors import InputError
 from simkit.input_file import open_input, read_failure
 from simkit.json_reader import parse_json
-from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject
-from simkit.testing.bundles.manifest import BAG, BROKEN, COMMANDS, PAGE, Manifest, read_manifest
+from simkit.run_spec import JsonObject
+from simkit.testing.bundles.manifest import (
+    BAG,
+    BROKEN,
+    COMMANDS,
+    PAGE,
+    Manifest,
+    packed_fields,
+    packed_folder,
+    read_manifest,
+)
 from simkit.writers import zip_archive
 from simkit.writers.zip_archive import RefusedArchiveError, open_archive
 
 MAX_BYTES: Final = 2 << 30
 _MAX_PAGE_BYTES: Final = 64 << 20  # limit for bundle.json
 _MAX_LINE_BYTES: Final = 256 << 20  # limit for one entry of the journal
-FOLDERS: Final = ("world", "model_world", "spawn", "models", "params", "code", "interfaces")
+FOLDERS: Final = (
+    *("world", "models", "code", "interfaces"),
+    *(packed_folder(name) for name, one in packed_fields().items() if one.kind.has_files),
+)
 _BAD_NAME, _TOO_LARGE = "SK-BUNDLE-003", "SK-BUNDLE-004"
 
 
@@ -141,14 +153,13 @@ class Bundle:
         if there != manifest.files.keys():
             missing = sorted(there ^ manifest.files.keys())[0]
             raise self._broken(f"{missing!r:.80} is missing in the archive or in {PAGE}")
-        named: dict[str, Iterable[str]] = {
-            "world": [manifest.world],
-            "model_world": {manifest.model_world} - {GROUND, EMPTY_SPACE},
-            "spawn": {model.file for model in manifest.spawn},
-            "params": {file for _, file in manifest.params},
-            "models": manifest.models.values(),
-            "code": manifest.code,
+        named: dict[str, list[str]] = {
+            "world": [manifest.run.world],
+            "models": list(manifest.models.values()),
+            "code": list(manifest.code),
         }
+        for file_name in manifest.run.files():
+            named.setdefault(packed_folder(str(file_name.keys[0])), []).append(file_name.text)
         for folder, files in named.items():
             for file in files:
                 if file not in there or not file.startswith(f"{folder}/"):

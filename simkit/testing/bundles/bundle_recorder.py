@@ -21,12 +21,12 @@ from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.writer import McapBag
 from simkit.recording.message_taps import TopicTaps, is_available
 from simkit.recording.topic_counts import RENDERED
-from simkit.run_spec import JsonObject
+from simkit.run_spec import JsonObject, RunSpec
 from simkit.runtime import Simulation
 from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.bundles.journal_writer import JournalWriter
-from simkit.testing.bundles.manifest import Failure, RunEnd
+from simkit.testing.bundles.manifest import Failure, RunEnd, packed_fields
 
 MAX_WINDOW_BYTES: Final = 256 << 20
 _ASSUMED_MESSAGE_BYTES: Final = 3000  # assumed size of a message that is not serialised yet
@@ -52,6 +52,7 @@ class MessageWindow:
         sim: Simulation.
         seconds: Length of the window [s] of simulated time; infinite for the whole run.
         topics: Shell patterns of image topics and internal topics to include.
+        skip: Shell patterns of topics to leave out.
         most: Maximum size [bytes]; the oldest messages are dropped when the window is larger.
 
     Attributes:
@@ -59,9 +60,14 @@ class MessageWindow:
     """
 
     def __init__(
-        self, sim: Simulation, seconds: float, topics: Sequence[str] = (), most: int = MAX_WINDOW_BYTES
+        self,
+        sim: Simulation,
+        seconds: float,
+        topics: Sequence[str] = (),
+        skip: Sequence[str] = (),
+        most: int = MAX_WINDOW_BYTES,
     ) -> None:
-        self._sim, self._patterns, self._most = sim, tuple(topics), most
+        self._sim, self._patterns, self._skip, self._most = sim, tuple(topics), tuple(skip), most
         self._length = sim.engine.clock.ticks(seconds) if math.isfinite(seconds) else 1 << 62
         self._kept: deque[tuple[int, int, str, Any]] = deque()  # steps, tick, topic, then the message or (type, CDR)
         self._packed = 0  # bytes
@@ -127,6 +133,8 @@ class MessageWindow:
         return steps
 
     def _is_kept(self, topic: str, type_name: str) -> bool:
+        if self._skip and matches_topic(topic, self._skip):
+            return False
         if matches_topic(topic, self._patterns):
             return True
         if topic in self._sim.communication.bus.aside or type_name in RENDERED:
@@ -196,10 +204,12 @@ class BundleRecorder:
         sim: Simulation that was just loaded by `simkit.load` and has made no step.
         seconds: Length of the message window [s] of simulated time.
         topics: Shell patterns of image topics to include.
+        run: Specification of the run, for the fields that are no arguments of `simkit.load`; None for none.
         write_failed: Function that writes a bundle when an exception leaves the `with` block; None for no bundle.
 
     Attributes:
         sim: Simulation.
+        run: Specification of the run.
         journal: Recorded inputs.
         window: Messages of the last seconds of the run.
         marks: State hash of every simulated second.
@@ -214,6 +224,7 @@ class BundleRecorder:
         sim: Simulation,
         seconds: float = WINDOW_SECONDS,
         topics: Sequence[str] = (),
+        run: RunSpec | None = None,
         write_failed: Callable[[BundleRecorder, Exception], Path] | None = None,
     ) -> None:
         if sim.run_spec is None or sim.engine.steps or sim.communication.bus.inbox:
@@ -227,7 +238,9 @@ class BundleRecorder:
             raise InputError(f"{NOT_RECORDED} this run is already recorded for a bundle", NOT_RECORDED)
         self.sim, self.seconds, self.topics, self._write_failed = sim, float(seconds), tuple(topics), write_failed
         self.written: Path | None = None
-        self.window = MessageWindow(sim, seconds, topics)
+        given = {} if run is None else {n: run.value_of(f) for n, f in packed_fields().items() if not f.is_loaded}
+        self.run = sim.run_spec.with_values(given)
+        self.window = MessageWindow(sim, seconds, topics, self.run.skip)
         self.marks = StateHashes(sim)
         self.journal = JournalWriter(sim)
         self._listen()

@@ -107,7 +107,7 @@ class _Replay:
         machine = fingerprint_differences(manifest.fingerprint, fingerprint())
         numbers = sorted({int(n) for name in manifest.code if (n := name.split("/")[1]).isdecimal()})
         code = [self._folder / "code" / str(number) for number in numbers]
-        spec = packed_run_spec(self._folder, manifest.world, manifest.spawn, manifest.params, manifest.run_spec, code)
+        spec = packed_run_spec(self._folder, manifest.run_spec, code)
         try:
             opened = load_packed_world(spec)
         except PluginError as error:
@@ -115,7 +115,10 @@ class _Replay:
             return ReplayResult(manifest, "", 0.0, met, tuple(self._failures(met)), machine, (), 0)
         with opened as sim:
             self._read_models_from_bundle(sim)
-            window, marks = MessageWindow(sim, manifest.seconds, manifest.topics, most=1 << 62), StateHashes(sim)
+            window, marks = (
+                MessageWindow(sim, manifest.seconds, manifest.topics, manifest.run.skip, most=1 << 62),
+                StateHashes(sim),
+            )
             player = JournalPlayer(sim, self._bundle.commands())
             recorder = None if record is None else Recorder(sim, record)
             try:

@@ -19,10 +19,11 @@ from simkit.build import describe, load
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
 from simkit.loaders import Resolver
-from simkit.loaders.spawned_models import SpawnedModel, parse_spawn
+from simkit.loaders.spawned_models import parse_spawn
 from simkit.msgs import own_interfaces
-from simkit.run_spec import EMPTY_SPACE, GROUND, FilePath, LoadOptions, RunSpec, SourceOptions
-from simkit.testing.bundles.manifest import PackedModel
+from simkit.run_files import FileName
+from simkit.run_spec import FilePath, RunSpec, SourceOptions
+from simkit.testing.bundles.manifest import packed_fields, packed_folder
 from simkit.writers.vendored_folder import vendor
 
 if TYPE_CHECKING:
@@ -38,42 +39,17 @@ _SEARCH_VARIABLES: Final = (
 )  # fmt: skip
 
 
-def packed_run_spec(
-    folder: Path,
-    world: str,
-    spawn: Sequence[PackedModel],
-    params: Sequence[tuple[str, str]],
-    original: RunSpec,
-    code: Sequence[Path] = (),
-) -> RunSpec:
+def packed_run_spec(folder: Path, run: RunSpec, code: Sequence[Path] = ()) -> RunSpec:
     """Return the specification of a run whose files are in one folder.
 
     Args:
         folder: Folder with the files.
-        world: World file, as in the manifest.
-        spawn: Spawned models, as in the manifest.
-        params: Parameter files, as in the manifest.
-        original: Specification with the seed, overrides, options and model's world of the run.
+        run: Specification in the manifest.
         code: Folders of plugins whose code may run.
     """
-    around = original.model_world
-    options: LoadOptions = {
-        "base": original.options.get("base", "auto"),
-        "sleep": original.options.get("sleep", True),
-        "on_error": original.options.get("on_error"),
-        "renderer": original.options.get("renderer"),
-        "plugin_paths": tuple(code),
-        "params_files": tuple((model, folder / file) for model, file in params),
-        "interfaces": tuple(place for place in (folder / _INTERFACES,) if place.is_dir()),
-    }
-    return RunSpec(
-        str(folder / world),
-        seed=original.seed,
-        overrides=original.overrides,
-        model_world=around if around in (GROUND, EMPTY_SPACE) else str(folder / around),
-        spawn=tuple(SpawnedModel(folder / one.file, one.place, one.name) for one in spawn),
-        options=options,
-    )
+    moved = run.with_files(lambda name: str(folder / name.text))
+    options = {"plugin_paths": tuple(code), "interfaces": tuple(one for one in (folder / _INTERFACES,) if one.is_dir())}
+    return replace(moved, world=str(folder / run.world)).with_values(options)
 
 
 def load_packed_world(spec: RunSpec) -> Simulation:
@@ -127,10 +103,7 @@ _CODE_NOT_ALLOWED: Final = ("SK-PLUGIN-001", "SK-PLUGIN-080")
 class StagedWorld:
     """Files of a run that were copied to the stage folder."""
 
-    file: str
-    model_world: str = EMPTY_SPACE
-    spawn: list[PackedModel] = field(default_factory=list)
-    params: list[tuple[str, str]] = field(default_factory=list)
+    run: RunSpec
     models: dict[str, str] = field(default_factory=dict)
     code: list[str] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
@@ -150,9 +123,9 @@ class WorldStager:
 
     def world(self, keeper: BundleRecorder) -> StagedWorld:
         """Copy the loaded world and all models that were spawned during the run."""
-        spec, found = self._spec, self._main_files()
-        for given in keeper.sim._loaded.structure.builder.parameter_files:
-            found.params.append((given.model, self._copied(Path(given.file.path), f"params/{len(found.params)}")))
+        files = keeper.sim._loaded.structure.builder.parameter_files
+        used = {"params_files": tuple((given.model, Path(given.file.path)) for given in files)}
+        spec, found = self._spec, self._main_files(self._spec.with_values(used))
         for source in dict.fromkeys(source for source in keeper.journal.sources if "<" not in source):
             try:
                 found.models[source] = self._copy_with_references(source, f"models/{len(found.models)}")
@@ -170,32 +143,30 @@ class WorldStager:
 
     def unloaded(self) -> StagedWorld:
         """Copy the files of a run that failed while it was loaded."""
-        found = self._main_files()
-        files = self._spec.options.get("params_files", ())
-        for one in [files] if isinstance(files, (str, os.PathLike)) else files:
-            model, file = one if isinstance(one, tuple) else _split_params_file(str(one))
-            found.params.append((model, self._copied(Path(file), f"params/{len(found.params)}")))
-        return found
+        return self._main_files(self._spec)
 
-    def _main_files(self) -> StagedWorld:
+    def _main_files(self, spec: RunSpec) -> StagedWorld:
         """Copy the world, the models that are spawned during loading, and the user's types that the process used."""
         for name, text in own_interfaces.used_texts().items():
             target = self._stage / _INTERFACES / f"{name}.{name.split('/')[1]}"
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(text, encoding="utf-8")
-        found = StagedWorld(
-            self._copy_with_references(self._spec.world, "world", base=self._spec.options.get("base", "auto"))
-        )
-        around = self._spec.model_world_source
-        found.model_world = (
-            around if around in (GROUND, EMPTY_SPACE) else self._copy_with_references(around, "model_world")
-        )
-        for number, one in enumerate(self._spec.spawn):
-            spawn = parse_spawn(one, Diagnostics()) if isinstance(one, str) else one
-            if spawn is not None:
-                file = self._copy_with_references(spawn.source, f"spawn/{number}")
-                found.spawn.append(PackedModel(file, spawn.place, spawn.name))
-        return found
+        world = self._copy_with_references(spec.world, "world", base=spec.options.get("base", "auto"))
+        parsed = (parse_spawn(one, Diagnostics()) if isinstance(one, str) else one for one in spec.spawn)
+        spec = replace(spec, spawn=tuple(one for one in parsed if one is not None))
+        values = {}
+        for name, described in packed_fields().items():
+            value = spec.value_of(described)
+            if value not in (None, ()):
+                values[name] = described.kind.move(value, name, self._copy)
+        return StagedWorld(RunSpec(world).with_values(values))
+
+    def _copy(self, name: FileName) -> str:
+        """Copy a file that a field names; return its path in the stage folder."""
+        target = "/".join(map(str, (packed_folder(str(name.keys[0])), *name.keys[1:])))
+        if name.role == "world":
+            return self._copy_with_references(str(name.path_in(self._spec.folder) or name.text), target)
+        return self._copy_with_references(name.text, target) if name.role == "model" else self._copied(name, target)
 
     def _copy_with_references(self, source: Any, target: str, base: str = "auto") -> str:
         """Copy a file and all files to which the file refers; return its path in the stage folder."""
@@ -230,21 +201,18 @@ class WorldStager:
             raise InputError(f"{UNPACKED} {uri} no longer exists", UNPACKED)
         return path
 
-    def _copied(self, path: Path, target: str) -> str:
+    def _copied(self, name: FileName, target: str) -> str:
+        path = name.used_path(self._spec.folder) or Path(name.text)
         place = self._stage / target / path.name
         place.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(self._spec.folder / path, place)
+        shutil.copyfile(path, place)
         return f"{target}/{path.name}"
 
     def _compare(self, found: StagedWorld, keeper: BundleRecorder) -> None:
         """Compare the packed world with the world of the run, because files may have been edited during the run."""
         spec = self._spec
         try:
-            with load_packed_world(
-                packed_run_spec(
-                    self._stage, found.file, found.spawn, found.params, replace(spec, model_world=found.model_world)
-                )
-            ) as sim:
+            with load_packed_world(packed_run_spec(self._stage, found.run)) as sim:
                 same = model_hash(sim.mj_model, sim.engine.originals) == loaded_model_hash(keeper)
         except (SimkitError, OSError) as error:
             errors = [d for d in error.diagnostics if d.severity == "error"] if isinstance(error, LoadError) else []
@@ -261,12 +229,6 @@ def loaded_model_hash(keeper: BundleRecorder) -> str:
     sim = keeper.sim
     loaded = sim._loaded.structure.compiled.model
     return model_hash(loaded, sim.engine.originals if loaded is sim.mj_model else {})
-
-
-def _split_params_file(text: str) -> tuple[str, str]:
-    """Split an argument `[MODEL=]FILE` into a model name and a file."""
-    model, equals, file = text.partition("=")
-    return (model, file) if equals and "/" not in model and not Path(text).exists() else ("", text)
 
 
 # ---------------------------------------------------------------------- code

@@ -70,7 +70,9 @@ def keep(
     if folder is None:
         return BundleRecorder(sim, seconds, topics)
     target = Path(folder)
-    return BundleRecorder(sim, seconds, topics, lambda recorder, error: write_failed(recorder, target, error))
+    return BundleRecorder(
+        sim, seconds, topics, write_failed=lambda recorder, error: write_failed(recorder, target, error)
+    )
 
 
 def write_bundle(
@@ -159,8 +161,7 @@ def _write_hidden_file(folder: Path, staged: StagedFiles) -> Iterator[tuple[Path
 
 
 def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, name: str, with_code: bool) -> Manifest:
-    sim, spec, journal = keeper.sim, keeper.sim.run_spec, keeper.journal
-    assert spec is not None
+    sim, spec, journal = keeper.sim, keeper.run, keeper.journal
     end = keeper.end(failure)
     first = keeper.window.first
     messages = list(_encodable_messages(keeper.window.messages(first), journal.gaps))
@@ -171,9 +172,9 @@ def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, n
         copy_plugin_modules(world, stage, spec.options.get("plugin_paths", ()))
     if failure is not None:
         _write_error(stage, failure)
-    given = sim.world.name if sim.world.name not in ("", "default") else Path(world.file).stem
+    given = sim.world.name if sim.world.name not in ("", "default") else Path(world.run.world).stem
     return Manifest(
-        name=name or given or "run", **_world_fields(spec, world, sim), missing=(*world.missing, *journal.gaps),
+        name=name or given or "run", **_world_fields(world, sim), missing=(*world.missing, *journal.gaps),
         seconds=keeper.seconds, topics=keeper.topics, first=first, end=end, streams=topic_digests(iter(messages)),
         marks=tuple(keeper.marks.found), commands=journal.count, files=_file_table(stage),
     )  # fmt: skip
@@ -198,32 +199,23 @@ def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
         world = WorldStager(spec, stage).unloaded()
         copy_plugin_modules(world, stage, spec.options.get("plugin_paths", ()))
         _write_error(stage, failure)
-        end, name = RunEnd(0, 0, 0, "", failure), Path(world.file).stem
-        fields = _world_fields(spec, world)
+        end, name = RunEnd(0, 0, 0, "", failure), Path(world.run.world).stem
+        fields = _world_fields(world)
         return Manifest(name=name, **fields, missing=tuple(world.missing), end=end, files=_file_table(stage))
 
     return _write_with_generated_name(folder, staged)
 
 
-def _world_fields(spec: RunSpec, world: StagedWorld, sim: Simulation | None = None) -> JsonObject:
+def _world_fields(world: StagedWorld, sim: Simulation | None = None) -> JsonObject:
     """Return the manifest fields that describe the run and the machine.
 
     Args:
-        spec: Specification of the run.
         world: Files of the world.
         sim: Simulation of the run; None if loading failed.
     """
+    fell = sim is not None and fell_back(sim)
     return {
-        "world": world.file,
-        "base": spec.options.get("base", "auto"),
-        "seed": spec.seed,
-        "sleep": spec.options.get("sleep", True),
-        "on_error": spec.options.get("on_error"),
-        "renderer": SOFTWARE if sim is not None and fell_back(sim) else spec.options.get("renderer"),
-        "overrides": spec.overrides,
-        "spawn": tuple(world.spawn),
-        "model_world": world.model_world,
-        "params": tuple(world.params),
+        "run": world.run.with_values({"renderer": SOFTWARE}) if fell else world.run,
         "models": world.models,
         "code": tuple(sorted(world.code)),
         "fingerprint": fingerprint(sim if sim is not None and sim.engine.renderer else None),

@@ -5,22 +5,15 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from simkit.errors import InputError, SimkitError
 from simkit.json_reader import parse_json
-from simkit.run_spec import (
-    EMPTY_SPACE,
-    RENDERERS,
-    JsonMapping,
-    JsonObject,
-    LoadOptions,
-    PluginErrorPolicy,
-    RendererName,
-    RunSpec,
-)
+from simkit.loaders.spawned_models import SpawnedModel
+from simkit.run_fields import RunField
+from simkit.run_spec import EMPTY_SPACE, JsonMapping, JsonObject, RunSpec, run_fields
 
 if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
@@ -98,26 +91,12 @@ class RunEnd:
 
 
 @dataclass(frozen=True)
-class PackedModel:
-    """Model that is spawned while the world is loaded."""
-
-    file: str
-    place: tuple[float, ...] | None = None
-    name: str | None = None
-
-
-@dataclass(frozen=True)
 class Manifest:
     """Contents of `bundle.json`.
 
     Attributes:
         name: Name of the run.
-        world: World file in the bundle.
-        base: Mounting of a bare model, as in `simkit.load`.
-        seed, overrides, sleep, on_error, renderer: Arguments of `simkit.load`.
-        spawn: Models that were spawned into the world during loading.
-        model_world: World of a bare model: "ground", "none", or a file in the bundle.
-        params: Parameter files, as pairs of a model name (empty for all models) and a file.
+        run: Specification with the seed, overrides and options of the run; its files are in the bundle.
         models: Models that were spawned during the run: requested source -> file in the bundle.
         code: Files of the user's plugins.
         missing: One sentence for everything that could not be packed.
@@ -133,21 +112,12 @@ class Manifest:
     """
 
     name: str
-    world: str
-    base: str
-    seed: int
-    overrides: tuple[str, ...]
-    sleep: bool
-    on_error: str | None
-    spawn: tuple[PackedModel, ...]
-    params: tuple[tuple[str, str], ...]
+    run: RunSpec
     models: Mapping[str, str]
     code: tuple[str, ...]
     missing: tuple[str, ...]
     fingerprint: Mapping[str, str]
     end: RunEnd
-    model_world: str = EMPTY_SPACE
-    renderer: str | None = None
     seconds: float = 0.0
     topics: tuple[str, ...] = ()
     first: int = 0
@@ -158,20 +128,39 @@ class Manifest:
 
     @property
     def run_spec(self) -> RunSpec:
-        """Specification with the seed, overrides and options of the run; its files are in the extracted bundle."""
-        options: LoadOptions = {"base": self.base, "sleep": self.sleep}
-        if self.on_error in ("stop", "disable"):
-            options["on_error"] = cast(PluginErrorPolicy, self.on_error)
-        if self.renderer in RENDERERS:
-            options["renderer"] = cast(RendererName, self.renderer)
-        return RunSpec(self.world, seed=self.seed, name=self.name, overrides=self.overrides, options=options,
-                       model_world=self.model_world)  # fmt: skip
+        """Specification of the run, with the name of the bundle."""
+        return replace(self.run, name=self.name)
 
     def text(self) -> str:
         """Return the manifest as JSON; equal manifests give equal texts."""
-        fields = {"format": FORMAT, **asdict(self)}
-        fields["seconds"] = self.seconds if math.isfinite(self.seconds) else None
-        return json.dumps(fields, sort_keys=True, indent=1) + "\n"
+        own = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "run"}
+        own |= {"end": asdict(self.end), "seconds": self.seconds if math.isfinite(self.seconds) else None}
+        return json.dumps({"format": FORMAT, **own, **_run_keys(self.run)}, sort_keys=True, indent=1) + "\n"
+
+
+def packed_fields() -> dict[str, RunField]:
+    """Return the fields of a run that a bundle contains, by name."""
+    return {name: one for name, one in run_fields().items() if one.packed != "never"}
+
+
+def packed_folder(name: str) -> str:
+    """Return the folder of a bundle that has the files of a field."""
+    return "params" if name == "params_files" else name
+
+
+def _run_keys(run: RunSpec) -> JsonObject:
+    """Return the keys of a run: those of the first format, and under "run" those of later fields that are given."""
+    found: JsonObject = {"world": run.world}
+    later: JsonObject = {}
+    for name, described in packed_fields().items():
+        value = run.value_of(described)
+        if name == "spawn":
+            found[name] = [{"file": one.source, "place": one.place, "name": one.name} for one in value]
+        elif described.packed == "first":
+            found[packed_folder(name)] = value
+        elif value != described.default:
+            later[name] = described.kind.plain(value)
+    return {**found, "run": later} if later else found
 
 
 def read_manifest(data: bytes, path: str) -> Manifest:
@@ -185,16 +174,16 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         InputError: SK-BUNDLE-001 the content is not a manifest; SK-BUNDLE-002 a newer simkit wrote the bundle.
     """
     try:
-        fields = parse_json(data)
+        found = parse_json(data)
     except ValueError as error:
         raise InputError(f"{BROKEN} {path}: {PAGE} is not JSON: {error!s:.80}", BROKEN) from None
-    if not isinstance(fields, dict) or not isinstance(fields.get("format"), int):
+    if not isinstance(found, dict) or not isinstance(found.get("format"), int):
         raise InputError(f"{BROKEN} {path} is not a simkit bundle: {PAGE} has no 'format'", BROKEN)
-    if fields["format"] > FORMAT:
-        problem = f"{NEWER} {path} has format {fields['format']}; this version of simkit reads formats up to {FORMAT}"
+    if found["format"] > FORMAT:
+        problem = f"{NEWER} {path} has format {found['format']}; this version of simkit reads formats up to {FORMAT}"
         raise InputError(f"{problem}\n    help: open the bundle with a newer version of simkit", NEWER)
     try:
-        return _parse_manifest(_ManifestReader(fields))
+        return _parse_manifest(_ManifestReader(found))
     except (_InvalidValue, OverflowError) as error:
         raise InputError(f"{BROKEN} {path}: {PAGE}: {error}", BROKEN) from None
 
@@ -215,11 +204,33 @@ class _ManifestReader:
             raise _InvalidValue(f"{self._prefix}{name}: found {value!r:.60}, expected {allowed}")
         return value
 
-    def text(self, name: str) -> str:
+    def has(self, name: str) -> bool:
+        return self._fields.get(name) is not None
+
+    def text(self, name: str, default: str = "") -> str:
         return self._value(name, str, "a string")
 
-    def flag(self, name: str) -> bool:
+    def flag(self, name: str, default: bool = False) -> bool:
         return self._value(name, bool, "true or false")
+
+    def whole(self, name: str, default: int, least: int) -> int:
+        return self.count(name)
+
+    def number(self, name: str, default: float | None, *, least: float, above: float) -> float | None:
+        return (
+            None
+            if self._fields.get(name) is None
+            else float(self._value(name, int if isinstance(self._fields[name], int) else float, "a number"))
+        )
+
+    def word(self, name: str, default: str, allowed: Sequence[str]) -> str:
+        found = self.text(name)
+        if found not in allowed:
+            raise _InvalidValue(f"{self._prefix}{name}: found {found!r:.60}, expected one of {', '.join(allowed)}")
+        return found
+
+    def named(self, name: str) -> dict[str, str]:
+        return self.text_mapping(name)
 
     def count(self, name: str) -> int:
         found = self._value(name, int, "an integer >= 0")
@@ -276,20 +287,11 @@ class _ManifestReader:
 def _parse_manifest(reader: _ManifestReader) -> Manifest:
     return Manifest(
         name=reader.text("name"),
-        world=reader.text("world"),
-        base=reader.text("base"),
-        seed=reader.count("seed"),
-        overrides=reader.texts("overrides"),
-        sleep=reader.flag("sleep"),
-        on_error=reader.optional("on_error", reader.text),
-        renderer=reader.optional("renderer", reader.text),
-        spawn=tuple(_parse_spawned(model) for model in reader.readers("spawn")),
-        params=tuple(_parse_pair(pair) for pair in reader.items("params")),
+        run=_parse_run(reader),
         models=reader.text_mapping("models"),
         code=reader.texts("code"),
         missing=reader.texts("missing"),
         fingerprint=reader.text_mapping("fingerprint"),
-        model_world=reader.optional("model_world", reader.text) or EMPTY_SPACE,
         seconds=reader.time("seconds"),
         topics=reader.texts("topics"),
         first=reader.count("first"),
@@ -307,20 +309,36 @@ def _parse_manifest(reader: _ManifestReader) -> Manifest:
     )
 
 
+def _parse_run(reader: _ManifestReader) -> RunSpec:
+    later = reader.reader("run") if reader.has("run") else _ManifestReader({})
+    values: JsonObject = {"model_world": EMPTY_SPACE}  # a bundle of an older version has no such key
+    for name, described in packed_fields().items():
+        key = packed_folder(name)
+        if name == "spawn":
+            values[name] = tuple(_parse_spawned(model) for model in reader.readers(key))
+        elif name == "params_files":
+            values |= {name: pairs} if (pairs := tuple(_parse_pair(pair) for pair in reader.items(key))) else {}
+        elif described.packed == "changed":
+            values |= {name: described.kind.read(later, name, described.default)} if later.has(name) else {}
+        elif reader.has(key) or not (described.default is None or name in values):
+            values[name] = described.kind.read(reader, key, described.default)
+    return RunSpec(reader.text("world")).with_values(values)
+
+
 def _parse_end(reader: _ManifestReader) -> RunEnd:
     fields = reader.optional("failure", reader.reader)
     failure = None if fields is None else Failure(fields.text("kind"), fields.text("code"), fields.text("text"))
     return RunEnd(reader.count("steps"), reader.count("tick"), reader.count("time_ns"), reader.text("state"), failure)
 
 
-def _parse_spawned(reader: _ManifestReader) -> PackedModel:
+def _parse_spawned(reader: _ManifestReader) -> SpawnedModel:
     place = reader.optional("place", reader.items)
     if place is not None:
         numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in place)
         if not numbers or len(place) not in (3, 4, 6):
             raise _InvalidValue(f"place: found {place!r:.60}, expected 3, 4 or 6 numbers")
     numbers_of_place = None if place is None else tuple(map(float, place))
-    return PackedModel(reader.text("file"), numbers_of_place, reader.optional("name", reader.text))
+    return SpawnedModel(reader.text("file"), numbers_of_place, reader.optional("name", reader.text))
 
 
 def _parse_pair(pair: object) -> tuple[str, str]:

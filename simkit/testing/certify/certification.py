@@ -11,14 +11,14 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import Final
 
 from simkit import progress
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
-from simkit.home_folder import expand_home
 from simkit.memory_error import OutOfMemory
-from simkit.run_spec import EMPTY_SPACE, GROUND, JsonObject, LoadOptions, RunSpec, change_package_paths
+from simkit.run_files import FileName, is_there
+from simkit.run_spec import RunSpec
 from simkit.testing.certify.certificate import Certificate, Difference, Row, streams_hash
 from simkit.testing.certify.child_run import ChildRequest, run_child
 from simkit.testing.certify.code_hints import hints_in
@@ -27,7 +27,6 @@ from simkit.testing.certify.outcome_comparison import Culprit, differences, find
 from simkit.testing.certify.variations import Variation, choose_variations
 from simkit.testing.scenarios.code_permission import permit_code
 
-_FOLDERS: Final = ("resource_paths", "plugin_paths", "interfaces")
 _LEAST_LIMIT, _TIMES = 60.0, 10.0  # wall-clock limit of a run: ten times as long as the first run, at least 60 s
 _WATCHED: Final = 5.0  # factor by which the limit is longer if every plugin call is recorded
 _SPARE_SECONDS: Final = 20.0  # additional time in which a process can end itself after its limit [s]
@@ -48,7 +47,7 @@ class ProcessRunner:
     """
 
     def __init__(self, scenario: RunSpec, *, apart: bool, limit: float | None) -> None:
-        self._plugins_from, self._scenario = _plugin_file(scenario), _with_absolute_paths(scenario)
+        self._plugins_from, self._scenario = _plugin_file(scenario), with_absolute_paths(scenario)
         self._processes = ChildProcesses() if apart else None
         self._limit = limit
 
@@ -130,53 +129,24 @@ def _plugin_file(scenario: RunSpec) -> Path | None:
     raise InputError(f"SK-CERT-002 {message}\n    help: {hint}", "SK-CERT-002")
 
 
-def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
+def with_absolute_paths(scenario: RunSpec) -> RunSpec:
     """Return the scenario with absolute paths, which are valid in every working directory."""
 
-    def absolute(place: Any) -> str:
-        return str(expand_home(place).absolute())
+    def absolute(name: FileName) -> str:
+        path = name.used_path(scenario.folder)
+        if path is None or (name.role == "file" and not is_there(path)):  # a parameter file can be a URI
+            return name.text
+        return str(path.absolute())
 
     source = scenario.source
-    if "<" not in source and Path(source).exists():
-        source = str(Path(source).absolute())
-    options: JsonObject = dict(scenario.options)
+    moved = scenario.with_files(absolute)
     if "<" in source:
-        options["resource_paths"] = [*options.get("resource_paths", ()), Path.cwd()]
-    for name in {*_FOLDERS} & options.keys():
-        options[name] = [absolute(place) for place in options[name]]
-    if options.get("package_paths"):
-        options["package_paths"] = change_package_paths(options["package_paths"], absolute)
-    if options.get("params_files"):
-        given = options["params_files"]
-        options["params_files"] = [_absolute_file(g) for g in ([given] if isinstance(given, (str, Path)) else given)]
-    around = scenario.model_world_source
-    around = around if around in (GROUND, EMPTY_SPACE) else _absolute_file(around)
-    spawn = tuple(_absolute_file(text, ":") for text in scenario.spawn)
+        options = moved.options
+        moved = moved.with_values({"resource_paths": [*options.get("resource_paths", ()), str(Path.cwd())]})
+    elif Path(source).exists():
+        source = str(Path(source).absolute())
     folder, file = scenario.folder.absolute(), scenario.file and scenario.file.absolute()
-    return replace(
-        scenario,
-        world=source,
-        model_world=around,
-        spawn=spawn,
-        options=cast(LoadOptions, options),
-        folder=folder,
-        file=file,
-        plugins=(),
-    )
-
-
-def _absolute_file(text: Any, mark: str = "=") -> Any:
-    """Make the file in a text such as `MODEL=FILE` or `FILE:POSE` absolute; return any other text unchanged."""
-    if not isinstance(text, (str, Path)):
-        return text
-    if Path(text).exists():
-        return str(Path(text).absolute())
-    before, sign, behind = str(text).partition(mark)
-    if sign and mark == "=" and Path(behind).exists():
-        return f"{before}={Path(behind).absolute()}"
-    if sign and mark == ":" and Path(before).exists():
-        return f"{Path(before).absolute()}:{behind}"
-    return text
+    return replace(moved, world=source, folder=folder, file=file, plugins=())
 
 
 _WATCH_ATTEMPTS: Final = 2  # attempts to reproduce a difference while recording plugin calls

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import pytest
 
 from simkit.errors import InputError
-from simkit.run_spec import EMPTY_SPACE, JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
+from simkit.run_spec import EMPTY_SPACE, JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance, run_fields
 from simkit.testing.golden.cause import explain
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
@@ -36,11 +36,10 @@ _BUDGET: Final = 20.0  # wall-clock limit of the search for causes [s]
 _FILES: Final = (".yaml", ".yml", ".py")
 _NUMBERS: Final = ("absolute", "relative", "share", "image", "ssim")  # numeric fields of a tolerance
 _SCENARIO_ARGUMENTS: Final = (
-    "overrides",
-    "spawn",
-    "model_world",
+    *(name for name, one in run_fields().items() if one.is_loaded and not one.is_load_option and name != "seed"),
     "plugins",
-)  # arguments of `simkit.load` that are fields of a scenario
+)
+"""Arguments of `simkit.load` that are fields of a scenario."""
 
 
 @dataclass
@@ -301,9 +300,9 @@ def _with_arguments(scenario: RunSpec, arguments: JsonObject, *, is_open: bool, 
             f"SK-GOLDEN-021 sensor_regression: {wrong}: not possible for a simulation that is already loaded",
             "SK-GOLDEN-021",
         )
-    for key in _SCENARIO_ARGUMENTS:
-        if key in own:
-            own[key] = (own[key],) if isinstance(own[key], str) else tuple(own[key])
+    for key, value in own.items():
+        if isinstance(getattr(scenario, key), tuple):
+            own[key] = (value,) if isinstance(value, str) else tuple(value)
     return replace(add_options(scenario, cast(LoadOptions, arguments), allow_code), **own)
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Mapping
-from dataclasses import asdict, fields, is_dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any, Final, cast
 
@@ -13,16 +13,17 @@ import numpy as np
 
 from simkit.code_requests import CodeRequest, folder_request
 from simkit.diagnostic_record import NOWHERE, Where
+from simkit.run_fields import LOAD_FIELDS, RunField
+from simkit.run_files import FileName
 from simkit.run_spec import (
     EMPTY_SPACE,
-    GROUND,
     Check,
     JsonMapping,
     JsonObject,
     LoadOptions,
     RunSpec,
     Tolerance,
-    change_package_paths,
+    run_fields,
 )
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker, pack_words, unpack_words
 from simkit.testing.golden.compare.tolerances import storage_step
@@ -31,12 +32,7 @@ from simkit.testing.run_record.record import Array, Column, Pictures, RunRecord,
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES
 from simkit.testing.run_record.state_recorder import ModelFields
 
-_PATH_OPTIONS: Final = ("resource_paths", "plugin_paths", "params_files", "interfaces")
 _LONG_TEXT: Final = 2000
-_PLAIN: Final = (
-    "duration", "seed", "name", "overrides", "topics", "skip", "state", "model", "picture", "until", "timeout",
-    "wall_timeout", "test", "play_topics", "bits",
-)  # fmt: skip
 
 
 def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
@@ -47,38 +43,39 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
         folder: Folder to which file names are made relative, so that the result is the same in every checkout.
     """
 
-    def place(path: Any) -> str:
-        return relative_path(Path(scenario.folder, path), folder)
+    def place(name: FileName) -> str:
+        path = name.used_path(scenario.folder)
+        return name.text if path is None else relative_path(path, folder)
 
     found: dict[str, object] = {"world": relative_world(scenario, folder)}
     if is_long_text(scenario.world):
         text = scenario.world.encode("utf-8", "surrogatepass")
         found["world"] = {"sha256": hashlib.sha256(text).hexdigest(), "bytes": len(text)}
-    for name in _PLAIN:
-        value = getattr(scenario, name)
-        if value != getattr(RunSpec(""), name):
-            found[name] = list(value) if isinstance(value, tuple) else value
-    if scenario.spawn:
-        found["spawn"] = [_move_spawn(str(text), lambda p: place(p) if Path(scenario.folder, p).exists() else p)
-                          for text in scenario.spawn]  # fmt: skip
-    if scenario.model_world != EMPTY_SPACE:
-        found["model_world"] = _move_file(scenario.model_world, place, scenario.folder)
+    moved, options = scenario.with_files(place), {}
+    for name, described in sorted(run_fields().items(), key=lambda one: one[1].kind.has_files):
+        value = moved.value_of(described)
+        if described.is_load_option and name in moved.options:
+            options[name] = _plain_value(described.kind.plain(value))
+        elif described.is_stored and not described.is_load_option and value != _unstored_value(described):
+            found[name] = _plain_value(value)
     if scenario.commands:
         found["commands"] = [{k: _plain_value(v) for k, v in one.items() if k != "where"} for one in scenario.commands]
-    if scenario.play:
-        found["play"] = place(scenario.play)
     if scenario.tolerances:
         found["tolerances"] = [_non_default_fields(one, Tolerance("")) for one in scenario.tolerances]
     if scenario.checks:
         found["checks"] = [_non_default_fields(one, Check("goal")) | {"kind": one.kind} for one in scenario.checks]
     if scenario.plugins:
         found["plugins"] = [_class_name(one) for one in scenario.plugins]
-    options = {name: _move_option(name, value, place) for name, value in sorted(scenario.options.items())}
     if options:
-        found["options"] = options
+        found["options"] = dict(sorted(options.items()))
     if scenario.file is not None:
         found["file"] = relative_path(scenario.file, folder)
     return found
+
+
+def _unstored_value(described: RunField) -> object:
+    """Return the value of a field that a golden run does not contain: models of older versions are in empty space."""
+    return EMPTY_SPACE if described.name == "model_world" else described.default
 
 
 def decode_scenario(plain: JsonMapping, folder: Path, where: Callable[[str], Where] = lambda _: NOWHERE) -> RunSpec:
@@ -94,36 +91,30 @@ def decode_scenario(plain: JsonMapping, folder: Path, where: Callable[[str], Whe
         ValueError, TypeError, KeyError: The data are not a scenario.
     """
 
-    def place(text: object) -> str:
-        return str(folder / str(text))
+    def place(name: FileName) -> str:
+        path = name.path_in(folder)
+        return name.text if path is None or name.role == "bag" else str(path)
 
-    given: JsonObject = {name: plain[name] for name in _PLAIN if name in plain}
-    for name in ("overrides", "topics", "skip", "play_topics"):
-        given[name] = tuple(map(str, given.get(name, ())))
-    for name in ("duration", "seed", "picture"):
-        if not isinstance(given.get(name, 0), (int, float)):
-            raise TypeError(f"{name} is not a number")
-    given["spawn"] = tuple(
-        _move_spawn(str(text), lambda p: place(p) if Path(place(p)).exists() else p) for text in plain.get("spawn", ())
-    )
-    # golden runs of older versions have no such key: their models are in empty space
-    given["model_world"] = _move_file(str(plain.get("model_world", EMPTY_SPACE)), place, folder)
-    given["play"] = str(plain.get("play", ""))
+    given: JsonObject = {"model_world": EMPTY_SPACE}
+    reader = _StoredValues(plain)
+    for name, described in run_fields().items():
+        if name in plain and described.is_stored and not described.is_load_option:
+            given[name] = described.kind.read(reader, name, described.default)
     given["commands"] = tuple({**one, "where": "commands"} for one in plain.get("commands", ()))
     given["tolerances"] = tuple(Tolerance(**_known_fields(one, Tolerance)) for one in plain.get("tolerances", ()))
     checks = (_known_fields(one, Check) for one in plain.get("checks", ()))
     given["checks"] = tuple(Check(**{**one, "models": tuple(one.get("models", ()))}) for one in checks)
-    stored = _known_fields(plain.get("options", {}), LoadOptions)
-    options = {name: _move_option(name, value, place) for name, value in stored.items()}
-    folders = map(str, cast(list[str], options.pop("plugin_paths", ())))
-    requests = [folder_request(os.path.relpath(one, folder), Path(one), where("plugin_paths")) for one in folders]
     given["plugins"] = tuple(map(str, plain.get("plugins", ())))
-    file = Path(place(plain["file"])) if plain.get("file") else None
+    given["options"] = {str(name): one for name, one in plain.get("options", {}).items() if name in LOAD_FIELDS}
+    file = folder / str(plain["file"]) if plain.get("file") else None
+    world = "" if isinstance(plain["world"], Mapping) else str(plain["world"])
+    found = RunSpec(world, folder=folder, file=file, **given).with_files(place)
+    options = dict(found.options)
+    folders = map(str, cast(Iterable[object], options.pop("plugin_paths", ())))
+    requests = [folder_request(os.path.relpath(one, folder), Path(one), where("plugin_paths")) for one in folders]
     if file is not None and file.suffix.lower() == ".py":  # reading the file runs it
         requests.append(CodeRequest(f"the golden run names the scenario {file.name!r:.200}", file, where("file")))
-    world = "" if isinstance(plain["world"], Mapping) else str(plain["world"])
-    given |= {"code_requests": tuple(requests), "options": options}
-    return RunSpec(world, folder=folder, file=file, **given)
+    return replace(found, options=cast(LoadOptions, options), code_requests=tuple(requests))
 
 
 def is_long_text(world: str) -> bool:
@@ -146,32 +137,39 @@ def relative_path(path: Path, folder: Path) -> str:
         return path.resolve().as_posix()
 
 
-def _move_file(text: str, place: Callable[[str], str], folder: Path) -> str:
-    """Replace the path of an existing file in a folder; return the name of a world unchanged."""
-    is_name = text in (GROUND, EMPTY_SPACE) or "<" in text
-    return place(text) if not is_name and Path(folder, text).is_file() else text
+class _StoredValues:
+    """Reader of the values of `golden.json`; it raises TypeError for a value of a wrong type."""
 
+    def __init__(self, fields: JsonMapping) -> None:
+        self._fields = fields
 
-def _move_spawn(text: str, place: Callable[[str], str]) -> str:
-    """Replace the model's path in `MODEL:x,y,yaw[:name]`."""
-    model, colon, rest = text.partition(":")
-    return place(model) + colon + rest
+    def _value(self, key: str, *kinds: type) -> Any:
+        value = self._fields[key]
+        if not isinstance(value, kinds):
+            raise TypeError(f"{key} has a value of a wrong type")
+        return value
 
+    def text(self, key: str, default: str) -> str:
+        return str(self._value(key, str))
 
-def _move_option(name: str, value: Any, place: Callable[[object], str]) -> object:
-    """Convert an option of a scenario to JSON data and replace the paths in it."""
-    if name in _PATH_OPTIONS:
-        several = [value] if isinstance(value, (str, os.PathLike)) else list(value)
-        return [_move_params_file(str(one), place) for one in several]
-    if name == "package_paths":
-        return _plain_value(change_package_paths(value, place))
-    return _plain_value(value)
+    def flag(self, key: str, default: bool) -> bool:
+        return bool(self._value(key, bool, int))
 
+    def whole(self, key: str, default: int, least: int) -> int:
+        return cast(int, self._value(key, int))
 
-def _move_params_file(text: str, place: Callable[[object], str]) -> str:
-    """Replace the path of the file in `[MODEL=]FILE`."""
-    model, equals, file = text.rpartition("=")
-    return f"{model}{equals}{place(file)}"
+    def number(self, key: str, default: float | None, *, least: float, above: float) -> float | None:
+        return cast("float | None", self._value(key, float, int, type(None)))
+
+    def texts(self, key: str) -> tuple[str, ...]:
+        return tuple(map(str, self._value(key, list, tuple)))
+
+    def word(self, key: str, default: str, allowed: Sequence[str]) -> str:
+        return self.text(key, default)
+
+    def named(self, key: str) -> dict[str, str] | tuple[str, ...]:
+        value = self._value(key, dict, list)
+        return value if isinstance(value, dict) else tuple(map(str, value))
 
 
 def _plain_value(value: Any) -> object:
@@ -188,8 +186,8 @@ def _non_default_fields(value: Any, default: Any) -> dict[str, object]:
     return {name: _plain_value(one) for name, one in asdict(value).items() if name != "where" and one != usual[name]}
 
 
-def _known_fields(plain: Mapping[str, object], kind: type) -> JsonObject:
-    names = {field.name for field in fields(kind)} if is_dataclass(kind) else kind.__annotations__.keys()
+def _known_fields(plain: Mapping[str, object], kind: type[Check | Tolerance]) -> JsonObject:
+    names = {field.name for field in fields(kind)}
     return {str(name): value for name, value in plain.items() if name in names}
 
 

@@ -10,13 +10,13 @@ from typing import Final
 from simkit.code_requests import CodeRequest
 from simkit.diagnostics import Diagnostics
 from simkit.run_spec import FilePath, JsonMapping, RunSpec
+from simkit.run_values import spawns_in
 from simkit.testing.scenarios.code_permission import check_requests, permit_code
 from simkit.testing.scenarios.scenario_file import parse_scenario
 from simkit.testing.scenarios.yaml_document import (
     Document,
     ValueReader,
     is_scalar_text,
-    resolve_spawn_file,
     yaml_value_text,
 )
 from simkit.yaml_reader import finite_number
@@ -153,15 +153,15 @@ class _ExerciseReader(ValueReader):
         return tuple(found)
 
     def run(self, number: int, scenario: RunSpec, parameters: JsonMapping) -> ExerciseRun:
-        duration = self._number("duration", scenario.duration, above=0.0)
+        duration = self.number("duration", scenario.duration, above=0.0)
         folder = self._document.path.parent
         listed = self._texts_of(self._fields.get("spawn", []), "spawn")
-        spawn = tuple(resolve_spawn_file(folder, one) for one in listed)
+        spawn = spawns_in(folder, listed)
         for place, one in enumerate(spawn):
             self._document.refuses(self._document.files.spawn_refusal(one, folder), *self._at, "spawn", place)
         changed = replace(
             scenario,
-            seed=self._whole("seed", scenario.seed, 0),
+            seed=self.whole("seed", scenario.seed, 0),
             duration=scenario.duration if duration is None else duration,
             overrides=(*scenario.overrides, *self._overrides()),
             spawn=(*scenario.spawn, *spawn),

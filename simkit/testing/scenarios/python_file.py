@@ -14,7 +14,8 @@ from simkit.errors import InputError, LoadError
 from simkit.linked_files import hide_linked_text
 from simkit.recording.command_script import validate_items
 from simkit.run_spec import Check, CheckKind, RunSpec, Tolerance
-from simkit.testing.scenarios.yaml_document import resolve_spawn_file, short_repr
+from simkit.run_values import spawns_in
+from simkit.testing.scenarios.yaml_document import short_repr
 from simkit.yaml_reader import finite_number
 
 _TEXT_FIELDS: Final = ("overrides", "spawn", "topics", "skip")
@@ -126,9 +127,7 @@ def load_python_scenario(file: Path, diagnostics: Diagnostics) -> RunSpec:
         problem("SK-SCEN-003", message, where)
     diagnostics.raise_if_errors()
     folder = file.parent if found.folder == Path() else found.folder
-    return replace(
-        found, folder=folder, file=file, spawn=tuple(resolve_spawn_file(folder, str(one)) for one in found.spawn)
-    )
+    return replace(found, folder=folder, file=file, spawn=spawns_in(folder, tuple(map(str, found.spawn))))
 
 
 def _error_line(error: BaseException, file: Path) -> int | None:

@@ -10,14 +10,15 @@ import os
 import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 from urllib.parse import unquote
 
-from simkit.diagnostics import Diagnostics, shorten
+from simkit.diagnostics import shorten
 from simkit.errors import InputError
 from simkit.home_folder import expand_home
 from simkit.project_folder import enclosing_project, is_top_folder
-from simkit.run_spec import EMPTY_SPACE, GROUND, FilePath, RunSpec, split_package_paths
+from simkit.run_files import FileName, split_spawn
+from simkit.run_spec import FilePath, RunSpec
 from simkit.trusted_folders import TrustedFolders
 
 OUTSIDE: Final = "SK-URI-003"
@@ -26,7 +27,6 @@ HELP: Final = "to allow it, add "
 """Begin of the help of this error; an option follows."""
 Refusal = tuple[str, str]
 """Problem and help of a file that a description may not name."""
-_FOLDER_OPTIONS: Final = ("resource_paths", "interfaces")
 
 
 class ReadableFiles:
@@ -104,10 +104,7 @@ class ReadableFiles:
 
     def spawn_refusal(self, spawn: str, folder: Path) -> Refusal | None:
         """Return the refusal of a text `MODEL:x,y,yaw[:name]`; see `refusal`."""
-        from simkit.loaders.spawned_models import parse_spawn
-
-        found = parse_spawn(spawn, Diagnostics())
-        return None if found is None else self.source_refusal(str(found.source), folder)
+        return self.source_refusal(split_spawn(spawn)[0], folder)
 
     def refused(self, spec: RunSpec) -> Iterator[tuple[tuple[object, ...], Refusal]]:
         """Yield the keys and the refusal of each file of a specification that its description may not name."""
@@ -128,24 +125,15 @@ class ReadableFiles:
     # ------------------------------------------------------------------ parts of a specification
 
     def _refusals(self, spec: RunSpec) -> Iterator[tuple[tuple[object, ...], Refusal | None]]:
-        from simkit.plugins.run_parameter_files import model_and_file
-
         yield ("world",), self.source_refusal(spec.world, spec.folder)
-        for number, spawn in enumerate(spec.spawn):
-            found = spawn if isinstance(spawn, str) else str(spawn.source)
-            yield ("spawn", number), self.spawn_refusal(found, spec.folder)
-        if spec.model_world not in (GROUND, EMPTY_SPACE):
-            yield ("model_world",), self.source_refusal(spec.model_world, spec.folder)
-        if spec.played_bag is not None:
-            yield ("play",), self.refusal(spec.played_bag)
-        for option in _FOLDER_OPTIONS:
-            for number, path in enumerate(_listed(spec.options.get(option))):
-                yield (option, number), self.refusal(Path(str(path)))
-        for number, named_file in enumerate(_listed(spec.options.get("params_files"))):
-            yield ("params_files", number), self.refusal(Path(model_and_file(named_file)[1]))
-        named, workspaces = split_package_paths(spec.options.get("package_paths"))
-        for name, folder in (*named.items(), *enumerate(workspaces)):
-            yield ("package_paths", name), self.refusal(folder)
+        for name in spec.files():
+            if name.keys[0] != "plugin_paths":  # their code needs a permission of its own
+                yield name.keys, self._refusal_of(name, spec.folder)
+
+    def _refusal_of(self, name: FileName, folder: Path) -> Refusal | None:
+        if name.role in ("world", "model"):
+            return self.source_refusal(name.text, folder)
+        return self.refusal(folder / name.text if name.role == "bag" else Path(name.text))
 
     def _allows(self, path: Path) -> bool:
         if self._trusted.allows(path):
@@ -159,12 +147,6 @@ class ReadableFiles:
 
 def _exists(path: Path) -> bool:
     return os.path.exists(path)  # noqa: PTH110 (a long name is no error)
-
-
-def _listed(value: Any) -> Sequence[Any]:
-    if value is None:
-        return ()
-    return value if isinstance(value, (list, tuple)) else (value,)
 
 
 def label(keys: Sequence[object]) -> str:

@@ -8,35 +8,30 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import Any, Final
 
 from simkit.code_requests import CodeRequest, folder_request
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.command_script import script_items, validate_items
+from simkit.run_fields import RunField
+from simkit.run_files import FileName
 from simkit.run_spec import (
-    GROUND,
-    RENDERERS,
     Check,
     CheckKind,
     FilePath,
     JsonObject,
-    LoadOptions,
     RunSpec,
     Tolerance,
-    change_package_paths,
     named_values,
+    run_fields,
 )
 from simkit.testing.scenarios.code_permission import permit_code
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import (
     Document,
     ValueReader,
-    is_scalar_text,
-    resolve_params_file,
-    resolve_spawn_file,
-    yaml_value_text,
 )
 
 _SCENARIO_SUFFIXES: Final = (".yaml", ".yml", ".py")
@@ -47,15 +42,7 @@ _CHECKS: Final[dict[str, CheckKind]] = {
     "no_contact": "apart",
     "rates": "rate",
 }
-_READING_KEYS: Final = ("resource_paths", "package_paths", "xacro_args", "base")
-_LOADING_KEYS: Final = ("renderer", "plugin_paths", "interfaces", "params_files", *_READING_KEYS)
-KEYS: Final = (
-    *("world", "name", "duration", "seed", "set", "spawn", "model_world", "commands", "play", "play_topics", "topics"),
-    *("skip", "tolerances", "statistics", "state", "model", "picture", "until", "timeout", "wall_timeout"),
-    *_CHECKS,
-    *_LOADING_KEYS,
-)
-"""Keys of a scenario file."""
+_OWN_KEYS: Final = ("world", "commands", "tolerances", "statistics", "plugin_paths", *_CHECKS)
 _CHECK_KEYS: Final[dict[CheckKind, tuple[str, ...]]] = {
     "goal": ("name", "that", "by", "points", "hint"),
     "always": ("name", "that", "after", "points", "hint"),
@@ -65,6 +52,11 @@ _CHECK_KEYS: Final[dict[CheckKind, tuple[str, ...]]] = {
 }
 _TOLERANCE_KEYS: Final = tuple(f.name for f in fields(Tolerance) if f.name not in ("pattern", "where"))
 TOLERANCE_MODES: Final = ("exact", "ignore", "statistics")
+
+
+def scenario_keys() -> tuple[str, ...]:
+    """Return the keys of a scenario file."""
+    return (*_OWN_KEYS, *(one.key for one in run_fields().values() if one.key is not None))
 
 
 def is_scenario_file(source: str | Path) -> bool:
@@ -130,7 +122,7 @@ def parse_scenario(document: Document, *, also: tuple[str, ...] = ()) -> RunSpec
     """
     if document.values is None:
         document.values = {}
-    fields = document.only(document.values, KEYS + also, "a scenario")
+    fields = document.only(document.values, scenario_keys() + also, "a scenario")
     if isinstance(document.values, dict) and "world" not in fields:
         document.error("SK-SCEN-004", "missing 'world'", hint="add world: FILE or the name of a bundled world")
     return ScenarioReader(document, fields).scenario()
@@ -140,69 +132,61 @@ class ScenarioReader(ValueReader):
     """Reader of the values of a scenario."""
 
     def scenario(self) -> RunSpec:
-        wall = self._number("wall_timeout", None, above=0.0)
         if "timeout" in self._fields and "until" not in self._fields:
             hint = "add until: CONDITION, or use duration: S to end the run at a fixed time"
             self._document.error("SK-SCEN-004", "'timeout' needs 'until'", "timeout", hint=hint)
         if "timeout" in self._fields and "duration" in self._fields:
             message = "'timeout' and 'duration' both define the end of the run"
             self._document.error("SK-SCEN-003", message, "timeout", hint="with 'until', keep only 'timeout'")
+        folder = self._document.path.parent
+        duration = self._bag_duration()
         found = RunSpec(
-            world=self._text("world", ""),
-            duration=self._number("duration", self._bag_duration(), least=0.0) or 0.0,
-            seed=self._whole("seed", 0, 0),
-            name=self._text("name", ""),
-            overrides=self._overrides(),
-            spawn=tuple(resolve_spawn_file(self._document.path.parent, one) for one in self._texts("spawn")),
-            model_world=self._text("model_world", GROUND),
+            world=self.text("world", ""),
+            duration=duration,
             commands=self._commands(),
-            play=str(self._fields.get("play", "")),
-            play_topics=self._texts("play_topics"),
-            topics=self._texts("topics"),
-            skip=self._texts("skip"),
             tolerances=(*self._tolerances(), *self._statistics()),
-            state=self._flag("state", True),
-            model=self._flag("model", True),
-            picture=self._whole("picture", 64, 8),
-            until=self._expression(self._text("until", ""), "until"),
-            timeout=self._number("timeout", None, above=0.0),
-            wall_timeout=wall,
             checks=tuple(check for key, kind in _CHECKS.items() for check in self._checks(key, kind)),
-            options=cast(LoadOptions, self._options()),
             code_requests=self._code_requests(),
-            folder=self._document.path.parent,
+            folder=folder,
             file=self._document.path,
         )
+        values = {name: self._value(one, duration) for name, one in run_fields().items() if one.key in self._fields}
+        found = found.with_values(values).with_files(self._in_folder)
         refused = [self._document.refuses(one, *keys) for keys, one in self._document.files.refused(found)]
         return replace(found, world="") if refused else found  # nobody reads the world of such a file
 
     # ------------------------------------------------------------------ world and inputs
 
+    def _value(self, described: RunField, duration: float) -> object:
+        """Return the value of a key; problems are added to the diagnostics."""
+        assert described.key is not None
+        if described.name == "play":  # `_bag_duration` reports another value than a text
+            return str(self._fields["play"])
+        if described.name == "overrides":
+            return self._overrides()
+        if described.name == "xacro_args":
+            return self._xacro_arguments()
+        value = described.kind.read(self, described.key, duration if described.key == "duration" else described.default)
+        return self._expression(value, "until") if described.key == "until" else value
+
+    def _in_folder(self, name: FileName) -> object:
+        """Return a name of a file that starts from the working directory instead of the folder of the document."""
+        path = name.path_in(self._document.path.parent)
+        if path is None or name.role in ("world", "bag"):  # a run looks for these in its own folder
+            return name.text
+        return str(path) if name.role in ("model", "file") else path
+
     def _overrides(self) -> tuple[str, ...]:
         if isinstance(self._fields.get("set"), dict):
             return tuple(f"{path}={one}" for path, one in self._strings("set").items())
-        return self._texts("set")
-
-    def _strings(self, key: str) -> dict[str, str]:
-        """Return the values of a mapping as strings; report an error for values that cannot be converted."""
-        found = {}
-        for name, value in self._mapping(key).items():
-            if is_scalar_text(value):
-                found[name] = yaml_value_text(value)
-            else:
-                self._wrong(value, "a number, a string, true or false, or a list of these", key, name)
-        return found
-
-    def _named_or_listed(self, key: str) -> dict[str, str] | tuple[str, ...]:
-        """Return the texts of a mapping, or of a list."""
-        return self._strings(key) if isinstance(self._fields[key], dict) else tuple(self._texts(key))
+        return self.texts("set")
 
     def _xacro_arguments(self) -> dict[str, str]:
         """Return the arguments of xacro files: a mapping, or a list of `NAME:=VALUE` texts."""
         if isinstance(self._fields["xacro_args"], dict):
             return self._strings("xacro_args")
         found: dict[str, str] = {}
-        for number, text in enumerate(self._texts("xacro_args")):
+        for number, text in enumerate(self.texts("xacro_args")):
             try:
                 found |= named_values((text,), "xacro_args")
             except InputError:
@@ -249,32 +233,8 @@ class ScenarioReader(ValueReader):
             self._document.error(error.code, f"play: {str(error).removeprefix(error.code).strip()}", "play")
             return 10.0
 
-    def _options(self) -> dict[str, object]:
-        folder = self._document.path.parent
-        found: dict[str, object] = {}
-        for key in ("resource_paths", "interfaces"):
-            if key in self._fields:
-                found[key] = tuple(folder / one for one in self._texts(key))
-        if "params_files" in self._fields:
-            found["params_files"] = tuple(resolve_params_file(folder, one) for one in self._texts("params_files"))
-        if "package_paths" in self._fields:
-            found["package_paths"] = change_package_paths(
-                self._named_or_listed("package_paths"), lambda one: folder / one
-            )
-        if "xacro_args" in self._fields:
-            found["xacro_args"] = self._xacro_arguments()
-        if "base" in self._fields:
-            found["base"] = self._text("base", "auto")
-            if found["base"] not in ("auto", "fixed", "floating"):
-                self._wrong(found.pop("base"), "auto, fixed or floating", "base")
-        if "renderer" in self._fields:
-            found["renderer"] = self._text("renderer", "auto")
-            if found["renderer"] not in RENDERERS:
-                self._wrong(found.pop("renderer"), "auto, gl or software", "renderer")
-        return found
-
     def _code_requests(self) -> tuple[CodeRequest, ...]:
-        folder, found = self._document.path.parent, self._texts("plugin_paths")
+        folder, found = self._document.path.parent, self.texts("plugin_paths")
         places = [self._document.where("plugin_paths", number) for number in range(len(found))]
         return tuple(folder_request(one, folder / one, where) for one, where in zip(found, places, strict=True))
 
@@ -319,7 +279,7 @@ class ScenarioReader(ValueReader):
 
     def _statistics(self) -> list[Tolerance]:
         where = str(self._document.where("statistics"))
-        return [Tolerance(absolute_topic(one), statistics=True, where=where) for one in self._texts("statistics")]
+        return [Tolerance(absolute_topic(one), statistics=True, where=where) for one in self.texts("statistics")]
 
     # ------------------------------------------------------------------ checks
 

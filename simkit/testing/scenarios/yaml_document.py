@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -37,7 +36,7 @@ class Document:
         self.files = ReadableFiles(path, folders)
         self.values: object = None
         self._lines: dict[tuple[object, ...], int] = {}
-        text = self._text()
+        text = self.text()
         if text is not None:
             self._read(text)
 
@@ -70,7 +69,7 @@ class Document:
                 self.error("SK-SCEN-002", f"{what} has no key {str(key)!r}", *keys, key, hint=hint)
         return {key: one for key, one in value.items() if key in allowed}
 
-    def _text(self) -> str | None:
+    def text(self) -> str | None:
         try:
             return read_input_text(self.path, MAX_BYTES)
         except (OSError, ValueError) as error:
@@ -115,19 +114,6 @@ def _lines_by_path(node: Any, keys: tuple[object, ...]) -> Iterator[tuple[tuple[
             yield from _lines_by_path(item, (*keys, number))
 
 
-def resolve_spawn_file(folder: Path, spawn: str) -> str:
-    """Resolve the file in `MODEL:x,y,yaw[:name]` relative to a folder, if the folder contains the file."""
-    model, colon, rest = spawn.partition(":")
-    is_here = model and os.path.exists(folder / model)  # noqa: PTH110 (a long name is no error)
-    return f"{folder / model}{colon}{rest}" if is_here else spawn
-
-
-def resolve_params_file(folder: Path, text: str) -> str:
-    """Resolve the file in `[MODEL=]FILE` relative to a folder."""
-    model, equals, file = text.rpartition("=")
-    return f"{model}{equals}{folder / file}"
-
-
 def is_scalar_text(value: object) -> bool:
     """Check whether `yaml_value_text` can convert a YAML value."""
     if isinstance(value, list):
@@ -163,21 +149,43 @@ class ValueReader:
         label, message = ".".join(map(str, (*self._at, *keys))), f"found {short_repr(value)}, expected {allowed}"
         self._document.error("SK-SCEN-003", f"{label}: {message}", *self._at, *keys)
 
-    def _text(self, key: str, default: str) -> str:
+    def text(self, key: str, default: str) -> str:
         value = self._fields.get(key, default)
         if isinstance(value, str) and (value.strip() or value == default):
             return value
         self._wrong(value, "a string", key)
         return default
 
-    def _flag(self, key: str, default: bool) -> bool:
+    def word(self, key: str, default: str, allowed: Sequence[str]) -> str:
+        """Return a text that is one of several words."""
+        found = self.text(key, default)
+        if found not in allowed:
+            self._wrong(found, f"{', '.join(allowed[:-1])} or {allowed[-1]}", key)
+            return default
+        return found
+
+    def named(self, key: str) -> dict[str, str] | tuple[str, ...]:
+        """Return the texts of a mapping, or of a list."""
+        return self._strings(key) if isinstance(self._fields.get(key), dict) else self.texts(key)
+
+    def _strings(self, key: str) -> dict[str, str]:
+        """Return the values of a mapping as strings; report an error for values that cannot be converted."""
+        found = {}
+        for name, value in self._mapping(key).items():
+            if is_scalar_text(value):
+                found[name] = yaml_value_text(value)
+            else:
+                self._wrong(value, "a number, a string, true or false, or a list of these", key, name)
+        return found
+
+    def flag(self, key: str, default: bool) -> bool:
         value = self._fields.get(key, default)
         if isinstance(value, bool):
             return value
         self._wrong(value, "true or false", key)
         return default
 
-    def _number(
+    def number(
         self, key: str, default: float | None, *, least: float = -math.inf, above: float = -math.inf
     ) -> float | None:
         return self._number_of(self._fields.get(key, default), default, (key,), least=least, above=above)
@@ -200,14 +208,14 @@ class ValueReader:
         self._wrong(value, f"a number{bound}", *keys)
         return default
 
-    def _whole(self, key: str, default: int, least: int) -> int:
+    def whole(self, key: str, default: int, least: int) -> int:
         value = self._fields.get(key, default)
         if isinstance(value, int) and not isinstance(value, bool) and value >= least:
             return value
         self._wrong(value, f"an integer >= {least}", key)
         return default
 
-    def _texts(self, key: str) -> tuple[str, ...]:
+    def texts(self, key: str) -> tuple[str, ...]:
         value = self._fields.get(key, ())
         listed = [value] if isinstance(value, str) else value
         if isinstance(listed, (list, tuple)) and all(isinstance(one, str) and one.strip() for one in listed):

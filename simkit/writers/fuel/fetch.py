@@ -7,7 +7,7 @@ import json
 import os
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from io import BufferedRandom
@@ -31,7 +31,8 @@ from simkit.loaders.resources.fuel_cache import (
     read_lock,
 )
 from simkit.loaders.sdf.load_context import MAX_INCLUDE_DEPTH
-from simkit.run_spec import NamedValues
+from simkit.run_files import FilePath, PackagePaths
+from simkit.run_values import NamedValues
 from simkit.writers.atomic_output import write_atomically
 from simkit.writers.fuel.cache_entry import STAGE, Record, archive_record, exclusive_file, read_record, store
 from simkit.writers.fuel.download import (
@@ -121,8 +122,8 @@ def fetch(
     source: str,
     options: FetchOptions,
     *,
-    resource_paths: Iterable[Path] = (),
-    package_paths: Iterable[str] = (),
+    resource_paths: Sequence[FilePath] = (),
+    package_paths: PackagePaths = (),
     xacro_args: NamedValues | None = None,
 ) -> FetchReport:
     """Download the models, worlds and files that a world names into the cache, and write `simkit.lock` beside it.
@@ -140,7 +141,7 @@ def fetch(
     """
     options = replace(options, connection=replace(options.connection, end=time.monotonic() + options.max_time))
     report = FetchReport()
-    resolver = Resolver(list(resource_paths), missing_meshes=True, package_paths=tuple(package_paths))
+    resolver = Resolver(resource_paths, missing_meshes=True, package_paths=package_paths)
     search = ReferenceSearch(resolver, report.diagnostics)
     lock_folder = Path.cwd()
     url = parse_fuel_url(source)

@@ -71,13 +71,13 @@ def test_all_keys_of_a_scenario_are_read(tmp_path):
 
 
 def test_package_paths_can_be_a_list_whose_folders_keep_their_place_in_golden_runs_and_certificates(tmp_path):
-    from simkit.testing.certify.certification import _with_absolute_paths
+    from simkit.testing.certify.certification import with_absolute_paths
     from simkit.testing.golden.record_encoding import decode_scenario, encode_scenario
 
     found = scenario(tmp_path, "world: ball.sdf\npackage_paths: [../ws, arm=robot]\n", folders=[tmp_path.parent])
     expected = [f"arm={tmp_path / 'robot'}", tmp_path / ".." / "ws"]
     assert found.options["package_paths"] == expected
-    assert _with_absolute_paths(found).options["package_paths"] == [str(path) for path in expected]
+    assert with_absolute_paths(found).options["package_paths"] == [str(path) for path in expected]
     golden = tmp_path / "golden" / "drop"
     data = encode_scenario(found, golden)
     assert data["options"] == {"package_paths": ["arm=../../robot", "../../../ws"]}

@@ -1,0 +1,317 @@
+"""Kinds of values of a run's fields: how a value is read, written, moved to other folders and taken from an option."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, ClassVar, Final, Protocol, cast
+
+from simkit.errors import InputError
+from simkit.home_folder import expand_home
+from simkit.run_files import (
+    ChangeFile,
+    FileName,
+    model_and_file,
+    split_package_paths,
+    split_spawn,
+)
+
+NamedValues = Mapping[str, str] | Sequence[str]
+"""Values by name, or texts `NAME:=VALUE` or `NAME=VALUE`."""
+_INVALID: Final = "SK-CLI-018"
+
+
+def named_values(values: NamedValues | None, option: str) -> dict[str, str]:
+    """Return values by name; `NAME:=VALUE` is the form of ROS.
+
+    Args:
+        values: mapping, texts, or None for no values.
+        option: name of the option for an error message.
+
+    Raises:
+        InputError: SK-CLI-018 a text has another form.
+    """
+    if values is None or isinstance(values, Mapping):
+        return dict(values or {})
+    found: dict[str, str] = {}
+    for text in (values,) if isinstance(values, str) else values:
+        name, equals, value = str(text).partition("=")
+        name = name.strip().removesuffix(":").strip()
+        if not equals or not name:
+            raise InputError(f"{_INVALID} {option}: found {text!r}; expected NAME:=VALUE or NAME=VALUE", _INVALID)
+        found[name] = value
+    return found
+
+
+class ValueSource(Protocol):
+    """Reader of one kind of file, which reports a value of a wrong type in its own way."""
+
+    def text(self, key: str, default: str) -> str: ...
+    def flag(self, key: str, default: bool) -> bool: ...
+    def whole(self, key: str, default: int, least: int) -> int: ...
+    def number(self, key: str, default: float | None, *, least: float, above: float) -> float | None: ...
+    def texts(self, key: str) -> tuple[str, ...]: ...
+    def word(self, key: str, default: str, allowed: Sequence[str]) -> str: ...
+    def named(self, key: str) -> dict[str, str] | tuple[str, ...]: ...
+
+
+class ValueKind:
+    """Kind of a value that is read and written by its own code: objects, functions and what is never in a file.
+
+    Attributes:
+        option_type: type of the value on the command line.
+        has_files: True if the value can contain names of files.
+    """
+
+    option_type: ClassVar[Any] = None
+    has_files: ClassVar[bool] = False
+
+    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+        """Return the value of a key of a file."""
+        raise NotImplementedError(f"{type(self).__name__} has no form in a file")
+
+    def from_option(self, value: Any, option: str) -> Any:
+        """Return the field's value for the value of an option.
+
+        Raises:
+            InputError: SK-CLI-018 the value is not allowed.
+        """
+        return tuple(value) if isinstance(value, list) else value
+
+    def plain(self, value: Any) -> Any:
+        """Return a value as it is written to a file; the writer converts tuples and paths."""
+        return value
+
+    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+        """Return a value in which each name of a file is changed.
+
+        Args:
+            value: value of the field.
+            name: name of the field.
+            change: function that returns the new name of a file.
+        """
+        return value
+
+
+class Text(ValueKind):
+    """Text."""
+
+    option_type = str | None
+
+    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+        return source.text(key, default)
+
+
+class Expression(Text):
+    """Expression in the language of conditions."""
+
+    def from_option(self, value: Any, option: str) -> Any:
+        if not value.strip():  # its usual cause is an unset variable of a shell script
+            raise InputError(f"{_INVALID} {option}: the expression is empty", _INVALID)
+        return value
+
+
+class Flag(ValueKind):
+    """Truth value."""
+
+    option_type = bool
+
+    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+        return source.flag(key, default)
+
+
+class Whole(ValueKind):
+    """Whole number.
+
+    Args:
+        least: lowest allowed number.
+    """
+
+    option_type = int | None
+
+    def __init__(self, least: int = 0) -> None:
+        self._least = least
+
+    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+        return source.whole(key, default, self._least)
+
+
+class Number(ValueKind):
+    """Number, or None.
+
+    Args:
+        least: lowest allowed number.
+        above: number that the value must exceed.
+    """
+
+    option_type = float | None
+
+    def __init__(self, least: float = -math.inf, above: float = -math.inf) -> None:
+        self._least, self._above = least, above
+
+    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+        return source.number(key, default, least=self._least, above=self._above)
+
+
+class Choice(ValueKind):
+    """One word of several.
+
+    Args:
+        words: allowed words.
+
+    Attributes:
+        words: allowed words.
+    """
+
+    option_type = str | None
+
+    def __init__(self, words: Sequence[str]) -> None:
+        self.words = words
+
+    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+        return source.word(key, default, self.words)
+
+
+class Texts(ValueKind):
+    """Texts."""
+
+    option_type = list[str]
+
+    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+        return source.texts(key)
+
+
+class NamedTexts(ValueKind):
+    """Texts by name, as in `NAME:=VALUE`."""
+
+    option_type = list[str]
+
+    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+        return source.named(key)
+
+    def from_option(self, value: Any, option: str) -> Any:
+        return named_values(value, option)
+
+
+class WorldName(Text):
+    """World: a file, a bare name, XML text, or a word with a meaning of its own.
+
+    Args:
+        words: these words.
+    """
+
+    has_files = True
+
+    def __init__(self, words: Sequence[str] = ()) -> None:
+        self._words = words
+
+    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+        return value if value in self._words or "<" in value else change(FileName(value, "world", (name,)))
+
+
+class BagText(Text):
+    """Path of a bag as text, relative to the folder of the run; empty for none."""
+
+    option_type = Path | None
+    has_files = True
+
+    def from_option(self, value: Any, option: str) -> Any:
+        return os.fspath(value)
+
+    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+        return change(FileName(value, "bag", (name,))) if value else value
+
+
+class OneFile(ValueKind):
+    """Path of a file, or None."""
+
+    option_type = Path | None
+    has_files = True
+
+    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+        return None if value is None else Path(change(FileName(os.fspath(value), "file", (name,))))
+
+
+class Spawns(Texts):
+    """Models to spawn: texts `MODEL:x,y,yaw[:name]`, or objects with the attribute `source`."""
+
+    has_files = True
+
+    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+        found = []
+        for number, one in enumerate(value):
+            keys = (name, number)
+            if isinstance(one, str):
+                model, rest = split_spawn(one)
+                found.append(f"{change(FileName(model, 'model', keys))}{rest}")
+            else:
+                found.append(replace(one, source=change(FileName(os.fspath(one.source), "model", keys))))
+        return tuple(found)
+
+
+def spawns_in(folder: Path, spawn: Sequence[str]) -> tuple[str, ...]:
+    """Return texts `MODEL:x,y,yaw[:name]` with the path of each model that is in a folder."""
+    return cast("tuple[str, ...]", Spawns().move(spawn, "spawn", lambda name: name.path_in(folder) or name.text))
+
+
+class Folders(Texts):
+    """Folders.
+
+    Args:
+        must_exist: True to reject the option for a folder that does not exist.
+    """
+
+    option_type = list[Path]
+    has_files = True
+
+    def __init__(self, must_exist: bool = False) -> None:
+        self._must_exist = must_exist
+
+    def from_option(self, value: Any, option: str) -> Any:
+        for folder in value:
+            if self._must_exist and not expand_home(folder).is_dir():
+                raise InputError(f"{_INVALID} {option}: there is no folder {str(folder)!r}", _INVALID)
+        return tuple(value)
+
+    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+        return tuple(change(FileName(os.fspath(one), "folder", (name, number))) for number, one in enumerate(value))
+
+
+class ParameterFiles(Texts):
+    """Files, each for all models or for one: `[MODEL=]FILE`, or pairs of the model's name and the file."""
+
+    has_files = True
+
+    def plain(self, value: Any) -> Any:
+        pairs = map(model_and_file, [value] if isinstance(value, (str, os.PathLike)) else value)
+        return [f"{model}={file}" if model else file for model, file in pairs]
+
+    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+        found = []
+        for number, one in enumerate([value] if isinstance(value, (str, os.PathLike)) else value):
+            model, file = model_and_file(one)
+            moved = change(FileName(file, "file", (name, number)))
+            found.append((model, moved) if isinstance(one, tuple) else f"{model}={moved}" if model else moved)
+        return tuple(found)
+
+
+class Packages(NamedTexts):
+    """Folders of ROS packages by name, and workspaces."""
+
+    has_files = True
+
+    def from_option(self, value: Any, option: str) -> Any:
+        return tuple(value)
+
+    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+        def moved(path: Path, key: str | int) -> Any:
+            return change(FileName(str(path), "folder", (name, key)))
+
+        named, workspaces = split_package_paths(value)
+        if isinstance(value, Mapping):
+            return {key: moved(path, key) for key, path in named.items()}
+        listed = [f"{key}={moved(path, key)}" for key, path in named.items()]
+        return [*listed, *(moved(path, number) for number, path in enumerate(workspaces))]
