@@ -71,7 +71,7 @@ def animals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kinds[A
 @pytest.mark.parametrize("kinds", KINDS)
 def test_every_class_is_found_by_the_names_in_its_file(kinds: Callable[[], Any]) -> None:
     full = kinds()
-    fresh = Kinds(full._packages, full._group, full._base, full._names, full._attributes, full._spell)
+    fresh = Kinds(full._package, full._group, full._base, full._names, full._attributes, full._spell)
     for name in list(full):
         assert name in fresh
         assert fresh[name] is full[name]
@@ -115,7 +115,7 @@ def test_an_entry_point_without_a_class_of_the_base_is_skipped_with_a_warning(
 ) -> None:
     points = [EntryPoint("dog", "animals.dog:Dog", "zoo"), EntryPoint("stray", "json", "zoo")]
     monkeypatch.setattr("simkit.registry.entry_points_of", lambda group: points)
-    assert [cls.__name__ for cls in animals._foreign] == ["Dog"]
+    assert [cls.__name__ for source in animals._foreign for cls in animals._classes(source)] == ["Dog"]
     (warning,) = caplog.messages
     assert warning.startswith("entry point stray (json) of animals.nobody: <module 'json'")
     assert warning.endswith("is not a subclass of Animal")

@@ -11,8 +11,8 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-MODULES = sorted((ROOT / "simkit").rglob("*.py"))
-PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+MODULES = sorted([*ROOT.glob("simkit/**/*.py"), *ROOT.glob("packs/*/simkit_*/**/*.py")])
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("packs/**/*.md")])
 
 OPENINGS = re.compile(r"(What|Whether|Of|Who|Whose|Where|That|Which)\b")
 METAPHORS = re.compile(r"\b(doors?|crews?|worn|promis(?:e|es|ed)|hearers?|audience)\b", re.IGNORECASE)
