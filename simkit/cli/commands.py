@@ -42,6 +42,7 @@ COMMANDS = {
     "map": "Write the true occupancy map of a world as PGM and YAML.",
     "motion": "List and play the named motions of a robot.",
     "plugin": "List, describe and create plugins.",
+    "new": "Create a pack.",
     "topic": "Inspect and publish topics of a simulation or a bag.",
     "service": "List and call the services of a running simulation.",
     "param": "List, read and set the parameters of a running simulation.",

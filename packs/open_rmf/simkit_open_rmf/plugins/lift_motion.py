@@ -11,8 +11,8 @@ from simkit.params import LARGEST
 from simkit.plugins.find_entities import find_named_joint
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.options import Options, number, text
-from simkit.plugins.rmf.door_motion import CLOSED, MOVING, OPEN, DoorMotion
-from simkit.plugins.rmf.motion_profile import GuidedJoint, read_limits
+from simkit_open_rmf.plugins.door_motion import CLOSED, MOVING, OPEN, DoorMotion
+from simkit_open_rmf.plugins.motion_profile import GuidedJoint, read_limits
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef, SpecBuilder

@@ -14,11 +14,11 @@ from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, text, without_effect
 from simkit.plugins.publish_on_demand import count_instants, publish_while_subscribed
-from simkit.plugins.rmf.building import RmfBuildingPlugin
-from simkit.plugins.rmf.motion_profile import MotionLimits, drive_speed, read_limits
-from simkit.plugins.rmf.path_following import Displacement, Point, lookahead_point, turn_towards, wrap
-from simkit.plugins.rmf.slotcar_battery import BatteryModel
 from simkit.pose import Pose, quat_from_rpy
+from simkit_open_rmf.plugins.building import RmfBuildingPlugin
+from simkit_open_rmf.plugins.motion_profile import MotionLimits, drive_speed, read_limits
+from simkit_open_rmf.plugins.path_following import Displacement, Point, lookahead_point, turn_towards, wrap
+from simkit_open_rmf.plugins.slotcar_battery import BatteryModel
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import simkit
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "rmf.md"
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "rmf.md"
 SAMPLES = re.findall(r"^```xml\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
 BODY = "<inertial><mass>500</mass><inertia><ixx>90</ixx><iyy>90</iyy><izz>90</izz></inertia></inertial>"
 CABIN = f"""<link name="cabin">{BODY}</link><joint name="cabin_joint" type="prismatic"><parent>world</parent>

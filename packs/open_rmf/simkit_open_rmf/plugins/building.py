@@ -10,8 +10,9 @@ from simkit.plugins.base import NEVER, Plugin
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.options import OptionsOf
 from simkit.plugins.publish_on_demand import publish_while_subscribed
-from simkit.plugins.rmf.door_motion import OPEN, DoorMotion, DoorOptions, Leaf, read_leaves
-from simkit.plugins.rmf.lift_motion import (
+from simkit.scene import SceneModel
+from simkit_open_rmf.plugins.door_motion import OPEN, DoorMotion, DoorOptions, Leaf, read_leaves
+from simkit_open_rmf.plugins.lift_motion import (
     LIFT_STATE,
     Floor,
     LiftDescription,
@@ -19,7 +20,6 @@ from simkit.plugins.rmf.lift_motion import (
     LiftOptions,
     read_lift,
 )
-from simkit.scene import SceneModel
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

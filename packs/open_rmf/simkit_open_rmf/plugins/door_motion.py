@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.plugins.find_entities import find_axis_joint
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.options import Options, number
-from simkit.plugins.rmf.motion_profile import GuidedJoint, read_limits
+from simkit_open_rmf.plugins.motion_profile import GuidedJoint, read_limits
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef, SpecBuilder
