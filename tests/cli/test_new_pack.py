@@ -74,8 +74,8 @@ def test_the_bits_and_the_code_hash_of_simkit_do_not_depend_on_a_pack_of_others(
 
 
 def test_the_name_of_an_installed_pack_is_refused(installed: Path) -> None:
-    program = "from simkit.cli import app; app(['new', 'pack', 'fleet', '--folder', 'other'])"
-    done = subprocess.run([sys.executable, "-c", program], env=environment(installed), cwd=installed, capture_output=True)
+    command = [sys.executable, "-m", "simkit", "new", "pack", "fleet", "--folder", "other"]
+    done = subprocess.run(command, env=environment(installed), cwd=installed, capture_output=True)
     assert done.returncode == 2 and b"SK-PLUGIN-077 there is a pack or module 'fleet' already" in done.stderr
 
 
