@@ -46,6 +46,7 @@ SMALL_MODULES = frozenset(
         "matrix_decompositions",
         "msgs",
         "memory_error",
+        "moved_modules",
         "mujoco_import",
         "name_conflict",
         "number_text",
@@ -142,6 +143,7 @@ HEAVY = {
 """Packages that may be imported inside a function, with the reason."""
 
 SLOW_MODULES = {
+    "simkit.packs": "15 ms, of `importlib.metadata`; `import simkit` does without",
     "simkit.bridges.live.answering": "4 ms; only a run with a client needs it",
     "simkit.compiler.meshes.convex_decomposition": "10 ms; only meshes need it",
     "simkit.compiler.meshes.convex_pieces": "comes with convex_decomposition",

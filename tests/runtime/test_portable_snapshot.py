@@ -144,9 +144,7 @@ def test_a_snapshot_with_a_class_that_moved_away_is_refused(folder: Path, monkey
         (folder / "notes_of_before.py").unlink()
         del sys.modules["notes_of_before"]
         before = state_hash(sim)
-        with pytest.raises(
-            ValueError, match="another version of simkit or of a plugin took it: No module named"
-        ):
+        with pytest.raises(ValueError, match="another version of simkit or of a plugin took it: No module named"):
             sim.restore(pickle.loads(content))
         assert state_hash(sim) == before
 
