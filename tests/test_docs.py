@@ -84,8 +84,9 @@ def test_no_file_holds_a_path_of_somebodys_machine() -> None:
 
 def test_every_command_has_its_page() -> None:
     """One page for each file of the command line, named alike."""
-    commands = {p.stem for p in (ROOT / "simkit" / "cli").glob("*.py") if not p.stem.startswith("_")}
-    pages = {p.stem for p in (ROOT / "docs" / "commands").glob("*.md")}
+    files = [*ROOT.glob("simkit/cli/*.py"), *ROOT.glob("packs/*/simkit_*/cli/*.py")]
+    commands = {p.stem for p in files if not p.stem.startswith("_")}
+    pages = {p.stem for p in (*ROOT.glob("docs/commands/*.md"), *ROOT.glob("packs/*/docs/commands/*.md"))}
     assert pages, "docs/commands has no page"
     assert {c for c in commands if c in pages} == pages, f"pages without a command: {sorted(pages - commands)}"
 

@@ -231,6 +231,11 @@ def room_of(module: str) -> str:
     return parts[1] if len(parts) > 1 else "__init__"
 
 
+def is_command(module: str) -> bool:
+    """Check whether a module belongs to the command line, of the core or of a pack."""
+    return module.split(".")[1:2] == ["cli"]
+
+
 def folder_of(module: str) -> str:
     """The folder of a module, as a dotted name; a module at the top stands for itself."""
     package = module.split(".")[0]
@@ -296,7 +301,7 @@ def test_only_the_commands_of_a_pack_use_the_command_line() -> None:
     wrong = [
         f"{modules()[module].relative_to(ROOT)}:{one.line}: {one.target}"
         for module in modules()
-        if room_of(module) in PACKS and module.split(".")[1:2] != ["cli"]
+        if room_of(module) in PACKS and not is_command(module)
         for one in imports(module)
         if one.target in modules() and room_of(one.target) == "cli"
     ]
@@ -334,7 +339,7 @@ def test_an_import_inside_a_function_spares_a_heavy_package() -> None:
         for one in imports(module):
             if one.kind != "function" or one.target in HEAVY or (module, one.target) in FRONT_USERS:
                 continue
-            if one.target in SLOW_MODULES or (room_of(module) == "cli" and one.target in modules()):
+            if one.target in SLOW_MODULES or (is_command(module) and one.target in modules()):
                 continue
             if one.target not in modules() or not _heavy(one.target) - loaded:
                 wrong.append(f"{modules()[module].relative_to(ROOT)}:{one.line}: {one.target}")

@@ -40,7 +40,6 @@ COMMANDS = {
     "plot": "Plot fields of bags, worlds and scenarios over time.",
     "graph": "Draw the nodes and topics, or the frames, of a world or a running simulation.",
     "map": "Write the true occupancy map of a world as PGM and YAML.",
-    "motion": "List and play the named motions of a robot.",
     "plugin": "List, describe and create plugins.",
     "new": "Create a pack.",
     "topic": "Inspect and publish topics of a simulation or a bag.",

@@ -221,7 +221,7 @@ def _world(path: Path) -> None:
 
 def _motions(path: Path) -> None:
     from simkit.diagnostics import Diagnostics
-    from simkit.plugins.play_motion.motion_files import read_motions
+    from simkit_motion.plugins.play_motion.motion_files import read_motions
 
     found = Diagnostics()
     read_motions(path, found)

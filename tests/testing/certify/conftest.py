@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 TESTS = Path(__file__).parents[2]
-for folder in ("plugins/worlds", "sensors", "plugins/ros2_control", "plugins/play_motion", "testing/certify"):
+for folder in ("plugins/worlds", "sensors", "plugins/ros2_control", "testing/certify"):
     sys.path.insert(0, str(TESTS / folder))
-sys.path.insert(0, str(TESTS.parent / "packs" / "navigation" / "tests" / "worlds"))
+for folder in ("navigation", "motion"):
+    sys.path.insert(0, str(TESTS.parent / "packs" / folder / "tests" / "worlds"))
