@@ -65,4 +65,4 @@ class _Finder:
 def install() -> None:
     """Let Python find moved modules, after all others."""
     if _Finder not in sys.meta_path:
-        sys.meta_path.append(_Finder)  # type: ignore[arg-type]  # as above
+        sys.meta_path.append(_Finder)
