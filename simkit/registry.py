@@ -159,7 +159,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     def _of_packs(self, packs: Iterable[Pack]) -> Iterator[_Source]:
         folder = self._package.rpartition(".")[2]
-        for pack in packs:
+        for pack in (pack for pack in packs if pack.package != self._package.partition(".")[0]):
             place, name = os.path.join(pack.folder, folder), f"{pack.package}.{folder}"  # noqa: PTH118 - see below
             if os.path.isfile(file := os.path.join(place, "__init__.py")):  # noqa: PTH113, PTH118
                 yield _Source(name, file)

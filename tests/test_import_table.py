@@ -83,7 +83,7 @@ ROOMS: dict[str, set[str]] = {
 }
 """The rooms that each room may use, beside the small modules."""
 
-PACKS_OF_PACKS: dict[str, set[str]] = {}
+PACKS_OF_PACKS = {"simkit_motion": {"simkit_control"}, "simkit_robots": {"simkit_control"}}
 """The packs that each pack may use; every pack may use the core, and only its commands may use `cli`."""
 
 PACK_NAMES: dict[str, str] = {}

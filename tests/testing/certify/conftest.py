@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 TESTS = Path(__file__).parents[2]
-for folder in ("plugins/worlds", "sensors", "plugins/ros2_control", "testing/certify"):
+for folder in ("plugins/worlds", "sensors", "testing/certify"):
     sys.path.insert(0, str(TESTS / folder))
-for folder in ("navigation", "motion"):
-    sys.path.insert(0, str(TESTS.parent / "packs" / folder / "tests" / "worlds"))
+for folder in ("control/tests", "control/tests/worlds", "motion/tests/worlds", "navigation/tests/worlds"):
+    sys.path.insert(0, str(TESTS.parent / "packs" / folder))

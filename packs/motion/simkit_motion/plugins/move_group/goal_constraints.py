@@ -10,8 +10,8 @@ import numpy as np
 
 from simkit import msgs
 from simkit.errors import InputError
-from simkit.plugins.ros2_control.head_pointing import frame_pose
 from simkit.pose import IDENTITY, Pose, Vector
+from simkit_control.plugins.ros2_control.head_pointing import frame_pose
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit_motion.plugins.move_group.inverse_kinematics import PoseGoal
 from simkit_motion.plugins.move_group.planning import Group, Planner, find_link, root_link

@@ -10,9 +10,9 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
-from simkit.plugins.ros2_control.control_plugin import ControlPlugin
-from simkit.plugins.ros2_control.controllers.joint_trajectory import JointTrajectoryController
 from simkit.pose import Vector
+from simkit_control.controllers.joint_trajectory import JointTrajectoryController
+from simkit_control.plugins.ros2_control.control_plugin import ControlPlugin
 from simkit_motion.plugins.play_motion.collision_check import CollisionCheck
 from simkit_motion.plugins.play_motion.motion import Motion, limit_violations, speed_limits
 from simkit_motion.plugins.play_motion.motion_timing import SHORTEST_INTERVAL, Course, approach_time, time_course

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, SimkitError
-from simkit.plugins.ros2_control.control_plugin import ControlPlugin
+from simkit_control.plugins.ros2_control.control_plugin import ControlPlugin
 from simkit_motion.plugins.play_motion.motion import Motion
 from simkit_motion.plugins.play_motion.play_motion_plugin import PlayMotion
 
