@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from control_robots import ALL, arm, interfaces, opened, reported_messages
-from tests.plugins.ros2_control.perfect_joints import PerfectJoints, host
+from perfect_joints import PerfectJoints, host
 
 from simkit.msgs.goal_status import GoalStatus
 from simkit_control.controllers import gripper_action

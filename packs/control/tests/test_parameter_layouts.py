@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.plugins.ros2_control.control_robots import arm, command, files, opened, position, reported_messages, states
+from control_robots import arm, command, files, opened, position, reported_messages, states
 
 import simkit
 from simkit.diagnostics import Diagnostics

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.plugins.ros2_control.perfect_joints import trajectory
+from perfect_joints import trajectory
 
 import simkit
 from simkit.msgs.goal_status import GoalStatus

@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 import pytest
-from tests.plugins.ros2_control.followers import FOLLOW, TOPIC, arm, codes, send
-from tests.plugins.ros2_control.perfect_joints import trajectory
+from followers import FOLLOW, TOPIC, arm, codes, send
+from perfect_joints import trajectory
 
 from simkit.msgs.goal_status import GoalStatus
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tests.plugins.ros2_control.perfect_joints import PerfectJoints, host, trajectory
+from perfect_joints import PerfectJoints, host, trajectory
 
 from simkit_control.controllers import joint_trajectory
 
