@@ -12,8 +12,8 @@ from typing import Any
 from measure import arguments
 
 import simkit
-from simkit.plugins.localisation.amcl import Amcl
-from simkit.plugins.world.map_server import MapServer
+from simkit_navigation.plugins.localisation.amcl import Amcl
+from simkit_navigation.plugins.maps.map_server import MapServer
 
 SECONDS = 4.0
 OPTIONS: dict[str, Any] = {"min_particles": 500, "max_particles": 500, "max_beams": 360, "update_min_d": 0.0}

@@ -16,10 +16,10 @@ from measure import arguments
 
 import simkit
 from simkit.params import Params
-from simkit.plugins.navigation.cost_grid import LETHAL, CostGrid
-from simkit.plugins.navigation.grid_planner import GridPlanner
-from simkit.plugins.navigation.planar_pose import PlanarPose
-from simkit.plugins.world.map_server import MapServer
+from simkit_navigation.plugins.maps.map_server import MapServer
+from simkit_navigation.plugins.navigation.cost_grid import LETHAL, CostGrid
+from simkit_navigation.plugins.navigation.grid_planner import GridPlanner
+from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
 
 
 def house() -> CostGrid:

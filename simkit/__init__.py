@@ -18,6 +18,7 @@ from simkit.early_interrupts import install_in_command
 
 install_in_command()  # before the other imports of this file
 
+from simkit import moved_modules  # noqa: E402
 from simkit.garbage_collection import no_collection  # noqa: E402
 from simkit.version import __version__  # noqa: E402
 
@@ -94,6 +95,8 @@ _MODULES = {
     "simkit.plugins.base": ("Plugin", "WorldPlugin", "ModelPlugin", "SensorPlugin", "VisualPlugin"),
 }
 _LAZY = {name: module for module, names in _MODULES.items() for name in names}
+
+moved_modules.install()
 
 # `simkit.errors` checks for this name: another project with the same import name may have replaced this file.
 _DISTRIBUTION = "simkit-robotics"

@@ -1,4 +1,4 @@
-"""Registries of classes from the modules of a package and from entry points.
+"""Registries of classes from the modules of a package, from packs and from entry points.
 
 A new class needs only a new file, because there is no list of classes to edit.
 """
@@ -6,17 +6,19 @@ A new class needs only a new file, because there is no list of classes to edit.
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import inspect
 import logging
 import os
 import re
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cached_property, lru_cache
-from importlib.metadata import EntryPoint, entry_points
-from pathlib import Path
-from types import MappingProxyType, ModuleType
-from typing import Any, Generic, TypeVar
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.metadata import EntryPoint
+from types import MappingProxyType
+from typing import Generic, TypeVar
+
+from simkit.packs import Pack, entry_points_of, foreign_packs, is_shipped_module, shipped_packs
 
 T = TypeVar("T")
 
@@ -25,36 +27,44 @@ _TEXT = re.compile(r"""#[^\n]*|"(?P<one>[^"\\\n]+)"|'(?P<two>[^'\\\n]+)'""")
 _FUNCTIONS = "\ndef ", "\nasync def "
 
 
-def entry_points_of(group: str) -> list[EntryPoint]:
-    """Return the entry points of a group.
+@dataclass(frozen=True, slots=True)
+class _Source:
+    """Place of classes: a module of a package, or an entry point.
 
-    Reading all entry points takes 20 ms, so they are cached until a folder of `sys.path` changes.
+    Attributes:
+        module: name of the module.
+        file: file of the module; empty if it is unknown.
+        point: the entry point; None for a module of a package.
     """
-    state = tuple((folder, _folder_time(Path(folder))) for folder in sys.path)
-    return list(_all_entry_points(state).select(group=group))
+
+    module: str
+    file: str
+    point: EntryPoint | None = None
 
 
-@lru_cache(maxsize=1)
-def _all_entry_points(_state: tuple[tuple[str, int], ...]) -> Any:  # its type differs between Python 3.11 and 3.12
-    return entry_points()
+@dataclass(frozen=True, slots=True)
+class _Names:
+    """Names of classes in some sources.
 
+    Attributes:
+        literal: text and sources of each name that is a literal text in the source code.
+        computed: sources that compute names.
+    """
 
-def _folder_time(folder: Path) -> int:
-    """Return the time at which an entry of a folder was last added or removed [ns]; 0 if there is no folder."""
-    try:
-        return folder.stat().st_mtime_ns
-    except OSError:
-        return 0
+    literal: Mapping[str, tuple[str, Sequence[_Source]]]
+    computed: Sequence[_Source]
 
 
 class Kinds(Mapping[str, type[T]], Generic[T]):
-    """Mapping from names to classes: subclasses of `base` in the packages and in the entry points of a group.
+    """Mapping from names to classes: subclasses of `base` in a package, in packs and in the entry points of a group.
 
     A lookup imports only the module of the class with that name, because the names are read from the text of the
-    modules. Iteration and `len` import every module.
+    modules. Modules of other distributions are searched only for names that simkit does not have. Iteration and `len`
+    import every module.
 
     Args:
-        packages: dotted names of the packages whose modules are read, including modules of sub-packages.
+        package: dotted name of the package whose modules are read, including modules of sub-packages. In packs, the
+            folder with its last name is read.
         group: entry-point group.
         base: required base class; abstract and nameless classes are skipped.
         names: function that returns the names of a class.
@@ -67,14 +77,14 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     def __init__(
         self,
-        packages: str | Sequence[str],
+        package: str,
         group: str,
         base: type[T],
         names: Callable[[type[T]], Iterable[str]],
         attributes: Sequence[str] = ("types",),
         spell: Callable[[str], str] = str,
     ) -> None:
-        self._packages = (packages,) if isinstance(packages, str) else packages
+        self._package = package
         self._group, self._base, self._names = group, base, names
         self._attributes, self._spell = attributes, spell
         self._assignment = re.compile(rb"\n    (?:%b)[ :=]" % "|".join(attributes).encode())
@@ -98,12 +108,11 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
     @cached_property
     def written(self) -> Mapping[str, str]:
         """Text of each name as written in the source code of its class; imports only modules that compute names."""
-        literal, computed = self._written
-        modules = (importlib.import_module(module) for module in computed)
-        classes = [*self._foreign, *(cls for module in modules for cls in self._classes(module))]
+        tiers = self._shipped_names, self._foreign_names
+        classes = (cls for tier in tiers for source in tier.computed for cls in self._classes(source))
         texts = [text for cls in classes for attribute in self._attributes for text in getattr(cls, attribute, ())]
-        found = {name: text for name, (text, _) in literal.items()} | {self._spell(text): text for text in texts}
-        return MappingProxyType(dict(sorted(found.items())))
+        found = {name: text for tier in reversed(tiers) for name, (text, _) in tier.literal.items()}
+        return MappingProxyType(dict(sorted((found | {self._spell(text): text for text in texts}).items())))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({dict(self._all)!r})"
@@ -111,10 +120,8 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
     @cached_property
     def _all(self) -> Mapping[str, type[T]]:
         """All classes by name, sorted by name."""
-        classes: dict[type[T], None] = {}
-        for module, _ in self._modules:
-            classes.update(dict.fromkeys(self._classes(importlib.import_module(module))))
-        classes.update(dict.fromkeys(self._foreign))
+        sources = (*self._shipped, *self._foreign)
+        classes = dict.fromkeys(cls for source in sources for cls in self._classes(source))
         table: dict[str, type[T]] = {}
         for cls in classes:
             for name in self._names(cls):
@@ -127,35 +134,56 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         if "_all" in self.__dict__:
             return self._all.get(name)
         if name not in self._found:
-            literal, computed = self._written
-            classes = self._possible_classes([*literal.get(name, ("", ()))[1], *computed])
-            self._found[name] = next((cls for cls in classes if name in self._names(cls)), None)
+            self._found[name] = next((cls for cls in self._possible_classes(name) if name in self._names(cls)), None)
         return self._found[name]
 
-    def _possible_classes(self, modules: Iterable[str]) -> Iterator[type[T]]:
-        """Yield the classes of some modules, then those of the entry points, which take 10 ms to read."""
-        for module in modules:
-            yield from self._classes(importlib.import_module(module))
-        yield from self._foreign
+    def _possible_classes(self, name: str) -> Iterator[type[T]]:
+        """Yield the classes that can have a name: those of simkit, then those of other distributions."""
+        for tier in ("_shipped_names", "_foreign_names"):
+            names: _Names = getattr(self, tier)  # entry points take 10 ms to read; most names need none
+            for source in (*names.literal.get(name, ("", ()))[1], *names.computed):
+                yield from self._classes(source)
 
     @cached_property
-    def _modules(self) -> tuple[tuple[str, str], ...]:
-        """Names of all modules of the packages, and their files."""
-        roots = [importlib.import_module(package) for package in self._packages]
-        return tuple(found for root in roots for found in _modules_below(root.__path__, root.__name__))
+    def _shipped(self) -> tuple[_Source, ...]:
+        """Modules of the package, and of the packs that simkit ships."""
+        root = importlib.import_module(self._package)
+        own = (_Source(*found) for found in _modules_below(root.__path__, root.__name__))
+        return *own, *self._of_packs(shipped_packs())
 
     @cached_property
-    def _written(self) -> tuple[Mapping[str, tuple[str, Sequence[str]]], Sequence[str]]:
-        """Names that are literal texts in the source code, with text and modules; and modules that compute names."""
-        literal: dict[str, tuple[str, list[str]]] = {}
+    def _foreign(self) -> tuple[_Source, ...]:
+        """Modules of the packs of others, and entry points."""
+        points = sorted(entry_points_of(self._group), key=lambda p: (p.name, p.value))
+        return *self._of_packs(foreign_packs()), *(_Source(p.module, _file_of(p.module), p) for p in points)
+
+    def _of_packs(self, packs: Iterable[Pack]) -> Iterator[_Source]:
+        folder = self._package.rpartition(".")[2]
+        for pack in (pack for pack in packs if pack.package != self._package.partition(".")[0]):
+            place, name = os.path.join(pack.folder, folder), f"{pack.package}.{folder}"  # noqa: PTH118 - see below
+            if os.path.isfile(file := os.path.join(place, "__init__.py")):  # noqa: PTH113, PTH118
+                yield _Source(name, file)
+            yield from (_Source(*found) for found in _modules_below([place], name))
+
+    @cached_property
+    def _shipped_names(self) -> _Names:
+        return self._names_in(self._shipped)
+
+    @cached_property
+    def _foreign_names(self) -> _Names:
+        return self._names_in(self._foreign)
+
+    def _names_in(self, sources: Iterable[_Source]) -> _Names:
+        """Read the names in the text of some sources."""
+        literal: dict[str, tuple[str, list[_Source]]] = {}
         computed = []
-        for module, file in self._modules:
-            written = self._texts(file)
-            if written is None:
-                computed.append(module)
+        for source in sources:
+            written = self._texts(source.file)
+            if written is None or (not written and source.point is not None):  # its class can be another module's
+                computed.append(source)
             for text in dict.fromkeys(written or ()):
-                literal.setdefault(self._spell(text), (text, []))[1].append(module)
-        return literal, computed
+                literal.setdefault(self._spell(text), (text, []))[1].append(source)
+        return _Names(literal, computed)
 
     def _texts(self, file: str) -> list[str] | None:
         """Return the texts that a file's classes assign to the attributes; None if one is not a literal text."""
@@ -175,30 +203,46 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
             found += (text["one"] or text["two"] for text in _TEXT.finditer(value[0]) if text.lastgroup)
         return found
 
-    @cached_property
-    def _foreign(self) -> tuple[type[T], ...]:
-        """Classes of the entry points."""
-        found: list[type[T]] = []
-        log = logging.getLogger("simkit")
-        for point in sorted(entry_points_of(self._group), key=lambda p: (p.name, p.value)):
-            try:
-                loaded = point.load()
-            except Exception as error:  # noqa: BLE001 - one broken package must not keep the others from working
-                log.warning("entry point %s (%s) of %s: %r", point.name, point.value, self._group, error)
-                continue
+    def _classes(self, source: _Source) -> list[type[T]]:
+        """Return the concrete classes of a source; none, with a warning, for a package of others that is broken."""
+        try:
+            loaded = importlib.import_module(source.module) if source.point is None else source.point.load()
+        except Exception as error:
+            if is_shipped_module(source.module):
+                raise
+            self._warn(source, repr(error))  # one broken package must not keep the others from working
+            return []
+        if source.point is not None:
             if inspect.isclass(loaded) and issubclass(loaded, self._base):
-                found.append(loaded)
-            else:
-                log.warning(
-                    "entry point %s (%s) of %s: %r is not a subclass of %s",
-                    *(point.name, point.value, self._group, loaded, self._base.__name__),
-                )
-        return tuple(found)
-
-    def _classes(self, module: ModuleType) -> list[type[T]]:
-        """Return the concrete classes that a module defines."""
-        own = (cls for cls in vars(module).values() if inspect.isclass(cls) and cls.__module__ == module.__name__)
+                return [loaded]
+            self._warn(source, f"{loaded!r} is not a subclass of {self._base.__name__}")
+            return []
+        own = (cls for cls in vars(loaded).values() if inspect.isclass(cls) and cls.__module__ == loaded.__name__)
         return [cls for cls in own if issubclass(cls, self._base) and not inspect.isabstract(cls)]
+
+    def _warn(self, source: _Source, text: str) -> None:
+        point = source.point
+        place = f"module {source.module}" if point is None else f"entry point {point.name} ({point.value})"
+        logging.getLogger("simkit").warning("%s of %s: %s", place, self._group, text)
+
+
+def _file_of(module: str) -> str:
+    """Return the file of a module without importing it; an empty text if it is not found in a folder."""
+    package, *names = module.split(".")
+    try:
+        spec = importlib.util.find_spec(package)
+    except (ImportError, ValueError):
+        return ""
+    if spec is None:
+        return ""
+    if not names:
+        return spec.origin or ""
+    for folder in spec.submodule_search_locations or ():
+        path = os.path.join(folder, *names)  # noqa: PTH118 - as below
+        for file in (f"{path}.py", os.path.join(path, "__init__.py")):  # noqa: PTH118
+            if os.path.isfile(file):  # noqa: PTH113
+                return file
+    return ""
 
 
 def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, str]]:

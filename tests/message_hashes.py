@@ -17,8 +17,8 @@ from pathlib import Path
 
 import simkit
 from simkit import msgs
-from simkit.plugins.localisation.amcl import Amcl
-from simkit.plugins.world.map_server import MapServer
+from simkit_navigation.plugins.localisation.amcl import Amcl
+from simkit_navigation.plugins.maps.map_server import MapServer
 
 DRIVE = {"linear": {"x": 0.2}, "angular": {"z": 0.4}}
 GOAL = {"header": {"frame_id": "map"}, "pose": {"position": {"x": -1.0, "y": -0.5}, "orientation": {"w": 1.0}}}

@@ -18,7 +18,7 @@ import simkit
 ROOT = Path(__file__).resolve().parents[1]
 ROBOT_FOLDER = ROOT / "assets" / "turtlebot3"
 ROBOT_FILE = ROBOT_FOLDER / "turtlebot3_waffle" / "model.sdf"
-WORLDS = sorted((ROOT / "worlds").glob("*.sdf"))
+WORLDS = sorted([*ROOT.glob("worlds/*.sdf"), *ROOT.glob("packs/*/simkit_*/worlds/*.sdf")])
 PILLARS = [(1.1 * i, 1.1 * j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
 REACH = math.hypot(0.1975, 0.1325)  # from the axle's middle to a rear corner of the body [m]
 

@@ -8,10 +8,11 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 REPOSITORY = "https://github.com/simkit-robotics/simkit/"
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
-DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "benchmarks").glob("*.md")])
+PACK_PAGES = sorted((ROOT / "packs").rglob("*.md"))
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("benchmarks/*.md"), *PACK_PAGES])
 TEXTS = [
     path
-    for folder in ("simkit", "docs", "worlds", "assets", "examples", "benchmarks", "tests")
+    for folder in ("simkit", "packs", "docs", "worlds", "assets", "examples", "benchmarks", "tests")
     for path in sorted((ROOT / folder).rglob("*"))
     if path.suffix in {".py", ".md", ".sdf", ".yaml", ".config", ".obj", ".world"}
 ]
@@ -45,14 +46,18 @@ def test_the_readme_has_at_most_150_lines() -> None:
 
 
 def test_every_page_is_named_by_an_index() -> None:
-    """A page is linked from the index of its folder or from the index of all pages."""
-    indexes = [ROOT / "docs" / "index.md", ROOT / "docs" / "sensors" / "index.md"]
+    """A page is linked from the index of its folder, from the README of its pack or from the index of all pages."""
+    indexes = [*ROOT.glob("packs/*/README.md"), ROOT / "docs" / "index.md", ROOT / "docs" / "sensors" / "index.md"]
     linked = {
         (index.parent / target.split("#")[0]).resolve()
         for index in indexes
         for target in LINK.findall(index.read_text(encoding="utf-8"))
     }
-    pages = [page for page in (ROOT / "docs").rglob("*.md") if page.name not in {"index.md", "diagnostics.md"}]
+    pages = [
+        page
+        for page in (*PACK_PAGES, *(ROOT / "docs").rglob("*.md"))
+        if page.name not in {"index.md", "diagnostics.md"}
+    ]
     assert not [page.relative_to(ROOT).as_posix() for page in sorted(pages) if page.resolve() not in linked]
 
 
@@ -79,8 +84,9 @@ def test_no_file_holds_a_path_of_somebodys_machine() -> None:
 
 def test_every_command_has_its_page() -> None:
     """One page for each file of the command line, named alike."""
-    commands = {p.stem for p in (ROOT / "simkit" / "cli").glob("*.py") if not p.stem.startswith("_")}
-    pages = {p.stem for p in (ROOT / "docs" / "commands").glob("*.md")}
+    files = [*ROOT.glob("simkit/cli/*.py"), *ROOT.glob("packs/*/simkit_*/cli/*.py")]
+    commands = {p.stem for p in files if not p.stem.startswith("_")}
+    pages = {p.stem for p in (*ROOT.glob("docs/commands/*.md"), *ROOT.glob("packs/*/docs/commands/*.md"))}
     assert pages, "docs/commands has no page"
     assert {c for c in commands if c in pages} == pages, f"pages without a command: {sorted(pages - commands)}"
 
@@ -90,7 +96,7 @@ def test_each_command_that_installs_simkit_names_the_repository() -> None:
     command = re.compile(r"pip install[^`\n]*?simkit-robotics(?P<rest>[^`\n]*)")
     repository = re.compile(r"(\[[\w,{}]+\])? @ git\+")
     texts = [*TEXTS, ROOT / "README.md", *(ROOT / "labs").rglob("*.md"), *(ROOT / "docs").rglob("*.yml")]
-    texts += (ROOT / "simkit").rglob("*.toml")
+    texts += [*(ROOT / "simkit").rglob("*.toml"), *(ROOT / "packs").rglob("*.toml")]
     wrong = []
     found = 0
     for path in texts:

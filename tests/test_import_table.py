@@ -1,12 +1,13 @@
-"""Import rules of the package: which room may use which, no circles, and why an import stands inside a function.
+"""Import rules of the core and of packs: which room may use which, no circles, and why an import is in a function.
 
-A room is a folder or module directly under `simkit/`. An import counts wherever it stands: at the top of a file, inside
-a function or under `TYPE_CHECKING`.
+A room is a folder or module directly under `simkit/`, or a pack. An import counts wherever it stands: at the top of a
+file, inside a function or under `TYPE_CHECKING`.
 """
 
 from __future__ import annotations
 
 import ast
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -16,7 +17,10 @@ from typing import Literal
 
 import pytest
 
-PACKAGE = Path(__file__).resolve().parents[1] / "simkit"
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "simkit"
+PACKS = {file.parent.name: file.parent for file in sorted(ROOT.glob("packs/*/simkit_*/__init__.py"))}
+PACKAGES = {"simkit": PACKAGE, **PACKS}
 
 SMALL_MODULES = frozenset(
     {
@@ -42,10 +46,12 @@ SMALL_MODULES = frozenset(
         "matrix_decompositions",
         "msgs",
         "memory_error",
+        "moved_modules",
         "mujoco_import",
         "name_conflict",
         "number_text",
         "output_file",
+        "packs",
         "params",
         "pose",
         "process_control",
@@ -77,6 +83,12 @@ ROOMS: dict[str, set[str]] = {
     "cli": {*BELOW_BUILD, "bridges", "build", "experiments", "live", "testing"},
 }
 """The rooms that each room may use, beside the small modules."""
+
+PACKS_OF_PACKS = {"simkit_motion": {"simkit_control"}, "simkit_robots": {"simkit_control"}}
+"""The packs that each pack may use; every pack may use the core, and only its commands may use `cli`."""
+
+PACK_NAMES: dict[str, str] = {}
+"""Modules of the core that may name a pack, with the reason."""
 
 FRONT = {"__init__", "__main__"}
 """Modules that only hand on what a user imports or runs."""
@@ -132,6 +144,7 @@ HEAVY = {
 """Packages that may be imported inside a function, with the reason."""
 
 SLOW_MODULES = {
+    "simkit.packs": "15 ms, of `importlib.metadata`; `import simkit` does without",
     "simkit.bridges.live.answering": "4 ms; only a run with a client needs it",
     "simkit.compiler.meshes.convex_decomposition": "10 ms; only meshes need it",
     "simkit.compiler.meshes.convex_pieces": "comes with convex_decomposition",
@@ -166,11 +179,12 @@ class Import:
 
 @cache
 def modules() -> Mapping[str, Path]:
-    """Files of the package by module name."""
+    """Files of the core and of the packs by module name."""
     found = {}
-    for path in sorted(PACKAGE.rglob("*.py")):
-        parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
-        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    for folder in PACKAGES.values():
+        for path in sorted(folder.rglob("*.py")):
+            parts = path.relative_to(folder.parent).with_suffix("").parts
+            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
     return found
 
 
@@ -202,8 +216,8 @@ def _imports(node: ast.AST, kind: Kind, package: str) -> Iterator[Import]:
 
 
 def _target(name: str) -> str:
-    """The module of simkit that a dotted name lies in, or the first name of a foreign package."""
-    if name.split(".")[0] != "simkit":
+    """The module of simkit or a pack that a dotted name lies in, or the first name of a foreign package."""
+    if name.split(".")[0] not in PACKAGES:
         return name.split(".")[0]
     while name not in modules():
         name = name.rpartition(".")[0]
@@ -211,15 +225,23 @@ def _target(name: str) -> str:
 
 
 def room_of(module: str) -> str:
-    """The folder or module directly under `simkit/` that a module belongs to."""
+    """The folder or module directly under `simkit/` that a module belongs to, or its pack."""
     parts = module.split(".")
+    if parts[0] in PACKS:
+        return parts[0]
     return parts[1] if len(parts) > 1 else "__init__"
+
+
+def is_command(module: str) -> bool:
+    """Check whether a module belongs to the command line, of the core or of a pack."""
+    return module.split(".")[1:2] == ["cli"]
 
 
 def folder_of(module: str) -> str:
     """The folder of a module, as a dotted name; a module at the top stands for itself."""
-    parent = modules()[module].relative_to(PACKAGE).parent.parts
-    return ".".join(parent) or room_of(module)
+    package = module.split(".")[0]
+    parent = modules()[module].relative_to(PACKAGES[package]).parent.parts
+    return ".".join(([package] if package in PACKS else []) + list(parent)) or room_of(module)
 
 
 def circles(kinds: set[Kind], group: Callable[[str], str] = str) -> list[list[str]]:
@@ -246,19 +268,45 @@ def circles(kinds: set[Kind], group: Callable[[str], str] = str) -> list[list[st
 
 @pytest.mark.parametrize("room", sorted({room_of(module) for module in modules()} - FRONT))
 def test_a_room_imports_only_the_rooms_that_it_may_use(room: str) -> None:
-    if room in SMALL_MODULES:
+    if room in PACKS:
+        allowed = {*ROOMS, *SMALL_MODULES, *FRONT, room, *PACKS_OF_PACKS.get(room, ())}
+    elif room in SMALL_MODULES:
         allowed = {*SMALL_MODULES}
     else:
         assert room in ROOMS, f"simkit/{room} has no row in the table; give it one"
         allowed = {*ROOMS[room], *SMALL_MODULES, room}
     wrong = [
-        f"{modules()[module].relative_to(PACKAGE)}:{one.line}: {one.target}"
+        f"{modules()[module].relative_to(ROOT)}:{one.line}: {one.target}"
         for module in modules()
         if room_of(module) == room
         for one in imports(module)
         if one.target in modules() and room_of(one.target) not in allowed and (module, one.target) not in FRONT_USERS
     ]
-    assert not wrong, f"simkit/{room} may use {sorted(allowed)}, but:\n" + "\n".join(wrong)
+    assert not wrong, f"{room} may use {sorted(allowed)}, but:\n" + "\n".join(wrong)
+
+
+def test_the_core_names_no_pack() -> None:
+    """A name counts in code, comments and texts."""
+    assert PACKS, "no pack found"
+    pattern = re.compile(rf"\b({'|'.join(PACKS)})\b")
+    named = [
+        f"{path.relative_to(ROOT)}: {match[0]}"
+        for module, path in modules().items()
+        if module.split(".")[0] == "simkit" and module not in PACK_NAMES
+        for match in pattern.finditer(path.read_text(encoding="utf-8"))
+    ]
+    assert not named
+
+
+def test_only_the_commands_of_a_pack_use_the_command_line() -> None:
+    wrong = [
+        f"{modules()[module].relative_to(ROOT)}:{one.line}: {one.target}"
+        for module in modules()
+        if room_of(module) in PACKS and not is_command(module)
+        for one in imports(module)
+        if one.target in modules() and room_of(one.target) == "cli"
+    ]
+    assert not wrong
 
 
 FRONT_USERS = {
@@ -292,10 +340,10 @@ def test_an_import_inside_a_function_spares_a_heavy_package() -> None:
         for one in imports(module):
             if one.kind != "function" or one.target in HEAVY or (module, one.target) in FRONT_USERS:
                 continue
-            if one.target in SLOW_MODULES or (room_of(module) == "cli" and one.target in modules()):
+            if one.target in SLOW_MODULES or (is_command(module) and one.target in modules()):
                 continue
             if one.target not in modules() or not _heavy(one.target) - loaded:
-                wrong.append(f"{modules()[module].relative_to(PACKAGE)}:{one.line}: {one.target}")
+                wrong.append(f"{modules()[module].relative_to(ROOT)}:{one.line}: {one.target}")
     assert not wrong, "these belong to the top of their files:\n" + "\n".join(wrong)
 
 
@@ -340,5 +388,5 @@ def test_no_more_than_twelve_folders_and_the_experiments_lie_at_the_top() -> Non
 
 
 def test_no_file_is_longer_than_400_lines() -> None:
-    lengths = {str(path.relative_to(PACKAGE)): path.read_text("utf-8").count("\n") for path in modules().values()}
+    lengths = {str(path.relative_to(ROOT)): path.read_text("utf-8").count("\n") for path in modules().values()}
     assert {name: length for name, length in lengths.items() if length > 400} == {}

@@ -12,6 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md")]
+PAGES += ROOT.glob("packs/**/*.md")
 
 
 def blocks(page: Path) -> list[tuple[int, str]]:

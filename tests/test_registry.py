@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -13,9 +14,9 @@ import pytest
 
 from simkit.loaders import loader_kinds
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
-from simkit.plugins.ros2_control.controller_manager import controller_kinds
 from simkit.registry import Kinds
 from simkit.sensors import sensor_kinds
+from simkit_control.plugins.ros2_control.controller_manager import controller_kinds
 
 KINDS: tuple[Callable[[], Any], ...] = (plugin_kinds, sensor_kinds, controller_kinds, loader_kinds)
 
@@ -71,7 +72,7 @@ def animals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kinds[A
 @pytest.mark.parametrize("kinds", KINDS)
 def test_every_class_is_found_by_the_names_in_its_file(kinds: Callable[[], Any]) -> None:
     full = kinds()
-    fresh = Kinds(full._packages, full._group, full._base, full._names, full._attributes, full._spell)
+    fresh = Kinds(full._package, full._group, full._base, full._names, full._attributes, full._spell)
     for name in list(full):
         assert name in fresh
         assert fresh[name] is full[name]
@@ -115,10 +116,71 @@ def test_an_entry_point_without_a_class_of_the_base_is_skipped_with_a_warning(
 ) -> None:
     points = [EntryPoint("dog", "animals.dog:Dog", "zoo"), EntryPoint("stray", "json", "zoo")]
     monkeypatch.setattr("simkit.registry.entry_points_of", lambda group: points)
-    assert [cls.__name__ for cls in animals._foreign] == ["Dog"]
+    assert [cls.__name__ for source in animals._foreign for cls in animals._classes(source)] == ["Dog"]
     (warning,) = caplog.messages
     assert warning.startswith("entry point stray (json) of animals.nobody: <module 'json'")
     assert warning.endswith("is not a subclass of Animal")
+
+
+LOOK_UPS = """
+import sys
+from simkit.plugins.discovery.find_plugin_class import plugin_kinds
+from simkit.sensors import sensor_kinds
+assert "imu" in sensor_kinds() and "gz-sim-imu-system" in plugin_kinds() and "no-such-plugin" not in plugin_kinds()
+assert not {"zoo.heavy", "zoo.unused"} & set(sys.modules), "a look-up imported the classes of another package"
+assert sensor_kinds()["scale"].__name__ == "Scale" and "zoo.unused" not in sys.modules
+"""
+SCALE = """import simkit.sensors.environment.altimeter
+
+
+class Scale(simkit.sensors.environment.altimeter.Altimeter):
+    kinds = ("scale",)
+"""
+UNUSED = """from simkit import WorldPlugin
+
+
+class Unused(WorldPlugin):
+    filenames = ("unused",)
+"""
+
+
+def test_a_look_up_imports_no_class_of_other_packages_that_has_another_name(tmp_path: Path) -> None:
+    files = {
+        "zoo/__init__.py": "",
+        "zoo/heavy.py": SCALE,
+        "zoo/unused.py": UNUSED,
+        "zoo-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: zoo\nVersion: 1.0\n",
+        "zoo-1.0.dist-info/entry_points.txt": "[simkit.sensors]\nscale = zoo.heavy:Scale\n"
+        "[simkit.plugins]\nunused = zoo.unused:Unused\n",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", LOOK_UPS], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_two_packages_with_one_name_are_reported_when_all_classes_are_listed(
+    animals: Kinds[Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "animals" / "broken.py").unlink()
+    (tmp_path / "wolves.py").write_text(DOG)
+    points = [EntryPoint("dog", "wolves:Dog", "zoo")]
+    monkeypatch.setattr("simkit.registry.entry_points_of", lambda group: points)
+    assert animals["dog"].__module__ == "animals.dog", "simkit's own class comes first"
+    with pytest.raises(RuntimeError, match=r"'dog' is claimed by animals\.dog and by wolves"):
+        len(animals)
+
+
+def test_a_class_that_another_module_defines_is_found_through_its_entry_point(
+    animals: Kinds[Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "jackals.py").write_text(DOG.replace('"Dog"', '"Wolf"').replace("'Hound'", "'Jackal'"))
+    (tmp_path / "forest.py").write_text("from jackals import Dog")
+    points = [EntryPoint("wolf", "forest:Dog", "zoo")]
+    monkeypatch.setattr("simkit.registry.entry_points_of", lambda group: points)
+    assert animals["jackal"].__module__ == "jackals"
 
 
 def test_a_load_imports_neither_the_kinds_that_it_does_not_use_nor_the_message_types() -> None:

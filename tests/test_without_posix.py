@@ -15,7 +15,8 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).resolve().parents[1] / "simkit"
+ROOT = Path(__file__).resolve().parents[1]
+FILES = sorted([*ROOT.glob("simkit/**/*.py"), *ROOT.glob("packs/*/simkit_*/**/*.py")])
 
 NAMES: Mapping[str, frozenset[str]] = {
     module: frozenset(names.split())
@@ -96,10 +97,10 @@ def unguarded(text: str) -> list[tuple[int, str]]:
 def test_a_use_of_a_posix_name_asks_whether_the_system_has_it() -> None:
     found: dict[str, list[tuple[int, str]]] = {}
     suspects = re.compile(rf"\b({'|'.join((*MODULES, *(name for names in NAMES.values() for name in names)))})\b")
-    for path in sorted(PACKAGE.rglob("*.py")):
+    for path in FILES:
         text = path.read_text(encoding="utf-8")
         if suspects.search(text) and (problems := unguarded(text)):
-            found[path.relative_to(PACKAGE).as_posix()] = problems
+            found[path.relative_to(ROOT).as_posix().removeprefix("simkit/")] = problems
     wrong = {name: problems for name, problems in found.items() if name not in GUARDED_ELSEWHERE}
     assert not wrong, "guard these with hasattr, or say in the table why they are guarded"
     assert found.keys() == GUARDED_ELSEWHERE.keys(), "the table has rows that nothing needs"
@@ -141,10 +142,10 @@ def text_without_encoding(tree: ast.AST) -> Iterator[int]:
 
 def test_text_files_are_opened_with_their_encoding() -> None:
     found = []
-    for path in sorted(PACKAGE.rglob("*.py")):
+    for path in FILES:
         text = path.read_text(encoding="utf-8")
         if re.search(r"\b(open|read_text|write_text)\(", text):
-            found += [f"{path.relative_to(PACKAGE)}:{line}" for line in text_without_encoding(ast.parse(text))]
+            found += [f"{path.relative_to(ROOT)}:{line}" for line in text_without_encoding(ast.parse(text))]
     assert found == []
 
 

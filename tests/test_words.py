@@ -11,13 +11,13 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-MODULES = sorted((ROOT / "simkit").rglob("*.py"))
-PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+MODULES = sorted([*ROOT.glob("simkit/**/*.py"), *ROOT.glob("packs/*/simkit_*/**/*.py")])
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("packs/**/*.md")])
 
 OPENINGS = re.compile(r"(What|Whether|Of|Who|Whose|Where|That|Which)\b")
 METAPHORS = re.compile(r"\b(doors?|crews?|worn|promis(?:e|es|ed)|hearers?|audience)\b", re.IGNORECASE)
 HOUSE = re.compile(r"\b(in|of|the) (the )?house\b(?! (?:world|from))", re.IGNORECASE)
-HAS_REAL_DOORS = re.compile(r"elevator|plugins/rmf/|rmf\.md|index\.md|movers\.md|catalogue\.md|CHANGELOG\.md")
+HAS_REAL_DOORS = re.compile(r"elevator|packs/open_rmf/|rmf\.md|index\.md|movers\.md|catalogue\.md|CHANGELOG\.md")
 HAS_A_REAL_HOUSE = re.compile(r"docs/(robots|physics|rendering)\.md|CHANGELOG\.md")
 VAGUE_MODULE_NAMES = {
     *("asked", "beside", "doors", "ends", "heard", "made", "once", "parts", "place", "put_in", "taking"),

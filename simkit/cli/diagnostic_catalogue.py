@@ -1,5 +1,7 @@
 """Catalogue of diagnostic codes: reads them from `diagnostic_codes/<area>.toml` and formats them as text.
 
+A pack has its own areas in the folder `cli/diagnostic_codes` of its package.
+
 `simkit explain` prints codes. `python -m simkit.cli.diagnostic_catalogue > docs/diagnostics.md` writes the page of all
 codes. A test runs every example. A code keeps its meaning for ever and is never reused.
 
@@ -19,6 +21,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from simkit.cli.terminal.output import JsonObject
+from simkit.packs import pack_folders
 
 Kind = Literal["xml", "command", "python"]
 
@@ -126,13 +129,20 @@ def page() -> str:
 
 
 def _area_names() -> list[str]:
-    return sorted(path.stem.upper() for path in _FOLDER.glob("*.toml"))
+    return sorted(_area_files())
+
+
+@cache
+def _area_files() -> dict[str, Path]:
+    """Return the file of each area by its name. Packs cannot replace an area of the core."""
+    folders = (*map(Path, reversed(pack_folders("cli/diagnostic_codes"))), _FOLDER)
+    return {path.stem.upper(): path for folder in folders for path in folder.glob("*.toml")}
 
 
 @cache
 def _area(name: str) -> Area:
     """Read the file of one area."""
-    table = tomllib.loads((_FOLDER / f"{name.lower()}.toml").read_text(encoding="utf-8"))
+    table = tomllib.loads(_area_files()[name].read_text(encoding="utf-8"))
     title, position = table.pop("title"), table.pop("position", _LAST)
     return Area(name, title, position, {code: _code(code, entry) for code, entry in sorted(table.items())})
 

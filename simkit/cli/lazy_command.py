@@ -6,9 +6,11 @@ A shell completion or a command for a running simulation therefore imports one m
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator
 from functools import cache, partial
 from importlib import import_module
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -26,6 +28,7 @@ Parameter = Any
 
 _INTERFACES_HELP = "Folder with definitions .msg, .srv and .action: a ROS package or a workspace; repeatable."
 _WORDS = __name__  # key of the words of the command line in the context's meta
+_FIRST_LINE = re.compile(r'"""(.+?\.?)(?:"""|\n)')
 _SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 _COMPLETION_CALLBACKS = {"--show-completion": "show_callback", "--install-completion": "install_callback"}
 
@@ -34,6 +37,25 @@ class Commands(TyperGroup):
     """Group of all commands of the command line."""
 
     _is_spared = False
+    _has_packs = False
+
+    def get_command(self, ctx: Context, cmd_name: str) -> Command:
+        """Return a command by its name; packs are searched only for a name that the core does not have."""
+        if super().get_command(ctx, cmd_name) is None:
+            self._add_packs()
+        return super().get_command(ctx, cmd_name)
+
+    def list_commands(self, ctx: Context) -> list[str]:
+        """Return the names of all commands: those of the core, then those of packs."""
+        self._add_packs()
+        return super().list_commands(ctx)
+
+    def _add_packs(self) -> None:
+        """Add the commands of packs, once. A pack cannot replace a command of the core."""
+        if not self._has_packs:
+            self._has_packs = True
+            for name, command in _pack_commands():
+                _bypass_conversion(self.commands.setdefault(name, command))
 
     def make_context(self, info_name: str | None, args: list[str], parent: Context = None, **extra: object) -> Context:
         """Create the context of a command line, or of one that is being completed."""
@@ -70,10 +92,14 @@ class Commands(TyperGroup):
 class DeferredCommand(TyperCommand):
     """Command, or group of commands, defined in `simkit.cli.<name>` under its own name.
 
+    Attributes:
+        package: package with the command's module; a pack has one of its own.
+
     A list of commands uses only name and help line. To run a command, complete it or show its help, click calls
     `make_context`, which imports the real command.
     """
 
+    package = "simkit.cli"
     _real: Command | None = None
 
     @property
@@ -83,7 +109,7 @@ class DeferredCommand(TyperCommand):
             assert self.name is not None
             check_memory_limit()
             with permanent_imports():
-                module = import_module(f"simkit.cli.{self.name}")
+                module = import_module(f"{self.package}.{self.name}")
             found = getattr(module, self.name)
             maker = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
             maker.callback()(_placeholder)
@@ -110,6 +136,22 @@ def defer(app: typer.Typer, name: str, line: str) -> None:
         line: first line of the command's help.
     """
     app.command(name, cls=DeferredCommand, help=line)(_placeholder)
+
+
+def _pack_commands() -> Iterator[tuple[str, Command]]:
+    """Yield name and command of each file `cli/<command>.py` in a pack. The help line is the first line of the file."""
+    from simkit.packs import installed_packs
+
+    for pack in installed_packs():
+        for file in sorted(Path(pack.folder, "cli").glob("[a-z]*.py")):
+            line = _FIRST_LINE.match(file.read_text(encoding="utf-8"))
+            app = typer.Typer()
+            defer(app, file.stem, line[1] if line else "")
+            command: Command = typer.main.get_command_from_info(
+                app.registered_commands[0], pretty_exceptions_short=False, rich_markup_mode=None
+            )
+            command.package = f"{pack.package}.cli"
+            yield file.stem, command
 
 
 def _placeholder() -> None:

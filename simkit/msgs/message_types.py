@@ -22,6 +22,7 @@ from simkit.msgs.message_repr import attribute_names, with_readable_text
 from simkit.msgs.shipped_interfaces import (
     PACKAGES_WITH_LONG_NAMES,
     definition_files,
+    foreign_message_types,
     rosbags_types,
     shipped_message_types,
     shipped_parts,
@@ -170,7 +171,8 @@ def class_names() -> dict[str, str]:
 
     The name of a class is the last part of its type name: `LaserScan`. If several types have the same last part, ROS's
     own type has the short name, and a type of `PACKAGES_WITH_LONG_NAMES` has it only if no other package has the name.
-    The other types have their full name: `gazebo_msgs__srv__SpawnEntity_Request`.
+    A type of another distribution's pack never takes the name from one of simkit. The other types have their full name:
+    `gazebo_msgs__srv__SpawnEntity_Request`.
     """
     names = message_type_names()
     candidates: dict[str, list[str]] = {}
@@ -189,6 +191,8 @@ def _rank(type_name: str) -> int:
     """Return the priority of a type for a short class name: 0 for ROS's own types."""
     if type_name not in shipped_message_types():
         return 0
+    if type_name in foreign_message_types():
+        return 3
     return 2 if type_name.split("/")[0] in PACKAGES_WITH_LONG_NAMES else 1
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 POSE: Final = "geometry_msgs/msg/Pose"
 _TRANSFORM: Final = "geometry_msgs/msg/Transform"
 _QUATERNION: Final = "geometry_msgs/msg/Quaternion"
-_FLAT: Final = ("geometry_msgs/msg/Pose2D", "turtlesim/msg/Pose", "turtlesim_msgs/msg/Pose")  # x, y, theta
+_FLAT: Final = ("x", "y", "theta")  # fields of a pose in a plane, such as those of `Pose2D`
 _WRAPPING: Final = ("pose", "transform", "initial_pose")
 """Fields that contain the pose of a message, such as `Odometry.pose.pose` or `TransformStamped.transform`."""
 _KINDS: Final = "a message with a pose, such as PoseStamped, Odometry or TransformStamped"
@@ -42,7 +42,7 @@ def pose(message: Message) -> Pose:
             return _pose(found.position, found.orientation)
         if found.__msgtype__ == _TRANSFORM:
             return _pose(found.translation, found.rotation)
-        if found.__msgtype__ in _FLAT:
+        if all(hasattr(found, name) for name in _FLAT):
             x, y, theta = checked_vector((found.x, found.y, found.theta), "the pose of the message").tolist()
             return Pose((x, y, 0.0), quat_from_rpy(0.0, 0.0, theta))
         found = next((getattr(found, name) for name in _WRAPPING if hasattr(found, name)), None)
@@ -112,13 +112,14 @@ def pose_message(value: Pose, type_name: str = POSE, header: Message = None, chi
 def _pose_fields(value: Pose, type_name: str) -> dict[str, FieldValue] | None:
     """Return the fields of a message with a pose; None if its type has no field for a pose."""
     x, y, z = value.position.tolist()
-    if type_name in _FLAT:
+    names = dict(field_nodes(type_name))
+    if all(name in names for name in _FLAT):
         return {"x": x, "y": y, "theta": float(value.rpy[2])}
     if type_name in (POSE, _TRANSFORM):
         place, rotation = ("position", "orientation") if type_name == POSE else ("translation", "rotation")
         numbers = dict(zip("wxyz", value.quaternion.tolist(), strict=True))
         return {place: {"x": x, "y": y, "z": z}, rotation: numbers}
-    for name, (kind, inner) in field_nodes(type_name):
+    for name, (kind, inner) in names.items():
         if name in _WRAPPING and int(kind) == NAME:
             fields = _pose_fields(value, inner)
             return None if fields is None else {name: fields}

@@ -1,8 +1,9 @@
-"""Definitions of messages, services and actions that are shipped with simkit, and with rosbags for ROS 2 Jazzy.
+"""Definitions of messages, services and actions of simkit and its packs, and of rosbags for ROS 2 Jazzy.
 
 The definition of a simkit type is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
-with the published fields, constants and default values in the published order. The hash of a type depends on field
-names, types and order, and not on constants and defaults; `tests/msgs/published_interfaces.py` compares these as well.
+in this folder or in the folder `msgs` of a pack. It has the published fields, constants and default values in the
+published order. The hash of a type depends on field names, types and order, and not on constants and defaults;
+`tests/msgs/published_interfaces.py` compares these as well.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from functools import cache
 from typing import Any, Final
 
 from simkit.msgs.definition_parser import PARTS, MessageDefinition, parse_interface
+from simkit.packs import foreign_packs, pack_folders
 
 _FOLDER: Final = os.path.join(os.path.dirname(__file__), "definitions")  # noqa: PTH118, PTH120 (pathlib takes 3 ms)
 PACKAGES_WITH_LONG_NAMES: Final = frozenset(
@@ -22,8 +24,6 @@ PACKAGES_WITH_LONG_NAMES: Final = frozenset(
         "nav2_msgs",
         "osrf_gear",
         "simulation_interfaces",
-        "turtlesim",
-        "turtlesim_msgs",
     )
 )
 """Packages that repeat names of other packages, such as `Trigger`; a class of another package has the short name."""
@@ -40,13 +40,25 @@ _ROSBAGS_DEFAULTS: Final[dict[str, dict[str, Any]]] = {
 
 @cache
 def definition_files() -> dict[str, str]:
-    """Return the path of each definition file by the full name of its message, service or action."""
+    """Return the path of each definition file by the full name of its message, service or action.
+
+    A pack cannot replace a definition of the core.
+    """
+    folders = (*reversed(pack_folders("msgs/definitions")), _FOLDER)
     return {
         f"{package.name}/{kind.name}/{file.name.removesuffix(f'.{kind.name}')}": file.path
-        for package in os.scandir(_FOLDER)
+        for folder in folders
+        for package in os.scandir(folder)
         for kind in os.scandir(package.path)
         for file in os.scandir(kind.path)
     }
+
+
+@cache
+def foreign_message_types() -> frozenset[str]:
+    """Return the message types whose definitions are in packs of other distributions."""
+    folders, files = tuple(pack.folder for pack in foreign_packs()), definition_files()
+    return frozenset(name for name, file in shipped_message_types().items() if files[file].startswith(folders))
 
 
 @cache

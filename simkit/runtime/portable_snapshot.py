@@ -100,7 +100,8 @@ def unpack_snapshot(sim: SnapshotOwner, portable: PortableSnapshot) -> Snapshot:
     """Return a pickled snapshot as a snapshot of a simulation, which afterwards has the structure of the snapshot.
 
     Raises:
-        ArgumentValueError: the simulation has another world; it is then unchanged.
+        ArgumentValueError: the simulation has another world, or a class of the snapshot is missing, because another
+            version of simkit or of a plugin took it. The simulation is then unchanged.
     """
     spawner = sim.contents.spawner
     content = pickle.loads(zlib.decompress(portable.content))
@@ -119,6 +120,9 @@ def unpack_snapshot(sim: SnapshotOwner, portable: PortableSnapshot) -> Snapshot:
         spawner.undo(before)
         message = "the snapshot cannot be restored, because this simulation has another world or other overrides"
         help_ = "load it with the `run_spec` of the simulation that took the snapshot"
+        if isinstance(error, ImportError):
+            message = "the snapshot cannot be restored, because another version of simkit or of a plugin took it"
+            help_ = "restore it with that version"
         raise ArgumentValueError(f"{message}: {error}\n    help: {help_}") from error
 
 

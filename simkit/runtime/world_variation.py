@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -16,6 +16,7 @@ from simkit.compiler.moved_models import SHAPE_FIELDS
 from simkit.compiler.number_edits import DERIVED_FIELDS, plan_number_edits, replace_scenes
 from simkit.compiler.state_transfer import fields_on_changed_model, restore_compiled_fields
 from simkit.diagnostics import Diagnostics
+from simkit.packs import is_shipped
 from simkit.runtime.engine.physics_state import StepWindow
 from simkit.scene import SceneLight
 from simkit.scene.differences import EntityChange, entity_changes
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.snapshot import Snapshot, Stateful
     from simkit.runtime.simulation import Simulation
     from simkit.scene import SceneWorld
-
-_OWN_PACKAGE: Final = "simkit."
 
 
 def apply_overrides(sim: Simulation, overrides: Overrides, seed: int | None = None) -> bool:
@@ -90,7 +89,7 @@ def _is_read(engine: Engine, change: EntityChange) -> bool:
         if isinstance(change.new, SceneLight) and getattr(item, "is_gz_system", False):
             return True  # its components have copies of the lights
         read: Iterable[str] | None = getattr(item, "reads_at_load", None)
-        if read is None and not type(item).__module__.startswith(_OWN_PACKAGE):
+        if read is None and not is_shipped(type(item)):
             return True
         if change.fields & set(read or ()):
             return True

@@ -162,7 +162,9 @@ def test_keep_uris_keeps_uris(here: Path) -> None:
     assert not (here / "arm_assets").exists()
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "worlds").glob("*.sdf")), ids=lambda p: p.name)
+@pytest.mark.parametrize(
+    "path", sorted([*ROOT.glob("worlds/*.sdf"), *ROOT.glob("packs/*/simkit_*/worlds/*.sdf")]), ids=lambda p: p.name
+)
 def test_a_world_becomes_one_equivalent_file(here: Path, path: Path) -> None:
     assert run("convert", path, "-o", "w.sdf").exit_code == 0
     assert "<include>" not in (here / "w.sdf").read_text()

@@ -39,7 +39,8 @@ PATHS = (
 
 def codes_in_source() -> set[str]:
     """Return the codes in the text of every module."""
-    return {code for path in (ROOT / "simkit").rglob("*.py") for code in CODE.findall(path.read_text(encoding="utf-8"))}
+    files = [*ROOT.glob("simkit/**/*.py"), *ROOT.glob("packs/*/simkit_*/**/*.py")]
+    return {code for path in files for code in CODE.findall(path.read_text(encoding="utf-8"))}
 
 
 def area_of(code: str) -> str:
@@ -69,7 +70,10 @@ def test_python_m_prints_the_page() -> None:
 
 
 def test_every_file_holds_the_codes_of_its_own_area() -> None:
-    for path in (ROOT / "simkit" / "cli" / "diagnostic_codes").glob("*.toml"):
+    for path in [
+        *ROOT.glob("simkit/cli/diagnostic_codes/*.toml"),
+        *ROOT.glob("packs/*/simkit_*/cli/diagnostic_codes/*.toml"),
+    ]:
         codes = catalogue(f"SK-{path.stem.upper()}-")
         assert codes, path.name
         assert {area_of(code) for code in codes} == {path.stem.upper()}

@@ -13,9 +13,9 @@ from typer.testing import CliRunner
 
 import simkit
 from simkit.cli import app
-from simkit.plugins.world.map_server import read_map
 from simkit.pose import Pose
 from simkit.sensors.occupancy_map import OccupancyMap, make_map
+from simkit_navigation.plugins.maps.map_server import read_map
 
 BALL = (
     '<model name="ball"><pose>0.5 0 0.2 0 0 0</pose><link name="l"><inertial><mass>1</mass></inertial>{}</link></model>'

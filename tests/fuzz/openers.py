@@ -221,7 +221,7 @@ def _world(path: Path) -> None:
 
 def _motions(path: Path) -> None:
     from simkit.diagnostics import Diagnostics
-    from simkit.plugins.play_motion.motion_files import read_motions
+    from simkit_motion.plugins.play_motion.motion_files import read_motions
 
     found = Diagnostics()
     read_motions(path, found)
@@ -230,8 +230,8 @@ def _motions(path: Path) -> None:
 
 def _packets(path: Path) -> None:
     """The file is what an autopilot sends: damaged packets give no message, and do not stay in memory."""
-    from simkit.plugins.autopilots.mavlink import MavlinkDecoder
-    from simkit.plugins.autopilots.servo_packet import ServoPacket, decode_servo_packet
+    from simkit_water_and_air.plugins.autopilots.mavlink import MavlinkDecoder
+    from simkit_water_and_air.plugins.autopilots.servo_packet import ServoPacket, decode_servo_packet
 
     data, decoder = path.read_bytes(), MavlinkDecoder()
     for size in (1, 40, 72, 997):

@@ -147,7 +147,7 @@ def targets() -> tuple[Target, ...]:
 
 def packets() -> bytes:
     """Packets of ArduPilot with 16 and 32 channels, and frames of PX4."""
-    from simkit.plugins.autopilots.mavlink import encode
+    from simkit_water_and_air.plugins.autopilots.mavlink import encode
 
     servo = struct.pack("<HHI16H", 18458, 400, 1, *[1500] * 16) + struct.pack("<HHI32H", 29569, 400, 2, *[1500] * 32)
     names = ("HEARTBEAT", "HIL_SENSOR", "HIL_GPS", "HIL_STATE_QUATERNION", "HIL_ACTUATOR_CONTROLS")

@@ -32,7 +32,7 @@ QUICK = 45  # inputs of each of the tests that always run
 
 def real_files(suffixes: tuple[str, ...], shared: bool = True) -> list[Path]:
     """Our own files, and where they are, the shared ones."""
-    folders = [ROOT / "assets", ROOT / "worlds"]
+    folders = [ROOT / "assets", ROOT / "worlds", *ROOT.glob("packs/*/simkit_*")]
     folders += [SHARED / "corpus" / "files", SHARED / "course"] if shared else []
     found = [p for folder in folders if folder.is_dir() for s in suffixes for p in sorted(folder.rglob(f"*{s}"))]
     return [p for p in found if p.stat().st_size <= LARGEST]
@@ -41,7 +41,8 @@ def real_files(suffixes: tuple[str, ...], shared: bool = True) -> list[Path]:
 @cache
 def library() -> tuple[bytes, ...]:
     """Texts with blocks that mutations put into other files: our own, and what our tests and pages have inline."""
-    texts = [*real_files(SUFFIXES), *(ROOT / "tests").rglob("test_*.py"), *(ROOT / "docs").rglob("*.md")]
+    texts = [*real_files(SUFFIXES), *(p for name in ("tests", "packs") for p in (ROOT / name).rglob("test_*.py"))]
+    texts += [page for name in ("docs", "packs") for page in (ROOT / name).rglob("*.md")]
     return tuple(p.read_bytes() for p in sorted(texts))
 
 

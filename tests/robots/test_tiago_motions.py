@@ -10,11 +10,11 @@ import pytest
 
 import simkit
 from simkit.diagnostics import Diagnostics
-from simkit.plugins.play_motion.motion import Motion
-from simkit.plugins.play_motion.motion_files import read_motions
-from simkit.plugins.play_motion.motion_planning import Approach, active_controllers, course_from, plan_motion
-from simkit.plugins.play_motion.motion_session import empty_world_with, motion_players, play_motions
-from simkit.plugins.play_motion.play_motion_plugin import PlayMotion
+from simkit_motion.plugins.play_motion.motion import Motion
+from simkit_motion.plugins.play_motion.motion_files import read_motions
+from simkit_motion.plugins.play_motion.motion_planning import Approach, active_controllers, course_from, plan_motion
+from simkit_motion.plugins.play_motion.motion_session import empty_world_with, motion_players, play_motions
+from simkit_motion.plugins.play_motion.play_motion_plugin import PlayMotion
 
 FILES = Path(__file__).resolve().parents[2] / "assets" / "tiago" / "motions"
 # points, time of the last one [s], and the last one, as tiago_bringup (humble) has them

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import multiprocessing
 import pickle
 import sys
@@ -131,6 +132,21 @@ def test_another_world_refuses_a_snapshot_and_stays_as_it_is(folder: Path) -> No
         with pytest.raises(ValueError, match="another world or other overrides"):
             other.restore(pickle.loads(content))
         assert (state_hash(other), list(other.models)) == before
+
+
+def test_a_snapshot_with_a_class_that_moved_away_is_refused(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Classes move between versions of simkit, for example to packs."""
+    (folder / "notes_of_before.py").write_text("class Note: pass", encoding="utf-8")
+    monkeypatch.syspath_prepend(folder)
+    with load(folder) as sim:
+        sim.plugins["box::Pusher"].note = importlib.import_module("notes_of_before").Note()
+        content = pickle.dumps(sim.snapshot())
+        (folder / "notes_of_before.py").unlink()
+        del sys.modules["notes_of_before"]
+        before = state_hash(sim)
+        with pytest.raises(ValueError, match="another version of simkit or of a plugin took it: No module named"):
+            sim.restore(pickle.loads(content))
+        assert state_hash(sim) == before
 
 
 def test_an_object_of_one_process_is_named(folder: Path) -> None:

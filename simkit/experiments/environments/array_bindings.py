@@ -16,6 +16,7 @@ from simkit.experiments.environments.sampled_rows import MeanMotionRows, Sampled
 from simkit.experiments.environments.sensor_arrays import ImuArrays, ScanArrays, sensor_obstacle
 from simkit.experiments.environments.specification import Batched, Observation
 from simkit.msgs.topic_names import absolute_name
+from simkit.packs import is_shipped
 from simkit.plugins.gz.odometry_publisher import OdometryPublisher
 from simkit.plugins.joint_states import JointStates
 from simkit.runtime import Simulation
@@ -62,7 +63,7 @@ def world_obstacles(sim: Simulation) -> list[str]:
                 or hasattr(plugin, "move_scenery")
                 or getattr(plugin, "is_gz_system", False)
             )
-            if acts or not type(plugin).__module__.startswith("simkit."):
+            if acts or not is_shipped(type(plugin)):
                 found.append(f"plugin {name}")
     return found
 

@@ -17,6 +17,7 @@ from simkit.argument_checks import shown
 from simkit.errors import InputError
 from simkit.experiments.sweeps.design import Design, SweepRow
 from simkit.input_file import read_input
+from simkit.packs import is_shipped
 from simkit.run_spec import LoadOptions, RunSpec
 from simkit.scene.overrides import override_texts, value_text
 from simkit.testing.scenarios.readable_files import ReadableFiles
@@ -217,7 +218,7 @@ def _object_description(value: Any, seen: dict[int, tuple[int, Any]]) -> Any:
     kind = type(value)
     methods = [_code_hash(one.__code__) for _, one in sorted(vars(kind).items()) if isinstance(one, FunctionType)]
     attributes = {name: one for name, one in getattr(value, "__dict__", {}).items() if not name.startswith("__")}
-    if kind.__module__.startswith("simkit."):
+    if is_shipped(kind):
         methods = []
     return [f"a {kind.__module__}.{kind.__qualname__}", methods, plain_description(attributes, seen)]
 

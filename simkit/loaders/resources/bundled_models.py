@@ -9,6 +9,7 @@ from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.model_folder import model_file
+from simkit.packs import pack_folders
 
 MODELS = ("burger", "waffle", "waffle_pi")
 _URI = "model://turtlebot3"
@@ -21,9 +22,10 @@ def _package_folder() -> Path:
 
 
 def bundled_folders(kind: str) -> list[Path]:
-    """Return the folders `assets`, `worlds` or `labs` of simkit, inside the package and beside it."""
+    """Return the folders `assets`, `worlds` or `labs` of simkit, inside the package and beside it, and of the packs."""
     package = _package_folder()
-    return [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
+    own = [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
+    return own + [Path(folder) for folder in pack_folders(kind)]
 
 
 def bundle_around(folder: Path) -> Path | None:

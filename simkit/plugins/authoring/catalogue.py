@@ -12,6 +12,7 @@ from typing import Any
 
 from simkit.diagnostics import Diagnostics, closest
 from simkit.errors import InputError
+from simkit.packs import is_shipped
 from simkit.params import Params
 from simkit.plugins import Plugin
 from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Topic, merged
@@ -140,10 +141,9 @@ def _find_class(filename: str, name: str, plugin_paths: Sequence[Path], problems
 
 
 def _origin(cls: type[Plugin]) -> str:
-    package = cls.__module__.split(".")[0]
-    if package == "simkit":
+    if is_shipped(cls):
         return "simkit"
-    if package == "simkit_user_plugins":
+    if cls.__module__.split(".")[0] == "simkit_user_plugins":
         return str(inspect.getsourcefile(getattr(cls, "wrapped_system", cls)))
     return f"entry point, module {cls.__module__}"
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import LoadError, SimkitError
+from simkit.packs import is_shipped_module
 from simkit.params import Params
 from simkit.plugins.discovery.find_plugin_class import find_plugin
 from simkit.plugins.discovery.python_plugins import SceneEntity
@@ -208,7 +209,7 @@ def modules_of(plugin: object) -> set[str]:
     return {
         name
         for name in {type(plugin).__module__, *names}
-        if name.split(".")[0] not in {"simkit", *sys.stdlib_module_names}
+        if not is_shipped_module(name) and name.split(".")[0] not in sys.stdlib_module_names
     }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
@@ -16,6 +16,7 @@ _BASES = {"world": "WorldPlugin", "model": "ModelPlugin", "visual": "VisualPlugi
 _PARENTS = {"world": "Simulation", "model": "Model", "visual": "Visual", "sensor": "Sensor"}
 _TYPES = {"number": "float", "boolean": "bool", "text": "str", "pose": "Pose", "block": "dict[str, Any]"}
 _RATES = {"update_rate", "updateRate", "updateRateHZ", "update_frequency", "rate"}
+TEMPLATES = Path(__file__).with_name("templates")
 _WIDEST = 118
 DEEPEST = 3  # deeper blocks are not read in `load`
 _NAMES_OF_PLUGIN = """
@@ -34,7 +35,7 @@ def plugin_text(plugin: NewPlugin) -> str:
     numbers = [element.name for element in plugin.elements if element.kind == "number" and not element.repeated]
     rate = next((names[name] for name in numbers if name in _RATES), None)
     imports = sorted({base, "Params", *(["Pose"] if any("Pose.from_rpy(" in line for line in lines) else [])})
-    return _fill_template(
+    return fill_template(
         "plugin.py.j2",
         plugin=plugin,
         base=base,
@@ -49,15 +50,16 @@ def plugin_text(plugin: NewPlugin) -> str:
     )
 
 
-def _fill_template(name: str, **values: object) -> str:
+def fill_template(template: str, /, **values: object) -> str:
+    """Return the text of a file in the folder `templates`, with values for its names."""
     # imported here because only plugin authors need Jinja
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    folder = FileSystemLoader(Path(__file__).with_name("templates"))
+    folder = FileSystemLoader(TEMPLATES)
     environment = Environment(
         loader=folder, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
     )
-    return environment.get_template(name).render(values)
+    return environment.get_template(template).render(values)
 
 
 def _uses(plugin: NewPlugin) -> str:
@@ -217,7 +219,7 @@ def test_text(plugin: NewPlugin) -> str:
         for condition in _expected(element, f"plugin.{names[element.name]}", first):
             checks += break_expression("    assert ", condition, "    ")
     is_approximate = any("approx(" in line for line in checks)
-    return _fill_template(
+    return fill_template(
         "plugin_test.py.j2", plugin=plugin, world=_world(plugin), checks=checks, is_approximate=is_approximate
     )
 
@@ -267,7 +269,7 @@ def _world(plugin: NewPlugin) -> str:
     else:
         body = "".join(f"<{e.name}>{escape(e.values[0])}</{e.name}>" for e in plugin.elements)
         element = f'<plugin name="{plugin.module}" filename={quote_attribute(plugin.filename)}>{body}</plugin>'
-    return _fill_template("plugin_world.sdf.j2", plugin=plugin, element=element)
+    return fill_template("plugin_world.sdf.j2", plugin=plugin, element=element)
 
 
 def _xml(params: Params, name: str, filename: str) -> str:
@@ -306,6 +308,19 @@ def write_plugins(plugins: Sequence[NewPlugin], folder: Path, *, overwrite: bool
         path = folder / Path(*plugin.module.split(".")).with_suffix(".py")
         files[path] = plugin_text(plugin)
         files[folder / f"test_{plugin.module.replace('.', '_')}.py"] = test_text(plugin)
+    return write_files(files, overwrite=overwrite)
+
+
+def write_files(files: Mapping[Path, str], *, overwrite: bool = False) -> list[Path]:
+    """Write new source files.
+
+    Returns:
+        Written files, in the order of writing.
+
+    Raises:
+        InputError: SK-PLUGIN-074 a file cannot be written, or exists already and `overwrite` is false. If a file exists
+            already, no file is written.
+    """
     existing = [str(path) for path in files if path.exists()]
     if existing and not overwrite:
         raise InputError(f"{_FILE_EXISTS} already exists: {', '.join(existing)}; --force replaces", _FILE_EXISTS)

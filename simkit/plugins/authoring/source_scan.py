@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 from types import FunctionType, ModuleType
 from typing import Any, Final
 
+from simkit.packs import is_shipped_module
 from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Topic, merged, merged_topics, unit_of
 from simkit.plugins.base import Plugin
 from simkit.plugins.options import Options
@@ -316,7 +317,7 @@ def _named_functions(function: _Function) -> Iterator[FunctionType]:
             target = _constant(node.func, function.module)
             module = function.module.__name__
             # plugins of simkit declare the options that their helpers read
-            if getattr(target, "__module__", "") != module or module.startswith("simkit."):
+            if getattr(target, "__module__", "") != module or is_shipped_module(module):
                 continue
             if isinstance(target, FunctionType):
                 yield target

@@ -15,11 +15,11 @@ from types import ModuleType
 from simkit.diagnostics import Diagnostics, closest, did_you_mean
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.linked_files import hide_linked_text
+from simkit.packs import entry_points_of
 from simkit.plugins.base import Plugin
 from simkit.plugins.discovery.python_plugins import as_class, describe_allowed_plugins, has_hooks
 from simkit.plugins.plugin_folders import find_module, folder_help, is_inside, split_python_name
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
-from simkit.registry import entry_points_of
 from simkit.scene import ScenePlugin
 
 _siblings: dict[Path, dict[str, ModuleType]] = {}

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import copy
-import os
 import threading
 import traceback
 import types
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from simkit.packs import is_shipped_file
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.gz_python import import_hook, simulation_context
@@ -27,7 +26,6 @@ if TYPE_CHECKING:
 System = Any
 """Object or module of a user with some of the hooks."""
 
-_OWN: Final = str(Path(__file__).resolve().parents[2]) + os.sep
 _MODULE = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
 
 _STATELESS: Final = (type(threading.Lock()), type(threading.RLock()), types.ModuleType)
@@ -175,7 +173,7 @@ def line_of(error: BaseException) -> str:
     """Return the location in the user's code that raised an exception, as ` at file:line`."""
     if isinstance(error, SyntaxError):
         return ""  # its text has the location
-    frames = [f for f in traceback.extract_tb(error.__traceback__) if not f.filename.startswith(_OWN)]
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if not is_shipped_file(f.filename)]
     return f" at {frames[-1].filename}:{frames[-1].lineno}" if frames else ""
 
 

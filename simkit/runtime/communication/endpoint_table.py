@@ -11,6 +11,7 @@ from simkit.diagnostics import NOWHERE, name_hint
 from simkit.errors import ActionError, ServiceError
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.message_types import interface_parts
+from simkit.packs import is_shipped
 from simkit.runtime.communication.subscription import Message
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ class EndpointTable(Generic[E]):
         params = getattr(owner, "params", None)
         title, where = getattr(owner, "name", ""), getattr(owner, "where", NOWHERE)
         hint = "give the plugins different names or namespaces, or a <remapping>"
-        if params is not None and type(owner).__module__.startswith("simkit."):
+        if params is not None and is_shipped(type(owner)):
             params.diagnostics.warning("SK-SERVICE-004", f"plugin {title!r} cannot be reached: {problem}", where, hint)
             return True
         if params is None:

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from simkit.packs import pack_folders
+
 Settings = Mapping[str, Any]
 """Elements of a `<sensor>` by name: a mapping is an element with children, a key `@name` is an attribute."""
 
@@ -76,7 +78,8 @@ def load_presets() -> Iterator[Preset]:
     Raises:
         TypeError: a preset has an unknown key or lacks one.
     """
-    for file in sorted(_FOLDER.glob("*.toml")):
+    folders = (_FOLDER, *map(Path, pack_folders("sensors/presets/data")))
+    for file in (file for folder in folders for file in sorted(folder.glob("*.toml"))):
         table = tomllib.loads(file.read_text(encoding="utf-8"))
         entries = table.pop("preset")
         for entry in entries:

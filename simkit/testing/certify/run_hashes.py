@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.msgs import Message
+from simkit.packs import is_shipped_module
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.message_taps import TopicTaps
 from simkit.run_spec import JsonObject
@@ -100,7 +101,7 @@ def _update_hash_of_items(value: Any, seen: dict[int, tuple[int, object]], depth
 def _is_handle(value: object) -> bool:
     """Check whether an object is shared by all copies of a state: a link, publisher, plugin, or the simulation."""
     copy = getattr(type(value), "__deepcopy__", None)
-    return copy is not None and getattr(copy, "__module__", "").startswith("simkit.")
+    return copy is not None and is_shipped_module(getattr(copy, "__module__", None) or "")
 
 
 def _attributes(value: object) -> dict[str, object] | None:

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.input_file import TEXT_LIMIT, read_input
+from simkit.packs import is_shipped, shipped_folders
 from simkit.params import Params
 from simkit.testing.run_record.world_values import file_hash, plugin_value_files, values_of_files
 from simkit.version import __version__
@@ -159,18 +160,17 @@ def _ray_tracer() -> str:
 
 @cache
 def code_hash() -> str:
-    """Return the first 12 characters of a hash of simkit's own Python files."""
-    root = Path(__file__).resolve().parents[2]
+    """Return the first 12 characters of a hash of simkit's own Python files: of the core and of the packs."""
     digest = hashlib.sha256()
-    for path in sorted(root.rglob("*.py")):
-        digest.update(path.relative_to(root).as_posix().encode())
-        digest.update(path.read_bytes())
+    for root in shipped_folders():
+        for path in sorted(root.rglob("*.py")):
+            digest.update(path.relative_to(root).as_posix().encode())
+            digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
 
 
 _MAX_MODULES: Final = 100
 _FILE_NAMING_SUFFIXES: Final = frozenset((".obj", ".dae", ".gltf", ".glb"))  # mesh formats that refer to further files
-_SIMKIT_FOLDER: Final = Path(__file__).resolve().parents[2]
 
 
 def source_hashes(sim: Simulation) -> dict[str, str]:
@@ -228,10 +228,8 @@ def _plugin_code_files(sim: Simulation) -> Iterator[Path]:
     for part in (*sim.engine.structure.all_plugins(), *sim.engine.structure.all_sensors()):
         for kind in type(part).__mro__:
             file = getattr(sys.modules.get(kind.__module__), "__file__", None)
-            if file and kind is not object:
-                path = Path(file).resolve()
-                if _SIMKIT_FOLDER not in path.parents and not _is_standard_library(kind.__module__):
-                    yield from imported_files(path)
+            if file and not is_shipped(kind) and not _is_standard_library(kind.__module__):
+                yield from imported_files(Path(file).resolve())
 
 
 def imported_files(path: Path) -> list[Path]:

@@ -1,0 +1,1 @@
+"""Plugins that publish and save occupancy maps."""

@@ -1,0 +1,220 @@
+"""Plugin with simple motions that free a robot, as Nav2's `nav2_behaviors`: spin, back up, drive ahead, wait."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.base import NEVER
+from simkit.plugins.endpoints import listens
+from simkit.plugins.options import Options, OptionsOf, number, text
+from simkit_navigation.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
+from simkit_navigation.plugins.navigation.footprint import Footprint, read_footprint
+from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, look_up
+
+if TYPE_CHECKING:
+    from simkit.runtime import Model, Simulation
+    from simkit.runtime.communication.action_server import GoalHandle
+
+_TIMEOUT, _TF_ERROR, _COLLISION, _INVALID = 1, 2, 3, 4  # added to the base below
+_CODES: Final = {"spin": 700, "backup": 710, "drive_on_heading": 720, "wait": 740}
+"""Error code UNKNOWN of each action."""
+_TYPES: Final = {"spin": "Spin", "backup": "BackUp", "drive_on_heading": "DriveOnHeading", "wait": "Wait"}
+
+
+class BehaviorServerOptions(Options):
+    """Options of `BehaviorServer`."""
+
+    cycle_frequency: float = number(10.0, "Hz", minimum=0.1, maximum=1000)
+    local_frame: str = text("odom")
+    robot_base_frame: str = text("base_link")
+    costmap_topic: str = text("local_costmap/costmap_raw")
+    simulate_ahead_time: float = number(2.0, "s", minimum=0)
+    max_rotational_vel: float = number(1.0, "rad/s", minimum=0)
+    min_rotational_vel: float = number(0.4, "rad/s", minimum=0)
+    rotational_acc_lim: float = number(3.2, "rad/s^2", minimum=0.001)
+    robot_radius: float = number(0.1, "m", minimum=0)
+    footprint: str = text("")
+
+
+@dataclass(eq=False)
+class _Motion:
+    """Motion of an active goal.
+
+    Attributes:
+        goal: goal.
+        name: name of the action.
+        begin_ns: time of the start [ns].
+        begin: pose at the start.
+        last: pose at the last call.
+        turned: angle turned since the start [rad].
+        target: angle [rad], distance [m] or duration [s] of the goal, with sign.
+        speed: speed of the goal [m/s].
+        allowance: longest duration [s]; 0 for no limit.
+    """
+
+    goal: GoalHandle
+    name: str
+    begin_ns: int
+    begin: PlanarPose
+    last: PlanarPose
+    target: float
+    speed: float = 0.0
+    allowance: float = 0.0
+    turned: float = 0.0
+
+
+class BehaviorServer(CostmapReader):
+    """Moves a robot without a path: actions `spin`, `backup`, `drive_on_heading` and `wait`.
+
+    A motion ends as aborted before the robot touches an obstacle of the local costmap, or after its time allowance.
+    """
+
+    filenames = ("libsimkit_behavior_server.so",)
+    names = ("simkit::BehaviorServer", "behavior_server::BehaviorServer")
+    parent_kind = ("world", "model")
+    options = OptionsOf(BehaviorServerOptions)
+    endpoints = (listens("local_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),)
+    before_step_rate = NEVER
+
+    def load(self, parent: Simulation | Model, params: Params) -> None:
+        options = self.options.read_all()
+        self.sim.tf.open()  # so that the first look-up knows the transforms before it
+        self._footprint: Footprint = read_footprint(self, options.footprint, options.robot_radius)
+        self._motion: _Motion | None = None
+        self.read_costmap(options.costmap_topic)
+        self._command = self.advertise("cmd_vel", "geometry_msgs/msg/Twist")
+        for name, kind in _TYPES.items():
+            self.act(name, f"nav2_msgs/action/{kind}", partial(self._begin, name), self._on_cancel)
+
+    def _begin(self, name: str, goal: GoalHandle) -> None:
+        """Begin the motion of a goal; it replaces the present motion."""
+        request, pose = goal.request, self._pose()
+        target = _target(name, request)
+        if not all(map(math.isfinite, (target, getattr(request, "speed", 0.0)))):
+            goal.reject("the goal contains NaN or infinite numbers")
+            return
+        if name in ("backup", "drive_on_heading") and not request.speed:
+            _abort(goal, _CODES[name] + _INVALID, "the speed is 0")
+            return
+        if pose is None and name != "wait":
+            _abort(goal, _CODES[name] + _TF_ERROR, "the pose of the robot is not known")
+            return
+        if self._motion is not None:
+            self._motion.goal.abort(reason="another motion replaced this one")
+        here = pose or PlanarPose(0.0, 0.0, 0.0)
+        allowance = getattr(request, "time_allowance", None)
+        self._motion = _Motion(
+            goal,
+            name,
+            self.sim.time_ns,
+            here,
+            here,
+            target,
+            abs(getattr(request, "speed", 0.0)),
+            0.0 if allowance is None else allowance.sec + allowance.nanosec * 1e-9,
+        )
+        self._set_before_step_rate(self.options.cycle_frequency)
+
+    def _on_cancel(self, goal: GoalHandle) -> None:
+        if self._motion is not None and goal is self._motion.goal:
+            self._stop()
+        goal.canceled()
+
+    def _pose(self) -> PlanarPose | None:
+        return look_up(self.sim, self.options.local_frame, self.options.robot_base_frame)
+
+    def before_step(self) -> None:
+        motion = self._motion
+        if motion is None:
+            return
+        elapsed = (self.sim.time_ns - motion.begin_ns) * 1e-9
+        found = self._pose()
+        if found is None and motion.name != "wait":
+            self._end(motion, elapsed, _TF_ERROR, "the pose of the robot is not known any more")
+            return
+        pose = found or motion.last
+        motion.turned += math.remainder(pose.yaw - motion.last.yaw, math.tau)
+        motion.last = pose
+        done = {
+            "wait": elapsed,
+            "spin": abs(motion.turned),
+        }.get(motion.name, math.hypot(pose.x - motion.begin.x, pose.y - motion.begin.y))
+        remaining = abs(motion.target) - done
+        speeds = self._speeds(motion, remaining)
+        if remaining <= (0.0 if motion.name == "wait" else 1e-3):
+            self._end(motion, elapsed, 0)
+        elif motion.allowance and elapsed > motion.allowance:
+            self._end(motion, elapsed, _TIMEOUT, "the time allowance is over")
+        elif motion.name != "wait" and self._collides(pose, speeds, remaining):
+            self._end(motion, elapsed, _COLLISION, "an obstacle is ahead")
+        else:
+            if motion.name != "wait":
+                self._publish(speeds)
+            motion.goal.publish_feedback(_feedback(motion.name, done, remaining))
+
+    def _speeds(self, motion: _Motion, remaining: float) -> tuple[float, float]:
+        """Return forward speed [m/s] and turning rate [rad/s]."""
+        if motion.name == "spin":
+            options = self.options
+            rate = min(math.sqrt(2 * options.rotational_acc_lim * max(remaining, 0.0)), options.max_rotational_vel)
+            return 0.0, math.copysign(max(rate, options.min_rotational_vel), motion.target)
+        return math.copysign(motion.speed, motion.target), 0.0
+
+    def _collides(self, pose: PlanarPose, speeds: tuple[float, float], remaining: float) -> bool:
+        """Check whether the robot touches an obstacle ahead that it does not touch yet."""
+        grid = self.grid
+        placed = None if grid is None else look_up(self.sim, self.options.local_frame, grid.frame)
+        if grid is None or placed is None:
+            return False
+        seen = grid.seen_from(self.options.local_frame, placed)
+        if self._footprint.collides(seen, pose):
+            return False  # it is too near an obstacle already, so it must be able to leave
+        time = min(self.options.simulate_ahead_time, remaining / max(map(abs, speeds)))
+        return self._footprint.collides_ahead(seen, pose, speeds, time)
+
+    def _end(self, motion: _Motion, elapsed: float, code: int, reason: str = "") -> None:
+        self._stop()
+        result = {"total_elapsed_time": _duration(elapsed)}
+        if code:
+            _abort(motion.goal, _CODES[motion.name] + code, reason, **result)
+        else:
+            motion.goal.succeed(result)
+
+    def _publish(self, speeds: tuple[float, float]) -> None:
+        self._command.publish(msgs.make("geometry_msgs/msg/Twist", linear={"x": speeds[0]}, angular={"z": speeds[1]}))
+
+    def _stop(self) -> None:
+        if self._motion is not None and self._motion.name != "wait":
+            self._publish((0.0, 0.0))
+        self._motion = None
+        self._set_before_step_rate(NEVER)
+
+
+def _abort(goal: GoalHandle, code: int, reason: str, **result: object) -> None:
+    """End a goal as aborted; its result has the code and the reason."""
+    goal.abort({**result, "error_code": code, "error_msg": reason}, reason)
+
+
+def _target(name: str, request: Any) -> float:
+    """Return the angle [rad], the distance [m] or the duration [s] of a goal; backwards is negative."""
+    if name == "spin":
+        return float(request.target_yaw)
+    if name == "wait":
+        return float(request.time.sec + request.time.nanosec * 1e-9)
+    way = abs(float(request.target.x))
+    return -way if name == "backup" else math.copysign(way, request.target.x)
+
+
+def _feedback(name: str, done: float, remaining: float) -> dict[str, Any]:
+    if name == "wait":
+        return {"time_left": _duration(max(remaining, 0.0))}
+    return {"angular_distance_traveled" if name == "spin" else "distance_traveled": done}
+
+
+def _duration(seconds: float) -> Any:
+    return msgs.duration(round(seconds * 1e9))

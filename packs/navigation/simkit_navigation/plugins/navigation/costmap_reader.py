@@ -1,0 +1,35 @@
+"""Plugin that receives a costmap from its topic."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from simkit.plugins.base import Plugin
+from simkit_navigation.plugins.navigation.cost_grid import CostGrid, grid_of_message
+
+COSTMAP: Final = "nav2_msgs/msg/Costmap"
+
+
+class CostmapReader(Plugin):
+    """Plugin that receives a costmap.
+
+    Attributes:
+        grid: newest valid costmap; None before the first one.
+    """
+
+    grid: CostGrid | None
+
+    def read_costmap(self, topic: str) -> None:
+        """Receive the costmap of a topic."""
+        self.grid = None
+        self.subscribe(topic, self._on_costmap)
+
+    def _on_costmap(self, message: Any) -> None:
+        if not self._once.has_type(message, COSTMAP, "costmap_topic"):
+            return
+        found = grid_of_message(message)
+        if found is None:
+            text = "a costmap is ignored that is empty, or whose size, resolution or origin is not valid"
+            self._once.left_out("costmap", text)
+        else:
+            self.grid = found

@@ -1,0 +1,32 @@
+"""Modules by the names that they had in the core."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+
+import pytest
+
+import simkit_navigation
+
+FILE = Path(simkit_navigation.__file__).with_name("moved_modules.txt")
+NAMES = [line.split() for line in FILE.read_text(encoding="utf-8").splitlines()]
+
+
+@pytest.mark.parametrize(("old", "new"), NAMES)
+def test_an_old_name_has_the_same_classes_and_a_warning(old: str, new: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, _ in NAMES:
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    with pytest.warns(DeprecationWarning, match=f"^{old} has moved to {new}; the old name will be removed$"):
+        found = importlib.import_module(old)
+    names = vars(importlib.import_module(new))
+    assert {name for name in names if not name.startswith("__")} <= set(vars(found))
+    assert all(vars(found)[name] is value for name, value in names.items() if isinstance(value, type))
+    for name, _ in NAMES:
+        sys.modules.pop(name, None)
+
+
+def test_a_module_that_never_was_is_not_found() -> None:
+    with pytest.raises(ModuleNotFoundError, match=r"No module named 'simkit\.plugins\.world\.map_sever'"):
+        importlib.import_module("simkit.plugins.world.map_sever")

@@ -1,0 +1,1 @@
+"""Pack Open-RMF: slotcars, doors and lifts of rmf_simulation, with their messages."""

@@ -1,0 +1,1 @@
+"""Pack for water and air: buoyancy, waves, wind, wings, rotors, thrusters, and autopilots that fly vehicles."""

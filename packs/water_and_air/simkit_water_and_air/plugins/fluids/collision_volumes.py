@@ -1,0 +1,98 @@
+"""Volumes with which links displace air or water, computed from the collisions of the links."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics
+from simkit.linear_algebra import matmul
+from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit.pose import Vector
+from simkit.scene import Geometry, Mesh, Polyline, SceneCollision, SceneLink
+from simkit_water_and_air.plugins.fluids.submerged_volume import Solid, Triangles, solid_of
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """Volume of one collision that displaces a fluid.
+
+    Attributes:
+        volume: Volume [m³].
+        centre: Centre of the volume in the link's frame [m], shape (3,).
+        reach: Upper bound of the distance from the centre to any point of the volume [m].
+        solid: Shape of the volume; None if only volume, centre and reach are known.
+        axes, origin: Rotation matrix and position [m] of the solid's frame in the link's frame.
+    """
+
+    volume: float
+    centre: Vector
+    reach: float = 0.0
+    solid: Solid | None = None
+    axes: Vector = field(default_factory=lambda: np.eye(3))
+    origin: Vector = field(default_factory=lambda: np.zeros(3))
+
+
+class HullFactory(SharedByCopies):
+    """Factory of hulls; it converts equal shapes only once. A deep copy returns the same object.
+
+    Args:
+        on_open_mesh: Function called with the scoped name of a collision whose mesh is open. The convex hull of the
+            mesh is used in this case.
+    """
+
+    def __init__(self, on_open_mesh: Callable[[str], None]) -> None:
+        self._on_open_mesh = on_open_mesh
+        self._solids: dict[Geometry, Solid | None] = {}
+
+    def hulls(self, link: SceneLink) -> list[Hull]:
+        """Return one hull for each collision of a link; collisions without a volume have none."""
+        return [hull for collision in link.collisions if (hull := self._hull(collision)) is not None]
+
+    def _hull(self, collision: SceneCollision) -> Hull | None:
+        shape = collision.geometry
+        if shape not in self._solids:
+            self._solids[shape] = solid_of(shape, lambda other: self._triangles(other, collision))
+        solid = self._solids[shape]
+        if solid is None:
+            return None
+        axes, origin = collision.pose_link.matrix, np.asarray(collision.pose_link.position, float)
+        return Hull(solid.volume, origin + matmul(axes, solid.centre), solid.reach, solid, axes, origin)
+
+    def _triangles(self, shape: Geometry, collision: SceneCollision) -> Triangles | None:
+        from simkit.compiler.meshes.convex_decomposition import convex_hull
+        from simkit.compiler.meshes.convex_pieces import mesh_volume
+
+        vertices, faces = _surface(shape, collision)
+        if not len(faces):
+            return None
+        if mesh_volume(vertices, faces) <= 0:
+            self._on_open_mesh(collision.scoped)
+            convex = convex_hull(vertices)
+            if convex is None or not len(convex[1]):
+                return None
+            vertices, faces = convex
+        corners: Triangles = np.asarray(vertices, float)[np.asarray(faces)]
+        return corners
+
+
+def _surface(shape: Geometry, collision: SceneCollision) -> tuple[Vector, npt.NDArray[np.int32]]:
+    """Return the vertices and faces of a mesh or an extruded outline.
+
+    Faults of a mesh file are not reported here, because the compiler has already reported them.
+    """
+    from simkit.compiler.meshes.mesh_part import join_parts
+    from simkit.compiler.meshes.mesh_reader import load_mesh
+    from simkit.compiler.shape_geometry import polyline_triangles
+
+    if isinstance(shape, Polyline):
+        try:
+            return polyline_triangles(shape)
+        except ValueError:
+            return np.zeros((0, 3)), np.zeros((0, 3), int)
+    if not isinstance(shape, Mesh) or shape.missing:
+        return np.zeros((0, 3)), np.zeros((0, 3), int)
+    return join_parts(load_mesh(shape, Diagnostics(), collision.where))

@@ -1,0 +1,1 @@
+"""Plugins for water and air by their names in Gazebo Sim."""

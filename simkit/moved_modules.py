@@ -1,0 +1,68 @@
+"""Modules that moved from the core to a pack: an import by the old name works for one version, with a warning.
+
+The file `moved_modules.txt` in the package of a shipped pack has a line for each old name that the documents named: the
+old and the new name. The finder is asked only for modules of simkit that Python does not find.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import warnings
+from functools import cache
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+_FILE = "moved_modules.txt"
+
+
+@cache
+def _new_names() -> dict[str, str]:
+    """Return the new name of each moved module by its old name."""
+    from simkit.packs import shipped_packs
+
+    names: dict[str, str] = {}
+    for pack in shipped_packs():
+        try:
+            with open(f"{pack.folder}/{_FILE}", encoding="utf-8") as file:
+                names.update((old, new) for old, new in map(str.split, file))
+        except FileNotFoundError:
+            continue
+    return names
+
+
+class _Loader:
+    """Loader of a module with the names of the moved one."""
+
+    def __init__(self, new: str) -> None:
+        self._new = new
+
+    def create_module(self, spec: ModuleSpec) -> None:
+        """Leave the creation of an empty module to Python."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Import the module by its new name, and copy its names."""
+        text = f"{module.__name__} has moved to {self._new}; the old name will be removed"
+        warnings.warn(text, DeprecationWarning, stacklevel=2)
+        moved = vars(importlib.import_module(self._new))
+        vars(module).update({name: value for name, value in moved.items() if not name.startswith("__")})
+
+
+class _Finder:
+    """Finder of moved modules."""
+
+    @staticmethod
+    def find_spec(name: str, *_: object) -> ModuleSpec | None:
+        """Return how to load a module by its old name, or the package of one; None for all others."""
+        if not name.startswith("simkit.") or not any(f"{old}.".startswith(f"{name}.") for old in _new_names()):
+            return None
+        if name not in _new_names():
+            return ModuleSpec(name, None, is_package=True)
+        loader = _Loader(_new_names()[name])
+        return ModuleSpec(name, loader, is_package=True)  # type: ignore[arg-type]  # a loader needs no base class
+
+
+def install() -> None:
+    """Let Python find moved modules, after all others."""
+    if _Finder not in sys.meta_path:
+        sys.meta_path.append(_Finder)
