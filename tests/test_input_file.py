@@ -24,6 +24,7 @@ OWN_FILES = {
     "cli/lazy_command.py": "modules of packs",
     "compiler/meshes/parallel_conversion.py": "a temporary file of simkit",
     "mujoco_import.py": "the list of files that pip has installed",
+    "moved_modules.py": "data of a shipped pack",
     "msgs/shipped_interfaces.py": "data of the package",
     "packs.py": "entry points that pip has installed",
     "plugins/authoring/plugin_reload.py": "modules that Python has imported already",

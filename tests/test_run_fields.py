@@ -16,6 +16,7 @@ from simkit.cli import app
 from simkit.cli.run_options import NONE_GIVEN, PARTS, GivenOptions, OfferedOptions, scenario_spec, with_run_options
 from simkit.diagnostics import LoadError
 from simkit.run_fields import LOAD_FIELDS, CommandOption, RunField
+from simkit.packs import installed_packs
 from simkit.run_spec import RunSpec, run_fields
 from simkit.run_values import ParameterFiles, Text
 from simkit.testing.bundles import open_bundle
@@ -73,7 +74,8 @@ RUN_A_STORED_RUN = {
 def command_of(line: str) -> Any:
     """Return the function of a command."""
     name, _, second = line.partition(" ")
-    found = getattr(import_module(f"simkit.cli.{name}"), name)
+    packages = ("simkit", *(pack.package for pack in installed_packs() if Path(pack.folder, "cli", f"{name}.py").is_file()))
+    found = getattr(import_module(f"{packages[-1]}.cli.{name}"), name)
     if not second:
         return found
     callbacks = {c.name or c.callback.__name__: c.callback for c in found.registered_commands if c.callback}
