@@ -16,9 +16,8 @@ from simkit.loaders import loader_kinds
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
 from simkit.registry import Kinds
 from simkit.sensors import sensor_kinds
-from simkit_control.plugins.ros2_control.controller_manager import controller_kinds
 
-KINDS: tuple[Callable[[], Any], ...] = (plugin_kinds, sensor_kinds, controller_kinds, loader_kinds)
+KINDS: tuple[Callable[[], Any], ...] = (plugin_kinds, sensor_kinds, loader_kinds)
 
 ANIMALS = '''"""A package of its own."""
 

@@ -80,6 +80,7 @@ def opened_own(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]
     return opened
 
 
+@pytest.mark.needs_packs
 @pytest.mark.parametrize("name", [name for name, reader in READERS.items() if reader.opens_own])
 def test_each_reader_opens_a_file_of_the_project(opened_own: dict[str, list[str]], name: str) -> None:
     """This shows that the tracer sees what the readers open."""

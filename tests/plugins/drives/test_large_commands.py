@@ -124,6 +124,7 @@ def test_numbers_that_no_physics_can_follow_are_ignored_with_a_warning(value: fl
         assert abs(sim.joint("other::jl").velocity) > 1.5 and abs(sim.joint("bot::jl").velocity) < 0.1
 
 
+@pytest.mark.needs_packs
 @pytest.mark.parametrize("topic", [*sorted(FLOAT), "/twist"])
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e11, 1e308])
 def test_every_kind_of_command_is_checked(topic: str, value: float) -> None:

@@ -8,10 +8,9 @@ from pathlib import Path
 
 import pytest
 
-import simkit_navigation
-
-FILE = Path(simkit_navigation.__file__).with_name("moved_modules.txt")
-NAMES = [line.split() for line in FILE.read_text(encoding="utf-8").splitlines()]
+ROOT = Path(__file__).resolve().parents[1]
+FILES = sorted(ROOT.glob("packs/*/simkit_*/moved_modules.txt"))
+NAMES = [line.split() for file in FILES for line in file.read_text(encoding="utf-8").splitlines()]
 
 
 @pytest.mark.parametrize(("old", "new"), NAMES)
