@@ -43,6 +43,7 @@ class AndersonAcceleration:
         self._results: list[list[float]] = []
         self._last: tuple[list[float], list[float]] | None = None
         self._end: tuple[list[float], list[float]] | None = None
+        self._turns = 0
 
     def has_come_near(self, tolerance: float) -> bool:
         """Check whether the root mean square of the residual was ever below `_NEAR_FACTOR` tolerances, about g."""
@@ -88,7 +89,8 @@ class AndersonAcceleration:
         if not self._may_overshoot or last is None:
             return None
         if _product(last[1], residual) < 0.0:
-            if self._end is not None or size > self._size:
+            self._turns += 1
+            if self._turns > 1 or size > self._size:
                 self._end = last
         elif self._end is not None:
             self._end = self._end[0], [0.5 * one for one in self._end[1]]
@@ -152,12 +154,18 @@ class IslandIterations:
                 after[place] = one
         return after
 
-    def settle(self, iterates: list[float], tolerances: Sequence[float]) -> tuple[list[float], list[int]]:
-        """Return the best iterates, and the islands in which even the best iterate is far from a solution."""
+    def settle(self, iterates: list[float], tolerances: Sequence[float], least: float) -> tuple[list[float], list[int]]:
+        """Return the best iterates, and the islands in which even the best iterate is far from a solution.
+
+        Args:
+            iterates: present iterate of each contact.
+            tolerances: tolerance of each contact.
+            least: least tolerance that decides whether an iterate is far from a solution.
+        """
         after, failed = iterates.copy(), []
         for island in self._unsettled:
             members, sequence = self._members[island], self._sequences[island]
-            if sequence.has_come_near(max(tolerances[place] for place in members)):
+            if sequence.has_come_near(max(least, *(tolerances[place] for place in members))):
                 for place, one in zip(members, sequence.best, strict=True):
                     after[place] = one
             else:

@@ -54,7 +54,7 @@ class ArrayContactCorrection:
         tolerances: tolerances of the references [m/s²], shape (k,), as in `ContactCorrection`.
         references: references of all rows, as in `ContactCorrection`.
         may_creep: True if no contact closes, opens, overlaps or slips fast.
-        step: length of a step [s].
+        around: step and tolerance.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class ArrayContactCorrection:
         tolerances: Floats,
         references: Floats,
         may_creep: bool,
-        step: float,
+        around: ContactConditions,
     ) -> None:
         self._data, self._aref, self._softness, self._is_pyramid = data, data.efc_aref, data.efc_R, is_pyramid
         self._places, self._mu, self._edges, self._normals = places, mu, edges, normals
@@ -78,7 +78,7 @@ class ArrayContactCorrection:
         self._has_goal = ~np.isnan(goals)
         self._has_goals = bool(self._has_goal.any())
         self._engine, self.may_creep = self._aref.copy(), may_creep
-        self._exit = EXIT_SPEED / step
+        self._around = around
         self._tangents: Floats = normals
         self._before: Floats = normals
         self._requested: Floats = normals
@@ -152,7 +152,8 @@ class ArrayContactCorrection:
     def settle(self) -> None:
         """Choose references as `ContactCorrection.settle` does."""
         if self._iterations is not None:
-            best, failed = self._iterations.settle(self._requested.tolist(), self._tolerances.tolist())
+            tolerances = self._tolerances.tolist()
+            best, failed = self._iterations.settle(self._requested.tolist(), tolerances, self._around.tolerance)
             self._set_references(np.array(best))
             if failed:
                 restore_islands(self._data, self._engine, failed)
@@ -163,7 +164,8 @@ class ArrayContactCorrection:
         held = self._has_goal & (self._kinds == AT_MOST) & np.isin(self._islands, islands)
         edges, before = self._edges[held], self._along(self._aref)[held]
         lift = _lift(self._aref[self._places[held]], self._mu[held], self._is_pyramid)
-        now = np.minimum(before, np.maximum(0.0, self._goals[held] - self._exit)) - lift
+        limit = np.maximum(0.0, self._goals[held] - EXIT_SPEED / self._around.step)
+        now = np.minimum(before, limit) - lift
         self._aref[edges] = self._aref[edges] + (now - before)[:, None] if self._is_pyramid else now[:, None]
 
     def restore(self) -> None:
@@ -273,7 +275,7 @@ def find_array_correction(
     fast = CREEP_LIMIT * CREEP_LIMIT * (around.tolerance * around.tolerance)
     may_creep = not (lift > fast).any() and bool(np.isnan(goals).all())
     rest = (edges[chosen], normals[chosen], goals[chosen], kinds[chosen], tolerances[chosen], references, may_creep)
-    return ArrayContactCorrection(data, is_pyramid, places[chosen], mu, *rest, around.step)
+    return ArrayContactCorrection(data, is_pyramid, places[chosen], mu, *rest, around)
 
 
 def _candidates(

@@ -57,7 +57,7 @@ class ContactCorrection:
         before: references of the engine, of all rows.
         references: the same, but the friction of sliding and closing contacts stops their slip within the step.
         may_creep: True if no contact closes, opens, overlaps or slips fast.
-        step: length of a step [s].
+        around: step and tolerance.
     """
 
     _softness: list[float] | None = None
@@ -71,10 +71,10 @@ class ContactCorrection:
         before: list[float],
         references: list[float],
         may_creep: bool,
-        step: float,
+        around: ContactConditions,
     ) -> None:
         self._data, self._aref, self._contacts, self._tolerances = data, data.efc_aref, contacts, tolerances
-        self.may_creep, self._exit = may_creep, EXIT_SPEED / step
+        self.may_creep, self._around = may_creep, around
         self._before, self._references, self._engine = before, references, self._aref.copy()
 
     def creeps(self, moves: Floats, forces: Floats | None = None) -> bool:
@@ -215,7 +215,7 @@ class ContactCorrection:
         open a sliding contact by its coefficient times its slip. There such bodies do not separate in this step.
         """
         if self._iterations is not None:
-            best, failed = self._iterations.settle(self._requested, self._tolerances)
+            best, failed = self._iterations.settle(self._requested, self._tolerances, self._around.tolerance)
             self._set_references(best)
             if failed:
                 restore_islands(self._data, self._engine, failed)
@@ -223,14 +223,14 @@ class ContactCorrection:
 
     def _hold(self, islands: list[int]) -> None:
         """Set normal references so that overlapping bodies of some islands do not separate in this step."""
-        aref = self._aref.tolist()
+        aref, exits = self._aref.tolist(), EXIT_SPEED / self._around.step
         for (row, mus, _, goal, kind), island in zip(self._contacts, self._islands, strict=True):
             if kind == AT_MOST and goal == goal and island in islands:
                 total = 0.0
                 for place, mu in enumerate(mus, row + 1):
                     one = mu * aref[place]
                     total += one * one
-                self._aref[row] = min(aref[row], max(0.0, goal - self._exit)) - math.sqrt(total)
+                self._aref[row] = min(aref[row], max(0.0, goal - exits)) - math.sqrt(total)
 
     def restore(self) -> None:
         """Restore the previous references."""
@@ -371,4 +371,4 @@ def find_correction(
                 mus = []  # bodies that separate begin to slide, bodies that close do not
             found.append((row, mus[: dim - 1], aref[row], goal, kind))
             tolerances.append(tolerance)
-    return ContactCorrection(data, found, tolerances, aref, references, may_creep, step) if found else None
+    return ContactCorrection(data, found, tolerances, aref, references, may_creep, around) if found else None
