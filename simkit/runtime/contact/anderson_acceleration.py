@@ -13,6 +13,9 @@ solution."""
 _MAX_EXTRAPOLATION: Final = 100.0
 """Largest ratio of the squared extrapolation to the squared residual; above it, the plain iterate is used."""
 
+_SLOW: Final = 0.25
+"""Ratio of the squares of two opposite residuals above which the second step past the solution is one too many."""
+
 _MIN_SHARE: Final = 0.1
 """Least distance of the next iterate from both ends of an interval that contains the solution, as a fraction of it."""
 
@@ -90,7 +93,7 @@ class AndersonAcceleration:
             return None
         if _product(last[1], residual) < 0.0:
             self._turns += 1
-            if self._turns > 1 or size > self._size:
+            if self._end is not None or size > (_SLOW if self._turns > 1 else 1.0) * self._size:
                 self._end = last
         elif self._end is not None:
             self._end = self._end[0], [0.5 * one for one in self._end[1]]
