@@ -13,8 +13,11 @@ solution."""
 _MAX_EXTRAPOLATION: Final = 100.0
 """Largest ratio of the squared extrapolation to the squared residual; above it, the plain iterate is used."""
 
-_MAX_OVERSHOOT: Final = 10.0
-"""Largest growth of the square of the residual in a step past the solution; with more, contacts have opened."""
+_SLOW: Final = 0.25
+"""Ratio of the squares of two opposite residuals above which the second step past the solution is one too many."""
+
+_MIN_SHARE: Final = 0.1
+"""Least distance of the next iterate from both ends of an interval that contains the solution, as a fraction of it."""
 
 _MIN_DETERMINANT: Final = 1e-8
 """Least determinant of two differences, relative to the product of their squares, at which both are used."""
@@ -27,7 +30,7 @@ class AndersonAcceleration:
     stiff vehicle, it removes only 2 %, because load that changes from one wheel to another moves nothing.
 
     Args:
-        may_overshoot: True to keep the history after a moderate step past the solution.
+        may_overshoot: True to search between two iterates after a step past the solution.
 
     Attributes:
         best: iterate with the smallest residual. It is used if the iteration does not converge. This happens if
@@ -41,6 +44,9 @@ class AndersonAcceleration:
         self._size = math.inf
         self._residuals: list[list[float]] = []
         self._results: list[list[float]] = []
+        self._last: tuple[list[float], list[float]] | None = None
+        self._end: tuple[list[float], list[float]] | None = None
+        self._turns = 0
 
     def has_come_near(self, tolerance: float) -> bool:
         """Check whether the root mean square of the residual was ever below `_NEAR_FACTOR` tolerances, about g."""
@@ -57,30 +63,47 @@ class AndersonAcceleration:
         size = _product(residual, residual)
         if size < self._least:
             self._least, self.best = size, iterate
-        if size > self._size and self._has_left(residual, size):
+        between = self._between(iterate, residual, size)
+        if size > self._size and between is None:
             self._residuals, self._results = [], []  # contacts have opened or closed: earlier results do not apply
         self._size = size
         self._residuals, self._results = [*self._residuals[-2:], residual], [*self._results[-2:], result]
-        if len(self._residuals) < 2:
-            return result
+        if between is not None or len(self._residuals) < 2:
+            return between or result
         further = self._extrapolation()
         if _product(further, further) > _MAX_EXTRAPOLATION * size:
             return result
         return [g + one for g, one in zip(result, further, strict=True)]
 
-    def _has_left(self, residual: list[float], size: float) -> bool:
-        """Check whether a residual that has grown is not a moderate step past the solution.
+    def _between(self, iterate: list[float], residual: list[float], size: float) -> list[float] | None:
+        """Return the next iterate after a step past the solution; None if there was no such step.
 
-        In a narrow groove, plain iteration steps past the solution, farther each time. The residuals are then opposite,
-        and the solution lies between both iterates.
+        In a narrow groove, friction holds a log or lets it go, and plain iteration steps past the solution, farther
+        each time. The residuals are then opposite, and the solution lies between both iterates. The next iterate is
+        there where a straight line through both residuals vanishes. The older end counts half as much each time that
+        it stays (Illinois algorithm), so that the interval shrinks from both sides.
 
         Args:
-            residual: present residual.
-            size: its square.
+            iterate: present iterate.
+            residual: its residual.
+            size: square of the residual.
         """
-        if not self._may_overshoot:
-            return True
-        return size > _MAX_OVERSHOOT * self._size or _product(residual, self._residuals[-1]) >= 0.0
+        last, self._last = self._last, (iterate, residual)
+        if not self._may_overshoot or last is None:
+            return None
+        if _product(last[1], residual) < 0.0:
+            self._turns += 1
+            if self._end is not None or size > (_SLOW if self._turns > 1 else 1.0) * self._size:
+                self._end = last
+        elif self._end is not None:
+            self._end = self._end[0], [0.5 * one for one in self._end[1]]
+        if self._end is None or _product(self._end[1], residual) >= 0.0:
+            self._end = None
+            return None
+        other, opposite = self._end
+        change = [x - y for x, y in zip(residual, opposite, strict=True)]
+        share = min(max(_product(residual, change) / _product(change, change), _MIN_SHARE), 1.0 - _MIN_SHARE)
+        return [x + share * (y - x) for x, y in zip(iterate, other, strict=True)]
 
     def _extrapolation(self) -> list[float]:
         """Return the difference from the last result to the next iterate, by least squares of the residuals."""
@@ -134,12 +157,18 @@ class IslandIterations:
                 after[place] = one
         return after
 
-    def settle(self, iterates: list[float], tolerances: Sequence[float]) -> tuple[list[float], list[int]]:
-        """Return the best iterates, and the islands in which even the best iterate is far from a solution."""
+    def settle(self, iterates: list[float], tolerances: Sequence[float], least: float) -> tuple[list[float], list[int]]:
+        """Return the best iterates, and the islands in which even the best iterate is far from a solution.
+
+        Args:
+            iterates: present iterate of each contact.
+            tolerances: tolerance of each contact.
+            least: least tolerance that decides whether an iterate is far from a solution.
+        """
         after, failed = iterates.copy(), []
         for island in self._unsettled:
             members, sequence = self._members[island], self._sequences[island]
-            if sequence.has_come_near(max(tolerances[place] for place in members)):
+            if sequence.has_come_near(max(least, *(tolerances[place] for place in members))):
                 for place, one in zip(members, sequence.best, strict=True):
                     after[place] = one
             else:

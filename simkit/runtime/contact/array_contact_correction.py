@@ -17,13 +17,13 @@ from simkit.runtime.contact.contact_conditions import (
     AT_MOST,
     CLOSING_SPEED,
     CREEP_LIMIT,
-    DEEP_PENETRATION,
     EXACTLY,
     EXIT_SPEED,
     LIFT_FACTOR,
     MIN_PENETRATION,
     NO_FORCE,
     OPENING_SPEED,
+    RECOVERY_ACCURACY,
     ContactConditions,
     hit_islands,
     islands_of,
@@ -54,6 +54,7 @@ class ArrayContactCorrection:
         tolerances: tolerances of the references [m/s²], shape (k,), as in `ContactCorrection`.
         references: references of all rows, as in `ContactCorrection`.
         may_creep: True if no contact closes, opens, overlaps or slips fast.
+        around: step and tolerance.
     """
 
     def __init__(
@@ -69,6 +70,7 @@ class ArrayContactCorrection:
         tolerances: Floats,
         references: Floats,
         may_creep: bool,
+        around: ContactConditions,
     ) -> None:
         self._data, self._aref, self._softness, self._is_pyramid = data, data.efc_aref, data.efc_R, is_pyramid
         self._places, self._mu, self._edges, self._normals = places, mu, edges, normals
@@ -76,6 +78,7 @@ class ArrayContactCorrection:
         self._has_goal = ~np.isnan(goals)
         self._has_goals = bool(self._has_goal.any())
         self._engine, self.may_creep = self._aref.copy(), may_creep
+        self._around = around
         self._tangents: Floats = normals
         self._before: Floats = normals
         self._requested: Floats = normals
@@ -149,10 +152,21 @@ class ArrayContactCorrection:
     def settle(self) -> None:
         """Choose references as `ContactCorrection.settle` does."""
         if self._iterations is not None:
-            best, failed = self._iterations.settle(self._requested.tolist(), self._tolerances.tolist())
+            tolerances = self._tolerances.tolist()
+            best, failed = self._iterations.settle(self._requested.tolist(), tolerances, self._around.tolerance)
             self._set_references(np.array(best))
             if failed:
                 restore_islands(self._data, self._engine, failed)
+                self._hold(failed)
+
+    def _hold(self, islands: list[int]) -> None:
+        """Set normal references as `ContactCorrection._hold` does."""
+        held = self._has_goal & (self._kinds == AT_MOST) & np.isin(self._islands, islands)
+        edges, before = self._edges[held], self._along(self._aref)[held]
+        lift = _lift(self._aref[self._places[held]], self._mu[held], self._is_pyramid)
+        limit = np.maximum(0.0, self._goals[held] - EXIT_SPEED / self._around.step)
+        now = np.minimum(before, limit) - lift
+        self._aref[edges] = self._aref[edges] + (now - before)[:, None] if self._is_pyramid else now[:, None]
 
     def restore(self) -> None:
         """Restore the previous references."""
@@ -250,6 +264,8 @@ def find_array_correction(
         impedance = data.efc_KBIP[edges[pressed, 0], 2]
         bearable = LIFT_FACTOR * around.tolerance * (1.0 - impedance) / impedance
         tolerances[pressed] = np.minimum(around.tolerance, bearable)
+    leaves = (kinds == AT_MOST) & (goals > NO_FORCE)
+    tolerances[leaves] = np.maximum(tolerances[leaves], RECOVERY_ACCURACY * EXIT_SPEED / around.step)
     slides = lift > tolerances * tolerances
     chosen = (slides | ~np.isnan(goals)).nonzero()[0]
     if not chosen.size:
@@ -259,7 +275,7 @@ def find_array_correction(
     fast = CREEP_LIMIT * CREEP_LIMIT * (around.tolerance * around.tolerance)
     may_creep = not (lift > fast).any() and bool(np.isnan(goals).all())
     rest = (edges[chosen], normals[chosen], goals[chosen], kinds[chosen], tolerances[chosen], references, may_creep)
-    return ArrayContactCorrection(data, is_pyramid, places[chosen], mu, *rest)
+    return ArrayContactCorrection(data, is_pyramid, places[chosen], mu, *rest, around)
 
 
 def _candidates(
@@ -307,7 +323,7 @@ def _goals(data: mujoco.MjData, around: ContactConditions, found: _Candidates) -
         after = np.where(closes & (speed < -left), speed + left, speed)
     wanted = np.maximum(0.0, (EXIT_SPEED - after) / step)
     is_late = closes & (normals <= wanted)
-    is_fast = (normals > wanted) & (closes | (speed > OPENING_SPEED) | (found.depth > DEEP_PENETRATION))
+    is_fast = (normals > wanted) | (found.depth > around.deep)
     constants = contact.solref[numbers, 0]
     is_rigid = (constants > 0.0) & (constants <= around.softest)
     goals = np.where(np.where(is_late, found.depth >= 0.0, is_fast) & is_rigid, wanted, np.nan)

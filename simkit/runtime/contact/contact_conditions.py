@@ -15,8 +15,8 @@ ARRAY_THRESHOLD: Final = 64
 EXIT_SPEED: Final = 0.05
 """Largest speed [m/s] at which a contact opens and overlapping bodies separate; at this speed, a body hops 0.13 mm."""
 
-DEEP_PENETRATION: Final = 1e-3
-"""Penetration [m] from which the separation speed is limited in advance; a contact at rest has some micrometres."""
+RECOVERY_ACCURACY: Final = 0.02
+"""Accuracy of the correction of a contact whose separation speed is limited, in units of `EXIT_SPEED`."""
 
 OPENING_SPEED: Final = 0.2 * EXIT_SPEED
 """Speed along the normal [m/s] above which a contact counts as opening."""
@@ -70,6 +70,7 @@ class ContactConditions:
         softest: largest time constant [s] of a rigid contact. A softer contact, set by a `<kp>`, opens and closes
             without a correction.
         least_damping: damping [1/s] of the time constant `softest`; the friction of a softer contact stays as it is.
+        deep: penetration [m] from which the separation speed is limited in advance; see `deep_penetration`.
     """
 
     step: float
@@ -79,6 +80,20 @@ class ContactConditions:
     inner: frozenset[int] = frozenset()
     softest: float = math.inf
     least_damping: float = 0.0
+    deep: float = math.inf
+
+
+def deep_penetration(constant: float, step: float) -> float:
+    """Return the penetration [m] from which MuJoCo would separate two bodies at rest faster than `EXIT_SPEED`.
+
+    The contact is a critically damped oscillator. From the penetration r it reaches r / (e constant), or r step /
+    constant² after one step if that is more. A contact at rest has some micrometres.
+
+    Args:
+        constant: time constant of the contact [s].
+        step: length of a step [s].
+    """
+    return EXIT_SPEED * constant * min(math.e, constant / step)
 
 
 def rebound(data: mujoco.MjData, number: int, speed: float, around: ContactConditions) -> float:

@@ -18,7 +18,6 @@ from simkit.runtime.contact.contact_conditions import (
     AT_MOST,
     CLOSING_SPEED,
     CREEP_LIMIT,
-    DEEP_PENETRATION,
     EXACTLY,
     EXIT_SPEED,
     HIT_ACCURACY,
@@ -26,6 +25,7 @@ from simkit.runtime.contact.contact_conditions import (
     MIN_PENETRATION,
     NO_FORCE,
     OPENING_SPEED,
+    RECOVERY_ACCURACY,
     ContactConditions,
     hit_islands,
     islands_of,
@@ -57,6 +57,7 @@ class ContactCorrection:
         before: references of the engine, of all rows.
         references: the same, but the friction of sliding and closing contacts stops their slip within the step.
         may_creep: True if no contact closes, opens, overlaps or slips fast.
+        around: step and tolerance.
     """
 
     _softness: list[float] | None = None
@@ -70,9 +71,10 @@ class ContactCorrection:
         before: list[float],
         references: list[float],
         may_creep: bool,
+        around: ContactConditions,
     ) -> None:
         self._data, self._aref, self._contacts, self._tolerances = data, data.efc_aref, contacts, tolerances
-        self.may_creep = may_creep
+        self.may_creep, self._around = may_creep, around
         self._before, self._references, self._engine = before, references, self._aref.copy()
 
     def creeps(self, moves: Floats, forces: Floats | None = None) -> bool:
@@ -207,12 +209,28 @@ class ContactCorrection:
         return results
 
     def settle(self) -> None:
-        """Use the references with the smallest residual, or the engine's references if this residual is large."""
+        """Use the references with the smallest residual, or the engine's references if this residual is large.
+
+        In a narrow groove, the engine's references would push overlapping bodies out at metres per second, because they
+        open a sliding contact by its coefficient times its slip. There such bodies do not separate in this step.
+        """
         if self._iterations is not None:
-            best, failed = self._iterations.settle(self._requested, self._tolerances)
+            best, failed = self._iterations.settle(self._requested, self._tolerances, self._around.tolerance)
             self._set_references(best)
             if failed:
                 restore_islands(self._data, self._engine, failed)
+                self._hold(failed)
+
+    def _hold(self, islands: list[int]) -> None:
+        """Set normal references so that overlapping bodies of some islands do not separate in this step."""
+        aref, exits = self._aref.tolist(), EXIT_SPEED / self._around.step
+        for (row, mus, _, goal, kind), island in zip(self._contacts, self._islands, strict=True):
+            if kind == AT_MOST and goal == goal and island in islands:
+                total = 0.0
+                for place, mu in enumerate(mus, row + 1):
+                    one = mu * aref[place]
+                    total += one * one
+                self._aref[row] = min(aref[row], max(0.0, goal - exits)) - math.sqrt(total)
 
     def restore(self) -> None:
         """Restore the previous references."""
@@ -273,7 +291,7 @@ def _request(
     if closes and normal <= wanted:
         wanted, is_wrong, kind = -after / step, depth >= 0.0, AT_LEAST
     else:
-        is_wrong = normal > wanted and (closes or speed > OPENING_SPEED or depth > DEEP_PENETRATION)
+        is_wrong = normal > wanted or depth > around.deep
     constant = contact.solref.item(number, 0) if closes or is_wrong else 0.0
     if constant > 0.0:
         goal = wanted if is_wrong and constant <= around.softest else math.nan
@@ -282,6 +300,8 @@ def _request(
     if depth > MIN_PENETRATION:  # the impedance of a deep contact is near 1: less lift opens it
         impedance = data.efc_KBIP.item(row, 2)
         tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
+    if goal == goal and kind == AT_MOST:
+        tolerance = max(tolerance, RECOVERY_ACCURACY * EXIT_SPEED / step)
     return goal, kind, tolerance
 
 
@@ -351,4 +371,4 @@ def find_correction(
                 mus = []  # bodies that separate begin to slide, bodies that close do not
             found.append((row, mus[: dim - 1], aref[row], goal, kind))
             tolerances.append(tolerance)
-    return ContactCorrection(data, found, tolerances, aref, references, may_creep) if found else None
+    return ContactCorrection(data, found, tolerances, aref, references, may_creep, around) if found else None

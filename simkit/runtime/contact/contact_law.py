@@ -28,7 +28,7 @@ from simkit.compiler.engine_options import contact_time_constant, has_engine_con
 from simkit.linear_algebra import squared_length
 from simkit.runtime.contact.array_contact_correction import AnyContactCorrection, find_array_correction
 from simkit.runtime.contact.centripetal_friction import CentripetalFriction
-from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD, DEEP_PENETRATION, ContactConditions
+from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD, ContactConditions, deep_penetration
 from simkit.runtime.contact.contact_correction import find_correction
 from simkit.runtime.contact.contact_point_motion import ContactPointMotion
 from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
@@ -109,8 +109,9 @@ class ContactLaw:
         constant = contact_time_constant(float(model.opt.timestep))
         softest = constant * (1.0 + 1e-9)
         step = float(model.opt.timestep)
-        self._around = ContactConditions(step, [], 0.0, None, softest=softest, least_damping=2.0 / softest)
-        self._least_reference = (DEEP_PENETRATION / (constant * constant)) ** 2
+        deep = deep_penetration(constant, step)
+        self._around = ContactConditions(step, [], 0.0, None, softest=softest, least_damping=2.0 / softest, deep=deep)
+        self._least_reference = (deep / (constant * constant)) ** 2
         self._fields, self.lines = HeightFieldContacts(model), LineContacts(model)
         self._wheels, self._carried = WheelContacts(model), CentripetalFriction(model)
         self._points = ContactPointMotion.of(model)
