@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 from simkit.cli import app
 from simkit.cli.run_options import NONE_GIVEN, PARTS, GivenOptions, OfferedOptions, scenario_spec, with_run_options
 from simkit.diagnostics import LoadError
-from simkit.run_fields import LOAD_FIELDS, CommandOption, RunField
 from simkit.packs import installed_packs
+from simkit.run_fields import LOAD_FIELDS, CommandOption, RunField
 from simkit.run_spec import RunSpec, run_fields
 from simkit.run_values import ParameterFiles, Text
 from simkit.testing.bundles import open_bundle
@@ -74,7 +74,8 @@ RUN_A_STORED_RUN = {
 def command_of(line: str) -> Any:
     """Return the function of a command."""
     name, _, second = line.partition(" ")
-    packages = ("simkit", *(pack.package for pack in installed_packs() if Path(pack.folder, "cli", f"{name}.py").is_file()))
+    of_packs = (pack.package for pack in installed_packs() if Path(pack.folder, "cli", f"{name}.py").is_file())
+    packages = ("simkit", *of_packs)
     found = getattr(import_module(f"{packages[-1]}.cli.{name}"), name)
     if not second:
         return found
